@@ -1,0 +1,97 @@
+//! The validated robot: what a robot file says, with every expression evaluated.
+
+use crate::{Convention, Inertia, Model, Row, Transform};
+
+/// A validated robot, as its file describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Robot {
+    /// Identifier, `[a-z][a-z0-9_]*`.
+    pub name: String,
+    /// A title for people.
+    pub title: Option<String>,
+    /// Where the numbers come from.
+    pub source: String,
+    /// Free text: what is doubtful, what was converted.
+    pub notes: Option<String>,
+    /// Standard or modified rows.
+    pub convention: Convention,
+    /// Acceleration of gravity in frame 0, m/s² (it points down).
+    pub gravity: [f64; 3],
+    /// World → frame 0. Places the arm; never turns gravity.
+    pub base: Transform,
+    /// Frame n → tip frame.
+    pub tool: Transform,
+    /// The named constants of the file, in its order, evaluated.
+    pub parameters: Vec<(String, f64)>,
+    /// The joints, base to tip; 1 to 64.
+    pub joints: Vec<Joint>,
+}
+
+/// One joint of a [`Robot`], with the link it moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Joint {
+    /// Its name; `joint1`, `joint2`, … when the file gives none.
+    pub name: String,
+    /// Kind, Denavit-Hartenberg parameters and link (inertia about the centre of mass).
+    pub row: Row,
+    /// The inertia as the file writes it, and the point it refers to.
+    pub written_inertia: (Inertia, InertiaReference),
+    /// Position, velocity and effort limits.
+    pub limits: Limits,
+    /// The motor, if the file has one.
+    pub motor: Option<Motor>,
+}
+
+/// The point a written inertia tensor refers to; its axes are the link's in both cases.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum InertiaReference {
+    /// The link's centre of mass.
+    Com,
+    /// The origin of the link frame.
+    Origin,
+}
+
+/// Limits of a joint; `None` where the file says nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Limits {
+    /// Lower and upper end, rad or m.
+    pub position: Option<(f64, f64)>,
+    /// Largest speed, rad/s or m/s.
+    pub velocity: Option<f64>,
+    /// Largest torque or force, N m or N.
+    pub effort: Option<f64>,
+}
+
+/// A motor behind a gear: adds `G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)` to the joint torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor {
+    /// Rotor inertia Jm, kg m².
+    pub inertia: f64,
+    /// Gear ratio G: motor turns per joint turn (rad/m for a prismatic joint). Its sign carries no meaning.
+    pub gear_ratio: f64,
+    /// Viscous friction B at the motor shaft, N m s/rad.
+    pub viscous: f64,
+    /// Coulomb friction at the motor shaft for positive and negative speed, [Tc⁺, Tc⁻], Tc⁻ ≤ 0, N m.
+    pub coulomb: [f64; 2],
+}
+
+impl Robot {
+    /// Number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.joints.len()
+    }
+
+    /// The rows alone, base to tip.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> + DoubleEndedIterator {
+        self.joints.iter().map(|joint| &joint.row)
+    }
+
+    /// The robot as a plain [`Model`], or `None` when it does not have `DOF` joints.
+    #[must_use]
+    pub fn model<const DOF: usize>(&self) -> Option<Model<DOF>> {
+        let rows: Vec<Row> = self.rows().copied().collect();
+        let rows = rows.try_into().ok()?;
+        Some(Model { convention: self.convention, gravity: self.gravity, base: self.base, tool: self.tool, rows })
+    }
+}

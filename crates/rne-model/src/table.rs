@@ -1,0 +1,169 @@
+//! The plain types of the table: no strings, no allocation, the same on a workstation and on a microcontroller.
+
+use crate::Angle;
+
+/// Which of the two Denavit-Hartenberg conventions a table follows. It is never guessed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Convention {
+    /// Distal (Denavit-Hartenberg-Paul): `Rz(theta) Tz(d) Tx(a) Rx(alpha)`, link frame i at the far end of link i.
+    Standard,
+    /// Proximal (Craig, Khalil): `Rx(alpha) Tx(a) Rz(theta) Tz(d)`, row i carries α_{i-1} and a_{i-1}, link frame i on
+    /// joint axis i.
+    Modified,
+}
+
+/// What a joint does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// Turns: the joint variable (rad) is added to `theta`.
+    Revolute,
+    /// Slides: the joint variable (m) is added to `d`.
+    Prismatic,
+}
+
+/// One row of Denavit-Hartenberg parameters; rad and m. The joint variable is added to `theta` or `d`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Dh<S = f64> {
+    /// Joint angle θ, or its constant part.
+    pub theta: Angle<S>,
+    /// Joint offset d (b in the lecture), or its constant part.
+    pub d: S,
+    /// Length of the common normal a.
+    pub a: S,
+    /// Twist α.
+    pub alpha: Angle<S>,
+}
+
+/// A symmetric inertia tensor, kg m². `xy` is the (1,2) element of the tensor itself, -∫ x y dm.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Inertia<S = f64> {
+    /// Element (1,1).
+    pub xx: S,
+    /// Element (2,2).
+    pub yy: S,
+    /// Element (3,3).
+    pub zz: S,
+    /// Element (1,2), -∫ x y dm.
+    pub xy: S,
+    /// Element (1,3), -∫ x z dm.
+    pub xz: S,
+    /// Element (2,3), -∫ y z dm.
+    pub yz: S,
+}
+
+impl<S: Copy> Inertia<S> {
+    /// The tensor as rows.
+    #[must_use]
+    pub const fn rows(&self) -> [[S; 3]; 3] {
+        [[self.xx, self.xy, self.xz], [self.xy, self.yy, self.yz], [self.xz, self.yz, self.zz]]
+    }
+}
+
+/// The inertial data of one link, in its link frame.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Link<S = f64> {
+    /// Mass, kg.
+    pub mass: S,
+    /// Centre of mass from the origin of the link frame, in link axes, m.
+    pub com: [S; 3],
+    /// Inertia about the centre of mass, in link axes.
+    pub inertia: Inertia<S>,
+}
+
+/// One joint with the link it moves.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Row<S = f64> {
+    /// Revolute or prismatic.
+    pub kind: JointKind,
+    /// The Denavit-Hartenberg parameters.
+    pub dh: Dh<S>,
+    /// The link.
+    pub link: Link<S>,
+}
+
+/// A constant placement: translation, then fixed-axis roll, pitch, yaw as in URDF, R = Rz(yaw) Ry(pitch) Rx(roll).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform<S = f64> {
+    /// Translation, m.
+    pub xyz: [S; 3],
+    /// Roll (about x), pitch (about y), yaw (about z).
+    pub rpy: [Angle<S>; 3],
+}
+
+impl Transform<f64> {
+    /// No displacement.
+    pub const IDENTITY: Self = Self { xyz: [0.0; 3], rpy: [Angle::ZERO; 3] };
+}
+
+/// A robot with a number of joints known at compile time, without names: what dynamics needs and no more.
+///
+/// Every field is public and plain, so a `const` can hold one. `S` is the scalar in which the constants are stored:
+/// `f32` keeps double precision off a single-precision target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Model<const DOF: usize, S = f64> {
+    /// Standard or modified rows.
+    pub convention: Convention,
+    /// Acceleration of gravity in frame 0, m/s² (it points down).
+    pub gravity: [S; 3],
+    /// World → frame 0. Places the arm; never turns gravity.
+    pub base: Transform<S>,
+    /// Frame n → tip frame.
+    pub tool: Transform<S>,
+    /// The joints, base to tip.
+    pub rows: [Row<S>; DOF],
+}
+
+#[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+mod single {
+    use super::{Dh, Inertia, Link, Model, Row, Transform};
+
+    const fn vector(v: [f64; 3]) -> [f32; 3] {
+        [v[0] as f32, v[1] as f32, v[2] as f32]
+    }
+
+    impl Transform<f64> {
+        /// The same placement in single precision.
+        #[must_use]
+        pub const fn to_f32(self) -> Transform<f32> {
+            Transform { xyz: vector(self.xyz), rpy: [self.rpy[0].to_f32(), self.rpy[1].to_f32(), self.rpy[2].to_f32()] }
+        }
+    }
+
+    impl Row<f64> {
+        /// The same row in single precision, each number rounded once.
+        #[must_use]
+        pub const fn to_f32(self) -> Row<f32> {
+            let (dh, link, i) = (self.dh, self.link, self.link.inertia);
+            Row {
+                kind: self.kind,
+                dh: Dh { theta: dh.theta.to_f32(), d: dh.d as f32, a: dh.a as f32, alpha: dh.alpha.to_f32() },
+                link: Link {
+                    mass: link.mass as f32,
+                    com: vector(link.com),
+                    inertia: Inertia {
+                        xx: i.xx as f32,
+                        yy: i.yy as f32,
+                        zz: i.zz as f32,
+                        xy: i.xy as f32,
+                        xz: i.xz as f32,
+                        yz: i.yz as f32,
+                    },
+                },
+            }
+        }
+    }
+
+    impl<const DOF: usize> Model<DOF, f64> {
+        /// The same robot in single precision, each number rounded once.
+        #[must_use]
+        pub fn to_f32(self) -> Model<DOF, f32> {
+            Model {
+                convention: self.convention,
+                gravity: vector(self.gravity),
+                base: self.base.to_f32(),
+                tool: self.tool.to_f32(),
+                rows: self.rows.map(Row::to_f32),
+            }
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! Force and moment at the tip.
+
+use nalgebra::Vector3;
+
+use crate::Scalar;
+
+/// The lecture's f_{n,n+1} and n_{n,n+1}: exerted BY the last link ON its environment, at the origin of the tip frame
+/// (`tool` included), in tip-frame axes. So τ = τ_free + Jᵀ w, and what the environment exerts on the robot is the
+/// negative of it: a robot that pushes down on a table has a force pointing down.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wrench<T> {
+    /// Force, N.
+    pub force: [T; 3],
+    /// Moment about the origin of the tip frame, N m.
+    pub moment: [T; 3],
+}
+
+impl<T: Scalar> Wrench<T> {
+    /// A free tip: no force, no moment.
+    #[must_use]
+    pub fn zero() -> Self {
+        Self { force: [T::zero(); 3], moment: [T::zero(); 3] }
+    }
+
+    /// From nalgebra vectors.
+    #[must_use]
+    pub fn from_vectors(force: Vector3<T>, moment: Vector3<T>) -> Self {
+        Self { force: force.into(), moment: moment.into() }
+    }
+
+    /// Force and moment as nalgebra vectors.
+    #[must_use]
+    pub fn vectors(&self) -> (Vector3<T>, Vector3<T>) {
+        (self.force.into(), self.moment.into())
+    }
+}

@@ -1,0 +1,3 @@
+//! rne
+pub use rne_runtime::*;
+pub use rne_macro::InverseDynamics;
