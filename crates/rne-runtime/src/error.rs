@@ -1,0 +1,22 @@
+//! What can be wrong with a call at run time.
+
+use core::error::Error;
+use core::fmt;
+
+/// A robot file has another number of joints than the type that was to hold it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongJointCount {
+    /// Joints that the type has, its `DOF`.
+    pub expected: usize,
+    /// Joints that the robot has.
+    pub found: usize,
+}
+
+impl fmt::Display for WrongJointCount {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { expected, found } = self;
+        write!(f, "the robot has {found} joints, but {expected} are expected (`Arm<{expected}>`)")
+    }
+}
+
+impl Error for WrongJointCount {}
