@@ -5,7 +5,9 @@ use core::array;
 use rne_model::Model;
 
 use crate::link_frame::{Chain, Ends, LinkFrame};
-use crate::seven_steps::{self, LinkLoad, LinkMotion};
+use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
+use crate::seven_steps;
+use crate::trace::{self, LinkTrace, Trace};
 use crate::{BaseMotion, Constant, InverseDynamics, Scalar, Wrench};
 
 /// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, with
@@ -54,12 +56,33 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> [T; DOF] {
-        let tip = wrench.copied().unwrap_or_else(Wrench::zero);
         let mut motions = [LinkMotion::empty(); DOF];
         let mut loads = [LinkLoad::empty(); DOF];
-        seven_steps::forward(self.chain(), base, (q, qd, qdd), &mut motions);
-        seven_steps::backward(self.chain(), &motions, &tip, &mut loads);
+        seven_steps::forward(self.chain(), base, JointMotions { q, qd, qdd }, &mut motions);
+        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
         loads.map(|load| load.tau)
+    }
+
+    /// Every vector of the seven steps, in the axes of form P. Arguments as in
+    /// [`inverse_dynamics_on_moving_base`](Self::inverse_dynamics_on_moving_base); [`fixed_base`](Self::fixed_base) for
+    /// an arm that stands still.
+    #[must_use]
+    pub fn trace<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+        wrench: Option<&Wrench<T>>,
+    ) -> Trace<DOF, T> {
+        let mut motions = [LinkMotion::empty(); DOF];
+        let mut loads = [LinkLoad::empty(); DOF];
+        let mut links = [LinkTrace::empty(); DOF];
+        let joints = JointMotions { q, qd, qdd };
+        seven_steps::forward(self.chain(), base, joints, &mut motions);
+        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
+        trace::record(self.chain(), base, joints, &motions, &loads, &mut links);
+        Trace { links }
     }
 
     fn chain(&self) -> Chain<'_, S> {

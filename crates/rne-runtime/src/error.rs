@@ -20,3 +20,23 @@ impl fmt::Display for WrongJointCount {
 }
 
 impl Error for WrongJointCount {}
+
+/// A joint argument of a [`DynArm`](crate::DynArm) does not have one element per joint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongLength {
+    /// Which argument: `q`, `qd` or `qdd`.
+    pub argument: &'static str,
+    /// Joints of the robot.
+    pub expected: usize,
+    /// Elements of the argument.
+    pub found: usize,
+}
+
+impl fmt::Display for WrongLength {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { argument, expected, found } = self;
+        write!(f, "`{argument}` has {found} elements, but the robot has {expected} joints")
+    }
+}
+
+impl Error for WrongLength {}

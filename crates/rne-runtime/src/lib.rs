@@ -1,6 +1,7 @@
 //! The runtime side of `rne`: the scalar, the capability traits, and the generic recursion in nalgebra that every
 //! generated function is compared with.
 #![no_std]
+#![allow(clippy::doc_markdown)] // formulas: R_i, f_{i-1,i}
 #[cfg(feature = "std")]
 extern crate std;
 
@@ -8,16 +9,23 @@ mod arm;
 mod base_motion;
 mod capability;
 #[cfg(feature = "std")]
+mod dyn_arm;
+#[cfg(feature = "std")]
 mod error;
 mod link_frame;
+mod link_state;
 mod scalar;
 mod seven_steps;
+mod trace;
 mod wrench;
 
 pub use arm::Arm;
 pub use base_motion::BaseMotion;
 pub use capability::InverseDynamics;
 #[cfg(feature = "std")]
-pub use error::WrongJointCount;
+pub use dyn_arm::{DynArm, DynTrace};
+#[cfg(feature = "std")]
+pub use error::{WrongJointCount, WrongLength};
 pub use scalar::{Constant, Scalar};
+pub use trace::{LinkTrace, Trace};
 pub use wrench::Wrench;

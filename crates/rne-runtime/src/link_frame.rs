@@ -169,7 +169,7 @@ impl<S: Constant> Ends<S> {
 impl<'a, S: Constant> Chain<'a, S> {
     /// The links from base to tip, in the scalar of a computation.
     #[inline]
-    pub(crate) fn links<T: Scalar>(&self) -> impl ExactSizeIterator<Item = LinkFrame<T>> + DoubleEndedIterator + 'a {
+    pub(crate) fn links<T: Scalar>(self) -> impl ExactSizeIterator<Item = LinkFrame<T>> + DoubleEndedIterator + 'a {
         self.links.iter().map(|link| link.to())
     }
 }

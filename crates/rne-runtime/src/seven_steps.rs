@@ -19,65 +19,12 @@
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::link_frame::{Chain, LinkFrame};
+use crate::link_state::{ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
 use crate::{BaseMotion, Constant, Scalar, Wrench};
-
-/// Link i with the motion of its joint.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Joint<T> {
-    pub(crate) link: LinkFrame<T>,
-    /// θ_i or b_i without its constant part, rad or m.
-    pub(crate) q: T,
-    /// θ̇_i or ḃ_i.
-    pub(crate) qd: T,
-    /// θ̈_i or b̈_i.
-    pub(crate) qdd: T,
-}
-
-/// What the forward pass finds for link i.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LinkMotion<T> {
-    /// R_i
-    pub(crate) rotation: Matrix3<T>,
-    /// d_i
-    pub(crate) d: Vector3<T>,
-    /// r_i
-    pub(crate) r: Vector3<T>,
-    /// ω_i
-    pub(crate) omega: Vector3<T>,
-    /// ω̇_i
-    pub(crate) omega_dot: Vector3<T>,
-    /// c̈_i
-    pub(crate) acceleration: Vector3<T>,
-    /// g_i
-    pub(crate) gravity: Vector3<T>,
-}
-
-/// What the backward pass finds for link i.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct LinkLoad<T> {
-    /// f_i
-    pub(crate) inertia_force: Vector3<T>,
-    /// n_i
-    pub(crate) inertia_moment: Vector3<T>,
-    /// f_{i-1,i}
-    pub(crate) joint_force: Vector3<T>,
-    /// n_{i-1,i}
-    pub(crate) joint_moment: Vector3<T>,
-    /// τ_i
-    pub(crate) tau: T,
-}
-
-/// What link i+1 takes from link i, in the axes of link i.
-struct Child<T> {
-    /// f_{i,i+1}
-    force: Vector3<T>,
-    /// n_{i,i+1}
-    moment: Vector3<T>,
-}
 
 /// Step 1: angular velocity.
 ///
@@ -148,10 +95,10 @@ fn gravity<T: Scalar>(prev: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> 
 ///
 /// - f_i = m_i c̈_i
 /// - n_i = I_i ω̇_i + ω_i × (I_i ω_i)
-fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> (Vector3<T>, Vector3<T>) {
-    let f = this.acceleration * link.mass;
-    let n = link.inertia * this.omega_dot + this.omega.cross(&(link.inertia * this.omega));
-    (f, n)
+fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> ForceMoment<T> {
+    let force = this.acceleration * link.mass;
+    let moment = link.inertia * this.omega_dot + this.omega.cross(&(link.inertia * this.omega));
+    ForceMoment { force, moment }
 }
 
 /// Step 6, the balance: force and moment from link i-1, the moment about the joint's reference point.
@@ -161,22 +108,22 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> (Vect
 fn joint_wrench<T: Scalar>(
     link: &LinkFrame<T>,
     this: &LinkMotion<T>,
-    (f, n): &(Vector3<T>, Vector3<T>),
-    child: &Child<T>,
-) -> (Vector3<T>, Vector3<T>) {
-    let force = (f + child.force) - this.gravity * link.mass;
-    let moment = ((n + child.moment) + this.d.cross(&force)) + this.r.cross(&child.force);
-    (force, moment)
+    inertia: &ForceMoment<T>,
+    child: &ForceMoment<T>,
+) -> ForceMoment<T> {
+    let force = (inertia.force + child.force) - this.gravity * link.mass;
+    let moment = ((inertia.moment + child.moment) + this.d.cross(&force)) + this.r.cross(&child.force);
+    ForceMoment { force, moment }
 }
 
 /// Step 7: what the actuator delivers is the element along the joint's axis.
 ///
 /// - R: τ_i = e_i · n_{i-1,i}
 /// - P: τ_i = e_i · f_{i-1,i}
-fn actuator<T: Scalar>(link: &LinkFrame<T>, (force, moment): &(Vector3<T>, Vector3<T>)) -> T {
+fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
     match link.kind {
-        Revolute => moment.z,
-        Prismatic => force.z,
+        Revolute => joint.moment.z,
+        Prismatic => joint.force.z,
     }
 }
 
@@ -184,12 +131,12 @@ fn actuator<T: Scalar>(link: &LinkFrame<T>, (force, moment): &(Vector3<T>, Vecto
 pub(crate) fn forward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     base: &BaseMotion<T>,
-    (q, qd, qdd): (&[T], &[T], &[T]),
+    joints: JointMotions<'_, T>,
     motions: &mut [LinkMotion<T>],
 ) {
     let mut prev = LinkMotion::of_base(chain, base);
-    for (joint, motion) in chain.joints(q, qd, qdd).zip(motions) {
-        let mut this = LinkMotion::at_rest(joint.link.rotation(joint.q), joint.link.d(joint.q), joint.link.r);
+    for (joint, motion) in chain.joints(joints).zip(motions) {
+        let mut this = LinkMotion::placed(&joint);
         this.omega = angular_velocity(&joint, &prev, &this);
         this.omega_dot = angular_acceleration(&joint, &prev, &this);
         this.acceleration = acceleration(&joint, &prev, &this);
@@ -199,90 +146,43 @@ pub(crate) fn forward<S: Constant, T: Scalar>(
     }
 }
 
-/// Step 3 for every link, from the base to the tip, after the forward pass.
-#[cfg_attr(not(feature = "std"), allow(dead_code))]
-pub(crate) fn velocities<S: Constant, T: Scalar>(
-    chain: Chain<'_, S>,
+/// Step 3 for every link, from the base to the tip, after the forward pass. It stands apart because no torque needs it.
+pub(crate) fn velocities<'a, S: Constant, T: Scalar>(
+    chain: Chain<'a, S>,
     base: &BaseMotion<T>,
-    (q, qd, qdd): (&[T], &[T], &[T]),
-    motions: &[LinkMotion<T>],
-    velocities: &mut [Vector3<T>],
-) {
-    let mut prev = LinkMotion::of_base(chain, base);
-    let mut prev_velocity = Vector3::from(base.velocity);
-    for ((joint, this), found) in chain.joints(q, qd, qdd).zip(motions).zip(velocities) {
-        *found = velocity(&joint, &prev, &prev_velocity, this);
-        prev = *this;
-        prev_velocity = *found;
-    }
+    joints: JointMotions<'a, T>,
+    motions: &'a [LinkMotion<T>],
+) -> impl Iterator<Item = Vector3<T>> + 'a {
+    let start = (LinkMotion::of_base(chain, base), Vector3::from(base.velocity));
+    chain.joints(joints).zip(motions).scan(start, |(prev, prev_velocity), (joint, this)| {
+        *prev_velocity = velocity(&joint, prev, prev_velocity, this);
+        *prev = *this;
+        Some(*prev_velocity)
+    })
 }
 
-/// The backward pass, steps 6 and 7, from the tip to the base. `tip` is f_{n,n+1}, n_{n,n+1}.
+/// The backward pass, steps 6 and 7, from the tip to the base. `tip` is f_{n,n+1}, n_{n,n+1}; `None` is a free tip.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     motions: &[LinkMotion<T>],
-    tip: &Wrench<T>,
+    tip: Option<&Wrench<T>>,
     loads: &mut [LinkLoad<T>],
 ) {
-    // R_{i+1} and the wrench of joint i+1 in the axes of link i+1.
+    // R_{i+1}, and the wrench of joint i+1 in the axes of link i+1.
     let mut rotation = chain.ends.tip_rotation.map(S::to);
-    let mut wrench = tip.vectors();
+    let mut wrench = tip.map_or_else(ForceMoment::zero, ForceMoment::from);
     for ((link, this), load) in chain.links().zip(motions).zip(loads).rev() {
-        let child = Child { force: rotation * wrench.0, moment: rotation * wrench.1 };
+        let child = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
         let inertia = inertia_wrench(&link, this);
-        wrench = joint_wrench(&link, this, &inertia, &child);
-        let tau = actuator(&link, &wrench);
-        *load = LinkLoad {
-            inertia_force: inertia.0,
-            inertia_moment: inertia.1,
-            joint_force: wrench.0,
-            joint_moment: wrench.1,
-            tau,
-        };
+        let joint = joint_wrench(&link, this, &inertia, &child);
+        let tau = actuator(&link, &joint);
+        *load = LinkLoad { inertia, joint, tau };
         rotation = this.rotation;
+        wrench = joint;
     }
 }
 
 /// e_i, the joint's axis: z in form P.
 fn e<T: Scalar>() -> Vector3<T> {
     Vector3::new(T::zero(), T::zero(), T::one())
-}
-
-impl<S: Constant> Chain<'_, S> {
-    /// The links from base to tip, each with the motion of its joint.
-    fn joints<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> impl Iterator<Item = Joint<T>> {
-        let motions = q.iter().zip(qd).zip(qdd);
-        self.links().zip(motions).map(|(link, ((&q, &qd), &qdd))| Joint { link, q, qd, qdd })
-    }
-}
-
-impl<T: Scalar> LinkMotion<T> {
-    /// "Link 0": the moving frame that carries the arm, with r_0 from its origin to the first joint.
-    fn of_base<S: Constant>(chain: Chain<'_, S>, base: &BaseMotion<T>) -> Self {
-        Self {
-            omega: base.omega.into(),
-            omega_dot: base.omega_dot.into(),
-            acceleration: base.acceleration.into(),
-            gravity: base.gravity.into(),
-            ..Self::at_rest(Matrix3::identity(), Vector3::zeros(), chain.ends.base_lever.map(S::to))
-        }
-    }
-
-    fn at_rest(rotation: Matrix3<T>, d: Vector3<T>, r: Vector3<T>) -> Self {
-        let zero = Vector3::zeros();
-        Self { rotation, d, r, omega: zero, omega_dot: zero, acceleration: zero, gravity: zero }
-    }
-
-    /// A place for a result.
-    pub(crate) fn empty() -> Self {
-        Self::at_rest(Matrix3::identity(), Vector3::zeros(), Vector3::zeros())
-    }
-}
-
-impl<T: Scalar> LinkLoad<T> {
-    /// A place for a result.
-    pub(crate) fn empty() -> Self {
-        let zero = Vector3::zeros();
-        Self { inertia_force: zero, inertia_moment: zero, joint_force: zero, joint_moment: zero, tau: T::zero() }
-    }
 }

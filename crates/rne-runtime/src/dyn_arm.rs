@@ -1,0 +1,243 @@
+//! The runtime robot with a number of joints known at run time.
+
+use std::vec;
+use std::vec::Vec;
+
+use rne_model::{Convention, Model, Robot, Row, Transform};
+
+use crate::link_frame::{Chain, Ends, LinkFrame};
+use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
+use crate::seven_steps;
+use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
+use crate::{BaseMotion, Constant, Scalar, Wrench, WrongLength};
+
+/// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for
+/// arrays.
+///
+/// Slices run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynArm<S = f64> {
+    convention: Convention,
+    gravity: [S; 3],
+    base: Transform<S>,
+    tool: Transform<S>,
+    rows: Vec<Row<S>>,
+    links: Vec<LinkFrame<S>>,
+    ends: Ends<S>,
+}
+
+/// The seven steps of one state of a [`DynArm`], in the axes of form P.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynTrace<T> {
+    /// One entry per link, base to tip.
+    pub links: Vec<LinkTrace<T>>,
+}
+
+impl DynArm {
+    /// The runtime robot of a robot file that has been read.
+    #[must_use]
+    pub fn from_robot(robot: &Robot) -> Self {
+        Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, robot.rows().copied().collect())
+    }
+}
+
+impl<S: Constant> DynArm<S> {
+    /// The robot of a plain table.
+    #[must_use]
+    pub fn new<const DOF: usize>(model: &Model<DOF, S>) -> Self {
+        let Model { convention, gravity, base, tool, rows } = model;
+        Self::of_rows(*convention, *gravity, *base, *tool, rows.to_vec())
+    }
+
+    fn of_rows(
+        convention: Convention,
+        gravity: [S; 3],
+        base: Transform<S>,
+        tool: Transform<S>,
+        rows: Vec<Row<S>>,
+    ) -> Self {
+        let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, &tool, index)).collect();
+        let ends = Ends::new(convention, &rows, &tool);
+        Self { convention, gravity, base, tool, rows, links, ends }
+    }
+
+    /// Number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The table, base to tip.
+    #[must_use]
+    pub fn rows(&self) -> &[Row<S>] {
+        &self.rows
+    }
+
+    /// How the rows are to be read.
+    #[must_use]
+    pub fn convention(&self) -> Convention {
+        self.convention
+    }
+
+    /// World → frame 0.
+    #[must_use]
+    pub fn base(&self) -> &Transform<S> {
+        &self.base
+    }
+
+    /// Frame n → tip frame.
+    #[must_use]
+    pub fn tool(&self) -> &Transform<S> {
+        &self.tool
+    }
+
+    /// The base at rest under the robot's gravity.
+    #[must_use]
+    pub fn fixed_base<T: Scalar>(&self) -> BaseMotion<T> {
+        BaseMotion::fixed(self.gravity.map(S::to))
+    }
+
+    /// Torques with a free tip, τ(q, q̇, q̈).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn inverse_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<T>, WrongLength> {
+        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), None)
+    }
+
+    /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn inverse_dynamics_with_wrench<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        wrench: &Wrench<T>,
+    ) -> Result<Vec<T>, WrongLength> {
+        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), Some(wrench))
+    }
+
+    /// Torques that hold the arm still against gravity, τ(q, 0, 0).
+    ///
+    /// # Errors
+    /// When the argument does not have one element per joint.
+    pub fn gravity_torques<T: Scalar>(&self, q: &[T]) -> Result<Vec<T>, WrongLength> {
+        let zero = vec![T::zero(); self.dof()];
+        self.inverse_dynamics(q, &zero, &zero)
+    }
+
+    /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn bias_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<Vec<T>, WrongLength> {
+        self.inverse_dynamics(q, qd, &vec![T::zero(); self.dof()])
+    }
+
+    /// Torques on a moving base: `base` replaces the robot's gravity and the base at rest. `wrench` is what the last link
+    /// exerts on its environment; `None` is a free tip.
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn inverse_dynamics_on_moving_base<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+        wrench: Option<&Wrench<T>>,
+    ) -> Result<Vec<T>, WrongLength> {
+        let joints = self.joints(q, qd, qdd)?;
+        let (_, loads) = self.passes(joints, base, wrench);
+        Ok(loads.into_iter().map(|load| load.tau).collect())
+    }
+
+    /// Every vector of the seven steps, in the axes of form P. Arguments as in
+    /// [`inverse_dynamics_on_moving_base`](Self::inverse_dynamics_on_moving_base).
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn trace<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+        wrench: Option<&Wrench<T>>,
+    ) -> Result<DynTrace<T>, WrongLength> {
+        let joints = self.joints(q, qd, qdd)?;
+        let (motions, loads) = self.passes(joints, base, wrench);
+        let mut links = vec![LinkTrace::empty(); self.dof()];
+        trace::record(self.chain(), base, joints, &motions, &loads, &mut links);
+        Ok(DynTrace { links })
+    }
+
+    fn passes<T: Scalar>(
+        &self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        wrench: Option<&Wrench<T>>,
+    ) -> (Vec<LinkMotion<T>>, Vec<LinkLoad<T>>) {
+        let mut motions = vec![LinkMotion::empty(); self.dof()];
+        let mut loads = vec![LinkLoad::empty(); self.dof()];
+        seven_steps::forward(self.chain(), base, joints, &mut motions);
+        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
+        (motions, loads)
+    }
+
+    /// The joint arguments, one element per joint each.
+    fn joints<'a, T>(&self, q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Result<JointMotions<'a, T>, WrongLength> {
+        for (argument, values) in [("q", q), ("qd", qd), ("qdd", qdd)] {
+            if values.len() != self.dof() {
+                return Err(WrongLength { argument, expected: self.dof(), found: values.len() });
+            }
+        }
+        Ok(JointMotions { q, qd, qdd })
+    }
+
+    fn chain(&self) -> Chain<'_, S> {
+        Chain { links: &self.links, ends: &self.ends }
+    }
+}
+
+impl DynArm<f64> {
+    /// The same robot with its constants in single precision: each number of the table rounded once, then prepared in
+    /// single precision, as [`Model::to_f32`] does it.
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+    pub fn to_f32(&self) -> DynArm<f32> {
+        DynArm::of_rows(
+            self.convention,
+            self.gravity.map(|x| x as f32),
+            self.base.to_f32(),
+            self.tool.to_f32(),
+            self.rows.iter().map(|row| row.to_f32()).collect(),
+        )
+    }
+}
+
+impl<T: Scalar> DynTrace<T> {
+    /// The actuators' torques and forces, τ.
+    #[must_use]
+    pub fn tau(&self) -> Vec<T> {
+        self.links.iter().map(|link| link.tau).collect()
+    }
+
+    /// As [`Trace::to_lecture`](crate::Trace::to_lecture).
+    #[must_use]
+    pub fn to_lecture(&self) -> Vec<LinkTrace<T>> {
+        let mut links = self.links.clone();
+        turn_to_lecture(&mut links);
+        links
+    }
+
+    /// As [`Trace::to_base`](crate::Trace::to_base).
+    #[must_use]
+    pub fn to_base(&self) -> Vec<LinkTrace<T>> {
+        let mut links = self.links.clone();
+        turn_to_base(&mut links);
+        links
+    }
+}

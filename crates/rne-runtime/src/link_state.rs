@@ -1,0 +1,127 @@
+//! What the two passes of the recursion take and find, link by link, in the axes of form P.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::link_frame::{Chain, LinkFrame};
+use crate::{BaseMotion, Constant, Scalar, Wrench};
+
+/// Positions, velocities and accelerations of all joints, base to tip.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct JointMotions<'a, T> {
+    pub(crate) q: &'a [T],
+    pub(crate) qd: &'a [T],
+    pub(crate) qdd: &'a [T],
+}
+
+/// Link i with the motion of its joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Joint<T> {
+    pub(crate) link: LinkFrame<T>,
+    /// θ_i or b_i without its constant part, rad or m.
+    pub(crate) q: T,
+    /// θ̇_i or ḃ_i.
+    pub(crate) qd: T,
+    /// θ̈_i or b̈_i.
+    pub(crate) qdd: T,
+}
+
+/// What the forward pass finds for link i.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkMotion<T> {
+    /// R_i
+    pub(crate) rotation: Matrix3<T>,
+    /// d_i
+    pub(crate) d: Vector3<T>,
+    /// r_i
+    pub(crate) r: Vector3<T>,
+    /// ω_i
+    pub(crate) omega: Vector3<T>,
+    /// ω̇_i
+    pub(crate) omega_dot: Vector3<T>,
+    /// c̈_i
+    pub(crate) acceleration: Vector3<T>,
+    /// g_i
+    pub(crate) gravity: Vector3<T>,
+}
+
+/// A force with a moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ForceMoment<T> {
+    pub(crate) force: Vector3<T>,
+    pub(crate) moment: Vector3<T>,
+}
+
+/// What the backward pass finds for link i.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinkLoad<T> {
+    /// f_i, n_i
+    pub(crate) inertia: ForceMoment<T>,
+    /// f_{i-1,i}, n_{i-1,i}
+    pub(crate) joint: ForceMoment<T>,
+    /// τ_i
+    pub(crate) tau: T,
+}
+
+impl<'a, S: Constant> Chain<'a, S> {
+    /// The links from base to tip, each with the motion of its joint.
+    pub(crate) fn joints<T: Scalar>(
+        self,
+        JointMotions { q, qd, qdd }: JointMotions<'a, T>,
+    ) -> impl Iterator<Item = Joint<T>> + 'a {
+        let motions = q.iter().zip(qd).zip(qdd);
+        self.links().zip(motions).map(|(link, ((&q, &qd), &qdd))| Joint { link, q, qd, qdd })
+    }
+}
+
+impl<T: Scalar> LinkMotion<T> {
+    /// "Link 0": the frame that carries the arm, with r_0 from its origin to the first joint.
+    pub(crate) fn of_base<S: Constant>(chain: Chain<'_, S>, base: &BaseMotion<T>) -> Self {
+        Self {
+            r: chain.ends.base_lever.map(S::to),
+            omega: base.omega.into(),
+            omega_dot: base.omega_dot.into(),
+            acceleration: base.acceleration.into(),
+            gravity: base.gravity.into(),
+            ..Self::empty()
+        }
+    }
+
+    /// Link i where its joint has put it, its motion still unknown.
+    pub(crate) fn placed(Joint { link, q, .. }: &Joint<T>) -> Self {
+        Self { rotation: link.rotation(*q), d: link.d(*q), r: link.r, ..Self::empty() }
+    }
+
+    /// A place for a result.
+    pub(crate) fn empty() -> Self {
+        let zero = Vector3::zeros();
+        Self {
+            rotation: Matrix3::identity(),
+            d: zero,
+            r: zero,
+            omega: zero,
+            omega_dot: zero,
+            acceleration: zero,
+            gravity: zero,
+        }
+    }
+}
+
+impl<T: Scalar> LinkLoad<T> {
+    /// A place for a result.
+    pub(crate) fn empty() -> Self {
+        Self { inertia: ForceMoment::zero(), joint: ForceMoment::zero(), tau: T::zero() }
+    }
+}
+
+impl<T: Scalar> ForceMoment<T> {
+    pub(crate) fn zero() -> Self {
+        Self { force: Vector3::zeros(), moment: Vector3::zeros() }
+    }
+}
+
+impl<T: Scalar> From<&Wrench<T>> for ForceMoment<T> {
+    fn from(wrench: &Wrench<T>) -> Self {
+        let (force, moment) = wrench.vectors();
+        Self { force, moment }
+    }
+}

@@ -1,0 +1,188 @@
+//! Every vector of the seven steps, for reading and for comparing with the lecture.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::link_frame::{Chain, rotation_z};
+use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
+use crate::seven_steps::velocities;
+use crate::{BaseMotion, Constant, Scalar};
+
+/// What the seven steps find for link i.
+///
+/// The axes are those of form P when the entry comes from a [`Trace`]: fixed to link i, z along joint i. The
+/// conversions of a trace return the same quantities in other axes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinkTrace<T> {
+    /// sin θ_i.
+    pub sin: T,
+    /// cos θ_i.
+    pub cos: T,
+    /// Rows of R_i, which turns components in the axes of this entry into components in the axes of the entry before
+    /// (for the first: of frame 0).
+    pub rotation: [[T; 3]; 3],
+    /// d_i, from the joint's reference point J_i to the centre of mass, m.
+    pub d: [T; 3],
+    /// r_i, from the centre of mass to J_{i+1} (for the last link: to the origin of the tip frame), m.
+    pub r: [T; 3],
+    /// Step 1: angular velocity ω_i, rad/s.
+    pub omega: [T; 3],
+    /// Step 2: angular acceleration ω̇_i, rad/s².
+    pub omega_dot: [T; 3],
+    /// Step 3: velocity of the centre of mass ċ_i, m/s.
+    pub velocity: [T; 3],
+    /// Step 4: acceleration of the centre of mass c̈_i, m/s². The true one: gravity is not hidden in it.
+    pub acceleration: [T; 3],
+    /// Step 5: acceleration of gravity g_i, m/s².
+    pub gravity: [T; 3],
+    /// Step 6: f_i = m_i c̈_i, N.
+    pub inertia_force: [T; 3],
+    /// Step 6: n_i = I_i ω̇_i + ω_i × I_i ω_i, about the centre of mass, N m.
+    pub inertia_moment: [T; 3],
+    /// Step 6: f_{i-1,i}, exerted by link i-1 on link i, N.
+    pub joint_force: [T; 3],
+    /// Step 6: n_{i-1,i}, exerted by link i-1 on link i, about J_i, N m.
+    pub joint_moment: [T; 3],
+    /// Step 7: what the actuator delivers, N m for a revolute joint, N for a prismatic one.
+    pub tau: T,
+}
+
+/// The seven steps of one state of an arm with `DOF` joints, in the axes of form P.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Trace<const DOF: usize, T> {
+    /// One entry per link, base to tip.
+    pub links: [LinkTrace<T>; DOF],
+}
+
+impl<const DOF: usize, T: Scalar> Trace<DOF, T> {
+    /// The actuators' torques and forces, τ.
+    #[must_use]
+    pub fn tau(&self) -> [T; DOF] {
+        self.links.map(|link| link.tau)
+    }
+
+    /// The same in the lecture's axes: `[x]_L = Rz(θ_i) [x]_P`, fixed to link i-1, z along joint i. For a standard table
+    /// these are the axes of its frame i, and the rotations are Q_{i-1} (Q_0 = 1).
+    #[must_use]
+    pub fn to_lecture(&self) -> [LinkTrace<T>; DOF] {
+        let mut links = self.links;
+        turn_to_lecture(&mut links);
+        links
+    }
+
+    /// The same in the axes of frame 0. The rotations between entries are then the identity.
+    #[must_use]
+    pub fn to_base(&self) -> [LinkTrace<T>; DOF] {
+        let mut links = self.links;
+        turn_to_base(&mut links);
+        links
+    }
+}
+
+impl<T: Scalar> LinkTrace<T> {
+    /// A place for a result.
+    pub(crate) fn empty() -> Self {
+        let zero = [T::zero(); 3];
+        Self {
+            sin: T::zero(),
+            cos: T::one(),
+            rotation: rows(&Matrix3::identity()),
+            d: zero,
+            r: zero,
+            omega: zero,
+            omega_dot: zero,
+            velocity: zero,
+            acceleration: zero,
+            gravity: zero,
+            inertia_force: zero,
+            inertia_moment: zero,
+            joint_force: zero,
+            joint_moment: zero,
+            tau: T::zero(),
+        }
+    }
+
+    /// R_i as an nalgebra matrix.
+    #[must_use]
+    pub fn rotation_matrix(&self) -> Matrix3<T> {
+        Matrix3::from(self.rotation).transpose()
+    }
+
+    /// Every vector x becomes `turn` x; `rotation` is the R_i of the new axes.
+    fn turned(&self, turn: &Matrix3<T>, rotation: &Matrix3<T>) -> Self {
+        let turned = |x: [T; 3]| (turn * Vector3::from(x)).into();
+        Self {
+            sin: self.sin,
+            cos: self.cos,
+            rotation: rows(rotation),
+            d: turned(self.d),
+            r: turned(self.r),
+            omega: turned(self.omega),
+            omega_dot: turned(self.omega_dot),
+            velocity: turned(self.velocity),
+            acceleration: turned(self.acceleration),
+            gravity: turned(self.gravity),
+            inertia_force: turned(self.inertia_force),
+            inertia_moment: turned(self.inertia_moment),
+            joint_force: turned(self.joint_force),
+            joint_moment: turned(self.joint_moment),
+            tau: self.tau,
+        }
+    }
+}
+
+/// Collects the results of both passes, and step 3.
+pub(crate) fn record<S: Constant, T: Scalar>(
+    chain: Chain<'_, S>,
+    base: &BaseMotion<T>,
+    joints: JointMotions<'_, T>,
+    motions: &[LinkMotion<T>],
+    loads: &[LinkLoad<T>],
+    traces: &mut [LinkTrace<T>],
+) {
+    let angles = chain.links().zip(joints.q).map(|(link, &q)| link.sin_cos(q));
+    let velocities = velocities(chain, base, joints, motions);
+    let found = angles.zip(velocities).zip(motions).zip(loads);
+    for ((((angle, velocity), motion), load), trace) in found.zip(traces) {
+        *trace = LinkTrace {
+            sin: angle.0,
+            cos: angle.1,
+            rotation: rows(&motion.rotation),
+            d: motion.d.into(),
+            r: motion.r.into(),
+            omega: motion.omega.into(),
+            omega_dot: motion.omega_dot.into(),
+            velocity: velocity.into(),
+            acceleration: motion.acceleration.into(),
+            gravity: motion.gravity.into(),
+            inertia_force: load.inertia.force.into(),
+            inertia_moment: load.inertia.moment.into(),
+            joint_force: load.joint.force.into(),
+            joint_moment: load.joint.moment.into(),
+            tau: load.tau,
+        };
+    }
+}
+
+/// Form P → the lecture's axes, link by link.
+pub(crate) fn turn_to_lecture<T: Scalar>(links: &mut [LinkTrace<T>]) {
+    let mut prev_turn = Matrix3::identity();
+    for link in links {
+        let turn = rotation_z((link.sin, link.cos));
+        let rotation = prev_turn * link.rotation_matrix() * turn.transpose();
+        *link = link.turned(&turn, &rotation);
+        prev_turn = turn;
+    }
+}
+
+/// Form P → the axes of frame 0.
+pub(crate) fn turn_to_base<T: Scalar>(links: &mut [LinkTrace<T>]) {
+    let mut turn = Matrix3::identity();
+    for link in links {
+        turn *= link.rotation_matrix();
+        *link = link.turned(&turn, &Matrix3::identity());
+    }
+}
+
+fn rows<T: Scalar>(matrix: &Matrix3<T>) -> [[T; 3]; 3] {
+    matrix.transpose().into()
+}
