@@ -13,6 +13,33 @@ pub use angle::{Angle, QuarterTurns};
 pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform};
 
 #[cfg(feature = "std")]
+mod check;
+#[cfg(feature = "std")]
+mod decode;
+#[cfg(feature = "std")]
+mod diagnostic;
+#[cfg(feature = "std")]
+mod document;
+#[cfg(feature = "std")]
+mod expression;
+#[cfg(feature = "std")]
+mod inertia;
+#[cfg(feature = "std")]
+mod lint;
+#[cfg(feature = "std")]
+mod render;
+#[cfg(feature = "std")]
 mod robot;
+#[cfg(feature = "std")]
+mod schema;
+#[cfg(feature = "std")]
+mod source;
+#[cfg(feature = "std")]
+mod spelling;
+
+#[cfg(feature = "std")]
+pub use check::{Checked, check, check_bytes};
+#[cfg(feature = "std")]
+pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Motor, Robot};

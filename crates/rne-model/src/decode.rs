@@ -1,0 +1,267 @@
+//! Reading shapes out of the tree: mappings with known keys, numbers, lists, words and texts.
+//!
+//! A reader gets a node and returns its value, or reports what is wrong and returns `None`. So one file's mistakes are
+//! all found, and a `None` always means that the file is refused.
+
+use std::cell::{Cell, RefCell};
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, Problems};
+use crate::document::{Content, Entry, Node, Style};
+use crate::expression::{Expression, Meaning, Names};
+use crate::source::{inside, quoted, rounded};
+use crate::spelling::did_you_mean;
+
+/// Reads a mapping by a table of its keys, one line each:
+/// `variable: required "key" reader`, `variable: optional "key" reader` or `variable: or(default) "key" reader`.
+///
+/// Every key is read before the first `None` returns, so that every mistake is reported.
+macro_rules! read_mapping {
+    ($cx:ident, $node:ident, $what:literal, {
+        $($variable:ident: $rule:ident $(($default:expr))? $key:literal $reader:expr,)*
+    }) => {
+        let fields = $crate::decode::Fields::open($cx, $node, $what, &[$($key),*])?;
+        $(let $variable = fields.$rule($key, $($default,)? $reader);)*
+        $(let $variable = $variable?;)*
+    };
+}
+pub(crate) use read_mapping;
+
+/// What every reader needs: the text, the names of the numbers, and where mistakes go.
+pub(crate) struct Context<'t> {
+    pub(crate) text: &'t str,
+    problems: &'t Problems,
+    pub(crate) parameters: RefCell<Vec<Parameter>>,
+}
+
+/// A named constant of the file.
+pub(crate) struct Parameter {
+    pub(crate) name: String,
+    pub(crate) span: Range<usize>,
+    pub(crate) meaning: Meaning,
+    pub(crate) used: Cell<bool>,
+}
+
+impl Names for Context<'_> {
+    fn meaning(&self, name: &str) -> Meaning {
+        let parameters = self.parameters.borrow();
+        parameters.iter().find(|parameter| parameter.name == name).map_or(Meaning::Unknown, |parameter| {
+            parameter.used.set(true);
+            parameter.meaning
+        })
+    }
+
+    fn similar(&self, name: &str) -> Option<String> {
+        let parameters = self.parameters.borrow();
+        did_you_mean(name, parameters.iter().map(|parameter| parameter.name.as_str())).map(str::to_owned)
+    }
+}
+
+impl<'t> Context<'t> {
+    pub(crate) fn new(text: &'t str, problems: &'t Problems) -> Self {
+        Self { text, problems, parameters: RefCell::default() }
+    }
+
+    pub(crate) fn report(&self, diagnostic: Diagnostic) {
+        self.problems.push(diagnostic);
+    }
+
+    /// Reports a mistake in place of a value.
+    pub(crate) fn refuse<T>(&self, diagnostic: Diagnostic) -> Option<T> {
+        self.report(diagnostic);
+        None
+    }
+
+    fn wrong_shape<T>(&self, node: &Node, expected: &str) -> Option<T> {
+        let message = format!("found {} where {expected} is needed", node.described());
+        self.refuse(Diagnostic::error(node.head(), message).label(format!("{expected} is needed")))
+    }
+
+    /// The text as it stands in the file, for messages and suggestions.
+    pub(crate) fn raw(&self, node: &Node) -> &'t str {
+        self.text.get(node.span.clone()).unwrap_or_default()
+    }
+
+    /// A number as its author wrote it, with the value where that is an expression.
+    pub(crate) fn shown(&self, node: &Node, value: f64) -> String {
+        let raw = self.raw(node);
+        match raw.parse::<f64>() {
+            Ok(_) => quoted(raw),
+            Err(_) => format!("{} = {}", quoted(raw), rounded(value)),
+        }
+    }
+}
+
+/// The keys of one mapping, while they are read.
+pub(crate) struct Fields<'d> {
+    cx: &'d Context<'d>,
+    node: &'d Node,
+    what: &'static str,
+    /// Keys for which a misspelling is already reported.
+    misspelt: Vec<&'static str>,
+}
+
+impl<'d> Fields<'d> {
+    /// Opens a mapping that may have the keys `allowed`; every other key is reported here.
+    pub(crate) fn open(
+        cx: &'d Context<'d>,
+        node: &'d Node,
+        what: &'static str,
+        allowed: &[&'static str],
+    ) -> Option<Self> {
+        let Content::Mapping(entries) = &node.content else {
+            return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
+        };
+        let mut misspelt = Vec::new();
+        for Entry { key, key_span, .. } in entries.iter().filter(|entry| !allowed.contains(&entry.key.as_str())) {
+            let missing = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none());
+            let meant = did_you_mean(key, missing);
+            misspelt.extend(meant);
+            let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
+            let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key));
+            cx.report(Diagnostic::error(key_span.clone(), message).label("unknown key").maybe_help(help));
+        }
+        Some(Self { cx, node, what, misspelt })
+    }
+
+    /// The value of a key that must be there.
+    pub(crate) fn required<T>(
+        &self,
+        key: &'static str,
+        reader: impl FnOnce(&Context, &Node) -> Option<T>,
+    ) -> Option<T> {
+        if let Some(node) = self.node.get(key) {
+            return reader(self.cx, node);
+        }
+        if self.misspelt.contains(&key) {
+            return None;
+        }
+        let message = format!("{} lacks the required key `{key}`", self.what);
+        self.cx.refuse(
+            Diagnostic::error(self.node.head(), message).label(format!("`{key}` is missing")).maybe_help(match key {
+                "format" => Some("begin the file with `format: 1`".to_owned()),
+                "convention" => Some(
+                    "write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` \
+                     (Rx(alpha) Tx(a) Rz(theta) Tz(d)); it is never guessed"
+                        .to_owned(),
+                ),
+                "gravity" => {
+                    Some("the acceleration of gravity in frame 0, such as `gravity: [0, 0, -9.81]`".to_owned())
+                }
+                "source" => Some("say where the numbers come from, such as `source: \"own measurement\"`".to_owned()),
+                _ => None,
+            }),
+        )
+    }
+
+    /// The value of a key, or `default` when it is not there.
+    pub(crate) fn or<T>(
+        &self,
+        key: &'static str,
+        default: T,
+        reader: impl FnOnce(&Context, &Node) -> Option<T>,
+    ) -> Option<T> {
+        self.node.get(key).map_or(Some(default), |node| reader(self.cx, node))
+    }
+
+    /// The value of a key; `Some(None)` when it is not there.
+    pub(crate) fn optional<T>(
+        &self,
+        key: &'static str,
+        reader: impl FnOnce(&Context, &Node) -> Option<T>,
+    ) -> Option<Option<T>> {
+        self.node.get(key).map_or(Some(None), |node| reader(self.cx, node).map(Some))
+    }
+}
+
+/// Where a key belongs that stands in the wrong mapping, or what stands for it here.
+fn place_of(key: &str) -> Option<String> {
+    let place = match key {
+        "theta" | "d" | "a" | "alpha" => "dh",
+        "mass" | "com" | "inertia" | "inertia_about" => "link",
+        "position" | "velocity" | "effort" => "limits",
+        "gear_ratio" | "viscous" | "coulomb" => "motor",
+        "xyz" | "rpy" => "base` or `tool",
+        "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
+        "offset" => return Some("a joint offset is the constant in `theta` or `d`".to_owned()),
+        _ => return None,
+    };
+    Some(format!("`{key}` belongs under `{place}`"))
+}
+
+/// A finite number: a decimal or an expression.
+pub(crate) fn number(cx: &Context, node: &Node) -> Option<f64> {
+    let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, "a number") };
+    let value = Expression::parse(&scalar.text).map_err(Some).and_then(|it| it.evaluate(&scalar.text, cx));
+    match value {
+        // -0 is 0: the sign of a zero carries no meaning in a table.
+        Ok(value) => Some(value + 0.0),
+        Err(None) => None,
+        Err(Some(mistake)) => {
+            // The place inside the scalar, unless escapes or line breaks stand between the text and its value.
+            let raw = cx.raw(node);
+            let lead = match scalar.style {
+                Style::Plain => 0,
+                Style::Quoted | Style::Block => 1,
+            };
+            let literal = raw.get(lead..).is_some_and(|raw| raw.starts_with(&scalar.text));
+            let range = mistake.range.start + lead..mistake.range.end + lead;
+            let span = if literal && !range.is_empty() { inside(&node.span, &range) } else { node.span.clone() };
+            cx.refuse(Diagnostic::error(span, mistake.message).help(mistake.help))
+        }
+    }
+}
+
+/// A list of exactly `N` values.
+pub(crate) fn list<const N: usize>(
+    cx: &Context,
+    node: &Node,
+    what: &str,
+    read: impl Fn(&Context, &Node) -> Option<f64>,
+) -> Option<[f64; N]> {
+    let Content::Sequence(items) = &node.content else {
+        return cx.wrong_shape(node, &format!("a list of {N} numbers {what}"));
+    };
+    if items.len() != N {
+        let message = format!("a list of {} where {N} numbers {what} are needed", items.len());
+        return cx.refuse(Diagnostic::error(node.span.clone(), message).label(format!("{N} numbers are needed")));
+    }
+    let values: Vec<Option<f64>> = items.iter().map(|item| read(cx, item)).collect();
+    values.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// A number that is not negative.
+pub(crate) fn not_negative(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f64> {
+    move |cx, node| {
+        let value = number(cx, node)?;
+        if value >= 0.0 {
+            return Some(value);
+        }
+        let message = format!("the {what} {} is negative; it must be zero or positive", cx.shown(node, value));
+        cx.refuse(Diagnostic::error(node.span.clone(), message).label("negative"))
+    }
+}
+
+/// A text that is not empty.
+pub(crate) fn text(cx: &Context, node: &Node) -> Option<String> {
+    match &node.content {
+        Content::Scalar(scalar) if !scalar.text.trim().is_empty() => Some(scalar.text.trim_end().to_owned()),
+        _ => cx.wrong_shape(node, "a text"),
+    }
+}
+
+/// One of a few words.
+pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&'static str, T)]) -> Option<T> {
+    let allowed = words.iter().map(|(word, _)| format!("`{word}`")).collect::<Vec<_>>().join(" or ");
+    let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, &allowed) };
+    if let Some((_, value)) = words.iter().find(|(word, _)| *word == scalar.text) {
+        return Some(*value);
+    }
+    let message = format!("unknown {what} {}; it must be {allowed}", node.described());
+    let meant = did_you_mean(&scalar.text, words.iter().map(|(word, _)| *word));
+    cx.refuse(
+        Diagnostic::error(node.span.clone(), message)
+            .label(format!("must be {allowed}"))
+            .maybe_help(meant.map(|meant| format!("did you mean `{meant}`?"))),
+    )
+}

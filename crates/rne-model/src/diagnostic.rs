@@ -1,0 +1,176 @@
+//! Mistakes and warnings as data: where, what is wrong, what to do.
+
+use std::cell::RefCell;
+use std::ops::Range;
+
+use crate::render;
+
+/// How grave a [`Diagnostic`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Severity {
+    /// The file is refused.
+    Error,
+    /// The file is valid, yet this is probably not what was meant (a lint).
+    Warning,
+}
+
+/// One mistake or warning, with its place in the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Diagnostic {
+    /// Error or warning.
+    pub severity: Severity,
+    /// A sentence: what is wrong, the value found, what is allowed.
+    pub message: String,
+    /// A few words beside the caret.
+    pub label: Option<String>,
+    /// The bytes of the text the caret underlines.
+    pub span: Range<usize>,
+    /// Line of the first byte of `span`, from 1.
+    pub line: usize,
+    /// Column of the first byte of `span`, from 1, in characters.
+    pub column: usize,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error. Line and column follow from the span when the report is finished.
+    pub(crate) fn error(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Error, message: message.into(), label: None, span, line: 1, column: 1, help: None }
+    }
+
+    /// A warning.
+    pub(crate) fn lint(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Warning, ..Self::error(span, message) }
+    }
+
+    pub(crate) fn label(self, label: impl Into<String>) -> Self {
+        Self { label: Some(label.into()), ..self }
+    }
+
+    pub(crate) fn help(self, help: impl Into<String>) -> Self {
+        Self { help: Some(help.into()), ..self }
+    }
+
+    pub(crate) fn maybe_help(self, help: Option<String>) -> Self {
+        Self { help: help.or(self.help), ..self }
+    }
+}
+
+/// What is wrong with one file: errors first, then warnings, each in the order of the text.
+///
+/// `Display` gives the full rendering without colour; [`Report::render`] and [`Report::short`] give the others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Report {
+    /// The file, as the messages name it.
+    pub name: String,
+    /// Its text, without a byte order mark; spans count in it.
+    pub text: String,
+    /// What was found.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// Whether nothing was found.
+    pub fn is_empty(&self) -> bool {
+        self.diagnostics.is_empty()
+    }
+
+    /// Whether there is an error, not only warnings.
+    pub fn has_errors(&self) -> bool {
+        self.errors().next().is_some()
+    }
+
+    /// The errors, in the order of the text.
+    pub fn errors(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|found| found.severity == Severity::Error)
+    }
+
+    /// The warnings, in the order of the text.
+    pub fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|found| found.severity == Severity::Warning)
+    }
+
+    /// Every diagnostic with its source line, caret and help; `color` adds ANSI escapes for a terminal.
+    ///
+    /// After twenty diagnostics the rest is only counted.
+    pub fn render(&self, color: bool) -> String {
+        render::full(self, color)
+    }
+
+    /// One line per diagnostic, as editors and log searches like it: `robots/x.yaml:3:12: error: …`.
+    pub fn short(&self) -> String {
+        render::short(self)
+    }
+}
+
+impl std::fmt::Display for Report {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for Report {}
+
+/// Collects the diagnostics of one file while it is read.
+///
+/// It has to be turned into a [`Report`]: dropping it with its contents unread is a mistake of this crate and panics.
+pub(crate) struct Problems {
+    found: RefCell<Option<Vec<Diagnostic>>>,
+}
+
+impl Problems {
+    pub(crate) fn new() -> Self {
+        Self { found: RefCell::new(Some(Vec::new())) }
+    }
+
+    pub(crate) fn push(&self, diagnostic: Diagnostic) {
+        if let Some(found) = self.found.borrow_mut().as_mut() {
+            found.push(diagnostic);
+        }
+    }
+
+    /// Everything found, located in `text`, errors first.
+    pub(crate) fn finish(self, name: &str, text: &str) -> Report {
+        let mut diagnostics = self.found.borrow_mut().take().unwrap_or_default();
+        diagnostics.sort_by_key(|found| (found.span.start, found.severity));
+        // A value behind an alias is read once per alias.
+        diagnostics.dedup();
+        locate(&mut diagnostics, text);
+        diagnostics.sort_by_key(|found| found.severity);
+        Report { name: name.to_owned(), text: text.to_owned(), diagnostics }
+    }
+}
+
+impl Drop for Problems {
+    fn drop(&mut self) {
+        if self.found.borrow().is_some() && !std::thread::panicking() {
+            panic!("the diagnostics of a robot file were dropped unread");
+        }
+    }
+}
+
+/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position.
+fn locate(diagnostics: &mut [Diagnostic], text: &str) {
+    let (mut line, mut column, mut at) = (1, 1, 0);
+    for found in diagnostics {
+        // Never beyond the text, nor inside a character.
+        let start = char_boundary(text, found.span.start);
+        let end = char_boundary(text, found.span.end).max(start);
+        for character in text.get(at..start).unwrap_or_default().chars() {
+            (line, column) = if character == '\n' { (line + 1, 1) } else { (line, column + 1) };
+        }
+        at = start;
+        (found.span, found.line, found.column) = (start..end, line, column);
+    }
+}
+
+/// The start of the character that `index` points at or into; the end of the text for anything beyond.
+fn char_boundary(text: &str, index: usize) -> usize {
+    let mut index = index.min(text.len());
+    while !text.is_char_boundary(index) {
+        index -= 1;
+    }
+    index
+}

@@ -1,0 +1,334 @@
+//! A YAML document as a tree in which every key and every value knows its place in the text.
+
+use std::collections::HashMap;
+use std::ops::Range;
+use std::rc::Rc;
+
+use saphyr_parser::{Event, Parser, ScalarStyle};
+
+use crate::diagnostic::{Diagnostic, Problems};
+use crate::source::quoted;
+
+/// A robot file is six levels deep.
+const MAX_DEPTH: usize = 16;
+
+/// Nodes of a document with every alias written out. The longest table, 64 joints, has a fifth of it.
+const MAX_NODES: usize = 50_000;
+
+/// A value and the bytes of the text it stands in.
+#[derive(Debug)]
+pub(crate) struct Node {
+    pub(crate) span: Range<usize>,
+    pub(crate) content: Content,
+    /// Number of nodes in this subtree, aliases written out.
+    size: usize,
+    /// Number of levels of this subtree.
+    height: usize,
+}
+
+#[derive(Debug)]
+pub(crate) enum Content {
+    Scalar(Scalar),
+    // Shared, not copied: an alias costs no memory, however large its target.
+    Sequence(Vec<Rc<Node>>),
+    Mapping(Vec<Entry>),
+}
+
+/// A scalar, unresolved: whether `1` is a number or a text is for the reader of the key to say.
+#[derive(Debug)]
+pub(crate) struct Scalar {
+    pub(crate) text: String,
+    pub(crate) style: Style,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Style {
+    Plain,
+    Quoted,
+    Block,
+}
+
+#[derive(Debug)]
+pub(crate) struct Entry {
+    pub(crate) key: String,
+    pub(crate) key_span: Range<usize>,
+    pub(crate) value: Rc<Node>,
+}
+
+impl Node {
+    fn new(span: Range<usize>, content: Content) -> Self {
+        let children: &mut dyn Iterator<Item = &Rc<Node>> = match &content {
+            Content::Scalar(_) => &mut std::iter::empty(),
+            Content::Sequence(items) => &mut items.iter(),
+            Content::Mapping(entries) => &mut entries.iter().map(|entry| &entry.value),
+        };
+        let (mut size, mut height) = (1_usize, 1);
+        for child in children {
+            size = size.saturating_add(child.size);
+            height = height.max(child.height + 1);
+        }
+        Self { span, content, size, height }
+    }
+
+    /// The value of a key, if this is a mapping that has it.
+    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+        let Content::Mapping(entries) = &self.content else { return None };
+        entries.iter().find(|entry| entry.key == key).map(|entry| &*entry.value)
+    }
+
+    /// Where to point when the whole value is meant: a block mapping or list is represented by its first line.
+    pub(crate) fn head(&self) -> Range<usize> {
+        match &self.content {
+            Content::Mapping(entries) => match entries.first() {
+                Some(first) if first.key_span.start == self.span.start => first.key_span.clone(),
+                _ => self.span.clone(),
+            },
+            _ => self.span.clone(),
+        }
+    }
+
+    /// The value in a few words, for "found …".
+    pub(crate) fn described(&self) -> String {
+        match &self.content {
+            Content::Scalar(scalar) if scalar.text.is_empty() => "nothing".to_owned(),
+            Content::Scalar(scalar) => quoted(&scalar.text),
+            Content::Sequence(items) => format!("a list of {}", items.len()),
+            Content::Mapping(_) => "a mapping".to_owned(),
+        }
+    }
+}
+
+/// Reads the one document of a text. Mistakes of YAML itself end the reading; a repeated key does not.
+pub(crate) fn parse(text: &str, problems: &Problems) -> Option<Rc<Node>> {
+    Builder::new(text, problems).run().map_err(|mistake| problems.push(mistake)).ok()
+}
+
+/// A mapping or sequence that is not closed yet.
+struct Open {
+    start: usize,
+    anchor: usize,
+    children: Children,
+}
+
+enum Children {
+    Sequence(Vec<Rc<Node>>),
+    Mapping {
+        entries: Vec<Entry>,
+        /// The places of the keys already met.
+        known: HashMap<String, Range<usize>>,
+        /// A key that still waits for its value.
+        pending: Option<(String, Range<usize>)>,
+    },
+}
+
+struct Builder<'t> {
+    text: &'t str,
+    /// Byte offset of every character: the parser counts characters.
+    offsets: Vec<usize>,
+    problems: &'t Problems,
+    stack: Vec<Open>,
+    anchors: HashMap<usize, Rc<Node>>,
+    /// Nodes so far, aliases written out.
+    nodes: usize,
+    root: Option<Rc<Node>>,
+}
+
+impl<'t> Builder<'t> {
+    fn new(text: &'t str, problems: &'t Problems) -> Self {
+        let offsets = text.char_indices().map(|(offset, _)| offset).chain([text.len()]).collect();
+        Self { text, offsets, problems, stack: Vec::new(), anchors: HashMap::new(), nodes: 0, root: None }
+    }
+
+    fn run(mut self) -> Result<Rc<Node>, Diagnostic> {
+        let mut parser = Parser::new_from_str(self.text);
+        let mut documents = 0;
+        while let Some(event) = parser.next_event() {
+            let (event, span) = event.map_err(|error| {
+                let at = self.offset(error.marker().index());
+                syntax_error(at, error.info())
+            })?;
+            let span = self.offset(span.start.index())..self.offset(span.end.index());
+            match event {
+                Event::DocumentStart(_) => {
+                    documents += 1;
+                    if documents > 1 {
+                        return Err(Diagnostic::error(span, "a second document begins; a robot file has exactly one")
+                            .help("write one file per robot, without a second `---`"));
+                    }
+                }
+                Event::Alias(anchor) => self.alias(anchor, span)?,
+                Event::Scalar(text, style, anchor, tag) => {
+                    let span = self.without_properties(span, tag.is_some())?;
+                    self.scalar(text.into_owned(), style, anchor, span)?;
+                }
+                Event::SequenceStart(anchor, tag) => {
+                    let span = self.without_properties(span, tag.is_some())?;
+                    self.open(span, anchor, Children::Sequence(Vec::new()))?;
+                }
+                Event::MappingStart(anchor, tag) => {
+                    let span = self.without_properties(span, tag.is_some())?;
+                    let children = Children::Mapping { entries: Vec::new(), known: HashMap::new(), pending: None };
+                    self.open(span, anchor, children)?;
+                }
+                Event::SequenceEnd | Event::MappingEnd => self.close(&span)?,
+                Event::Nothing | Event::StreamStart | Event::StreamEnd | Event::DocumentEnd => {}
+            }
+        }
+        self.root.ok_or_else(|| {
+            Diagnostic::error(0..0, "the file is empty; a robot file is a YAML mapping that begins with `format: 1`")
+        })
+    }
+
+    fn offset(&self, index: usize) -> usize {
+        self.offsets.get(index).copied().unwrap_or(self.text.len())
+    }
+
+    /// The span of a value without the anchor before it and the blanks after it. Tags are refused.
+    fn without_properties(&self, span: Range<usize>, tagged: bool) -> Result<Range<usize>, Diagnostic> {
+        let raw = self.text.get(span.clone()).unwrap_or_default();
+        if tagged {
+            return Err(Diagnostic::error(span, format!("YAML tag in {}; tags are not allowed", quoted(raw)))
+                .help("delete the tag: each key of a robot file knows what it holds"));
+        }
+        let value = match raw.strip_prefix('&') {
+            Some(anchor) => anchor.trim_start_matches(|c: char| !c.is_whitespace()).trim_start(),
+            None => raw,
+        };
+        let start = span.end - value.len();
+        Ok(start..start + value.trim_end().len())
+    }
+
+    fn scalar(
+        &mut self,
+        text: String,
+        style: ScalarStyle,
+        anchor: usize,
+        span: Range<usize>,
+    ) -> Result<(), Diagnostic> {
+        let style = match style {
+            ScalarStyle::Plain => Style::Plain,
+            ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => Style::Quoted,
+            ScalarStyle::Literal | ScalarStyle::Folded => Style::Block,
+        };
+        if let Some(Open { children: Children::Mapping { known, pending, .. }, .. }) = self.stack.last_mut() {
+            match pending {
+                None => {
+                    if let Some(first) = known.get(&text) {
+                        let line = 1 + self.text.get(..first.start).unwrap_or_default().matches('\n').count();
+                        self.problems.push(
+                            Diagnostic::error(
+                                span.clone(),
+                                format!("repeated key {}; it is already in line {line}", quoted(&text)),
+                            )
+                            .label("repeated")
+                            .help("keep one of the two"),
+                        );
+                    } else {
+                        known.insert(text.clone(), span.clone());
+                    }
+                    *pending = Some((text, span));
+                    return Ok(());
+                }
+                // A value that is not there: its key is the place to point at.
+                Some((_, key)) if text.is_empty() && style == Style::Plain => {
+                    let span = key.clone();
+                    let node = Node::new(span, Content::Scalar(Scalar { text, style }));
+                    return self.place(node, anchor);
+                }
+                Some(_) => {}
+            }
+        }
+        self.place(Node::new(span, Content::Scalar(Scalar { text, style })), anchor)
+    }
+
+    fn open(&mut self, span: Range<usize>, anchor: usize, children: Children) -> Result<(), Diagnostic> {
+        if self.stack.len() + 1 >= MAX_DEPTH {
+            return Err(too_deep(span));
+        }
+        if let Some(Open { children: Children::Mapping { pending: None, .. }, .. }) = self.stack.last() {
+            return Err(not_a_key(span));
+        }
+        self.stack.push(Open { start: span.start, anchor, children });
+        Ok(())
+    }
+
+    fn close(&mut self, end: &Range<usize>) -> Result<(), Diagnostic> {
+        let Some(open) = self.stack.pop() else { return Ok(()) };
+        let text = self.text.get(open.start..end.end).unwrap_or_default();
+        let span = open.start..open.start + text.trim_end().len();
+        let content = match open.children {
+            Children::Sequence(items) => Content::Sequence(items),
+            Children::Mapping { entries, .. } => Content::Mapping(entries),
+        };
+        self.place(Node::new(span, content), open.anchor)
+    }
+
+    fn alias(&mut self, anchor: usize, span: Range<usize>) -> Result<(), Diagnostic> {
+        if let Some(Open { children: Children::Mapping { pending: None, .. }, .. }) = self.stack.last() {
+            return Err(not_a_key(span));
+        }
+        let Some(target) = self.anchors.get(&anchor).cloned() else {
+            let raw = self.text.get(span.clone()).unwrap_or_default();
+            let message = format!("the alias {} stands inside the value it stands for", quoted(raw));
+            return Err(Diagnostic::error(span, message).help("write the value out"));
+        };
+        if self.stack.len() + target.height > MAX_DEPTH {
+            return Err(too_deep(span));
+        }
+        self.count(target.size, &span)?;
+        self.attach(target);
+        Ok(())
+    }
+
+    fn place(&mut self, node: Node, anchor: usize) -> Result<(), Diagnostic> {
+        self.count(1, &node.span)?;
+        let node = Rc::new(node);
+        if anchor != 0 {
+            self.anchors.insert(anchor, Rc::clone(&node));
+        }
+        self.attach(node);
+        Ok(())
+    }
+
+    fn count(&mut self, nodes: usize, span: &Range<usize>) -> Result<(), Diagnostic> {
+        self.nodes = self.nodes.saturating_add(nodes);
+        if self.nodes <= MAX_NODES {
+            return Ok(());
+        }
+        let message = format!("more than {MAX_NODES} values, aliases (`*name`) written out; a robot file has fewer");
+        Err(Diagnostic::error(span.clone(), message).help("write each joint out once"))
+    }
+
+    fn attach(&mut self, node: Rc<Node>) {
+        match self.stack.last_mut().map(|open| &mut open.children) {
+            None => self.root = Some(node),
+            Some(Children::Sequence(items)) => items.push(node),
+            Some(Children::Mapping { entries, pending, .. }) => {
+                if let Some((key, key_span)) = pending.take() {
+                    entries.push(Entry { key, key_span, value: node });
+                }
+            }
+        }
+    }
+}
+
+fn too_deep(span: Range<usize>) -> Diagnostic {
+    Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; a robot file has six levels"))
+}
+
+fn not_a_key(span: Range<usize>) -> Diagnostic {
+    Diagnostic::error(span, "a key must be a plain word; lists, mappings and aliases are not allowed as keys")
+}
+
+fn syntax_error(at: usize, info: &str) -> Diagnostic {
+    let help = if info.contains("tab") {
+        Some("indent with spaces; YAML does not allow tabs there")
+    } else if info.contains("':'") || info.contains("mapping values") {
+        Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
+    } else if info.contains("unknown anchor") {
+        Some("an alias `*name` needs a value marked `&name` before it")
+    } else {
+        None
+    };
+    Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
+}

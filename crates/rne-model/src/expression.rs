@@ -1,0 +1,468 @@
+//! The numbers of a robot file: arithmetic over literals, `pi` and parameters.
+//!
+//! ```text
+//! sum     = product { ("+" | "-") product }
+//! product = unary { ("*" | "/") unary }
+//! unary   = { "+" | "-" } power
+//! power   = atom [ "^" unary ]                    so -2^2 = -4, 2^3^2 = 2^9, 2^-1 = 0.5
+//! atom    = number | name | function "(" sum ")" | "(" sum ")"
+//! ```
+
+use std::f64::consts::PI;
+use std::ops::Range;
+
+use crate::source::quoted;
+use crate::spelling::did_you_mean;
+
+/// Parentheses, signs and powers inside one another; bounds the recursion of the parser.
+const MAX_DEPTH: usize = 64;
+
+/// Numbers, names and operators of one expression; bounds the recursion over its tree.
+const MAX_PARTS: usize = 1000;
+
+/// What a number may be, for the help of every mistake.
+pub(crate) const ALLOWED: &str = "a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, \
+     `pi`, parameters, `+ - * / ^`, parentheses and sqrt sin cos tan deg";
+
+/// An expression; every part knows its bytes within the scalar.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Expression {
+    kind: Kind,
+    range: Range<usize>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Kind {
+    Number(f64),
+    Name(String),
+    Negate(Box<Expression>),
+    Binary(Operator, Box<Expression>, Box<Expression>),
+    Call(Function, Box<Expression>),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+impl Operator {
+    fn of(symbol: char) -> Option<Self> {
+        Some(match symbol {
+            '+' => Self::Add,
+            '-' => Self::Subtract,
+            '*' => Self::Multiply,
+            '/' => Self::Divide,
+            '^' => Self::Power,
+            _ => return None,
+        })
+    }
+
+    /// How tightly it binds its left and its right operand; a sign binds with [`SIGN`].
+    fn binding(self) -> (u8, u8) {
+        match self {
+            Self::Add | Self::Subtract => (1, 2),
+            Self::Multiply | Self::Divide => (3, 4),
+            Self::Power => (7, 6),
+        }
+    }
+
+    fn apply(self, a: f64, b: f64) -> f64 {
+        match self {
+            Self::Add => a + b,
+            Self::Subtract => a - b,
+            Self::Multiply => a * b,
+            Self::Divide => a / b,
+            Self::Power => libm::pow(a, b),
+        }
+    }
+}
+
+const SIGN: u8 = 5;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Function {
+    Sqrt,
+    Sin,
+    Cos,
+    Tan,
+    Deg,
+}
+
+impl Function {
+    const NAMES: [&str; 5] = ["sqrt", "sin", "cos", "tan", "deg"];
+
+    fn of(name: &str) -> Option<Self> {
+        Some(match name {
+            "sqrt" => Self::Sqrt,
+            "sin" => Self::Sin,
+            "cos" => Self::Cos,
+            "tan" => Self::Tan,
+            "deg" => Self::Deg,
+            _ => return None,
+        })
+    }
+
+    fn apply(self, x: f64) -> f64 {
+        match self {
+            Self::Sqrt => libm::sqrt(x),
+            Self::Sin => libm::sin(x),
+            Self::Cos => libm::cos(x),
+            Self::Tan => libm::tan(x),
+            // In this order deg(90) is pi/2 to the last bit.
+            Self::Deg => x / 180.0 * PI,
+        }
+    }
+}
+
+/// Whether a name means something already and cannot name a parameter.
+pub(crate) fn is_reserved(name: &str) -> bool {
+    name == "pi" || Function::of(name).is_some()
+}
+
+/// Whether a text is a name: a letter or underscore, then letters, digits and underscores.
+pub(crate) fn is_identifier(name: &str) -> bool {
+    name.starts_with(is_name_start) && name.chars().all(is_name_part)
+}
+
+fn is_name_start(c: char) -> bool {
+    c.is_ascii_alphabetic() || c == '_'
+}
+
+fn is_name_part(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_'
+}
+
+/// What is wrong with an expression, and where in its text.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Mistake {
+    pub(crate) range: Range<usize>,
+    pub(crate) message: String,
+    pub(crate) help: String,
+}
+
+impl Mistake {
+    fn new(range: Range<usize>, message: impl Into<String>) -> Self {
+        Self { range, message: message.into(), help: ALLOWED.to_owned() }
+    }
+
+    fn help(self, help: impl Into<String>) -> Self {
+        Self { help: help.into(), ..self }
+    }
+}
+
+/// What a name stands for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Meaning {
+    /// A parameter with a value.
+    Value(f64),
+    /// A parameter that stands below the place of use.
+    Later,
+    /// A parameter whose own expression is wrong, which is already reported.
+    Faulty,
+    /// Nothing.
+    Unknown,
+}
+
+/// The names an expression may use.
+pub(crate) trait Names {
+    /// What `name` stands for; counts as a use of it.
+    fn meaning(&self, name: &str) -> Meaning;
+    /// A known name that resembles `name`.
+    fn similar(&self, name: &str) -> Option<String>;
+}
+
+impl Expression {
+    /// Reads a whole text as one expression.
+    pub(crate) fn parse(text: &str) -> Result<Self, Mistake> {
+        if text.trim().is_empty() {
+            return Err(Mistake::new(0..text.len(), "a number is missing"));
+        }
+        let mut parser = Parser { text, at: 0, depth: 0, parts: 0 };
+        let expression = parser.operand_and_operators(0)?;
+        parser.end()?;
+        Ok(expression)
+    }
+
+    /// The value. `Err(None)` when it depends on a faulty parameter: that mistake is reported where it was made.
+    pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<f64, Option<Mistake>> {
+        let value = match &self.kind {
+            Kind::Number(value) => *value,
+            Kind::Name(name) => match names.meaning(name) {
+                Meaning::Value(value) => value,
+                Meaning::Faulty => return Err(None),
+                Meaning::Later => {
+                    let message = format!("the parameter {} has no value yet", quoted(name));
+                    return Err(Some(
+                        Mistake::new(self.range.clone(), message)
+                            .help("a parameter may use only those that stand above it under `parameters`"),
+                    ));
+                }
+                Meaning::Unknown => return Err(Some(unknown_name(name, self.range.clone(), names))),
+            },
+            Kind::Negate(operand) => -operand.evaluate(text, names)?,
+            Kind::Binary(operator, a, b) => operator.apply(a.evaluate(text, names)?, b.evaluate(text, names)?),
+            Kind::Call(function, argument) => function.apply(argument.evaluate(text, names)?),
+        };
+        if value.is_finite() {
+            return Ok(value);
+        }
+        let part = quoted(text.get(self.range.clone()).unwrap_or_default());
+        let message = match value.is_nan() {
+            true => format!("{part} is not a real number"),
+            false => format!("{part} is infinite or too large; numbers are finite"),
+        };
+        Err(Some(Mistake::new(self.range.clone(), message)))
+    }
+}
+
+fn unknown_name(name: &str, range: Range<usize>, names: &impl Names) -> Mistake {
+    let known = did_you_mean(name, ["pi"].into_iter().chain(Function::NAMES)).map(str::to_owned);
+    let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));
+    match known.or_else(|| names.similar(name)) {
+        Some(known) => mistake.help(format!("did you mean `{known}`?")),
+        None => mistake.help(format!("define it under `parameters`; {ALLOWED}")),
+    }
+}
+
+struct Parser<'t> {
+    text: &'t str,
+    at: usize,
+    depth: usize,
+    parts: usize,
+}
+
+impl<'t> Parser<'t> {
+    fn rest(&self) -> &'t str {
+        self.text.get(self.at..).unwrap_or_default()
+    }
+
+    fn blanks(&mut self) {
+        self.at = self.text.len() - self.rest().trim_start().len();
+    }
+
+    fn peek(&mut self) -> Option<char> {
+        self.blanks();
+        self.rest().chars().next()
+    }
+
+    /// Takes the characters that satisfy `part`.
+    fn take(&mut self, part: impl Fn(char) -> bool) -> &'t str {
+        let rest = self.rest();
+        let taken = rest.find(|c| !part(c)).and_then(|end| rest.get(..end)).unwrap_or(rest);
+        self.at += taken.len();
+        taken
+    }
+
+    fn eat(&mut self, symbol: char) -> bool {
+        let found = self.peek() == Some(symbol);
+        if found {
+            self.at += symbol.len_utf8();
+        }
+        found
+    }
+
+    /// The place of the next character, or the end of the text.
+    fn here(&self) -> Range<usize> {
+        self.at..self.at + self.rest().chars().next().map_or(0, char::len_utf8)
+    }
+
+    fn part(&mut self) -> Result<(), Mistake> {
+        self.parts += 1;
+        if self.parts > MAX_PARTS {
+            let message = format!("the expression has more than {MAX_PARTS} numbers, names and operators");
+            return Err(Mistake::new(self.here(), message).help("name parts of it under `parameters`"));
+        }
+        Ok(())
+    }
+
+    /// An operand and all operators after it that bind at least as tightly as `least`.
+    fn operand_and_operators(&mut self, least: u8) -> Result<Expression, Mistake> {
+        self.depth += 1;
+        if self.depth > MAX_DEPTH {
+            let message = format!("the expression is nested more than {MAX_DEPTH} levels deep");
+            return Err(Mistake::new(self.here(), message).help("name parts of it under `parameters`"));
+        }
+        let mut left = self.operand()?;
+        while let Some(operator) = self.peek().and_then(Operator::of) {
+            let (binds_left, binds_right) = operator.binding();
+            if binds_left < least {
+                break;
+            }
+            self.part()?;
+            let symbol = self.here();
+            self.at = symbol.end;
+            if operator == Operator::Multiply && self.rest().starts_with('*') {
+                let range = symbol.start..symbol.end + 1;
+                return Err(Mistake::new(range, "`**` is not an operator here").help("a power is written `^`"));
+            }
+            let right = self.operand_and_operators(binds_right)?;
+            let range = left.range.start..right.range.end;
+            left = Expression { kind: Kind::Binary(operator, Box::new(left), Box::new(right)), range };
+        }
+        self.depth -= 1;
+        Ok(left)
+    }
+
+    fn operand(&mut self) -> Result<Expression, Mistake> {
+        self.part()?;
+        let next = self.peek();
+        let start = self.at;
+        let kind = match next {
+            Some('-' | '+') => {
+                self.at += 1;
+                let operand = self.operand_and_operators(SIGN)?;
+                if next == Some('+') {
+                    return Ok(operand);
+                }
+                Kind::Negate(Box::new(operand))
+            }
+            Some('(') => {
+                let inner = self.parenthesised()?;
+                return Ok(Expression { range: start..self.at, ..inner });
+            }
+            Some(c) if is_name_start(c) => self.name()?,
+            Some(c) if c.is_ascii_digit() || c == '.' => Kind::Number(self.number()?),
+            _ => return Err(self.no_operand()),
+        };
+        Ok(Expression { kind, range: start..self.at })
+    }
+
+    fn parenthesised(&mut self) -> Result<Expression, Mistake> {
+        let open = self.here();
+        self.at = open.end;
+        let inner = self.operand_and_operators(0)?;
+        if self.eat(')') {
+            return Ok(inner);
+        }
+        match self.peek() {
+            None => Err(Mistake::new(open, "this `(` is never closed").help("add a `)`")),
+            Some(_) => Err(self.no_operator()),
+        }
+    }
+
+    fn name(&mut self) -> Result<Kind, Mistake> {
+        let start = self.at;
+        let name = self.take(is_name_part);
+        if name == "pi" {
+            return Ok(Kind::Number(PI));
+        }
+        let called = self.peek() == Some('(');
+        let range = start..start + name.len();
+        match (Function::of(name), called) {
+            (Some(function), true) => Ok(Kind::Call(function, Box::new(self.parenthesised()?))),
+            (Some(_), false) => Err(Mistake::new(range, format!("`{name}` needs an argument in parentheses"))
+                .help(format!("write `{name}(…)`"))),
+            (None, true) => {
+                let mistake = Mistake::new(range, format!("unknown function {}", quoted(name)));
+                Err(mistake.help("the functions are sqrt sin cos tan deg; a product is written with `*`"))
+            }
+            (None, false) => Ok(Kind::Name(name.to_owned())),
+        }
+    }
+
+    fn number(&mut self) -> Result<f64, Mistake> {
+        let start = self.at;
+        let whole = self.take(|c| c.is_ascii_digit());
+        let mut fraction = "";
+        if self.rest().starts_with('.') {
+            self.at += 1;
+            fraction = self.take(|c| c.is_ascii_digit());
+        }
+        let mantissa = whole.len() + fraction.len();
+        let exponent = self.rest().strip_prefix(['e', 'E']).map(|rest| rest.strip_prefix(['+', '-']).unwrap_or(rest));
+        if let Some(exponent) = exponent.filter(|rest| mantissa > 0 && rest.starts_with(|c: char| c.is_ascii_digit())) {
+            self.at = self.text.len() - exponent.len();
+            self.take(|c| c.is_ascii_digit());
+        }
+        let digits_end = self.at;
+        let tail = self.take(|c| is_name_part(c) || c == '.');
+        let range = start..self.at;
+        let literal = self.text.get(start..digits_end).unwrap_or_default();
+        let found = quoted(self.text.get(range.clone()).unwrap_or_default());
+        let wrong = |why: &str, help: &str| {
+            Mistake::new(range.clone(), format!("{found} is not a number here: {why}"))
+                .help(format!("{help}; {ALLOWED}"))
+        };
+        if mantissa == 0 {
+            return Err(wrong("numbers are finite and written in digits", "a limit that is unknown is left out"));
+        }
+        if tail.starts_with('_') {
+            return Err(wrong("no digits are grouped", "delete the `_`"));
+        }
+        if whole == "0" && tail.starts_with(['x', 'X', 'o', 'O', 'b', 'B']) {
+            return Err(wrong("numbers are decimal", "convert it"));
+        }
+        if tail.starts_with(is_name_start) {
+            return Err(wrong("an operator is missing or it is cut short", "write a product with `*`, no unit"));
+        }
+        if !tail.is_empty() {
+            return Err(wrong("it has two decimal points", "delete one"));
+        }
+        if whole.len() > 1 && whole.starts_with('0') {
+            return Err(wrong("with a leading zero it could be octal", "delete the leading zeros"));
+        }
+        let value: f64 = literal.parse().map_err(|_| wrong("it cannot be read", "check the digits"))?;
+        if value.is_infinite() {
+            return Err(wrong("it is too large for a 64-bit float", "check the exponent"));
+        }
+        let nonzero = whole.chars().chain(fraction.chars()).any(|digit| digit != '0');
+        if value == 0.0 && nonzero {
+            return Err(wrong("it is too small for a 64-bit float", "check the exponent, or write 0"));
+        }
+        Ok(value)
+    }
+
+    fn end(&mut self) -> Result<(), Mistake> {
+        match self.peek() {
+            None => Ok(()),
+            Some(')') => Err(Mistake::new(self.here(), "this `)` closes nothing").help("delete it or add a `(`")),
+            Some(_) => Err(self.no_operator()),
+        }
+    }
+
+    fn no_operand(&mut self) -> Mistake {
+        let range = self.here();
+        match self.peek() {
+            None => {
+                let before = self.text.trim_end();
+                let last = before.chars().next_back().map_or(0, char::len_utf8);
+                let place = before.len() - last..before.len();
+                Mistake::new(place, "the expression ends where a number or a name is needed")
+            }
+            Some(c) => foreign(c, range.clone()).unwrap_or_else(|| {
+                Mistake::new(range, format!("{} stands where a number or a name is needed", quoted(&c.to_string())))
+            }),
+        }
+    }
+
+    fn no_operator(&mut self) -> Mistake {
+        let range = self.here();
+        let c = self.peek().unwrap_or(' ');
+        foreign(c, range.clone()).unwrap_or_else(|| {
+            Mistake::new(range, format!("{} stands where an operator is needed", quoted(&c.to_string())))
+        })
+    }
+}
+
+/// Characters that come with numbers copied from papers and other formats.
+fn foreign(c: char, range: Range<usize>) -> Option<Mistake> {
+    let help = match c {
+        '−' | '–' => "write the minus sign of the keyboard, `-`",
+        '×' | '·' | '⋅' => "write `*`",
+        'π' => "write `pi`",
+        '°' => "write `deg(…)`",
+        '²' | '³' => "write a power with `^`",
+        ',' => "the decimal sign is a point",
+        '~' => "leave the key out instead",
+        _ => return None,
+    };
+    Some(Mistake::new(range, format!("{} is not part of an expression", quoted(&c.to_string()))).help(help))
+}
+
+#[cfg(test)]
+#[path = "expression_tests.rs"]
+mod tests;

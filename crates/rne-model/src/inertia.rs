@@ -1,0 +1,125 @@
+//! Inertia tensors: the point they refer to, and their principal moments.
+
+use crate::Inertia;
+
+/// Rounding that is forgiven, relative to the largest magnitude involved.
+pub(crate) const TOLERANCE: f64 = 1e-12;
+
+/// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
+///
+/// A zero mass or a zero coordinate takes nothing away, so exact zeros stay exact zeros.
+pub(crate) fn about_com(origin: Inertia, m: f64, [x, y, z]: [f64; 3]) -> Inertia {
+    if m == 0.0 || [x, y, z] == [0.0; 3] {
+        return origin;
+    }
+    Inertia {
+        xx: origin.xx - m * (y * y + z * z),
+        yy: origin.yy - m * (x * x + z * z),
+        zz: origin.zz - m * (x * x + y * y),
+        xy: origin.xy + m * x * y,
+        xz: origin.xz + m * x * z,
+        yz: origin.yz + m * y * z,
+    }
+}
+
+/// The largest number that went into a tensor about the centre of mass: what its rounding errors are relative to.
+pub(crate) fn largest_magnitude(written: &Inertia, m: f64, [x, y, z]: [f64; 3]) -> f64 {
+    largest(written).max(m * (x * x + y * y + z * z))
+}
+
+fn largest(inertia: &Inertia) -> f64 {
+    inertia.rows().iter().flatten().fold(0.0, |largest: f64, element| largest.max(element.abs()))
+}
+
+/// The principal moments, ascending, by Jacobi's rotations; `None` when an element is not finite.
+pub(crate) fn principal_moments(inertia: &Inertia) -> Option<[f64; 3]> {
+    if !inertia.rows().iter().flatten().all(|element| element.is_finite()) {
+        return None;
+    }
+    let scale = largest(inertia);
+    if scale == 0.0 {
+        return Some([0.0; 3]);
+    }
+    // Scaled to 1, so that no square overflows or vanishes.
+    let mut a = inertia.rows().map(|row| row.map(|element| element / scale));
+    // Convergence is quadratic: a handful of sweeps suffices.
+    for _ in 0..16 {
+        for (p, q) in [(0, 1), (0, 2), (1, 2)] {
+            rotate(&mut a, p, q);
+        }
+    }
+    let mut moments = [a[0][0], a[1][1], a[2][2]].map(|moment| moment * scale);
+    moments.sort_by(f64::total_cmp);
+    Some(moments)
+}
+
+/// One Jacobi rotation, Jᵀ A J, that makes `a[p][q]` zero.
+fn rotate(a: &mut [[f64; 3]; 3], p: usize, q: usize) {
+    if a[p][q] == 0.0 {
+        return;
+    }
+    let theta = (a[q][q] - a[p][p]) / (2.0 * a[p][q]);
+    let t = 1.0_f64.copysign(theta) / (theta.abs() + libm::sqrt(theta * theta + 1.0));
+    let c = 1.0 / libm::sqrt(t * t + 1.0);
+    let s = t * c;
+    let r = 3 - p - q;
+    let (app, aqq, apq, arp, arq) = (a[p][p], a[q][q], a[p][q], a[r][p], a[r][q]);
+    a[p][p] = app - t * apq;
+    a[q][q] = aqq + t * apq;
+    a[p][q] = 0.0;
+    a[q][p] = 0.0;
+    a[r][p] = c * arp - s * arq;
+    a[r][q] = s * arp + c * arq;
+    a[p][r] = a[r][p];
+    a[q][r] = a[r][q];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tensor(xx: f64, yy: f64, zz: f64, xy: f64, xz: f64, yz: f64) -> Inertia {
+        Inertia { xx, yy, zz, xy, xz, yz }
+    }
+
+    fn close(found: [f64; 3], expected: [f64; 3], tolerance: f64) -> bool {
+        found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() <= tolerance)
+    }
+
+    #[test]
+    fn moments_of_known_tensors() {
+        let moments = |i: Inertia| principal_moments(&i).unwrap();
+        assert_eq!(moments(tensor(3.0, 1.0, 2.0, 0.0, 0.0, 0.0)), [1.0, 2.0, 3.0]);
+        assert_eq!(moments(Inertia::default()), [0.0; 3]);
+        // [[2, 1], [1, 2]] has 1 and 3.
+        assert!(close(moments(tensor(2.0, 2.0, 5.0, 1.0, 0.0, 0.0)), [1.0, 3.0, 5.0], 1e-15));
+        // c cᵀ with c = (1, 2, 3): 0, 0, 14.
+        assert!(close(moments(tensor(1.0, 4.0, 9.0, 2.0, 3.0, 6.0)), [0.0, 0.0, 14.0], 1e-14));
+    }
+
+    #[test]
+    fn moments_keep_trace_and_determinant_at_every_scale() {
+        for scale in [1e-300, 1e-12, 1.0, 1e12, 1e300] {
+            let i = tensor(scale, 0.7 * scale, 0.4 * scale, -0.2 * scale, 0.1 * scale, 0.05 * scale);
+            let [a, b, c] = principal_moments(&i).unwrap().map(|moment| moment / scale);
+            assert!((a + b + c - 2.1).abs() < 1e-15, "{scale}");
+            let determinant = 0.28 + 2.0 * -0.2 * 0.1 * 0.05 - 0.0025 - 0.7 * 0.01 - 0.4 * 0.04;
+            assert!((a * b * c - determinant).abs() < 1e-15, "{scale}");
+        }
+        assert_eq!(principal_moments(&tensor(f64::INFINITY, 0.0, 0.0, 0.0, 0.0, 0.0)), None);
+    }
+
+    #[test]
+    fn a_point_mass_has_no_inertia_about_itself() {
+        let origin = tensor(13.0 * 2.0, 10.0 * 2.0, 5.0 * 2.0, -4.0, -6.0, -12.0);
+        assert_eq!(about_com(origin, 2.0, [1.0, 2.0, 3.0]), Inertia::default());
+        assert_eq!(about_com(origin, 0.0, [1.0, 2.0, 3.0]), origin);
+        assert_eq!(about_com(origin, 2.0, [0.0; 3]), origin);
+    }
+
+    #[test]
+    fn zeros_stay_zeros() {
+        let com = about_com(tensor(0.3, 0.0, 0.3, 0.0, 0.0, 0.0), 1.5, [0.0, -0.1, 0.0]);
+        assert_eq!((com.yy, com.xy, com.xz, com.yz), (0.0, 0.0, 0.0, 0.0));
+    }
+}

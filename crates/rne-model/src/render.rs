@@ -1,0 +1,67 @@
+//! The one rendering of diagnostics, for the macro and the command line alike.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+
+use crate::{Diagnostic, Report, Severity};
+
+/// So many diagnostics are shown; whoever has more fixes these first.
+const SHOWN: usize = 20;
+
+pub(crate) fn full(report: &Report, color: bool) -> String {
+    let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+    let shown = report.diagnostics.iter().take(SHOWN).map(|found| snippet(report, found, &renderer));
+    shown.chain(rest(report)).collect::<Vec<_>>().join("\n\n")
+}
+
+pub(crate) fn short(report: &Report) -> String {
+    let line = |found: &Diagnostic| {
+        let mut line = format!("{}:{}:{}: ", report.name, found.line, found.column);
+        let _ = write!(line, "{}: {}", severity(found.severity), found.message);
+        line
+    };
+    report.diagnostics.iter().take(SHOWN).map(line).chain(rest(report)).collect::<Vec<_>>().join("\n")
+}
+
+fn severity(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Error => "error",
+        Severity::Warning => "warning",
+    }
+}
+
+fn rest(report: &Report) -> Option<String> {
+    let more = report.diagnostics.len().checked_sub(SHOWN).filter(|more| *more > 0)?;
+    let errors = report.errors().count().saturating_sub(SHOWN);
+    Some(format!("and {more} more ({errors} of them {})", if errors == 1 { "an error" } else { "errors" }))
+}
+
+fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
+    let level = match found.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let title = level.primary_title(&found.message);
+    let group = if report.text.is_empty() {
+        title.element(Origin::path(&report.name).line(found.line).char_column(found.column))
+    } else {
+        // Only the line concerned is handed over: the caret of a span of several lines ends with its first.
+        let (line, span) = line_of(&report.text, &found.span);
+        let caret = AnnotationKind::Primary.span(span).label(found.label.as_deref());
+        title.element(Snippet::source(line).line_start(found.line).path(&report.name).annotation(caret))
+    };
+    let group = group.elements(found.help.as_deref().map(|help| Level::HELP.message(help)));
+    renderer.render(&[group])
+}
+
+/// The line in which `span` begins, and the part of the span inside it.
+fn line_of<'t>(text: &'t str, span: &Range<usize>) -> (&'t str, Range<usize>) {
+    let (before, after) = text.split_at_checked(span.start).unwrap_or((text, ""));
+    let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    let end = after.find('\n').map_or(text.len(), |newline| before.len() + newline);
+    let line = text.get(start..end).unwrap_or_default().trim_end_matches('\r');
+    let inside = |index: usize| index.saturating_sub(start).min(line.len());
+    (line, inside(span.start)..inside(span.end))
+}

@@ -1,0 +1,312 @@
+//! The format itself: which keys a robot file has, what each means, and which values are allowed.
+
+use std::cell::Cell;
+use std::collections::HashMap;
+
+use crate::decode::{Context, Parameter, choice, list, not_negative, number, read_mapping, text};
+use crate::diagnostic::Diagnostic;
+use crate::document::{Content, Node};
+use crate::expression::{Meaning, is_identifier, is_reserved};
+use crate::source::{quoted, rounded};
+use crate::{
+    Angle, Convention, Dh, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Row, Transform,
+    inertia, lint,
+};
+
+/// More joints than any serial arm has; bounds the work of everything that follows.
+const MAX_JOINTS: usize = 64;
+
+/// A whole robot file.
+pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
+    // In another format every key may mean something else.
+    if let Some(version) = node.get("format") {
+        format(cx, version)?;
+    }
+    read_mapping!(cx, node, "a robot file", {
+        _format: required "format" format,
+        name: required "name" robot_name,
+        title: optional "title" text,
+        source: required "source" text,
+        notes: optional "notes" text,
+        parameters: or(Vec::new()) "parameters" parameters,
+        convention: required "convention" convention,
+        gravity: required "gravity" |cx, node| list(cx, node, "[x, y, z] (m/s²)", number),
+        base: or(Transform::IDENTITY) "base" transform,
+        tool: or(Transform::IDENTITY) "tool" transform,
+        joints: required "joints" joints,
+    });
+    lint::unused_parameters(cx);
+    Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints })
+}
+
+fn format(cx: &Context, node: &Node) -> Option<()> {
+    choice(cx, node, "format", &[("1", ())])
+}
+
+fn robot_name(cx: &Context, node: &Node) -> Option<String> {
+    let name = text(cx, node)?;
+    let valid = name.starts_with(|c: char| c.is_ascii_lowercase())
+        && name.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
+    if valid {
+        return Some(name);
+    }
+    let message = format!(
+        "the name {} is not an identifier; it must be a lower-case letter, then lower-case letters, digits and `_`",
+        quoted(&name)
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).help("a name for people goes into `title`"))
+}
+
+fn convention(cx: &Context, node: &Node) -> Option<Convention> {
+    choice(cx, node, "convention", &[("standard", Convention::Standard), ("modified", Convention::Modified)])
+}
+
+fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
+    let Content::Mapping(entries) = &node.content else {
+        let message = format!("found {} where a mapping from names to numbers is needed", node.described());
+        return cx.refuse(Diagnostic::error(node.head(), message).help("such as `parameters: {m: 1.5, a: 0.6}`"));
+    };
+    *cx.parameters.borrow_mut() = entries
+        .iter()
+        .map(|entry| Parameter {
+            name: entry.key.clone(),
+            span: entry.key_span.clone(),
+            meaning: Meaning::Later,
+            used: Cell::new(false),
+        })
+        .collect();
+    let mut values = Vec::new();
+    for (index, entry) in entries.iter().enumerate() {
+        let name = parameter_name(cx, &entry.key, entry.key_span.clone());
+        let value = number(cx, &entry.value);
+        if let Some(parameter) = cx.parameters.borrow_mut().get_mut(index) {
+            parameter.meaning = value.map_or(Meaning::Faulty, Meaning::Value);
+        }
+        values.push(name.zip(value));
+    }
+    values.into_iter().collect()
+}
+
+fn parameter_name(cx: &Context, name: &str, span: std::ops::Range<usize>) -> Option<String> {
+    if is_reserved(name) {
+        let message = format!("the parameter name `{name}` already has a meaning in every expression");
+        return cx
+            .refuse(Diagnostic::error(span, message).help("choose another name than pi, sqrt, sin, cos, tan, deg"));
+    }
+    if !is_identifier(name) {
+        let message = format!(
+            "the parameter name {} is not an identifier; it must be a letter or `_`, then letters, digits and `_`",
+            quoted(name)
+        );
+        return cx.refuse(Diagnostic::error(span, message));
+    }
+    Some(name.to_owned())
+}
+
+fn transform(cx: &Context, node: &Node) -> Option<Transform> {
+    read_mapping!(cx, node, "a placement", {
+        xyz: or([0.0; 3]) "xyz" |cx, node| list(cx, node, "[x, y, z] (m)", length),
+        rpy: or([0.0; 3]) "rpy" |cx, node| list(cx, node, "[roll, pitch, yaw] (rad)", angle),
+    });
+    Some(Transform { xyz, rpy: rpy.map(Angle::new) })
+}
+
+fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
+    let Content::Sequence(items) = &node.content else {
+        let message = format!("found {} where a list of joints is needed", node.described());
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of joints is needed"));
+    };
+    if items.is_empty() {
+        let message = "a robot without joints; 1 to 64 joints are allowed";
+        return cx.refuse(Diagnostic::error(node.span.clone(), message).help("list the joints from base to tip"));
+    }
+    if let Some(excess) = items.get(MAX_JOINTS) {
+        let message = format!("{} joints; 1 to {MAX_JOINTS} joints are allowed", items.len());
+        return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("joint {}", MAX_JOINTS + 1)));
+    }
+    let joints: Vec<Option<Joint>> =
+        items.iter().enumerate().map(|(index, item)| joint(cx, item, &format!("joint{}", index + 1))).collect();
+    let mut known = HashMap::new();
+    let mut unique = true;
+    for (index, (item, joint)) in items.iter().zip(&joints).enumerate() {
+        let Some(joint) = joint else { continue };
+        if let Some(first) = known.insert(joint.name.clone(), index) {
+            unique = false;
+            let message = format!(
+                "the name {} of joint {} is already that of joint {}; joint names must differ",
+                quoted(&joint.name),
+                index + 1,
+                first + 1
+            );
+            let span = item.get("name").map_or(item.head(), |name| name.span.clone());
+            cx.report(Diagnostic::error(span, message).label("name taken"));
+        }
+    }
+    let joints = joints.into_iter().collect::<Option<Vec<Joint>>>()?;
+    if let (Some(item), Some(last)) = (items.last(), joints.last()) {
+        lint::massless_last_link(cx, item, &last.row.link);
+    }
+    unique.then_some(joints)
+}
+
+fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
+    read_mapping!(cx, node, "a joint", {
+        name: or(default_name.to_owned()) "name" text,
+        kind: required "type" joint_kind,
+        dh: required "dh" dh,
+        link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" link,
+        limits: or(Limits::default()) "limits" limits,
+        motor: optional "motor" motor,
+    });
+    if let Some(position) = node.get("limits").and_then(|limits| limits.get("position")) {
+        lint::position_limits(cx, position, kind, &limits);
+    }
+    let (link, written_inertia) = link;
+    Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor })
+}
+
+fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
+    choice(cx, node, "joint type", &[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
+}
+
+fn dh(cx: &Context, node: &Node) -> Option<Dh> {
+    read_mapping!(cx, node, "`dh`", {
+        theta: required "theta" angle,
+        d: required "d" length,
+        a: required "a" length,
+        alpha: required "alpha" angle,
+    });
+    Some(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) })
+}
+
+/// The link with its inertia about the centre of mass, and the inertia as written.
+fn link(cx: &Context, node: &Node) -> Option<(Link, (Inertia, InertiaReference))> {
+    read_mapping!(cx, node, "a link", {
+        mass: or(0.0) "mass" mass,
+        com: or([0.0; 3]) "com" |cx, node| list(cx, node, "[x, y, z] (m)", length),
+        written: or(Inertia::default()) "inertia" tensor,
+        about: or(InertiaReference::Com) "inertia_about" inertia_reference,
+    });
+    let inertia = match about {
+        InertiaReference::Com => written,
+        InertiaReference::Origin => inertia::about_com(written, mass, com),
+    };
+    let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
+    let Some(moments) = inertia::principal_moments(&inertia) else {
+        let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
+        return cx.refuse(Diagnostic::error(place, message));
+    };
+    let magnitude = inertia::largest_magnitude(&written, mass, com);
+    if moments[0] < -inertia::TOLERANCE * magnitude {
+        let message = format!(
+            "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
+             it must be zero or positive",
+            rounded(moments[0])
+        );
+        return cx.refuse(Diagnostic::error(place, message).label("not the inertia of a body").help(match about {
+            InertiaReference::Com => {
+                "check the signs and the order of the products of inertia; a tensor about the origin of the link frame \
+                 needs `inertia_about: origin`"
+            }
+            InertiaReference::Origin => {
+                "check mass and com; a tensor that already refers to the centre of mass has `inertia_about: com`"
+            }
+        }));
+    }
+    lint::triangle_inequality(cx, place, moments);
+    Some((Link { mass, com, inertia }, (written, about)))
+}
+
+fn mass(cx: &Context, node: &Node) -> Option<f64> {
+    let mass = not_negative("mass")(cx, node)?;
+    lint::mass(cx, node, mass);
+    Some(mass)
+}
+
+fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
+    read_mapping!(cx, node, "an inertia", {
+        xx: or(0.0) "xx" number,
+        yy: or(0.0) "yy" number,
+        zz: or(0.0) "zz" number,
+        xy: or(0.0) "xy" number,
+        xz: or(0.0) "xz" number,
+        yz: or(0.0) "yz" number,
+    });
+    Some(Inertia { xx, yy, zz, xy, xz, yz })
+}
+
+fn inertia_reference(cx: &Context, node: &Node) -> Option<InertiaReference> {
+    choice(cx, node, "point of reference", &[("com", InertiaReference::Com), ("origin", InertiaReference::Origin)])
+}
+
+fn limits(cx: &Context, node: &Node) -> Option<Limits> {
+    read_mapping!(cx, node, "`limits`", {
+        position: optional "position" position_limits,
+        velocity: optional "velocity" not_negative("velocity limit"),
+        effort: optional "effort" not_negative("effort limit"),
+    });
+    Some(Limits { position, velocity, effort })
+}
+
+fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
+    let [lower, upper] = list(cx, node, "[lower, upper] (rad or m)", number)?;
+    if lower <= upper {
+        return Some((lower, upper));
+    }
+    let message = format!(
+        "the lower position limit {} lies above the upper one, {}; the order is [lower, upper]",
+        rounded(lower),
+        rounded(upper)
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).help("exchange the two"))
+}
+
+fn motor(cx: &Context, node: &Node) -> Option<Motor> {
+    read_mapping!(cx, node, "`motor`", {
+        inertia: or(0.0) "inertia" not_negative("rotor inertia"),
+        gear_ratio: or(1.0) "gear_ratio" gear_ratio,
+        viscous: or(0.0) "viscous" not_negative("viscous friction"),
+        coulomb: or([0.0; 2]) "coulomb" coulomb,
+    });
+    Some(Motor { inertia, gear_ratio, viscous, coulomb })
+}
+
+fn gear_ratio(cx: &Context, node: &Node) -> Option<f64> {
+    let ratio = number(cx, node)?;
+    if ratio != 0.0 {
+        return Some(ratio);
+    }
+    let message = format!("the gear ratio {} is zero; it must be motor turns per joint turn", cx.shown(node, ratio));
+    cx.refuse(Diagnostic::error(node.span.clone(), message).help("a direct drive has `gear_ratio: 1`, the default"))
+}
+
+fn coulomb(cx: &Context, node: &Node) -> Option<[f64; 2]> {
+    let values: [f64; 2] = list(cx, node, "[Tc⁺, Tc⁻] (N m)", number)?;
+    let Content::Sequence(items) = &node.content else { return None };
+    let mut valid = true;
+    for (item, value, sign, (name, rule)) in [
+        (items.first(), values[0], 1.0, ("positive", "zero or positive")),
+        (items.last(), values[1], -1.0, ("negative", "zero or negative")),
+    ] {
+        let Some(item) = item.filter(|_| sign * value < 0.0) else { continue };
+        valid = false;
+        let message = format!(
+            "the Coulomb friction {} for {name} speed has the wrong sign; it must be {rule}",
+            cx.shown(item, value)
+        );
+        cx.report(Diagnostic::error(item.span.clone(), message).help("the order is [Tc⁺, Tc⁻], Tc⁺ ≥ 0, Tc⁻ ≤ 0"));
+    }
+    valid.then_some(values)
+}
+
+fn angle(cx: &Context, node: &Node) -> Option<f64> {
+    let value = number(cx, node)?;
+    lint::angle(cx, node, value);
+    Some(value)
+}
+
+fn length(cx: &Context, node: &Node) -> Option<f64> {
+    let value = number(cx, node)?;
+    lint::length(cx, node, value);
+    Some(value)
+}

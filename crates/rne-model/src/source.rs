@@ -1,0 +1,79 @@
+//! From bytes to text: what must hold before YAML is spoken of.
+
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, Problems};
+
+/// The largest file that is read. The longest table, 64 joints, needs a fiftieth of it.
+const MAX_BYTES: usize = 1 << 20;
+
+/// Whether a file of `length` bytes is read at all.
+pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {
+    if length > MAX_BYTES {
+        problems.push(
+            Diagnostic::error(
+                0..0,
+                format!("the file has {length} bytes; a robot file has at most {MAX_BYTES} (1 MiB)"),
+            )
+            .help("one file describes one robot of at most 64 joints; is this the right file?"),
+        );
+    }
+    length <= MAX_BYTES
+}
+
+/// Reports the first byte of `bytes` that is not UTF-8.
+pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, problems: &Problems) {
+    let at = error.valid_up_to();
+    let byte = bytes.get(at).copied().unwrap_or_default();
+    // Its replacement, U+FFFD, takes three bytes of the text that is shown.
+    problems.push(
+        Diagnostic::error(at..at + 3, format!("byte 0x{byte:02X} is not UTF-8; a robot file is UTF-8 text"))
+            .label("not UTF-8")
+            .help(match bytes {
+                [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",
+                _ => "save the file with the encoding UTF-8",
+            }),
+    );
+}
+
+/// The text without a byte order mark.
+pub(crate) fn without_bom(text: &str) -> &str {
+    text.strip_prefix('\u{FEFF}').unwrap_or(text)
+}
+
+/// Reports the first control character: YAML forbids them, and the parser takes U+0000 for the end of the file.
+pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
+    let forbidden = |c: &(usize, char)| c.1.is_ascii_control() && !matches!(c.1, '\t' | '\n' | '\r');
+    let Some((at, character)) = text.char_indices().find(forbidden) else { return true };
+    problems.push(
+        Diagnostic::error(
+            at..at + 1,
+            format!("control character U+{:04X}; only tab and line breaks are allowed", u32::from(character)),
+        )
+        .help("delete it; is this a text file?"),
+    );
+    false
+}
+
+/// A value for a message: shortened, control characters escaped, in backticks.
+pub(crate) fn quoted(value: &str) -> String {
+    const LONGEST: usize = 40;
+    let shown = |text: &str| text.escape_debug().to_string().replace("\\\"", "\"").replace("\\'", "'");
+    match value.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("`{}…`", shown(value.get(..end).unwrap_or_default())),
+        None => format!("`{}`", shown(value)),
+    }
+}
+
+/// A computed value for a message, with six significant digits.
+pub(crate) fn rounded(value: f64) -> String {
+    let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    let shown = format!("{value:?}");
+    shown.strip_suffix(".0").unwrap_or(&shown).to_owned()
+}
+
+/// The part of `span` that lies `range` bytes into it, never beyond its end.
+pub(crate) fn inside(span: &Range<usize>, range: &Range<usize>) -> Range<usize> {
+    let at = |offset: usize| (span.start + offset).min(span.end);
+    at(range.start)..at(range.end)
+}
