@@ -15,7 +15,7 @@ pub struct WrongJointCount {
 impl fmt::Display for WrongJointCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { expected, found } = self;
-        write!(f, "the robot has {found} joints, but {expected} are expected (`Arm<{expected}>`)")
+        write!(f, "the robot has {}, but an `Arm<{expected}>` was asked for", Count(*found, "joint"))
     }
 }
 
@@ -35,8 +35,18 @@ pub struct WrongLength {
 impl fmt::Display for WrongLength {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { argument, expected, found } = self;
-        write!(f, "`{argument}` has {found} elements, but the robot has {expected} joints")
+        write!(f, "`{argument}` has {}, but the robot has {}", Count(*found, "element"), Count(*expected, "joint"))
     }
 }
 
 impl Error for WrongLength {}
+
+/// A number of things, in English.
+struct Count(usize, &'static str);
+
+impl fmt::Display for Count {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(number, thing) = self;
+        write!(f, "{number} {thing}{}", if *number == 1 { "" } else { "s" })
+    }
+}

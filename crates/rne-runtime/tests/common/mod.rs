@@ -119,3 +119,29 @@ pub(crate) fn assert_close(what: &str, actual: &[f64], expected: &[f64]) {
     let error = relative_error(actual, expected);
     assert!(error <= 1e-13, "{what}: relative error {error:e}\n  actual   {actual:?}\n  expected {expected:?}");
 }
+
+/// Reproducible numbers for random states (a linear congruential generator).
+pub(crate) struct Numbers(u64);
+
+impl Numbers {
+    pub(crate) fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// Uniform in [-1, 1).
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    pub(crate) fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Uniform in [-largest, largest).
+    pub(crate) fn array<const N: usize>(&mut self, largest: f64) -> [f64; N] {
+        std::array::from_fn(|_| largest * self.next())
+    }
+}
+
+/// An orthonormal tool transform with no special angle.
+pub(crate) fn tool() -> Transform {
+    Transform { xyz: [0.11, -0.07, 0.23], rpy: [Angle::new(0.4), Angle::new(-0.9), Angle::new(1.7)] }
+}
