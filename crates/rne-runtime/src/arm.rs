@@ -114,22 +114,3 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         self.inverse_dynamics(q, qd, &[T::zero(); DOF])
     }
 }
-
-#[cfg(feature = "std")]
-mod from_file {
-    use rne_model::Robot;
-
-    use super::Arm;
-    use crate::WrongJointCount;
-
-    impl<const DOF: usize> Arm<DOF> {
-        /// The runtime robot of a robot file that has been read.
-        ///
-        /// # Errors
-        /// When the robot does not have `DOF` joints.
-        pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
-            let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
-            Ok(Self::new(model))
-        }
-    }
-}

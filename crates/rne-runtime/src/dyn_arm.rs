@@ -1,8 +1,5 @@
 //! The runtime robot with a number of joints known at run time.
 
-use std::vec;
-use std::vec::Vec;
-
 use rne_model::{Convention, Model, Robot, Row, Transform};
 
 use crate::link_frame::{Chain, Ends, LinkFrame};

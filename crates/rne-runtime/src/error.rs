@@ -1,7 +1,52 @@
-//! What can be wrong with a call at run time.
+//! What can be wrong with a robot file or a call at run time.
 
 use core::error::Error;
 use core::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use rne_model::Report;
+
+/// Why a robot file gave no robot.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum LoadError {
+    /// The file cannot be read.
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        error: io::Error,
+    },
+    /// The file describes no robot; the report has line, column and what is allowed.
+    Invalid(Report),
+    /// The robot has another number of joints than the type that was to hold it.
+    WrongJointCount(WrongJointCount),
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, error } => write!(f, "cannot read {}: {error}", path.display()),
+            Self::Invalid(report) => report.fmt(f),
+            Self::WrongJointCount(error) => error.fmt(f),
+        }
+    }
+}
+
+impl Error for LoadError {}
+
+impl From<Report> for LoadError {
+    fn from(report: Report) -> Self {
+        Self::Invalid(report)
+    }
+}
+
+impl From<WrongJointCount> for LoadError {
+    fn from(error: WrongJointCount) -> Self {
+        Self::WrongJointCount(error)
+    }
+}
 
 /// A robot file has another number of joints than the type that was to hold it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,9 +1,7 @@
 //! The runtime side of `rne`: the scalar, the capability traits, and the generic recursion in nalgebra that every
 //! generated function is compared with.
-#![no_std]
+#![cfg_attr(not(feature = "std"), no_std)]
 #![allow(clippy::doc_markdown)] // formulas: R_i, f_{i-1,i}
-#[cfg(feature = "std")]
-extern crate std;
 
 mod arm;
 mod base_motion;
@@ -14,6 +12,8 @@ mod dyn_arm;
 mod error;
 mod link_frame;
 mod link_state;
+#[cfg(feature = "std")]
+mod load;
 mod scalar;
 mod seven_steps;
 mod trace;
@@ -25,7 +25,7 @@ pub use capability::InverseDynamics;
 #[cfg(feature = "std")]
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(feature = "std")]
-pub use error::{WrongJointCount, WrongLength};
+pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use scalar::{Constant, Scalar};
 pub use trace::{LinkTrace, Trace};
 pub use wrench::Wrench;

@@ -103,7 +103,7 @@ fn a_tool_moves_the_wrench() {
     }
 }
 
-/// A wrench works on the tip's motion: τ - τ_free = Jᵀ w, with the tip's velocity found from the last link's.
+/// A wrench works on the tip's motion: τ = free τ + Jᵀ w, with the tip's velocity found from the last link's.
 #[test]
 fn a_wrench_does_the_work_of_its_torques() {
     let mut numbers = Numbers::new(25);
@@ -146,10 +146,9 @@ fn the_mass_matrix_is_symmetric() {
             arm.inverse_dynamics(&common::SIX_Q, &[0.0; 6], &unit)
         };
         let columns: [[f64; 6]; 6] = std::array::from_fn(column);
-        for i in 0..6 {
-            assert!(columns[i][i] > 0.0);
-            let row_i: [f64; 6] = std::array::from_fn(|j| columns[j][i]);
-            assert!(relative_error(&columns[i], &row_i) < 1e-14);
+        for (i, column) in columns.iter().enumerate() {
+            assert!(column[i] > 0.0);
+            assert!(relative_error(column, &columns.map(|other| other[i])) < 1e-14);
         }
     }
 }

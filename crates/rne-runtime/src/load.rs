@@ -1,0 +1,58 @@
+//! Robots from robot files, at run time.
+
+use std::fs;
+use std::path::Path;
+
+use rne_model::{Robot, check_bytes};
+
+use crate::{Arm, DynArm, LoadError, WrongJointCount};
+
+impl<const DOF: usize> Arm<DOF> {
+    /// The robot of the text of a robot file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text, or that it describes another number of joints than `DOF`.
+    pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
+        Ok(Self::from_robot(&Robot::from_yaml(text)?)?)
+    }
+
+    /// The robot of a robot file. A relative `path` starts at the working directory.
+    ///
+    /// # Errors
+    /// When the file cannot be read, everything that is wrong with it, or another number of joints than `DOF`.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
+        Ok(Self::from_robot(&read(path.as_ref())?)?)
+    }
+
+    /// The robot of a robot file that has been read.
+    ///
+    /// # Errors
+    /// When the robot does not have `DOF` joints.
+    pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
+        let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
+        Ok(Self::new(model))
+    }
+}
+
+impl DynArm {
+    /// The robot of the text of a robot file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn from_yaml(text: &str) -> Result<Self, LoadError> {
+        Ok(Self::from_robot(&Robot::from_yaml(text)?))
+    }
+
+    /// The robot of a robot file. A relative `path` starts at the working directory.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or everything that is wrong with it.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, LoadError> {
+        Ok(Self::from_robot(&read(path.as_ref())?))
+    }
+}
+
+fn read(path: &Path) -> Result<Robot, LoadError> {
+    let bytes = fs::read(path).map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
+    Ok(check_bytes(&path.display().to_string(), &bytes)?.robot)
+}
