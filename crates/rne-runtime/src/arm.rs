@@ -14,6 +14,34 @@ use crate::{BaseMotion, Constant, InverseDynamics, Scalar, Wrench};
 /// the same bits, and is what generated code is tested against.
 ///
 /// `S` is the scalar in which the constants are stored and prepared; the computations run in any [`Scalar`].
+///
+/// The one-link example of lecture 38, a uniform rod that hangs along x:
+///
+/// ```
+/// # #[cfg(feature = "std")] {
+/// use rne_runtime::{Arm, InverseDynamics};
+///
+/// let rod = "
+/// format: 1
+/// name: rod
+/// source: lecture 38, one-link example
+/// convention: standard
+/// gravity: [9.81, 0, 0]
+/// joints:
+///   - type: revolute
+///     dh: {theta: 0, d: 0, a: 0.8, alpha: 0}
+///     link: {mass: 2.5, com: [-0.4, 0, 0], inertia: {yy: 2.5*0.8^2/12, zz: 2.5*0.8^2/12}}
+/// ";
+/// let arm = Arm::<1>::from_yaml(rod)?;
+/// let [tau] = arm.inverse_dynamics(&[0.6], &[1.3], &[-0.7]);
+/// assert!((tau - (2.5 * 0.8 * 0.8 * -0.7 / 3.0 + 2.5 * 9.81 * 0.4 * 0.6_f64.sin())).abs() < 1e-14);
+///
+/// // Every vector of the seven steps, here in the lecture's axes.
+/// let trace = arm.trace(&[0.6], &[1.3], &[-0.7], &arm.fixed_base(), None);
+/// assert_eq!(trace.to_lecture()[0].omega, [0.0, 0.0, 1.3]);
+/// # }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Arm<const DOF: usize, S = f64> {
     model: Model<DOF, S>,

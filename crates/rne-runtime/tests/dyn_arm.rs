@@ -1,4 +1,5 @@
 //! The arm with a number of joints known at run time has the bits of the one with it known at compile time.
+#![cfg(feature = "std")]
 
 mod common;
 

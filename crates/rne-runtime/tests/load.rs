@@ -1,4 +1,5 @@
 //! Robots from robot files.
+#![cfg(feature = "std")]
 
 mod common;
 
