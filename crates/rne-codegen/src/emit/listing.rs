@@ -1,0 +1,143 @@
+//! Annotated code for reading: each step's formula, its statements, what each component became, and what folded.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use rne_model::{JointKind, Robot};
+
+use super::expression::let_statement;
+use super::formula::formula;
+use crate::ledger::{Fate, Ledger, Place};
+use crate::program::{Binding, Expression, Finding, Found, Program, Sign, Statement};
+use crate::quantity::{Name, Quantity, Step};
+
+/// Which part of a program to list, and how much to say.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Listing {
+    /// One joint only, counted from 1.
+    pub joint: Option<usize>,
+    /// One step only.
+    pub step: Option<Step>,
+    /// Say what components became that are no statement, and what folded.
+    pub explain: bool,
+}
+
+/// The statements of a program as Rust text with a comment per joint and step.
+#[must_use]
+pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
+    let mut text = String::new();
+    for (joint, step) in sections(program.dof) {
+        if what.joint.is_some_and(|only| only != joint) || what.step.is_some_and(|only| only != step) {
+            continue;
+        }
+        let here = |place: &Place| place.joint == joint && place.step == step;
+        let statements: Vec<&Statement> =
+            program.statements.iter().filter(|statement| here(&statement.place)).collect();
+        if statements.is_empty() && !what.explain {
+            continue;
+        }
+        let kind = robot.joints.get(joint - 1).map_or(JointKind::Revolute, |joint| joint.row.kind);
+        let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
+        let _ = writeln!(text, "    // {}", formula(step, kind, joint));
+        for statement in statements {
+            let _ = writeln!(text, "{}", statement_line(statement));
+        }
+        if what.explain {
+            explain(&mut text, program, joint, step);
+        }
+        text.push('\n');
+    }
+    text.truncate(text.trim_end().len());
+    text.push('\n');
+    text
+}
+
+/// Joints and steps in the order of the recursion: out with steps 1 to 5, back with 6 and 7.
+fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
+    let outward = (1..=dof).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
+    let inward = (1..=dof).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
+    outward.chain(inward)
+}
+
+/// One statement as a line of Rust.
+pub(super) fn statement_line(statement: &Statement) -> String {
+    match &statement.binding {
+        Binding::Value { name, value } => let_statement("    ", &name.to_string(), value),
+        Binding::SineCosine { sine, cosine, angle } => {
+            let [sine, cosine] =
+                [sine, cosine].map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string()));
+            let angle = super::expression::line(angle);
+            format!("    let ({sine}, {cosine}) = Scalar::sin_cos({angle});")
+        }
+    }
+}
+
+fn explain(text: &mut String, program: &Program, joint: usize, step: Step) {
+    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+    for Finding { name, value } in &program.findings {
+        let quantity = name.quantity;
+        if name.joint != joint || quantity.step() != Some(step) || !quantity.is_of_the_lecture() {
+            continue;
+        }
+        let Some(became) = became(*name, value) else { continue };
+        match groups.iter_mut().find(|(other, _)| *other == became) {
+            Some((_, names)) => names.push(name.to_string()),
+            None => groups.push((became, vec![name.to_string()])),
+        }
+    }
+    for (became, names) in groups {
+        let _ = writeln!(text, "    // {}{became}", names.join(", "));
+    }
+    if let Some(line) = folded(&program.ledger, |place| place.joint == joint && place.step == step) {
+        let _ = writeln!(text, "    // {line}");
+    }
+}
+
+fn became(name: Name, found: &Found) -> Option<String> {
+    Some(match found {
+        // the statement says it
+        Found::Computed => return None,
+        Found::Same(..) if name.quantity == Quantity::Torque => return None,
+        Found::Same(other, Sign::Plus) => format!(" = {other}"),
+        Found::Same(other, Sign::Minus) => format!(" = -{other}"),
+        Found::Constant(value, cause) => format!(" = {value}: {cause}"),
+        Found::Inside => ": inside the statement that uses it".to_owned(),
+        Found::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
+        Found::Unused => ": not needed".to_owned(),
+    })
+}
+
+/// How many operations are left at the places that pass, and why the others are not there.
+pub(super) fn folded(ledger: &Ledger, here: impl Fn(&Place) -> bool) -> Option<String> {
+    let (products, sums) = ledger.total(|line| here(&line.place));
+    if products + sums == 0 {
+        return None;
+    }
+    let (kept_products, kept_sums) = ledger.total(|line| here(&line.place) && line.fate == Fate::Kept);
+    let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
+    for line in ledger.lines().filter(|line| here(&line.place)) {
+        let reason = match line.fate {
+            Fate::Kept => continue,
+            Fate::Zero(cause) | Fate::One(cause) => cause.to_string(),
+            Fate::Constant => "constants".to_owned(),
+            Fate::Cancelled => "x - x".to_owned(),
+            Fate::Shared => "computed before".to_owned(),
+            Fate::Unused => "not needed".to_owned(),
+        };
+        *reasons.entry(reason).or_default() += line.count;
+    }
+    let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
+    reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let mut text = format!("{products} products and {sums} sums, {kept_products} and {kept_sums} left");
+    for (position, (reason, count)) in reasons.iter().enumerate() {
+        let _ = write!(text, "{}{count} ({reason})", if position == 0 { ". Gone: " } else { ", " });
+    }
+    Some(text)
+}
+
+impl Program {
+    /// Whether a returned value is the constant 0.
+    pub(super) fn returns_zero(&self) -> bool {
+        self.outputs.iter().any(|output| output.value == Expression::Zero)
+    }
+}

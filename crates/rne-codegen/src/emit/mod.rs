@@ -1,0 +1,14 @@
+//! Renderers of programs: tokens for the macro, text for people.
+
+mod expression;
+mod formula;
+mod listing;
+mod signature;
+mod table;
+mod text;
+mod tokens;
+
+pub use listing::{Listing, listing};
+pub use table::dh_table;
+pub use text::rust_file;
+pub use tokens::body;

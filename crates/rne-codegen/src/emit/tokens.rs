@@ -1,0 +1,95 @@
+//! A program as Rust tokens.
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{ToTokens, quote};
+
+use super::expression::{Position, needs_parentheses};
+use super::signature::{ArgumentArray, arguments};
+use crate::program::{Binding, Expression, Program};
+use crate::quantity::Name;
+
+/// The body of a program's function: everything between its braces.
+///
+/// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
+/// `T`; `scalar` is the path of the trait that gives `T` its `from_f64` and `sin_cos`.
+#[must_use]
+pub fn body(program: &Program, scalar: &TokenStream) -> TokenStream {
+    let arguments = arguments(program).into_iter().map(|ArgumentArray { name, elements }| {
+        let array = ident(name);
+        if elements.iter().all(Option::is_none) {
+            return quote!(let _ = #array;);
+        }
+        let elements = elements.iter().map(|name| name.map_or_else(|| quote!(_), |name| name.to_token_stream()));
+        quote!(let [#(#elements),*] = *#array;)
+    });
+    let zero = program.returns_zero().then(|| {
+        let zero = literal(0.0);
+        quote!(let zero: T = #scalar::from_f64(#zero);)
+    });
+    let constants = program.constants.iter().map(|constant| {
+        let (name, value) = (constant.name, literal(constant.value));
+        quote!(let #name: T = #scalar::from_f64(#value);)
+    });
+    let statements = program.statements.iter().map(|statement| match &statement.binding {
+        Binding::Value { name, value } => quote!(let #name = #value;),
+        Binding::SineCosine { sine, cosine, angle } => {
+            let [sine, cosine] =
+                [sine, cosine].map(|name| name.map_or_else(|| quote!(_), |name| name.to_token_stream()));
+            quote!(let (#sine, #cosine) = #scalar::sin_cos(#angle);)
+        }
+    });
+    let outputs = program.outputs.iter().map(|output| &output.value);
+    quote! {
+        #(#arguments)*
+        #zero
+        #(#constants)*
+        #(#statements)*
+        [#(#outputs),*]
+    }
+}
+
+/// A number as a literal that reads back as the same bits; negative numbers as a minus and a literal, as in source text.
+fn literal(value: f64) -> TokenStream {
+    let text = format!("{:?}", value.abs());
+    let magnitude = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(value.abs()));
+    if value < 0.0 { quote!(-#magnitude) } else { quote!(#magnitude) }
+}
+
+fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
+impl ToTokens for Name {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        ident(&self.to_string()).to_tokens(tokens);
+    }
+}
+
+impl ToTokens for Expression {
+    fn to_tokens(&self, tokens: &mut TokenStream) {
+        let operand = |operand: &Self, position| {
+            if needs_parentheses(operand, position) { quote!((#operand)) } else { quote!(#operand) }
+        };
+        let stream = match self {
+            Self::Variable(name) => quote!(#name),
+            Self::Zero => quote!(zero),
+            Self::Negative(a) => {
+                let a = operand(a, Position::Negated);
+                quote!(-#a)
+            }
+            Self::Sum(a, b) => {
+                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
+                quote!(#a + #b)
+            }
+            Self::Difference(a, b) => {
+                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
+                quote!(#a - #b)
+            }
+            Self::Product(a, b) => {
+                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
+                quote!(#a * #b)
+            }
+        };
+        tokens.extend(stream);
+    }
+}

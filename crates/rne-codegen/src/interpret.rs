@@ -1,0 +1,154 @@
+//! An interpreter of programs over any number type, so that thousands of robots can be tried without compiling each.
+
+use std::collections::BTreeMap;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use crate::program::{Binding, Expression, Program};
+use crate::quantity::{Component, Name, Quantity};
+
+/// The arguments of a function. What a function does not use may be empty or zero.
+#[derive(Clone, Copy, Debug)]
+pub struct Arguments<'a, T> {
+    /// Joint positions, rad or m.
+    pub q: &'a [T],
+    /// Joint rates.
+    pub qd: &'a [T],
+    /// Joint accelerations.
+    pub qdd: &'a [T],
+    /// Force that the last link exerts at the tip, in tip axes, N.
+    pub force: [T; 3],
+    /// Moment that the last link exerts at the tip, N m.
+    pub moment: [T; 3],
+}
+
+/// A program made ready to run: names are resolved to slots.
+#[derive(Clone, Debug)]
+pub struct Interpreter {
+    code: Vec<Instruction>,
+    outputs: Vec<usize>,
+}
+
+/// Writes the next slot (sine and cosine: the next two).
+#[derive(Clone, Copy, Debug)]
+enum Instruction {
+    Argument(Name),
+    Constant(f64),
+    SineCosine(usize),
+    Negative(usize),
+    Sum(usize, usize),
+    Difference(usize, usize),
+    Product(usize, usize),
+}
+
+impl Interpreter {
+    /// Resolves the names of a program.
+    #[must_use]
+    pub fn new(program: &Program) -> Self {
+        let mut builder = Builder::default();
+        for &name in &program.arguments {
+            builder.define(name, Instruction::Argument(name));
+        }
+        for constant in &program.constants {
+            builder.define(constant.name, Instruction::Constant(constant.value));
+        }
+        for statement in &program.statements {
+            match &statement.binding {
+                Binding::Value { name, value } => {
+                    let slot = builder.expression(value);
+                    builder.known.insert(*name, slot);
+                }
+                Binding::SineCosine { sine, cosine, angle } => {
+                    let angle = builder.expression(angle);
+                    let slot = builder.push(Instruction::SineCosine(angle));
+                    builder.slots += 1;
+                    builder.known.extend(sine.map(|name| (name, slot)));
+                    builder.known.extend(cosine.map(|name| (name, slot + 1)));
+                }
+            }
+        }
+        let outputs = program.outputs.iter().map(|output| builder.expression(&output.value)).collect();
+        Self { code: builder.code, outputs }
+    }
+
+    /// Runs the program. `constant` turns a number of the program into a `T`, `sin_cos` gives (sine, cosine).
+    ///
+    /// Returns the outputs in the program's order; `None` when an argument array is too short.
+    pub fn run<T>(
+        &self,
+        arguments: &Arguments<'_, T>,
+        constant: impl Fn(f64) -> T,
+        sin_cos: impl Fn(T) -> (T, T),
+    ) -> Option<Vec<T>>
+    where
+        T: Copy + Neg<Output = T> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+    {
+        let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
+        for &instruction in &self.code {
+            let value = match instruction {
+                Instruction::Argument(name) => arguments.get(name)?,
+                Instruction::Constant(value) => constant(value),
+                Instruction::SineCosine(angle) => {
+                    let (sine, cosine) = sin_cos(slots[angle]);
+                    slots.push(sine);
+                    cosine
+                }
+                Instruction::Negative(a) => -slots[a],
+                Instruction::Sum(a, b) => slots[a] + slots[b],
+                Instruction::Difference(a, b) => slots[a] - slots[b],
+                Instruction::Product(a, b) => slots[a] * slots[b],
+            };
+            slots.push(value);
+        }
+        Some(self.outputs.iter().map(|&slot| slots[slot]).collect())
+    }
+}
+
+impl<T: Copy> Arguments<'_, T> {
+    fn get(&self, name: Name) -> Option<T> {
+        match (name.quantity, name.component) {
+            (Quantity::JointForce, Component::Vector(axis)) => Some(self.force[axis as usize]),
+            (Quantity::JointMoment, Component::Vector(axis)) => Some(self.moment[axis as usize]),
+            (quantity, _) => {
+                let array = match quantity {
+                    Quantity::Position => self.q,
+                    Quantity::Rate => self.qd,
+                    _ => self.qdd,
+                };
+                array.get(name.joint.checked_sub(1)?).copied()
+            }
+        }
+    }
+}
+
+#[derive(Default)]
+struct Builder {
+    code: Vec<Instruction>,
+    slots: usize,
+    known: BTreeMap<Name, usize>,
+}
+
+impl Builder {
+    fn push(&mut self, instruction: Instruction) -> usize {
+        self.code.push(instruction);
+        self.slots += 1;
+        self.slots - 1
+    }
+
+    fn define(&mut self, name: Name, instruction: Instruction) {
+        let slot = self.push(instruction);
+        self.known.insert(name, slot);
+    }
+
+    fn expression(&mut self, expression: &Expression) -> usize {
+        let instruction = match expression {
+            // every name is defined before it is used: programs are in order of evaluation
+            Expression::Variable(name) => return self.known[name],
+            Expression::Zero => Instruction::Constant(0.0),
+            Expression::Negative(a) => Instruction::Negative(self.expression(a)),
+            Expression::Sum(a, b) => Instruction::Sum(self.expression(a), self.expression(b)),
+            Expression::Difference(a, b) => Instruction::Difference(self.expression(a), self.expression(b)),
+            Expression::Product(a, b) => Instruction::Product(self.expression(a), self.expression(b)),
+        };
+        self.push(instruction)
+    }
+}

@@ -1,0 +1,160 @@
+//! From the rows of the table to the constants of the seven steps, in form P: frame i at joint i, fixed to link i.
+//!
+//! ```text
+//! standard   Rx(α_{i-1})    d = (a_i, 0, b_i) + Rx(α_i) c̄      r = -Rx(α_i) c̄           I = Rx(α_i) Ī Rx(α_i)ᵀ   α_0 = 0
+//! modified   Rx(α_{i-1})    d = (0, 0, b_i) + c̄                r = (a_i, 0, 0) - c̄      I = Ī                    r_n = -c̄
+//! ```
+//!
+//! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned into
+//! frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
+
+use rne_model::{Angle, Convention, Inertia, JointKind, Robot, Transform};
+
+use crate::ledger::Cause;
+use crate::quantity::{Axis, Name, Quantity};
+use crate::symbol::{Matrix, Symbol, Vector};
+use crate::worksheet::Worksheet;
+
+/// The constants of one link and of the joint that moves it.
+pub(crate) struct Link<'s> {
+    pub(crate) kind: JointKind,
+    /// Rx(α_{i-1}): the fixed part of R_i.
+    pub(crate) twist: Matrix<'s>,
+    /// The constant part of the joint angle.
+    pub(crate) theta: Angle,
+    /// (a_i, 0, b_i), J_i → J_{i+1} along the row; b_i without the joint variable.
+    pub(crate) offset: Vector<'s>,
+    /// Centre of mass from J_{i+1} of a standard, from J_i of a modified row.
+    pub(crate) com: Vector<'s>,
+    /// C_i → J_{i+1}.
+    pub(crate) r: Vector<'s>,
+    pub(crate) mass: Symbol<'s>,
+    /// About the centre of mass.
+    pub(crate) inertia: Matrix<'s>,
+}
+
+/// The constants of a robot.
+pub(crate) struct Arm<'s> {
+    pub(crate) links: Vec<Link<'s>>,
+    /// R_{n+1}: turns components in the tip frame into components in frame n.
+    pub(crate) tip: Matrix<'s>,
+    /// Gravity in frame 0.
+    pub(crate) gravity: Vector<'s>,
+}
+
+impl<'s> Arm<'s> {
+    pub(crate) fn new(sheet: &'s Worksheet, robot: &Robot) -> Self {
+        let dof = robot.dof();
+        let rows: Vec<_> = robot.rows().collect();
+        let zero = || sheet.constant(0.0, Cause::Arithmetic);
+        let along_x = |length: f64| Vector([sheet.constant(length, Cause::Arithmetic), zero(), zero()]);
+        let tool = Tool::new(sheet, &robot.tool);
+
+        let turns: Vec<_> =
+            rows.iter().enumerate().map(|(index, row)| turn_about_x(sheet, index + 1, &row.dh.alpha)).collect();
+        let mut tip = tool.rotation;
+        let mut links = Vec::with_capacity(dof);
+        for (index, row) in rows.iter().enumerate() {
+            let joint = index + 1;
+            let written_com = Vector(row.link.com.map(|x| sheet.constant(x, Cause::Arithmetic)));
+            let written_inertia = symmetric(sheet, &row.link.inertia);
+            let is_last = joint == dof;
+            let (twist, offset, com, mut r, inertia);
+            match robot.convention {
+                Convention::Standard => {
+                    // the twist before joint i stands in row i-1
+                    let own = turns[index];
+                    twist = index.checked_sub(1).map_or_else(|| identity(sheet), |previous| turns[previous]);
+                    offset = [row.dh.a, 0.0, row.dh.d];
+                    com = own * written_com;
+                    inertia = (own * written_inertia) * own.transpose();
+                    r = -com;
+                    if is_last {
+                        r = r + own * tool.translation;
+                        tip = own * tool.rotation;
+                    }
+                }
+                Convention::Modified => {
+                    twist = turns[index];
+                    offset = [0.0, 0.0, row.dh.d];
+                    com = written_com;
+                    inertia = written_inertia;
+                    r = match rows.get(index + 1) {
+                        Some(next) => along_x(next.dh.a) - com,
+                        None => -com + tool.translation,
+                    };
+                }
+            }
+            links.push(Link {
+                kind: row.kind,
+                twist,
+                theta: row.dh.theta,
+                offset: Vector(offset.map(|x| sheet.constant(x, Cause::Arithmetic))),
+                com,
+                r: sheet.entry_vector(Quantity::R, joint, r),
+                mass: sheet.entry(Name::scalar(Quantity::Mass, joint), row.link.mass),
+                inertia: sheet.entry_matrix(Quantity::Inertia, joint, inertia),
+            });
+        }
+        Self {
+            links,
+            tip: sheet.entry_matrix(Quantity::TipRotation, dof + 1, tip),
+            gravity: gravity(sheet, robot.gravity),
+        }
+    }
+}
+
+/// Frame n → tip frame.
+struct Tool<'s> {
+    rotation: Matrix<'s>,
+    translation: Vector<'s>,
+}
+
+impl<'s> Tool<'s> {
+    /// R_t = (Rz(yaw) Ry(pitch)) Rx(roll).
+    fn new(sheet: &'s Worksheet, tool: &Transform) -> Self {
+        let number = |value: f64| sheet.constant(value, Cause::Arithmetic);
+        let (zero, one) = (number(0.0), number(1.0));
+        let [roll, pitch, yaw] = tool.rpy.map(|angle| (number(angle.sin), number(angle.cos)));
+        let about_x = {
+            let (s, c) = roll;
+            Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
+        };
+        let about_y = {
+            let (s, c) = pitch;
+            Matrix::from_rows([[c, zero, s], [zero, one, zero], [-s, zero, c]])
+        };
+        let about_z = {
+            let (s, c) = yaw;
+            Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]])
+        };
+        Self { rotation: (about_z * about_y) * about_x, translation: Vector(tool.xyz.map(number)) }
+    }
+}
+
+/// Rx(α) of a row of the table.
+fn turn_about_x<'s>(sheet: &'s Worksheet, row: usize, alpha: &Angle) -> Matrix<'s> {
+    let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutX), sheet.constant(1.0, Cause::TurnAboutX));
+    let s = sheet.entry(Name::scalar(Quantity::TwistSine, row), alpha.sin);
+    let c = sheet.entry(Name::scalar(Quantity::TwistCosine, row), alpha.cos);
+    Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
+}
+
+/// α_0 of a standard table is 0.
+fn identity(sheet: &Worksheet) -> Matrix<'_> {
+    let (zero, one) = (sheet.constant(0.0, Cause::FirstFrame), sheet.constant(1.0, Cause::FirstFrame));
+    Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
+}
+
+fn symmetric<'s>(sheet: &'s Worksheet, inertia: &Inertia) -> Matrix<'s> {
+    Matrix::from_rows(inertia.rows().map(|row| row.map(|x| sheet.constant(x, Cause::Arithmetic))))
+}
+
+/// Gravity in frame 0; a component that is zero says so.
+fn gravity(sheet: &Worksheet, [x, y, z]: [f64; 3]) -> Vector<'_> {
+    let component = |axis, value| {
+        let symbol = sheet.constant(value, Cause::GravityDirection(axis));
+        sheet.name(Name::vector(Quantity::Gravity, 0, axis), symbol)
+    };
+    Vector([component(Axis::X, x), component(Axis::Y, y), component(Axis::Z, z)])
+}

@@ -1,0 +1,207 @@
+//! The compiled function: constants and named statements, in order, and what became of every operation.
+//!
+//! One `Program`, many renderers: tokens, text, counts, an interpreter.
+
+use crate::function::{Form, Function};
+use crate::ledger::{Cause, Ledger, Place};
+use crate::quantity::{Name, Quantity};
+
+/// A function of one robot as straight-line code.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Program {
+    /// The robot's name.
+    pub robot: String,
+    /// Number of joints.
+    pub dof: usize,
+    /// The function.
+    pub function: Function,
+    /// How it is computed.
+    pub form: Form,
+    /// The arguments that are used.
+    pub arguments: Vec<Name>,
+    /// The constants that are used.
+    pub constants: Vec<Constant>,
+    /// The statements, each using only what stands before it.
+    pub statements: Vec<Statement>,
+    /// The values returned: the torques, then what was asked to be kept.
+    pub outputs: Vec<Output>,
+    /// What every quantity of the recursion became, in its order.
+    pub findings: Vec<Finding>,
+    /// What became of every operation of the recursion.
+    pub ledger: Ledger,
+}
+
+/// A named constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Constant {
+    /// Its name.
+    pub name: Name,
+    /// Its value, finite.
+    pub value: f64,
+    /// Other quantities with the same value or its negative.
+    pub also: Vec<(Name, Sign)>,
+}
+
+/// Whether a value enters as itself or negated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sign {
+    /// As itself.
+    Plus,
+    /// Negated.
+    Minus,
+}
+
+/// One statement: a name and its value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Statement {
+    /// Step, joint and quantity that it belongs to.
+    pub place: Place,
+    /// What it computes.
+    pub binding: Binding,
+}
+
+/// What a statement computes.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Binding {
+    /// One value.
+    Value {
+        /// Its name.
+        name: Name,
+        /// The value.
+        value: Expression,
+    },
+    /// Sine and cosine of an angle; a name is `None` when it is not used.
+    SineCosine {
+        /// Name of the sine.
+        sine: Option<Name>,
+        /// Name of the cosine.
+        cosine: Option<Name>,
+        /// The angle, rad.
+        angle: Expression,
+    },
+}
+
+/// An expression over arguments, constants and earlier statements.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Expression {
+    /// An argument, a constant or an earlier statement.
+    Variable(Name),
+    /// The constant 0, where a function returns one.
+    Zero,
+    /// -a
+    Negative(Box<Expression>),
+    /// a + b
+    Sum(Box<Expression>, Box<Expression>),
+    /// a - b
+    Difference(Box<Expression>, Box<Expression>),
+    /// a · b
+    Product(Box<Expression>, Box<Expression>),
+}
+
+/// A returned value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Its name.
+    pub name: Name,
+    /// Its value.
+    pub value: Expression,
+}
+
+/// What a component of a quantity became.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The component.
+    pub name: Name,
+    /// What it became.
+    pub value: Found,
+}
+
+/// What a component of a quantity became in the code.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Found {
+    /// It is computed by the statement of its own name.
+    Computed,
+    /// It is another name, or its negative: an earlier statement or an argument.
+    Same(Name, Sign),
+    /// It is a constant, and why it is that one.
+    Constant(f64, Cause),
+    /// It is computed inside another statement.
+    Inside,
+    /// Nothing that is returned depends on it.
+    Unused,
+}
+
+/// Operations of one evaluation. A subtraction counts as an addition, a negation is free.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Operations {
+    /// Multiplications.
+    pub mul: usize,
+    /// Additions and subtractions.
+    pub add: usize,
+    /// Divisions.
+    pub div: usize,
+    /// Angles whose sine or cosine is used.
+    pub sincos: usize,
+    /// Statements.
+    pub statements: usize,
+}
+
+impl Operations {
+    /// Multiplications and additions together.
+    #[must_use]
+    pub const fn total(&self) -> usize {
+        self.mul + self.add
+    }
+}
+
+impl Program {
+    /// The operations of one evaluation.
+    #[must_use]
+    pub fn operations(&self) -> Operations {
+        let mut count = Operations { statements: self.statements.len(), ..Operations::default() };
+        for statement in &self.statements {
+            match &statement.binding {
+                Binding::Value { value, .. } => value.count(&mut count),
+                Binding::SineCosine { angle, .. } => {
+                    count.sincos += 1;
+                    angle.count(&mut count);
+                }
+            }
+        }
+        for output in &self.outputs {
+            output.value.count(&mut count);
+        }
+        count
+    }
+
+    /// What a component of a quantity became.
+    #[must_use]
+    pub fn finding(&self, name: Name) -> Option<&Found> {
+        self.findings.iter().find(|finding| finding.name == name).map(|finding| &finding.value)
+    }
+
+    /// Whether an argument array (`q`, `qd`, `qdd`) or the wrench is used for joint `joint`.
+    #[must_use]
+    pub fn uses(&self, quantity: Quantity, joint: usize) -> bool {
+        self.arguments.iter().any(|name| name.quantity == quantity && name.joint == joint)
+    }
+}
+
+impl Expression {
+    fn count(&self, count: &mut Operations) {
+        match self {
+            Self::Variable(_) | Self::Zero => {}
+            Self::Negative(a) => a.count(count),
+            Self::Sum(a, b) | Self::Difference(a, b) => {
+                count.add += 1;
+                a.count(count);
+                b.count(count);
+            }
+            Self::Product(a, b) => {
+                count.mul += 1;
+                a.count(count);
+                b.count(count);
+            }
+        }
+    }
+}

@@ -1,0 +1,438 @@
+//! What a number of the recursion means: its step, quantity, joint and axis, and the name these give it in the code.
+
+use std::fmt;
+
+/// One of the seven steps of the lecture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Step {
+    /// 1: angular velocity ω.
+    AngularVelocity = 1,
+    /// 2: angular acceleration ω̇.
+    AngularAcceleration,
+    /// 3: velocity of the centre of mass ċ.
+    Velocity,
+    /// 4: acceleration of the centre of mass c̈.
+    Acceleration,
+    /// 5: acceleration of gravity g, carried into the link's frame.
+    Gravity,
+    /// 6: forces and moments f, n.
+    Wrenches,
+    /// 7: torque τ.
+    Torque,
+}
+
+impl Step {
+    /// All seven, in order.
+    pub const ALL: [Self; 7] = [
+        Self::AngularVelocity,
+        Self::AngularAcceleration,
+        Self::Velocity,
+        Self::Acceleration,
+        Self::Gravity,
+        Self::Wrenches,
+        Self::Torque,
+    ];
+
+    /// Its number in the lecture, 1 to 7.
+    #[must_use]
+    pub const fn number(self) -> usize {
+        self as usize
+    }
+
+    /// What the step computes, in words.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::AngularVelocity => "angular velocity",
+            Self::AngularAcceleration => "angular acceleration",
+            Self::Velocity => "velocity of the centre of mass",
+            Self::Acceleration => "acceleration of the centre of mass",
+            Self::Gravity => "gravity in the link's frame",
+            Self::Wrenches => "forces and moments",
+            Self::Torque => "torque",
+        }
+    }
+}
+
+/// A component along one axis of a frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Axis {
+    /// x
+    X,
+    /// y
+    Y,
+    /// z
+    Z,
+}
+
+impl Axis {
+    /// x, y, z.
+    pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Y => "y",
+            Self::Z => "z",
+        })
+    }
+}
+
+/// Which component of a quantity.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Component {
+    /// The quantity is one number.
+    Scalar,
+    /// A component of a vector.
+    Vector(Axis),
+    /// An element of a matrix: row, column.
+    Matrix(Axis, Axis),
+}
+
+impl Component {
+    /// The axis of a vector's component or of a matrix element's row.
+    #[must_use]
+    pub const fn axis(self) -> Option<Axis> {
+        match self {
+            Self::Scalar => None,
+            Self::Vector(axis) | Self::Matrix(axis, _) => Some(axis),
+        }
+    }
+}
+
+/// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Quantity {
+    // Arguments of the function.
+    /// q: joint position.
+    Position,
+    /// q̇: joint rate.
+    Rate,
+    /// q̈: joint acceleration.
+    RateDot,
+
+    // Constants of the table.
+    /// A number without a name of its own.
+    Constant,
+    /// The number 2 of step 4 (prismatic joint).
+    Two,
+    /// Constant part of a joint angle θ.
+    Theta,
+    /// Sine of a twist angle α.
+    TwistSine,
+    /// Cosine of a twist angle α.
+    TwistCosine,
+    /// Sine of the constant θ of a prismatic joint.
+    ThetaSine,
+    /// Cosine of the constant θ of a prismatic joint.
+    ThetaCosine,
+    /// Constant part of the offset along a prismatic joint's axis.
+    Offset,
+    /// c̄: centre of mass from the link frame's origin, turned into frame i.
+    Com,
+    /// m: mass of the link.
+    Mass,
+    /// r: C_i → J_{i+1}.
+    R,
+    /// I: inertia about the centre of mass.
+    Inertia,
+    /// Rotation into the tip frame, of the table's last twist and the tool.
+    TipRotation,
+
+    // Step 1.
+    /// θ + q, where θ is no right angle.
+    Angle,
+    /// Sine of the joint angle.
+    Sine,
+    /// Cosine of the joint angle.
+    Cosine,
+    /// R: turns components of frame i into components of frame i-1.
+    Rotation,
+    /// ω: angular velocity.
+    Omega,
+    // Step 2.
+    /// ω̇: angular acceleration.
+    OmegaDot,
+    // Step 3.
+    /// ω × r: velocity of the next joint as seen from the centre of mass.
+    OmegaCrossR,
+    /// d: J_i → C_i. Constant for a revolute joint.
+    D,
+    /// ω × d: velocity of the centre of mass as seen from the joint.
+    OmegaCrossD,
+    /// ċ: velocity of the centre of mass.
+    Velocity,
+    // Step 4.
+    /// Acceleration of the joint's point J_i, in frame i-1.
+    JointPointAcceleration,
+    /// 2 q̇ of a prismatic joint.
+    TwiceRate,
+    /// c̈: acceleration of the centre of mass.
+    Acceleration,
+    // Step 5.
+    /// g: acceleration of gravity.
+    Gravity,
+    // Step 6.
+    /// f_{i,i+1}, turned into frame i.
+    ChildForce,
+    /// n_{i,i+1}, turned into frame i.
+    ChildMoment,
+    /// f_i = m c̈.
+    InertiaForce,
+    /// I ω: angular momentum about the centre of mass.
+    AngularMomentum,
+    /// n_i = I ω̇ + ω × I ω.
+    InertiaMoment,
+    /// f_{i-1,i}: force exerted by link i-1 on link i.
+    JointForce,
+    /// n_{i-1,i}: moment exerted by link i-1 on link i, about J_i.
+    JointMoment,
+    // Step 7.
+    /// τ: torque of a revolute, force of a prismatic joint.
+    Torque,
+}
+
+impl Quantity {
+    /// The step that computes it; `None` for arguments and constants.
+    #[must_use]
+    pub const fn step(self) -> Option<Step> {
+        match self {
+            Self::Angle | Self::Sine | Self::Cosine | Self::Rotation | Self::Omega => Some(Step::AngularVelocity),
+            Self::OmegaDot => Some(Step::AngularAcceleration),
+            Self::Velocity => Some(Step::Velocity),
+            Self::OmegaCrossR
+            | Self::D
+            | Self::OmegaCrossD
+            | Self::JointPointAcceleration
+            | Self::TwiceRate
+            | Self::Acceleration => Some(Step::Acceleration),
+            Self::Gravity => Some(Step::Gravity),
+            Self::ChildForce
+            | Self::ChildMoment
+            | Self::InertiaForce
+            | Self::AngularMomentum
+            | Self::InertiaMoment
+            | Self::JointForce
+            | Self::JointMoment => Some(Step::Wrenches),
+            Self::Torque => Some(Step::Torque),
+            _ => None,
+        }
+    }
+
+    /// Whether the lecture gives it a letter of its own: then each of its components is a statement.
+    #[must_use]
+    pub const fn is_of_the_lecture(self) -> bool {
+        matches!(
+            self,
+            Self::Omega
+                | Self::OmegaDot
+                | Self::Velocity
+                | Self::Acceleration
+                | Self::Gravity
+                | Self::InertiaForce
+                | Self::InertiaMoment
+                | Self::JointForce
+                | Self::JointMoment
+                | Self::Torque
+        )
+    }
+
+    const fn prefix(self) -> &'static str {
+        match self {
+            Self::Position => "q",
+            Self::Rate => "qd",
+            Self::RateDot => "qdd",
+            Self::Constant => "k",
+            Self::Two => "two",
+            Self::Theta => "theta",
+            Self::TwistSine => "sa",
+            Self::TwistCosine => "ca",
+            Self::ThetaSine => "st",
+            Self::ThetaCosine => "ct",
+            Self::Offset => "b",
+            Self::Com => "com",
+            Self::Mass => "m",
+            Self::R => "r",
+            Self::Inertia => "i",
+            Self::TipRotation | Self::Rotation => "rot",
+            Self::Angle => "angle",
+            Self::Sine => "s",
+            Self::Cosine => "c",
+            Self::Omega => "w",
+            Self::OmegaDot => "dw",
+            Self::OmegaCrossR => "wxr",
+            Self::D => "d",
+            Self::OmegaCrossD => "wxd",
+            Self::Velocity => "dc",
+            Self::JointPointAcceleration => "ddj",
+            Self::TwiceRate => "twice_qd",
+            Self::Acceleration => "ddc",
+            Self::Gravity => "g",
+            Self::ChildForce => "fc",
+            Self::ChildMoment => "nc",
+            Self::InertiaForce | Self::JointForce => "f",
+            Self::AngularMomentum => "h",
+            Self::InertiaMoment | Self::JointMoment => "n",
+            Self::Torque => "tau",
+        }
+    }
+
+    /// How its names look, for the legend of a listing: `wi_x`.
+    #[must_use]
+    pub fn pattern(self) -> String {
+        let prefix = self.prefix();
+        match self {
+            Self::Two => prefix.to_owned(),
+            Self::Constant => format!("{prefix}_1"),
+            Self::JointForce | Self::JointMoment => format!("{prefix}h_i_x"),
+            Self::Inertia | Self::Rotation | Self::TipRotation => format!("{prefix}i_xy"),
+            Self::Position
+            | Self::Rate
+            | Self::RateDot
+            | Self::Theta
+            | Self::TwistSine
+            | Self::TwistCosine
+            | Self::ThetaSine
+            | Self::ThetaCosine
+            | Self::Offset
+            | Self::Mass
+            | Self::Angle
+            | Self::Sine
+            | Self::Cosine
+            | Self::TwiceRate
+            | Self::Torque => format!("{prefix}i"),
+            _ => format!("{prefix}i_x"),
+        }
+    }
+
+    /// What its name stands for, for the legend of a listing.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::Position => "joint position",
+            Self::Rate => "joint rate",
+            Self::RateDot => "joint acceleration",
+            Self::Constant => "a number",
+            Self::Two => "the number 2",
+            Self::Theta => "constant part of the joint angle",
+            Self::TwistSine => "sine of the twist α",
+            Self::TwistCosine => "cosine of the twist α",
+            Self::ThetaSine => "sine of the constant θ",
+            Self::ThetaCosine => "cosine of the constant θ",
+            Self::Offset => "constant part of the offset along the axis",
+            Self::Com => "centre of mass from the link frame's origin",
+            Self::Mass => "mass",
+            Self::R => "r: centre of mass → next joint",
+            Self::Inertia => "inertia about the centre of mass",
+            Self::TipRotation => "rotation from the last link to the tip frame",
+            Self::Angle => "θ + q",
+            Self::Sine => "sine of the joint angle",
+            Self::Cosine => "cosine of the joint angle",
+            Self::Rotation => "R: frame i → frame i-1",
+            Self::Omega => "ω: angular velocity",
+            Self::OmegaDot => "ω̇: angular acceleration",
+            Self::OmegaCrossR => "ω × r",
+            Self::D => "d: joint → centre of mass",
+            Self::OmegaCrossD => "ω × d",
+            Self::Velocity => "ċ: velocity of the centre of mass",
+            Self::JointPointAcceleration => "acceleration of the joint's point, in the frame before it",
+            Self::TwiceRate => "2 q̇",
+            Self::Acceleration => "c̈: acceleration of the centre of mass",
+            Self::Gravity => "g: acceleration of gravity",
+            Self::ChildForce => "f of the next joint, turned into this frame",
+            Self::ChildMoment => "n of the next joint, turned into this frame",
+            Self::InertiaForce => "f = m c̈",
+            Self::AngularMomentum => "I ω",
+            Self::InertiaMoment => "n = I ω̇ + ω × I ω",
+            Self::JointForce => "force exerted by link h = i - 1 on link i",
+            Self::JointMoment => "moment exerted by link h = i - 1 on link i, about joint i",
+            Self::Torque => "τ: joint torque (force, for a prismatic joint)",
+        }
+    }
+}
+
+/// The full name of a number: `w2_z` is component z of ω of link 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Name {
+    /// What it is.
+    pub quantity: Quantity,
+    /// The joint, counted from 1; 0 for the base and for what belongs to no joint, n + 1 for the tip.
+    pub joint: usize,
+    /// Which component.
+    pub component: Component,
+    /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
+    pub part: usize,
+}
+
+impl Name {
+    /// A quantity that is one number.
+    #[must_use]
+    pub const fn scalar(quantity: Quantity, joint: usize) -> Self {
+        Self { quantity, joint, component: Component::Scalar, part: 0 }
+    }
+
+    /// A component of a vector.
+    #[must_use]
+    pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
+        Self { quantity, joint, component: Component::Vector(axis), part: 0 }
+    }
+
+    /// An element of a matrix.
+    #[must_use]
+    pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
+        Self { quantity, joint, component: Component::Matrix(row, column), part: 0 }
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.quantity.prefix())?;
+        match self.quantity {
+            Quantity::Two | Quantity::Constant => {}
+            // f_{i-1,i}: both links, as in the lecture
+            Quantity::JointForce | Quantity::JointMoment => {
+                write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?;
+            }
+            _ => write!(f, "{}", self.joint)?,
+        }
+        match self.component {
+            Component::Scalar => {}
+            Component::Vector(axis) => write!(f, "_{axis}")?,
+            Component::Matrix(row, column) => write!(f, "_{row}{column}")?,
+        }
+        if self.part > 0 {
+            write!(f, "_{}", self.part)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_the_interface() {
+        use Axis::{X, Y, Z};
+        for (name, text) in [
+            (Name::vector(Quantity::Omega, 2, Z), "w2_z"),
+            (Name::vector(Quantity::OmegaDot, 2, X), "dw2_x"),
+            (Name::vector(Quantity::Velocity, 2, Y), "dc2_y"),
+            (Name::vector(Quantity::Acceleration, 2, Y), "ddc2_y"),
+            (Name::vector(Quantity::Gravity, 2, Z), "g2_z"),
+            (Name::vector(Quantity::InertiaForce, 2, X), "f2_x"),
+            (Name::vector(Quantity::InertiaMoment, 2, X), "n2_x"),
+            (Name::vector(Quantity::JointForce, 2, X), "f1_2_x"),
+            (Name::vector(Quantity::JointMoment, 2, X), "n1_2_x"),
+            (Name::scalar(Quantity::Torque, 2), "tau2"),
+            (Name::scalar(Quantity::Sine, 2), "s2"),
+            (Name::scalar(Quantity::Cosine, 2), "c2"),
+            (Name::matrix(Quantity::Rotation, 3, X, Y), "rot3_xy"),
+            (Name { part: 1, ..Name::vector(Quantity::Acceleration, 3, X) }, "ddc3_x_1"),
+        ] {
+            assert_eq!(name.to_string(), text);
+        }
+    }
+}

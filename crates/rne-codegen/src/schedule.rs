@@ -1,0 +1,377 @@
+//! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::CompileError;
+use crate::function::{Form, Function};
+use crate::graph::{Node, NodeId, Term};
+use crate::ledger::{Operation, Place};
+use crate::program::{Binding, Constant, Expression, Finding, Found, Output, Program, Sign, Statement};
+use crate::quantity::{Name, Quantity, Step};
+use crate::symbol::Symbol;
+use crate::worksheet::Written;
+
+/// What the program is of.
+pub(crate) struct Heading<'a> {
+    pub(crate) robot: &'a str,
+    pub(crate) dof: usize,
+    pub(crate) function: Function,
+    pub(crate) form: Form,
+}
+
+/// Turns a written sheet into a program that returns `outputs`.
+pub(crate) fn program(
+    heading: &Heading<'_>,
+    mut written: Written,
+    outputs: &[(Name, Term)],
+) -> Result<Program, CompileError> {
+    let uses = count_uses(&written, outputs);
+    drop_unused(&mut written, &uses);
+    let schedule = Schedule::new(&written, uses);
+    let constants = schedule.constants()?;
+    let mut statements = schedule.statements();
+    let outputs = schedule.outputs(outputs, &mut statements);
+    statements.sort_by_key(|&(position, _)| position);
+    Ok(Program {
+        robot: heading.robot.to_owned(),
+        dof: heading.dof,
+        function: heading.function,
+        form: heading.form,
+        arguments: schedule.arguments(),
+        constants,
+        statements: statements.into_iter().map(|(_, statement)| statement).collect(),
+        outputs,
+        findings: schedule.findings(),
+        ledger: written.ledger,
+    })
+}
+
+/// The term of a symbol, without its sheet.
+pub(crate) fn output(name: Name, symbol: Symbol<'_>) -> (Name, Term) {
+    (name, symbol.term)
+}
+
+/// How often each node is used by live nodes and outputs; 0 is dead.
+fn count_uses(written: &Written, outputs: &[(Name, Term)]) -> Vec<usize> {
+    let mut uses = vec![0_usize; written.graph.len()];
+    for (_, term) in outputs {
+        uses[term.node.index()] += 1;
+    }
+    for (id, node) in written.graph.nodes().rev() {
+        if uses[id.index()] == 0 {
+            continue;
+        }
+        match node {
+            Node::Constant(_) | Node::Argument(_) => {}
+            Node::Sine(angle) | Node::Cosine(angle) => uses[angle.node.index()] += 1,
+            Node::Sum(a, b) => {
+                uses[a.node.index()] += 1;
+                uses[b.node.index()] += 1;
+            }
+            Node::Product(a, b) => {
+                uses[a.index()] += 1;
+                uses[b.index()] += 1;
+            }
+        }
+    }
+    uses
+}
+
+fn drop_unused(written: &mut Written, uses: &[usize]) {
+    for (id, node) in written.graph.nodes() {
+        let operation = match node {
+            Node::Sum(..) => Operation::Sum,
+            Node::Product(..) => Operation::Product,
+            _ => continue,
+        };
+        if uses[id.index()] == 0
+            && let Some(birth) = &written.births[id.index()]
+        {
+            written.ledger.drop_unused(birth.place, operation);
+        }
+    }
+}
+
+/// The name under which a node stands in the code, and whether that name means the node's negative.
+#[derive(Clone, Copy)]
+struct Given {
+    name: Name,
+    negative: bool,
+}
+
+struct Schedule<'w> {
+    written: &'w Written,
+    uses: Vec<usize>,
+    names: Vec<Option<Given>>,
+}
+
+impl<'w> Schedule<'w> {
+    fn new(written: &'w Written, uses: Vec<usize>) -> Self {
+        let mut schedule = Self { written, names: vec![None; uses.len()], uses };
+        schedule.take_given_names();
+        schedule.name_shared_terms();
+        schedule
+    }
+
+    /// A node takes the first name it was given; a letter of the lecture wins over an auxiliary name of the same step.
+    fn take_given_names(&mut self) {
+        for definition in &self.written.definitions {
+            let Term { node, negative } = definition.term;
+            let quantity = definition.name.quantity;
+            let slot = &mut self.names[node.index()];
+            let lectures = |name: Name| name.quantity.is_of_the_lecture();
+            let wins = slot.is_none_or(|old| {
+                !lectures(old.name) && lectures(definition.name) && old.name.quantity.step() == quantity.step()
+            });
+            // a torque is an alias of a component of a force or moment
+            if wins && quantity != Quantity::Torque {
+                *slot = Some(Given { name: definition.name, negative });
+            }
+        }
+        for (id, node) in self.written.graph.nodes() {
+            let index = id.index();
+            match node {
+                Node::Argument(name) => self.names[index] = Some(Given { name, negative: false }),
+                Node::Sum(..) | Node::Product(..) => {
+                    let keeps = self.names[index].is_some_and(|given| given.name.quantity.is_of_the_lecture());
+                    // an auxiliary quantity that is used once is clearer where it is used
+                    if !keeps && self.uses[index] < 2 && !self.is_angle(id) {
+                        self.names[index] = None;
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// A term without a name that is used more than once, and a constant without a name, are called after the quantity
+    /// in which they first stood.
+    fn name_shared_terms(&mut self) {
+        let mut parts: BTreeMap<Name, usize> = BTreeMap::new();
+        for (id, node) in self.written.graph.nodes() {
+            let index = id.index();
+            let is_constant = matches!(node, Node::Constant(_));
+            let needs_name = self.uses[index] > 0 && (is_constant || self.uses[index] > 1);
+            if self.names[index].is_some() || !needs_name {
+                continue;
+            }
+            let base = self.written.births[index].as_ref().map_or(Name::scalar(Quantity::Constant, 0), |birth| Name {
+                quantity: birth.place.quantity,
+                joint: birth.place.joint,
+                component: birth.component,
+                part: 0,
+            });
+            let part = parts.entry(base).or_default();
+            *part += 1;
+            // with the sign that needs no minus; operands have their names, for they are older
+            let negative = !is_constant && self.operation(node).0;
+            self.names[index] = Some(Given { name: Name { part: *part, ..base }, negative });
+        }
+    }
+
+    fn is_angle(&self, id: NodeId) -> bool {
+        self.names[id.index()].is_some_and(|given| given.name.quantity == Quantity::Angle)
+    }
+
+    fn is_live(&self, id: NodeId) -> bool {
+        self.uses[id.index()] > 0
+    }
+
+    fn arguments(&self) -> Vec<Name> {
+        let live = self.written.graph.nodes().filter(|&(id, _)| self.is_live(id));
+        let names: BTreeSet<Name> =
+            live.filter_map(|(_, node)| if let Node::Argument(name) = node { Some(name) } else { None }).collect();
+        names.into_iter().collect()
+    }
+
+    fn constants(&self) -> Result<Vec<Constant>, CompileError> {
+        let mut constants = Vec::new();
+        for (id, node) in self.written.graph.nodes() {
+            let (Node::Constant(magnitude), Some(given)) = (node, self.names[id.index()]) else { continue };
+            if !self.is_live(id) || magnitude == 0.0 {
+                continue;
+            }
+            let value = if given.negative { -magnitude } else { magnitude };
+            if !value.is_finite() {
+                return Err(CompileError::NotFinite { name: given.name });
+            }
+            let mut also = Vec::new();
+            for definition in &self.written.definitions {
+                let other = (definition.name, sign(definition.term.negative != given.negative));
+                if definition.term.node == id && definition.name != given.name && !also.contains(&other) {
+                    also.push(other);
+                }
+            }
+            constants.push(Constant { name: given.name, value, also });
+        }
+        Ok(constants)
+    }
+
+    /// Statements with their position: the index of their node.
+    fn statements(&self) -> Vec<(usize, Statement)> {
+        let mut statements = Vec::new();
+        let mut angles = BTreeSet::new();
+        for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
+            let statement = match node {
+                Node::Constant(_) | Node::Argument(_) => continue,
+                Node::Sine(angle) | Node::Cosine(angle) => {
+                    if !angles.insert(angle.node) {
+                        continue;
+                    }
+                    self.sine_and_cosine(angle)
+                }
+                Node::Sum(..) | Node::Product(..) => {
+                    let Some(given) = self.names[id.index()] else { continue };
+                    let (negative, value) = self.operation(node);
+                    let value = signed(negative != given.negative, value);
+                    let place = self.place(id, given.name);
+                    Statement { place, binding: Binding::Value { name: given.name, value } }
+                }
+            };
+            statements.push((id.index(), statement));
+        }
+        statements
+    }
+
+    fn sine_and_cosine(&self, angle: Term) -> Statement {
+        let mut pair = [None, None];
+        let mut joint = 0;
+        for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
+            let slot = match node {
+                Node::Sine(other) if other == angle => 0,
+                Node::Cosine(other) if other == angle => 1,
+                _ => continue,
+            };
+            pair[slot] = self.names[id.index()].map(|given| given.name);
+            joint = pair[slot].map_or(joint, |name| name.joint);
+        }
+        let [sine, cosine] = pair;
+        let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine };
+        Statement { place, binding: Binding::SineCosine { sine, cosine, angle: self.expression(angle) } }
+    }
+
+    fn place(&self, id: NodeId, name: Name) -> Place {
+        let step = name.quantity.step().unwrap_or(Step::AngularVelocity);
+        let own = Place { joint: name.joint, step, quantity: name.quantity };
+        self.written.births[id.index()].as_ref().map_or(own, |birth| birth.place)
+    }
+
+    /// Outputs as variables; a torque gets a statement of its own name.
+    fn outputs(&self, outputs: &[(Name, Term)], statements: &mut Vec<(usize, Statement)>) -> Vec<Output> {
+        let mut returned = Vec::with_capacity(outputs.len());
+        for &(name, term) in outputs {
+            let value = self.expression(term);
+            let is_torque = name.quantity == Quantity::Torque && !matches!(value, Expression::Zero);
+            let Some(definition) =
+                self.written.definitions.iter().find(|definition| definition.name == name).filter(|_| is_torque)
+            else {
+                returned.push(Output { name, value });
+                continue;
+            };
+            let place = Place { joint: name.joint, step: Step::Torque, quantity: Quantity::Torque };
+            // after the last node that was there when it was named
+            statements.push((
+                definition.after.saturating_sub(1),
+                Statement { place, binding: Binding::Value { name, value } },
+            ));
+            returned.push(Output { name, value: Expression::Variable(name) });
+        }
+        returned
+    }
+
+    fn findings(&self) -> Vec<Finding> {
+        let mut seen = BTreeSet::new();
+        let definitions = self.written.definitions.iter().filter(|definition| seen.insert(definition.name));
+        definitions
+            .map(|definition| {
+                let Term { node, negative } = definition.term;
+                let value = match self.written.graph.node(node) {
+                    Node::Constant(magnitude) => {
+                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.cause)
+                    }
+                    _ if !self.is_live(node) => Found::Unused,
+                    _ => match self.names[node.index()] {
+                        Some(given) if given.name == definition.name => Found::Computed,
+                        Some(given) => Found::Same(given.name, sign(given.negative != negative)),
+                        None => Found::Inside,
+                    },
+                };
+                Finding { name: definition.name, value }
+            })
+            .collect()
+    }
+
+    /// A term as an expression: the name of its node, or what the node computes.
+    fn expression(&self, term: Term) -> Expression {
+        let (negative, expression) = self.operand(term.node);
+        signed(negative != term.negative, expression)
+    }
+
+    /// A node as a sign and an expression. Signs are carried outwards, to where they cost nothing.
+    fn operand(&self, id: NodeId) -> (bool, Expression) {
+        let node = self.written.graph.node(id);
+        if node == Node::Constant(0.0) {
+            return (false, Expression::Zero);
+        }
+        match self.names[id.index()] {
+            Some(given) => (given.negative, Expression::Variable(given.name)),
+            None => self.operation(node),
+        }
+    }
+
+    fn operation(&self, node: Node) -> (bool, Expression) {
+        match node {
+            Node::Sum(a, b) => {
+                let (a_sign, a_value) = self.operand(a.node);
+                let (b_sign, b_value) = self.operand(b.node);
+                let (a_value, b_value) = (Box::new(a_value), Box::new(b_value));
+                match (a_sign != a.negative, b_sign != b.negative) {
+                    (false, false) => (false, Expression::Sum(a_value, b_value)),
+                    (false, true) => (false, Expression::Difference(a_value, b_value)),
+                    (true, false) => (false, Expression::Difference(b_value, a_value)),
+                    (true, true) => (true, Expression::Sum(a_value, b_value)),
+                }
+            }
+            Node::Product(a, b) => {
+                let (a_sign, a_value) = self.operand(a);
+                let (b_sign, b_value) = self.operand(b);
+                (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
+            }
+            // leaves always have a name, but for the zero that no operation keeps
+            Node::Constant(_) | Node::Argument(_) | Node::Sine(_) | Node::Cosine(_) => (false, Expression::Zero),
+        }
+    }
+}
+
+fn sign(negative: bool) -> Sign {
+    if negative { Sign::Minus } else { Sign::Plus }
+}
+
+/// An expression with a sign, which is carried inwards where it costs nothing: -(a - b) is b - a.
+fn signed(negative: bool, expression: Expression) -> Expression {
+    if !negative {
+        return expression;
+    }
+    match negated(&expression) {
+        Some(negated) => negated,
+        None => Expression::Negative(Box::new(expression)),
+    }
+}
+
+/// The negative of an expression without a minus sign in front, if there is one. Rounding is symmetric, so it is exact.
+fn negated(expression: &Expression) -> Option<Expression> {
+    match expression {
+        Expression::Zero => Some(Expression::Zero),
+        Expression::Negative(a) => Some((**a).clone()),
+        Expression::Difference(a, b) => Some(Expression::Difference(b.clone(), a.clone())),
+        Expression::Sum(a, b) => {
+            let (first, second) = match (negated(a), negated(b)) {
+                (Some(a), _) => (a, b),
+                (None, Some(b)) => (b, a),
+                (None, None) => return None,
+            };
+            Some(Expression::Difference(Box::new(first), second.clone()))
+        }
+        Expression::Variable(_) | Expression::Product(..) => None,
+    }
+}

@@ -1,0 +1,205 @@
+//! The seven steps of recursive Newton-Euler over symbols.
+//!
+//! NPTEL "Industrial Robotics: Theories for Implementation", lecture 38 (A. D. Udai), after S. K. Saha. Frame i is at
+//! joint i and fixed to link i (form P), which serves standard and modified Denavit-Hartenberg tables with one text:
+//! d_i = J_i → C_i, r_i = C_i → J_{i+1}, e = (0, 0, 1), and [x]_i = R_iᵀ [x]_{i-1}.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+use rne_model::QuarterTurns;
+
+use crate::ledger::Cause;
+use crate::links::{Arm, Link};
+use crate::quantity::{Name, Quantity};
+use crate::symbol::{Matrix, Symbol, Vector};
+use crate::worksheet::{JointLines, Worksheet};
+
+/// Position, rate and acceleration of one joint.
+#[derive(Clone, Copy)]
+pub(crate) struct JointState<'s> {
+    pub(crate) q: Symbol<'s>,
+    pub(crate) qd: Symbol<'s>,
+    pub(crate) qdd: Symbol<'s>,
+}
+
+/// A force and a moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Wrench<'s> {
+    pub(crate) force: Vector<'s>,
+    pub(crate) moment: Vector<'s>,
+}
+
+/// The motion of a link and gravity, in its frame, with what the backward pass needs again.
+#[derive(Clone, Copy)]
+struct Motion<'s> {
+    rotation: Matrix<'s>,
+    d: Vector<'s>,
+    omega: Vector<'s>,
+    omega_dot: Vector<'s>,
+    c_ddot: Vector<'s>,
+    gravity: Vector<'s>,
+}
+
+/// The torques of all joints, base to tip, when the last link exerts `tip` on its environment.
+pub(crate) fn inverse_dynamics<'s>(
+    sheet: &'s Worksheet,
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    tip: Wrench<'s>,
+) -> Vec<Symbol<'s>> {
+    let e = Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)));
+    let at_rest = sheet.zeros(Cause::FixedBase);
+
+    // Forward, i = 1 … n: the motion of each link from that of the link before it. The base does not move.
+    let (mut omega, mut omega_dot) = (at_rest, at_rest);
+    let (mut c_dot, mut c_ddot) = (at_rest, at_rest);
+    let mut r = at_rest;
+    let mut gravity = arm.gravity;
+    let mut motions = Vec::with_capacity(arm.links.len());
+    for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
+        let line = sheet.joint(index + 1);
+        let JointState { q, qd, qdd } = *state;
+        let rotation = rotation(line, sheet, index + 1, link, q);
+        let back = rotation.transpose();
+        let d = centre_of_mass(line, sheet, index + 1, link, q);
+        let (omega_before, omega_dot_before) = (omega, omega_dot);
+
+        // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
+        omega = line.vector(Quantity::Omega, || match link.kind {
+            Revolute => back * omega_before + e * qd,
+            Prismatic => back * omega_before,
+        });
+
+        // 2   ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e + q̇_i ω_i × e
+        omega_dot = line.vector(Quantity::OmegaDot, || match link.kind {
+            Revolute => back * omega_dot_before + e * qdd + omega.cross(e) * qd,
+            Prismatic => back * omega_dot_before,
+        });
+
+        // 3   ċ_i = R_iᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i      (+ q̇_i e)
+        let omega_cross_r = line.vector(Quantity::OmegaCrossR, || omega_before.cross(r));
+        let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
+        c_dot = line.vector(Quantity::Velocity, || {
+            let turning = back * (c_dot + omega_cross_r) + omega_cross_d;
+            match link.kind {
+                Revolute => turning,
+                Prismatic => turning + e * qd,
+            }
+        });
+
+        // 4   c̈_i = R_iᵀ (c̈_{i-1} + ω̇_{i-1} × r_{i-1} + ω_{i-1} × (ω_{i-1} × r_{i-1}))
+        //           + ω̇_i × d_i + ω_i × (ω_i × d_i)      (+ q̈_i e + 2 q̇_i ω_i × e)
+        let joint_point = line.vector(Quantity::JointPointAcceleration, || {
+            c_ddot + omega_dot_before.cross(r) + omega_before.cross(omega_cross_r)
+        });
+        let twice_qd = || line.scalar(Quantity::TwiceRate, || sheet.entry(Name::scalar(Quantity::Two, 0), 2.0) * qd);
+        c_ddot = line.vector(Quantity::Acceleration, || {
+            let turning = back * joint_point + omega_dot.cross(d) + omega.cross(omega_cross_d);
+            match link.kind {
+                Revolute => turning,
+                Prismatic => turning + e * qdd + omega.cross(e) * twice_qd(),
+            }
+        });
+
+        // 5   g_i = R_iᵀ g_{i-1}
+        gravity = line.vector(Quantity::Gravity, || back * gravity);
+
+        r = link.r;
+        motions.push(Motion { rotation, d, omega, omega_dot, c_ddot, gravity });
+    }
+
+    // Backward, i = n … 1: the wrench of each joint from that of the joint after it.
+    let mut child = tip;
+    let mut into_frame = arm.tip;
+    let mut torques = Vec::with_capacity(arm.links.len());
+    for (index, (link, motion)) in arm.links.iter().zip(&motions).enumerate().rev() {
+        let line = sheet.joint(index + 1);
+        let Motion { rotation, d, omega, omega_dot, c_ddot, gravity } = *motion;
+        let child_force = line.vector(Quantity::ChildForce, || into_frame * child.force);
+        let child_moment = line.vector(Quantity::ChildMoment, || into_frame * child.moment);
+
+        // 6   f_i = m_i c̈_i                n_i = I_i ω̇_i + ω_i × (I_i ω_i)
+        //     f_{i-1,i} = f_i + f_{i,i+1} - m_i g_i
+        //     n_{i-1,i} = n_i + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
+        // f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself.
+        line.vector(Quantity::InertiaForce, || c_ddot * link.mass);
+        let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
+        let inertia_moment =
+            line.vector(Quantity::InertiaMoment, || link.inertia * omega_dot + omega.cross(angular_momentum));
+        let force = line.vector(Quantity::JointForce, || (c_ddot - gravity) * link.mass + child_force);
+        let moment = line.vector(Quantity::JointMoment, || {
+            inertia_moment + child_moment + d.cross(force) + link.r.cross(child_force)
+        });
+
+        // 7   τ_i = e · n_{i-1,i}     (prismatic: e · f_{i-1,i})
+        torques.push(line.scalar(Quantity::Torque, || match link.kind {
+            Revolute => moment.z(),
+            Prismatic => force.z(),
+        }));
+
+        child = Wrench { force, moment };
+        into_frame = rotation;
+    }
+    torques.reverse();
+    torques
+}
+
+/// R_i = Rx(α_{i-1}) Rz(θ_i).
+fn rotation<'s>(
+    line: JointLines<'s>,
+    sheet: &'s Worksheet,
+    joint: usize,
+    link: &Link<'s>,
+    q: Symbol<'s>,
+) -> Matrix<'s> {
+    let (s, c) = match link.kind {
+        Revolute => joint_angle(line, sheet, joint, link, q),
+        Prismatic => (
+            sheet.entry(Name::scalar(Quantity::ThetaSine, joint), link.theta.sin),
+            sheet.entry(Name::scalar(Quantity::ThetaCosine, joint), link.theta.cos),
+        ),
+    };
+    let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutZ), sheet.constant(1.0, Cause::TurnAboutZ));
+    let about_z = Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]]);
+    line.matrix(Quantity::Rotation, || link.twist * about_z)
+}
+
+/// Sine and cosine of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
+fn joint_angle<'s>(
+    line: JointLines<'s>,
+    sheet: &'s Worksheet,
+    joint: usize,
+    link: &Link<'s>,
+    q: Symbol<'s>,
+) -> (Symbol<'s>, Symbol<'s>) {
+    let angle = if link.theta.right.is_some() {
+        q
+    } else {
+        line.scalar(Quantity::Angle, || sheet.entry(Name::scalar(Quantity::Theta, joint), link.theta.radians) + q)
+    };
+    let (s, c) = sheet.sine_and_cosine(angle);
+    let s = sheet.name(Name::scalar(Quantity::Sine, joint), s);
+    let c = sheet.name(Name::scalar(Quantity::Cosine, joint), c);
+    match link.theta.right {
+        None | Some(QuarterTurns::Zero) => (s, c),
+        Some(QuarterTurns::One) => (c, -s),
+        Some(QuarterTurns::Two) => (-s, -c),
+        Some(QuarterTurns::Three) => (-c, s),
+    }
+}
+
+/// d_i: J_i → C_i, a constant of the table; a prismatic joint moves it along its axis.
+fn centre_of_mass<'s>(
+    line: JointLines<'s>,
+    sheet: &'s Worksheet,
+    joint: usize,
+    link: &Link<'s>,
+    q: Symbol<'s>,
+) -> Vector<'s> {
+    match link.kind {
+        Revolute => sheet.entry_vector(Quantity::D, joint, link.offset + link.com),
+        Prismatic => line.vector(Quantity::D, || {
+            let [x, y, z] = link.offset.0;
+            Vector([x, y, z + q]) + link.com
+        }),
+    }
+}

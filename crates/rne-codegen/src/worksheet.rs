@@ -1,0 +1,221 @@
+//! The sheet on which a function is written: the graph, the names given to its nodes, and the ledger of what folded.
+
+use std::cell::RefCell;
+
+use crate::graph::{Graph, Outcome, Side, Term};
+use crate::ledger::{Cause, Fate, Ledger, Operation, Place};
+use crate::quantity::{Axis, Component, Name, Quantity};
+use crate::symbol::{Matrix, Symbol, Vector};
+
+/// A name given to a term, in the order in which the names were given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Definition {
+    pub(crate) name: Name,
+    pub(crate) term: Term,
+    /// Why it is the constant that it is, if it is one.
+    pub(crate) cause: Cause,
+    /// How many nodes there were when it got the name.
+    pub(crate) after: usize,
+}
+
+/// Where a node was created.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Birth {
+    pub(crate) place: Place,
+    pub(crate) component: Component,
+}
+
+/// Everything a worksheet holds once it is written.
+#[derive(Default)]
+pub(crate) struct Written {
+    pub(crate) graph: Graph,
+    pub(crate) ledger: Ledger,
+    pub(crate) definitions: Vec<Definition>,
+    /// By node index; `None` for what belongs to no step.
+    pub(crate) births: Vec<Option<Birth>>,
+}
+
+/// A sheet being written. [`Symbol`]s refer to it, so that formulas are written with operators.
+#[derive(Default)]
+pub(crate) struct Worksheet {
+    state: RefCell<State>,
+}
+
+#[derive(Default)]
+struct State {
+    written: Written,
+    place: Option<Place>,
+    axis: Option<Axis>,
+}
+
+impl Worksheet {
+    /// A number that stands for itself; `cause` tells why it is what it is.
+    pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
+        let term = self.state.borrow_mut().written.graph.constant(value);
+        Symbol { sheet: self, term, cause }
+    }
+
+    /// A number of the table under its name.
+    pub(crate) fn entry(&self, name: Name, value: f64) -> Symbol<'_> {
+        self.name(name, self.constant(value, Cause::Table(name)))
+    }
+
+    /// An argument of the function.
+    pub(crate) fn argument(&self, name: Name) -> Symbol<'_> {
+        let term = self.state.borrow_mut().written.graph.argument(name);
+        Symbol { sheet: self, term, cause: Cause::Arithmetic }
+    }
+
+    /// The zero vector, with its cause.
+    pub(crate) fn zeros(&self, cause: Cause) -> Vector<'_> {
+        Vector([self.constant(0.0, cause); 3])
+    }
+
+    /// Gives a symbol a name. A constant of the table takes its name as cause, so that a fold can say what was zero.
+    pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
+        let state = &mut *self.state.borrow_mut();
+        let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
+        let cause = if is_entry { Cause::Table(name) } else { symbol.cause };
+        let after = state.written.graph.len();
+        state.written.definitions.push(Definition { name, term: symbol.term, cause, after });
+        Symbol { cause, ..symbol }
+    }
+
+    /// A vector of the table under its name.
+    pub(crate) fn entry_vector<'s>(&'s self, quantity: Quantity, joint: usize, v: Vector<'s>) -> Vector<'s> {
+        v.map(|axis, x| self.name(Name::vector(quantity, joint, axis), x))
+    }
+
+    /// A matrix of the table under its name.
+    pub(crate) fn entry_matrix<'s>(&'s self, quantity: Quantity, joint: usize, m: Matrix<'s>) -> Matrix<'s> {
+        m.map(|row, column, x| self.name(Name::matrix(quantity, joint, row, column), x))
+    }
+
+    /// The lines of one joint.
+    pub(crate) fn joint(&self, joint: usize) -> JointLines<'_> {
+        JointLines { sheet: self, joint }
+    }
+
+    pub(crate) fn sine_and_cosine<'s>(&'s self, angle: Symbol<'s>) -> (Symbol<'s>, Symbol<'s>) {
+        let state = &mut *self.state.borrow_mut();
+        let sine = state.written.graph.sine(angle.term);
+        let cosine = state.written.graph.cosine(angle.term);
+        let symbol = |term| Symbol { sheet: self, term, cause: Cause::Arithmetic };
+        (symbol(sine), symbol(cosine))
+    }
+
+    pub(crate) fn sum<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let state = &mut *self.state.borrow_mut();
+        let (term, outcome) = state.written.graph.sum(a.term, b.term);
+        // Of two zeros, the sum is zero for the weightier reason.
+        let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
+        let cause = match outcome {
+            Outcome::Zero(_) if both_zero => a.cause.max(b.cause),
+            Outcome::Zero(Side::Right) => a.cause,
+            Outcome::Zero(Side::Left) => b.cause,
+            _ => Cause::Arithmetic,
+        };
+        let reason = match outcome {
+            Outcome::Zero(Side::Left) => a.cause,
+            Outcome::Zero(Side::Right) => b.cause,
+            _ => Cause::Arithmetic,
+        };
+        state.record(Operation::Sum, outcome, reason);
+        Symbol { sheet: self, term, cause }
+    }
+
+    pub(crate) fn product<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let state = &mut *self.state.borrow_mut();
+        let (term, outcome) = state.written.graph.product(a.term, b.term);
+        let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
+        let zero_or_one = match outcome {
+            Outcome::Zero(_) if both_zero => a.cause.max(b.cause),
+            Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.cause,
+            Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.cause,
+            _ => Cause::Arithmetic,
+        };
+        let cause = match outcome {
+            Outcome::One(Side::Left) => b.cause,
+            Outcome::One(Side::Right) => a.cause,
+            _ => zero_or_one,
+        };
+        state.record(Operation::Product, outcome, zero_or_one);
+        Symbol { sheet: self, term, cause }
+    }
+
+    /// Sets the component that the next operations belong to.
+    pub(crate) fn along(&self, axis: Axis) {
+        self.state.borrow_mut().axis = Some(axis);
+    }
+
+    /// Sets the place and component of the next operations; returns those of the operations before.
+    fn enter(&self, place: Option<Place>, axis: Option<Axis>) -> (Option<Place>, Option<Axis>) {
+        let state = &mut *self.state.borrow_mut();
+        let outer = (state.place, state.axis);
+        // leaves and constants of the table that came before belong to no step
+        let len = state.written.graph.len();
+        state.written.births.resize_with(len, || None);
+        (state.place, state.axis) = (place, axis);
+        outer
+    }
+
+    pub(crate) fn finish(self) -> Written {
+        let mut written = self.state.into_inner().written;
+        written.births.resize_with(written.graph.len(), || None);
+        written
+    }
+}
+
+impl State {
+    fn record(&mut self, operation: Operation, outcome: Outcome, cause: Cause) {
+        // Constants of the table are formed outside any step: a runtime forms them once, too.
+        let Some(place) = self.place else { return };
+        let fate = match outcome {
+            Outcome::Computed => Fate::Kept,
+            Outcome::Shared => Fate::Shared,
+            Outcome::Zero(_) => Fate::Zero(cause),
+            Outcome::One(_) => Fate::One(cause),
+            Outcome::Constants => Fate::Constant,
+            Outcome::Cancelled => Fate::Cancelled,
+        };
+        self.written.ledger.enter(place, operation, fate);
+        let births = &mut self.written.births;
+        let component = self.axis.map_or(Component::Scalar, Component::Vector);
+        births.resize_with(self.written.graph.len(), || Some(Birth { place, component }));
+    }
+}
+
+/// The lines of one joint: each gives a quantity of the lecture its value.
+#[derive(Clone, Copy)]
+pub(crate) struct JointLines<'s> {
+    sheet: &'s Worksheet,
+    joint: usize,
+}
+
+impl<'s> JointLines<'s> {
+    /// A quantity that is one number.
+    pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
+        let value = self.within(quantity, formula);
+        self.sheet.name(Name::scalar(quantity, self.joint), value)
+    }
+
+    /// A vector.
+    pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
+        let value = self.within(quantity, formula);
+        self.sheet.entry_vector(quantity, self.joint, value)
+    }
+
+    /// A matrix.
+    pub(crate) fn matrix(&self, quantity: Quantity, formula: impl FnOnce() -> Matrix<'s>) -> Matrix<'s> {
+        let value = self.within(quantity, formula);
+        self.sheet.entry_matrix(quantity, self.joint, value)
+    }
+
+    fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {
+        let place = quantity.step().map(|step| Place { joint: self.joint, step, quantity });
+        let outer = self.sheet.enter(place, None);
+        let value = formula();
+        self.sheet.enter(outer.0, outer.1);
+        value
+    }
+}

@@ -1,0 +1,24 @@
+//! The shipped robots, for the tests of the compiler.
+
+use rne_codegen::{Form, Function, Program, compile};
+use rne_model::Robot;
+
+/// Every robot of `robots/`, in the order of their names.
+pub(crate) fn shipped() -> Vec<Robot> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots");
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .expect("the folder of robots")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .filter(|path| !path.to_string_lossy().ends_with(".plan.yaml"))
+        .collect();
+    paths.sort();
+    assert_eq!(paths.len(), 15, "the shipped robots");
+    let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
+    paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))).collect()
+}
+
+/// All functions of a robot.
+pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
+    Function::ALL.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
+}
