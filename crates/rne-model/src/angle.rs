@@ -141,6 +141,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::approx_constant)] // the point of it
     fn a_rounded_right_angle_is_kept_as_it_stands() {
         let angle = Angle::new(1.5708);
         assert_eq!(angle.right, None);

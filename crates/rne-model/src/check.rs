@@ -19,11 +19,11 @@ pub struct Checked {
 ///
 /// Everything that is wrong with the file, with line, column and what is allowed.
 pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let problems = Problems::new();
     if !source::size_is_fine(text.len(), &problems) {
         return Err(problems.finish(name, ""));
     }
-    let text = source::without_bom(text);
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))
         .flatten()
@@ -41,20 +41,17 @@ pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
 ///
 /// As [`check`]; bytes that are not UTF-8 are an error at the first of them.
 pub fn check_bytes(name: &str, bytes: &[u8]) -> Result<Checked, Report> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    let error = match std::str::from_utf8(bytes) {
+        Ok(text) => return check(name, text),
+        Err(error) => error,
+    };
     let problems = Problems::new();
     if !source::size_is_fine(bytes.len(), &problems) {
         return Err(problems.finish(name, ""));
     }
-    match std::str::from_utf8(bytes) {
-        Ok(text) => {
-            problems.finish(name, "");
-            check(name, text)
-        }
-        Err(error) => {
-            source::not_utf8(bytes, error, &problems);
-            Err(problems.finish(name, &String::from_utf8_lossy(bytes)))
-        }
-    }
+    source::not_utf8(bytes, error, &problems);
+    Err(problems.finish(name, &String::from_utf8_lossy(bytes)))
 }
 
 impl Robot {

@@ -4,10 +4,11 @@
 //! all found, and a `None` always means that the file is refused.
 
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, Problems};
-use crate::document::{Content, Entry, Node, Style};
+use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
 use crate::source::{inside, quoted, rounded};
 use crate::spelling::did_you_mean;
@@ -31,12 +32,12 @@ pub(crate) use read_mapping;
 pub(crate) struct Context<'t> {
     pub(crate) text: &'t str,
     problems: &'t Problems,
-    pub(crate) parameters: RefCell<Vec<Parameter>>,
+    /// The named constants; in the order of their names, so that suggestions do not depend on chance.
+    pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
 }
 
 /// A named constant of the file.
 pub(crate) struct Parameter {
-    pub(crate) name: String,
     pub(crate) span: Range<usize>,
     pub(crate) meaning: Meaning,
     pub(crate) used: Cell<bool>,
@@ -45,7 +46,7 @@ pub(crate) struct Parameter {
 impl Names for Context<'_> {
     fn meaning(&self, name: &str) -> Meaning {
         let parameters = self.parameters.borrow();
-        parameters.iter().find(|parameter| parameter.name == name).map_or(Meaning::Unknown, |parameter| {
+        parameters.get(name).map_or(Meaning::Unknown, |parameter| {
             parameter.used.set(true);
             parameter.meaning
         })
@@ -53,7 +54,8 @@ impl Names for Context<'_> {
 
     fn similar(&self, name: &str) -> Option<String> {
         let parameters = self.parameters.borrow();
-        did_you_mean(name, parameters.iter().map(|parameter| parameter.name.as_str())).map(str::to_owned)
+        // A bound on the time that a file of nothing but unknown names can take.
+        did_you_mean(name, parameters.keys().take(100).map(String::as_str)).map(str::to_owned)
     }
 }
 
@@ -112,10 +114,10 @@ impl<'d> Fields<'d> {
         let Content::Mapping(entries) = &node.content else {
             return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
         };
+        let missing: Vec<_> = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none()).collect();
         let mut misspelt = Vec::new();
         for Entry { key, key_span, .. } in entries.iter().filter(|entry| !allowed.contains(&entry.key.as_str())) {
-            let missing = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none());
-            let meant = did_you_mean(key, missing);
+            let meant = did_you_mean(key, missing.iter().copied());
             misspelt.extend(meant);
             let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
             let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key));
@@ -137,21 +139,8 @@ impl<'d> Fields<'d> {
             return None;
         }
         let message = format!("{} lacks the required key `{key}`", self.what);
-        self.cx.refuse(
-            Diagnostic::error(self.node.head(), message).label(format!("`{key}` is missing")).maybe_help(match key {
-                "format" => Some("begin the file with `format: 1`".to_owned()),
-                "convention" => Some(
-                    "write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` \
-                     (Rx(alpha) Tx(a) Rz(theta) Tz(d)); it is never guessed"
-                        .to_owned(),
-                ),
-                "gravity" => {
-                    Some("the acceleration of gravity in frame 0, such as `gravity: [0, 0, -9.81]`".to_owned())
-                }
-                "source" => Some("say where the numbers come from, such as `source: \"own measurement\"`".to_owned()),
-                _ => None,
-            }),
-        )
+        let missing = Diagnostic::error(self.node.head(), message).label(format!("`{key}` is missing"));
+        self.cx.refuse(missing.maybe_help(how_to_write(key).map(str::to_owned)))
     }
 
     /// The value of a key, or `default` when it is not there.
@@ -165,6 +154,7 @@ impl<'d> Fields<'d> {
     }
 
     /// The value of a key; `Some(None)` when it is not there.
+    #[allow(clippy::option_option)] // the outer `None`, as everywhere here, is a reported mistake
     pub(crate) fn optional<T>(
         &self,
         key: &'static str,
@@ -172,6 +162,24 @@ impl<'d> Fields<'d> {
     ) -> Option<Option<T>> {
         self.node.get(key).map_or(Some(None), |node| reader(self.cx, node).map(Some))
     }
+}
+
+/// What a required key may look like.
+fn how_to_write(key: &str) -> Option<&'static str> {
+    Some(match key {
+        "format" => "begin the file with `format: 1`",
+        "source" => "say where the numbers come from, such as `source: \"own measurement\"`",
+        "convention" => {
+            "write `convention: standard` (Rz(theta) Tz(d) Tx(a) Rx(alpha)) or `convention: modified` \
+             (Rx(alpha) Tx(a) Rz(theta) Tz(d)); it is never guessed"
+        }
+        "gravity" => "the acceleration of gravity in frame 0, m/s², such as `gravity: [0, 0, -9.81]`",
+        "type" => "write `type: revolute` or `type: prismatic`",
+        "dh" | "theta" | "d" | "a" | "alpha" => {
+            "all four are required, such as `dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}`"
+        }
+        _ => return None,
+    })
 }
 
 /// Where a key belongs that stands in the wrong mapping, or what stands for it here.
@@ -200,11 +208,8 @@ pub(crate) fn number(cx: &Context, node: &Node) -> Option<f64> {
         Err(Some(mistake)) => {
             // The place inside the scalar, unless escapes or line breaks stand between the text and its value.
             let raw = cx.raw(node);
-            let lead = match scalar.style {
-                Style::Plain => 0,
-                Style::Quoted | Style::Block => 1,
-            };
-            let literal = raw.get(lead..).is_some_and(|raw| raw.starts_with(&scalar.text));
+            let lead = usize::from(scalar.style == Style::Quoted);
+            let literal = raw.get(lead..).is_some_and(|raw| raw.starts_with(scalar.text.trim_end()));
             let range = mistake.range.start + lead..mistake.range.end + lead;
             let span = if literal && !range.is_empty() { inside(&node.span, &range) } else { node.span.clone() };
             cx.refuse(Diagnostic::error(span, mistake.message).help(mistake.help))
@@ -242,12 +247,17 @@ pub(crate) fn not_negative(what: &'static str) -> impl Fn(&Context, &Node) -> Op
     }
 }
 
-/// A text that is not empty.
+/// A text that is not empty; numbers and `true` are texts too where a text is asked for, `~` and `null` are not.
 pub(crate) fn text(cx: &Context, node: &Node) -> Option<String> {
     match &node.content {
-        Content::Scalar(scalar) if !scalar.text.trim().is_empty() => Some(scalar.text.trim_end().to_owned()),
-        _ => cx.wrong_shape(node, "a text"),
+        Content::Scalar(Scalar { text, style: Style::Plain }) if matches!(text.as_str(), "~" | "null") => {}
+        Content::Scalar(Scalar { text, style: Style::Block }) if !text.trim().is_empty() => {
+            return Some(text.trim_end().to_owned());
+        }
+        Content::Scalar(Scalar { text, .. }) if !text.trim().is_empty() => return Some(text.clone()),
+        _ => {}
     }
+    cx.wrong_shape(node, "a text")
 }
 
 /// One of a few words.

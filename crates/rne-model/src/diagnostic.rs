@@ -134,7 +134,7 @@ impl Problems {
     /// Everything found, located in `text`, errors first.
     pub(crate) fn finish(self, name: &str, text: &str) -> Report {
         let mut diagnostics = self.found.borrow_mut().take().unwrap_or_default();
-        diagnostics.sort_by_key(|found| (found.span.start, found.severity));
+        diagnostics.sort_by(|a, b| (a.span.start, a.severity, &a.message).cmp(&(b.span.start, b.severity, &b.message)));
         // A value behind an alias is read once per alias.
         diagnostics.dedup();
         locate(&mut diagnostics, text);
@@ -145,9 +145,8 @@ impl Problems {
 
 impl Drop for Problems {
     fn drop(&mut self) {
-        if self.found.borrow().is_some() && !std::thread::panicking() {
-            panic!("the diagnostics of a robot file were dropped unread");
-        }
+        let finished = self.found.borrow().is_none();
+        assert!(finished || std::thread::panicking(), "the diagnostics of a robot file were dropped unread");
     }
 }
 

@@ -115,7 +115,7 @@ enum Children {
     Mapping {
         entries: Vec<Entry>,
         /// The places of the keys already met.
-        known: HashMap<String, Range<usize>>,
+        known: HashMap<String, usize>,
         /// A key that still waits for its value.
         pending: Option<(String, Range<usize>)>,
     },
@@ -125,6 +125,8 @@ struct Builder<'t> {
     text: &'t str,
     /// Byte offset of every character: the parser counts characters.
     offsets: Vec<usize>,
+    /// Byte offset of every line break.
+    breaks: Vec<usize>,
     problems: &'t Problems,
     stack: Vec<Open>,
     anchors: HashMap<usize, Rc<Node>>,
@@ -136,7 +138,8 @@ struct Builder<'t> {
 impl<'t> Builder<'t> {
     fn new(text: &'t str, problems: &'t Problems) -> Self {
         let offsets = text.char_indices().map(|(offset, _)| offset).chain([text.len()]).collect();
-        Self { text, offsets, problems, stack: Vec::new(), anchors: HashMap::new(), nodes: 0, root: None }
+        let breaks = text.match_indices('\n').map(|(offset, _)| offset).collect();
+        Self { text, offsets, breaks, problems, stack: Vec::new(), anchors: HashMap::new(), nodes: 0, root: None }
     }
 
     fn run(mut self) -> Result<Rc<Node>, Diagnostic> {
@@ -145,7 +148,7 @@ impl<'t> Builder<'t> {
         while let Some(event) = parser.next_event() {
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
-                syntax_error(at, error.info())
+                syntax_error(at, error.info()).maybe_help(self.open_bracket())
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
             match event {
@@ -179,6 +182,13 @@ impl<'t> Builder<'t> {
         })
     }
 
+    /// A question that solves most syntax errors: the innermost bracket that is still open.
+    fn open_bracket(&self) -> Option<String> {
+        let start = self.stack.last()?.start;
+        let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
+        Some(format!("is the `{bracket}` in line {} closed?", line(&self.breaks, start)))
+    }
+
     fn offset(&self, index: usize) -> usize {
         self.offsets.get(index).copied().unwrap_or(self.text.len())
     }
@@ -210,35 +220,27 @@ impl<'t> Builder<'t> {
             ScalarStyle::SingleQuoted | ScalarStyle::DoubleQuoted => Style::Quoted,
             ScalarStyle::Literal | ScalarStyle::Folded => Style::Block,
         };
-        if let Some(Open { children: Children::Mapping { known, pending, .. }, .. }) = self.stack.last_mut() {
-            match pending {
-                None => {
-                    if let Some(first) = known.get(&text) {
-                        let line = 1 + self.text.get(..first.start).unwrap_or_default().matches('\n').count();
-                        self.problems.push(
-                            Diagnostic::error(
-                                span.clone(),
-                                format!("repeated key {}; it is already in line {line}", quoted(&text)),
-                            )
-                            .label("repeated")
-                            .help("keep one of the two"),
-                        );
-                    } else {
-                        known.insert(text.clone(), span.clone());
-                    }
-                    *pending = Some((text, span));
-                    return Ok(());
+        let mut place = span;
+        match self.stack.last_mut().map(|open| &mut open.children) {
+            Some(Children::Mapping { known, pending: pending @ None, .. }) => {
+                if let Some(first) = known.get(&text) {
+                    let message =
+                        format!("repeated key {}; it is already in line {}", quoted(&text), line(&self.breaks, *first));
+                    self.problems
+                        .push(Diagnostic::error(place.clone(), message).label("repeated").help("keep one of the two"));
+                } else {
+                    known.insert(text.clone(), place.start);
                 }
-                // A value that is not there: its key is the place to point at.
-                Some((_, key)) if text.is_empty() && style == Style::Plain => {
-                    let span = key.clone();
-                    let node = Node::new(span, Content::Scalar(Scalar { text, style }));
-                    return self.place(node, anchor);
-                }
-                Some(_) => {}
+                *pending = Some((text, place));
+                return Ok(());
             }
+            // A value that is not there: its key is the place to point at.
+            Some(Children::Mapping { pending: Some((_, key)), .. }) if text.is_empty() && style == Style::Plain => {
+                place = key.clone();
+            }
+            _ => {}
         }
-        self.place(Node::new(span, Content::Scalar(Scalar { text, style })), anchor)
+        self.place(Node::new(place, Content::Scalar(Scalar { text, style })), anchor)
     }
 
     fn open(&mut self, span: Range<usize>, anchor: usize, children: Children) -> Result<(), Diagnostic> {
@@ -269,7 +271,7 @@ impl<'t> Builder<'t> {
         }
         let Some(target) = self.anchors.get(&anchor).cloned() else {
             let raw = self.text.get(span.clone()).unwrap_or_default();
-            let message = format!("the alias {} stands inside the value it stands for", quoted(raw));
+            let message = format!("the alias {} does not stand for a complete value before it", quoted(raw));
             return Err(Diagnostic::error(span, message).help("write the value out"));
         };
         if self.stack.len() + target.height > MAX_DEPTH {
@@ -312,6 +314,11 @@ impl<'t> Builder<'t> {
     }
 }
 
+/// The line of a byte, given the places of the line breaks.
+fn line(breaks: &[usize], offset: usize) -> usize {
+    1 + breaks.partition_point(|at| *at < offset)
+}
+
 fn too_deep(span: Range<usize>) -> Diagnostic {
     Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; a robot file has six levels"))
 }
@@ -321,6 +328,10 @@ fn not_a_key(span: Range<usize>) -> Diagnostic {
 }
 
 fn syntax_error(at: usize, info: &str) -> Diagnostic {
+    // The parser reads ahead and may meet its own limit, 255, before ours.
+    if info.contains("recursion limit") {
+        return too_deep(at..at + 1);
+    }
     let help = if info.contains("tab") {
         Some("indent with spaces; YAML does not allow tabs there")
     } else if info.contains("':'") || info.contains("mapping values") {

@@ -211,11 +211,15 @@ impl Expression {
             return Ok(value);
         }
         let part = quoted(text.get(self.range.clone()).unwrap_or_default());
-        let message = match value.is_nan() {
-            true => format!("{part} is not a real number"),
-            false => format!("{part} is infinite or too large; numbers are finite"),
+        let (message, help) = if value.is_nan() {
+            (
+                format!("{part} is not a real number; numbers are real and finite"),
+                "check for the root of a negative number and for 0/0",
+            )
+        } else {
+            (format!("{part} is infinite or too large; numbers are finite"), "check for a division by zero")
         };
-        Err(Some(Mistake::new(self.range.clone(), message)))
+        Err(Some(Mistake::new(self.range.clone(), message).help(help)))
     }
 }
 
@@ -224,7 +228,7 @@ fn unknown_name(name: &str, range: Range<usize>, names: &impl Names) -> Mistake 
     let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));
     match known.or_else(|| names.similar(name)) {
         Some(known) => mistake.help(format!("did you mean `{known}`?")),
-        None => mistake.help(format!("define it under `parameters`; {ALLOWED}")),
+        None => mistake.help(format!("define it under `parameters`, or check the number: {ALLOWED}")),
     }
 }
 
@@ -395,6 +399,9 @@ impl<'t> Parser<'t> {
         }
         if whole == "0" && tail.starts_with(['x', 'X', 'o', 'O', 'b', 'B']) {
             return Err(wrong("numbers are decimal", "convert it"));
+        }
+        if tail.starts_with("deg") {
+            return Err(wrong("angles are in radians", &format!("write `deg({literal})`")));
         }
         if tail.starts_with(is_name_start) {
             return Err(wrong("an operator is missing or it is cut short", "write a product with `*`, no unit"));

@@ -1,1 +1,206 @@
+use super::*;
 
+/// `a` is 3, `m` is 0.5, `later` and `faulty` are what they say.
+struct Known;
+
+impl Names for Known {
+    fn meaning(&self, name: &str) -> Meaning {
+        match name {
+            "a" => Meaning::Value(3.0),
+            "m" => Meaning::Value(0.5),
+            "later" => Meaning::Later,
+            "faulty" => Meaning::Faulty,
+            _ => Meaning::Unknown,
+        }
+    }
+
+    fn similar(&self, name: &str) -> Option<String> {
+        did_you_mean(name, ["length"]).map(str::to_owned)
+    }
+}
+
+fn value(text: &str) -> Result<f64, Option<Mistake>> {
+    Expression::parse(text).map_err(Some)?.evaluate(text, &Known)
+}
+
+/// The mistake and the columns it points at, from 1, both ends included.
+fn mistake(text: &str) -> (usize, usize, String, String) {
+    let mistake = value(text).expect_err(text).expect("a mistake of its own");
+    (mistake.range.start + 1, mistake.range.end, mistake.message, mistake.help)
+}
+
+#[test]
+fn literals() {
+    for (text, expected) in [
+        ("0", 0.0),
+        ("1", 1.0),
+        ("-1", -1.0),
+        ("+1", 1.0),
+        ("0.25", 0.25),
+        (".5", 0.5),
+        ("5.", 5.0),
+        ("2.0e-4", 2.0e-4),
+        ("1E+3", 1000.0),
+        ("1e5", 1e5),
+        ("0e0", 0.0),
+        ("0.1", 0.1),
+        ("4.9e-324", 4.9e-324),
+        ("1.7976931348623157e308", f64::MAX),
+        (" 7 ", 7.0),
+        ("pi", PI),
+    ] {
+        assert_eq!(value(text), Ok(expected), "{text}");
+    }
+}
+
+#[test]
+fn precedence_and_associativity() {
+    for (text, expected) in [
+        ("1 + 2*3", 7.0),
+        ("(1 + 2)*3", 9.0),
+        ("7 - 2 - 1", 4.0),
+        ("8/4/2", 1.0),
+        ("8/4*2", 4.0),
+        ("2^3^2", 512.0),
+        ("(2^3)^2", 64.0),
+        ("-2^2", -4.0),
+        ("(-2)^2", 4.0),
+        ("2^-1", 0.5),
+        ("2^-1*3", 1.5),
+        ("2^-2^2", 0.0625),
+        ("-2*3", -6.0),
+        ("2*-3", -6.0),
+        ("2 - -3", 5.0),
+        ("--2", 2.0),
+        ("-(1+1)", -2.0),
+        ("m*a^2/12", 0.5 * 9.0 / 12.0),
+        ("1+2\n+3", 6.0),
+    ] {
+        assert_eq!(value(text), Ok(expected), "{text}");
+    }
+}
+
+#[test]
+fn functions() {
+    for (text, expected) in [
+        ("sqrt(2)", 2.0_f64.sqrt()),
+        ("sqrt 2", f64::NAN),
+        ("sin(1)", libm::sin(1.0)),
+        ("cos(1)", libm::cos(1.0)),
+        ("tan(0.5)", libm::tan(0.5)),
+        ("deg(90)", PI / 2.0),
+        ("deg(180)", PI),
+        ("deg(-90)", -PI / 2.0),
+        ("deg(270)", 1.5 * PI),
+        ("-deg (45) / 2", -PI / 8.0),
+        ("2*sqrt((a+1)*4)", 8.0),
+    ] {
+        if expected.is_finite() {
+            assert_eq!(value(text), Ok(expected), "{text}");
+        } else {
+            assert!(value(text).is_err(), "{text}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_number_says_why_and_where() {
+    for (text, from, to, message, help) in [
+        ("1_000", 1, 5, "`1_000` is not a number here: no digits are grouped", "delete the `_`"),
+        ("012", 1, 3, "leading zero", "delete the leading zeros"),
+        ("-00.5", 2, 5, "leading zero", "delete the leading zeros"),
+        ("0x1F", 1, 4, "numbers are decimal", "convert it"),
+        ("0o17", 1, 4, "numbers are decimal", "convert it"),
+        ("0b11", 1, 4, "numbers are decimal", "convert it"),
+        (".inf", 1, 4, "`.inf` is not a number here: numbers are finite", "left out"),
+        ("-.INF", 2, 5, "numbers are finite", "left out"),
+        (".nan", 1, 4, "numbers are finite", "left out"),
+        ("inf", 1, 3, "unknown name `inf`", "a finite decimal"),
+        ("true", 1, 4, "unknown name `true`", "a finite decimal"),
+        ("", 1, 0, "a number is missing", "a finite decimal"),
+        ("  ", 1, 2, "a number is missing", "a finite decimal"),
+        ("~", 1, 1, "`~` is not part of an expression", "leave the key out"),
+        ("1e999", 1, 5, "too large", "exponent"),
+        ("1e-999", 1, 6, "too small", "exponent"),
+        ("2m", 1, 2, "an operator is missing", "`*`"),
+        ("90deg", 1, 5, "angles are in radians", "`deg(90)`"),
+        ("1e", 1, 2, "cut short", "`*`"),
+        ("1.2.3", 1, 5, "two decimal points", "delete one"),
+        (".", 1, 1, "written in digits", "left out"),
+        ("0,5", 2, 2, "`,` is not part of an expression", "point"),
+        ("1 2", 3, 3, "`2` stands where an operator is needed", "a finite decimal"),
+    ] {
+        let found = mistake(text);
+        assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
+        assert!(found.2.contains(message), "{text}: {}", found.2);
+        assert!(found.3.contains(help), "{text}: {}", found.3);
+    }
+}
+
+#[test]
+fn mistakes_in_expressions_point_at_their_column() {
+    for (text, from, to, message, help) in [
+        ("1 + x*2", 5, 5, "unknown name `x`", "define it under `parameters`"),
+        ("2*lenght", 3, 8, "unknown name `lenght`", "did you mean `length`?"),
+        ("2*PI", 3, 4, "unknown name `PI`", "did you mean `pi`?"),
+        ("1 + later", 5, 9, "has no value yet", "above it"),
+        ("2*(m+)/3", 6, 6, "`)` stands where a number or a name is needed", ""),
+        ("1 +", 3, 3, "the expression ends where", ""),
+        ("(1 + 2", 1, 1, "this `(` is never closed", "add a `)`"),
+        ("2*(1 + 2", 3, 3, "this `(` is never closed", "add a `)`"),
+        ("1 + 2)", 6, 6, "this `)` closes nothing", "delete it"),
+        ("()", 2, 2, "`)` stands where", ""),
+        ("sin pi", 1, 3, "`sin` needs an argument in parentheses", "`sin(…)`"),
+        ("sin(1, 2)", 6, 6, "`,` is not part", ""),
+        ("atan(1)", 1, 4, "unknown function `atan`", "sqrt sin cos tan deg"),
+        ("a(1)", 1, 1, "unknown function `a`", "`*`"),
+        ("pi(2)", 3, 3, "`(` stands where an operator is needed", ""),
+        ("m**2", 2, 3, "`**` is not an operator", "`^`"),
+        ("2 % 3", 3, 3, "`%` stands where an operator is needed", ""),
+        ("* 3", 1, 1, "`*` stands where a number", ""),
+        ("1 + 1/0", 5, 7, "`1/0` is infinite or too large", "division by zero"),
+        ("1/(1/0)", 3, 7, "is infinite", "division by zero"),
+        ("2*sqrt(-1)", 3, 10, "`sqrt(-1)` is not a real number", "root"),
+        ("0/0", 1, 3, "not a real number", ""),
+        ("(-8)^(1/3)", 1, 10, "not a real number", ""),
+        ("1e300*1e300", 1, 11, "too large", ""),
+        ("10^400 - 10^400", 1, 6, "too large", ""),
+        ("2·3", 2, 3, "`·` is not part", "write `*`"),
+        ("−1", 1, 3, "`−` is not part", "minus sign of the keyboard"),
+        ("π/2", 1, 2, "`π` is not part", "write `pi`"),
+        ("90°", 3, 4, "`°` is not part", "`deg(…)`"),
+    ] {
+        let found = mistake(text);
+        assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
+        assert!(found.2.contains(message), "{text}: {}", found.2);
+        assert!(found.3.contains(help), "{text}: {}", found.3);
+    }
+}
+
+#[test]
+fn a_mistake_of_a_parameter_is_reported_once() {
+    assert_eq!(value("2*faulty"), Err(None));
+}
+
+#[test]
+fn hostile_expressions_end_in_an_error() {
+    for (text, message) in [
+        ("(".repeat(100_000), "nested more than 64 levels deep"),
+        ("-".repeat(100_000), "nested more than 64 levels deep"),
+        (format!("{}1", "2^".repeat(100_000)), "nested more than 64 levels deep"),
+        ("sin(".repeat(100_000), "nested more than 64 levels deep"),
+        (format!("1{}", "+1".repeat(100_000)), "more than 1000 numbers"),
+    ] {
+        let found = mistake(&text);
+        assert!(found.2.contains(message), "{}", found.2);
+    }
+    assert_eq!(value(&format!("{}1{}", "(".repeat(60), ")".repeat(60))), Ok(1.0));
+    assert_eq!(value(&format!("1{}", "+1".repeat(499))), Ok(500.0));
+}
+
+#[test]
+fn names() {
+    assert!(is_identifier("a") && is_identifier("_a1") && is_identifier("J_xx"));
+    assert!(!is_identifier("") && !is_identifier("1a") && !is_identifier("a b") && !is_identifier("é"));
+    assert!(is_reserved("pi") && is_reserved("deg") && !is_reserved("e"));
+}

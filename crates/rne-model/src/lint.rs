@@ -23,22 +23,22 @@ const WIDEST: f64 = 8.0 * PI;
 /// Degrees taken for radians, and right angles that lost their exactness to rounding.
 pub(crate) fn angle(cx: &Context, node: &Node, value: f64) {
     let shown = cx.shown(node, value);
+    let raw = cx.raw(node);
+    let literal = raw.parse::<f64>().is_ok();
     // Rounding in 2*pi itself is no reason to warn.
     if value.abs() > TAU + NEARLY {
         cx.report(
             Diagnostic::lint(node.span.clone(), format!("the angle {shown} rad is more than a full turn"))
                 .label("degrees?")
-                .help(format!("if these are degrees, write `deg({})`", cx.raw(node))),
+                .help(format!("if these are degrees, write `deg({})`", if literal { raw } else { "…" })),
         );
         return;
     }
     let right = nearest_right_angle(value);
     if (value - right).abs() <= NEARLY && Angle::new(value).right.is_none() {
         let spelling = right_angle_spelling(right);
-        let message = format!(
-            "the angle {shown} lies {} rad beside the right angle `{spelling}`, but is not exactly it",
-            rounded((value - right).abs())
-        );
+        let message =
+            format!("the angle {shown} is {} rad off the right angle `{spelling}`", rounded((value - right).abs()));
         cx.report(Diagnostic::lint(node.span.clone(), message).label("rounded?").help(format!(
             "write `{spelling}` if that is meant: its sine and cosine are exactly 0 and ±1, and the code gets shorter"
         )));
@@ -118,8 +118,8 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
 
 /// Parameters that no number uses.
 pub(crate) fn unused_parameters(cx: &Context) {
-    for parameter in cx.parameters.borrow().iter().filter(|parameter| !parameter.used.get()) {
-        let message = format!("the parameter {} is never used", quoted(&parameter.name));
+    for (name, parameter) in cx.parameters.borrow().iter().filter(|(_, parameter)| !parameter.used.get()) {
+        let message = format!("the parameter {} is never used", quoted(name));
         cx.report(Diagnostic::lint(parameter.span.clone(), message).label("unused").help("delete it, or use it"));
     }
 }

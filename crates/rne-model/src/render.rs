@@ -10,6 +10,9 @@ use crate::{Diagnostic, Report, Severity};
 /// So many diagnostics are shown; whoever has more fixes these first.
 const SHOWN: usize = 20;
 
+/// A longer line is named, not shown: nobody reads it, and laying it out takes long.
+const LONGEST_LINE: usize = 4096;
+
 pub(crate) fn full(report: &Report, color: bool) -> String {
     let renderer = if color { Renderer::styled() } else { Renderer::plain() };
     let shown = report.diagnostics.iter().take(SHOWN).map(|found| snippet(report, found, &renderer));
@@ -33,9 +36,13 @@ fn severity(severity: Severity) -> &'static str {
 }
 
 fn rest(report: &Report) -> Option<String> {
-    let more = report.diagnostics.len().checked_sub(SHOWN).filter(|more| *more > 0)?;
-    let errors = report.errors().count().saturating_sub(SHOWN);
-    Some(format!("and {more} more ({errors} of them {})", if errors == 1 { "an error" } else { "errors" }))
+    let count = |severity| report.diagnostics.iter().skip(SHOWN).filter(|found| found.severity == severity).count();
+    match (count(Severity::Error), count(Severity::Warning)) {
+        (0, 0) => None,
+        (errors, 0) => Some(format!("and {errors} more errors")),
+        (0, warnings) => Some(format!("and {warnings} more warnings")),
+        (errors, warnings) => Some(format!("and {errors} more errors and {warnings} more warnings")),
+    }
 }
 
 fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
@@ -44,11 +51,11 @@ fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
         Severity::Warning => Level::WARNING,
     };
     let title = level.primary_title(&found.message);
-    let group = if report.text.is_empty() {
+    // Only the line concerned is handed over: the caret of a span of several lines ends with its first.
+    let (line, span) = line_of(&report.text, &found.span);
+    let group = if report.text.is_empty() || line.len() > LONGEST_LINE {
         title.element(Origin::path(&report.name).line(found.line).char_column(found.column))
     } else {
-        // Only the line concerned is handed over: the caret of a span of several lines ends with its first.
-        let (line, span) = line_of(&report.text, &found.span);
         let caret = AnnotationKind::Primary.span(span).label(found.label.as_deref());
         title.element(Snippet::source(line).line_start(found.line).path(&report.name).annotation(caret))
     };

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use crate::decode::{Context, Parameter, choice, list, not_negative, number, read_mapping, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Node};
+use crate::document::{Content, Entry, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::source::{quoted, rounded};
 use crate::{
@@ -15,6 +15,9 @@ use crate::{
 
 /// More joints than any serial arm has; bounds the work of everything that follows.
 const MAX_JOINTS: usize = 64;
+
+/// More than every number of 64 joints with a name of its own.
+const MAX_PARAMETERS: usize = 2000;
 
 /// A whole robot file.
 pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
@@ -66,20 +69,21 @@ fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
         let message = format!("found {} where a mapping from names to numbers is needed", node.described());
         return cx.refuse(Diagnostic::error(node.head(), message).help("such as `parameters: {m: 1.5, a: 0.6}`"));
     };
-    *cx.parameters.borrow_mut() = entries
-        .iter()
-        .map(|entry| Parameter {
-            name: entry.key.clone(),
-            span: entry.key_span.clone(),
-            meaning: Meaning::Later,
-            used: Cell::new(false),
-        })
-        .collect();
+    if let Some(excess) = entries.get(MAX_PARAMETERS) {
+        let message = format!("{} parameters; at most {MAX_PARAMETERS} are allowed", entries.len());
+        return cx.refuse(Diagnostic::error(excess.key_span.clone(), message));
+    }
+    let declared = |entry: &Entry| {
+        let span = entry.key_span.clone();
+        (entry.key.clone(), Parameter { span, meaning: Meaning::Later, used: Cell::new(false) })
+    };
+    // A repeated name, an error already, keeps its first value.
+    *cx.parameters.borrow_mut() = entries.iter().rev().map(declared).collect();
     let mut values = Vec::new();
-    for (index, entry) in entries.iter().enumerate() {
-        let name = parameter_name(cx, &entry.key, entry.key_span.clone());
-        let value = number(cx, &entry.value);
-        if let Some(parameter) = cx.parameters.borrow_mut().get_mut(index) {
+    for Entry { key, key_span, value } in entries {
+        let name = parameter_name(cx, key, key_span.clone());
+        let value = number(cx, value);
+        if let Some(parameter) = cx.parameters.borrow_mut().get_mut(key).filter(|known| known.span == *key_span) {
             parameter.meaning = value.map_or(Meaning::Faulty, Meaning::Value);
         }
         values.push(name.zip(value));
@@ -95,7 +99,7 @@ fn parameter_name(cx: &Context, name: &str, span: std::ops::Range<usize>) -> Opt
     }
     if !is_identifier(name) {
         let message = format!(
-            "the parameter name {} is not an identifier; it must be a letter or `_`, then letters, digits and `_`",
+            "the parameter name {} is not an identifier; it must be a letter from a to z or `_`, then letters, digits and `_`",
             quoted(name)
         );
         return cx.refuse(Diagnostic::error(span, message));
@@ -151,7 +155,7 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
 
 fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
     read_mapping!(cx, node, "a joint", {
-        name: or(default_name.to_owned()) "name" text,
+        name: or(default_name.to_owned()) "name" joint_name,
         kind: required "type" joint_kind,
         dh: required "dh" dh,
         link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" link,
@@ -163,6 +167,15 @@ fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
     }
     let (link, written_inertia) = link;
     Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor })
+}
+
+fn joint_name(cx: &Context, node: &Node) -> Option<String> {
+    let name = text(cx, node)?;
+    if !name.contains(char::is_control) {
+        return Some(name);
+    }
+    let message = format!("the joint name {} has a line break; a joint name is one line", quoted(&name));
+    cx.refuse(Diagnostic::error(node.span.clone(), message))
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {

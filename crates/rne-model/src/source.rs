@@ -36,11 +36,6 @@ pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, problems: &Prob
     );
 }
 
-/// The text without a byte order mark.
-pub(crate) fn without_bom(text: &str) -> &str {
-    text.strip_prefix('\u{FEFF}').unwrap_or(text)
-}
-
 /// Reports the first control character: YAML forbids them, and the parser takes U+0000 for the end of the file.
 pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
     let forbidden = |c: &(usize, char)| c.1.is_ascii_control() && !matches!(c.1, '\t' | '\n' | '\r');

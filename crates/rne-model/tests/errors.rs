@@ -1,0 +1,398 @@
+//! Every error: where it points and what it says.
+
+mod common;
+
+use std::fmt::Write as _;
+use std::time::Instant;
+
+use common::{BASE, found, the_one, with};
+use rne_model::{Severity, check, check_bytes};
+
+/// One replacement in the valid file, and the one error it must give: line, column, underlined text, part of message.
+type Case = (&'static str, &'static str, usize, usize, &'static str, &'static str);
+
+fn assert_cases(cases: &[Case]) {
+    for (old, new, line, column, underlined, message) in cases {
+        let error = the_one(old, new);
+        assert_eq!(error.severity, Severity::Error, "`{new}`");
+        assert_eq!((error.line, error.column), (*line, *column), "`{new}`: {}", error.message);
+        assert_eq!(&with(old, new)[error.span.clone()], *underlined, "`{new}`: {}", error.message);
+        assert!(error.message.contains(message), "`{new}`: {}", error.message);
+    }
+}
+
+#[test]
+fn the_valid_file_is_valid() {
+    assert_eq!(found(BASE).to_string(), "");
+}
+
+#[test]
+fn keys() {
+    assert_cases(&[
+        (
+            "source: test",
+            "source: test\ncolour: red",
+            4,
+            1,
+            "colour",
+            "unknown key `colour`; a robot file has the keys",
+        ),
+        ("name: first", "name: first\n    offset: 1", 10, 5, "offset", "unknown key `offset`; a joint has the keys"),
+        ("{theta: 0, d: 0.4", "{theta: 0, d: 0.4, b: 1", 11, 28, "b", "`dh` has the keys theta, d, a, alpha"),
+        ("mass: 2.5", "mass: 2.5\n      masse: 1", 14, 7, "masse", "a link has the keys mass, com, inertia"),
+        ("zz: 0.02}", "zz: 0.02, zx: 1}", 15, 46, "zx", "an inertia has the keys"),
+        ("velocity: 2.0", "torque: 2.0", 17, 35, "torque", "`limits` has the keys position, velocity, effort"),
+        ("viscous: 1.5e-3", "stiction: 1", 18, 49, "stiction", "`motor` has the keys"),
+        ("base: {xyz", "base: {quaternion: 1, xyz", 6, 8, "quaternion", "a placement has the keys xyz, rpy"),
+        ("source: test", "source: test\n<<: {a: 1}", 4, 1, "<<", "unknown key `<<`"),
+        ("source: test", "source: test\nname: again", 4, 1, "name", "repeated key `name`; it is already in line 2"),
+        (
+            "{theta: 0, d: 0.4",
+            "{theta: 0, theta: 1, d: 0.4",
+            11,
+            20,
+            "theta",
+            "repeated key `theta`; it is already in line 11",
+        ),
+        ("{m: 1.5, ", "{m: 1.5, m: 2, ", 7, 22, "m", "repeated key `m`; it is already in line 7"),
+        ("gravity: [0", "? [1, 2]\n: 3\ngravity: [0", 5, 3, "[", "a key must be a plain word"),
+    ]);
+}
+
+#[test]
+fn near_misses_are_recognised() {
+    for (old, new, help) in [
+        ("source: test", "sorce: test", "did you mean `source`?"),
+        ("convention: standard", "conventions: standard", "did you mean `convention`?"),
+        ("inertia_about: com", "inertia-about: com", "did you mean `inertia_about`?"),
+        ("standard", "Standard", "did you mean `standard`?"),
+        ("revolute", "revolut", "did you mean `revolute`?"),
+        ("name: first", "name: first\n    mass: 1", "`mass` belongs under `link`"),
+        ("name: first", "name: first\n    offset: 1", "a joint offset is the constant in `theta` or `d`"),
+        ("source: test", "source: test\n<<: {a: 1}", "YAML merge keys are not part of the format; write the keys out"),
+    ] {
+        assert_eq!(the_one(old, new).help.as_deref(), Some(help), "{new}");
+    }
+}
+
+#[test]
+fn missing_fields_point_at_the_mapping_that_lacks_them() {
+    assert_cases(&[
+        ("format: 1\n", "", 1, 1, "name", "a robot file lacks the required key `format`"),
+        ("name: base\n", "", 1, 1, "format", "lacks the required key `name`"),
+        ("source: test\n", "", 1, 1, "format", "lacks the required key `source`"),
+        ("convention: standard\n", "", 1, 1, "format", "lacks the required key `convention`"),
+        ("gravity: [0, 0, -9.81]\n", "", 1, 1, "format", "lacks the required key `gravity`"),
+        ("    type: revolute\n", "", 9, 5, "name", "a joint lacks the required key `type`"),
+        ("    dh: {theta: 0, d: 0.4, a: 0, alpha: pi/2}\n", "", 9, 5, "name", "a joint lacks the required key `dh`"),
+        ("theta: 0, d: 0.4", "d: 0.4", 11, 9, "{d: 0.4, a: 0, alpha: pi/2}", "`dh` lacks the required key `theta`"),
+        (", alpha: pi/2", "", 11, 9, "{theta: 0, d: 0.4, a: 0}", "`dh` lacks the required key `alpha`"),
+    ]);
+    let report = found("format: 1\nname: x\n");
+    assert_eq!(report.errors().count(), 4, "{report}");
+}
+
+#[test]
+fn shapes() {
+    assert_cases(&[
+        ("[0, 0, -9.81]", "[0, -9.81]", 5, 10, "[0, -9.81]", "a list of 2 where 3 numbers [x, y, z] (m/s²)"),
+        ("[0, 0, -9.81]", "-9.81", 5, 10, "-9.81", "found `-9.81` where a list of 3 numbers"),
+        ("[0, 0, -9.81]", "[0, 0, [1]]", 5, 17, "[1]", "found a list of 1 where a number is needed"),
+        ("com: [0, 0, 0.3]", "com: {x: 1}", 14, 12, "{x: 1}", "found a mapping where a list of 3 numbers"),
+        ("[-pi, pi]", "[pi]", 17, 24, "[pi]", "a list of 1 where 2 numbers [lower, upper]"),
+        ("[0.395, -0.435]", "0.4", 18, 75, "0.4", "a list of 2 numbers [Tc⁺, Tc⁻]"),
+        ("d: 0.4", "d: {x: 1}", 11, 23, "{x: 1}", "found a mapping where a number is needed"),
+        (
+            "{theta: 0, d: 0.4, a: 0, alpha: pi/2}",
+            "[0, 1, 2, 3]",
+            11,
+            9,
+            "[0, 1, 2, 3]",
+            "found a list of 4 where a mapping (theta, d, a, alpha)",
+        ),
+        ("{xx: 0.1, yy: 0.12, zz: 0.02}", "[1, 2, 3]", 15, 16, "[1, 2, 3]", "a mapping (xx, yy, zz, xy, xz, yz)"),
+        ("source: test", "source: [a, b]", 3, 9, "[a, b]", "found a list of 2 where a text is needed"),
+        ("source: test", "source:", 3, 1, "source", "found nothing where a text is needed"),
+        ("source: test", "source: ~", 3, 9, "~", "found `~` where a text is needed"),
+        ("source: test", "source: ''", 3, 9, "''", "found nothing where a text is needed"),
+        ("convention: standard", "convention: [standard]", 4, 13, "[standard]", "`standard` or `modified` is needed"),
+        ("mass: 2.5", "mass:", 13, 7, "mass", "a number is missing"),
+        ("theta: 0, d: 0.4", "theta, d: 0.4", 11, 10, "theta", "a number is missing"),
+        ("- name: second", "- 5\n  - name: second", 19, 5, "5", "found `5` where a mapping (name, type, dh"),
+    ]);
+    for (text, message) in [
+        ("format: 1\njoints: {}\n", "where a list of joints is needed"),
+        ("[1, 2]", "found a list of 2 where a mapping (format, name"),
+        ("---\n", "found nothing where a mapping (format, name"),
+        ("format: 1\nparameters: [1]\n", "where a mapping from names to numbers is needed"),
+    ] {
+        let report = found(text);
+        assert!(report.errors().any(|error| error.message.contains(message)), "{report}");
+    }
+}
+
+#[test]
+fn values() {
+    assert_cases(&[
+        ("format: 1", "format: 2", 1, 9, "2", "unknown format `2`; it must be `1`"),
+        ("format: 1", "format: 1.0", 1, 9, "1.0", "unknown format `1.0`"),
+        ("name: base", "name: Base", 2, 7, "Base", "the name `Base` is not an identifier"),
+        ("name: base", "name: 7dof", 2, 7, "7dof", "the name `7dof` is not an identifier"),
+        ("name: base", "name: my-arm", 2, 7, "my-arm", "the name `my-arm` is not an identifier"),
+        ("standard", "distal", 4, 13, "distal", "unknown convention `distal`; it must be `standard` or `modified`"),
+        ("revolute", "rotary", 10, 11, "rotary", "unknown joint type `rotary`; it must be `revolute` or `prismatic`"),
+        ("inertia_about: com", "inertia_about: link", 16, 22, "link", "must be `com` or `origin`"),
+        ("mass: 2.5", "mass: -2.5", 13, 13, "-2.5", "the mass `-2.5` is negative; it must be zero or positive"),
+        ("mass: 2.5", "mass: m - 2", 13, 13, "m - 2", "the mass `m - 2` = -0.5 is negative"),
+        ("mass: 2.5", "mass: .inf", 13, 13, ".inf", "`.inf` is not a number here: numbers are finite"),
+        ("mass: 2.5", "mass: .nan", 13, 13, ".nan", "numbers are finite"),
+        ("mass: 2.5", "mass: 1/0", 13, 13, "1/0", "is infinite"),
+        (
+            "[-pi, pi]",
+            "[pi, -pi]",
+            17,
+            24,
+            "[pi, -pi]",
+            "the lower position limit 3.14159 lies above the upper one, -3.14159",
+        ),
+        ("velocity: 2.0", "velocity: -1", 17, 45, "-1", "the velocity limit `-1` is negative"),
+        ("effort: 50", "effort: -1", 17, 58, "-1", "the effort limit `-1` is negative"),
+        ("inertia: 2.0e-4", "inertia: -1e-4", 18, 22, "-1e-4", "the rotor inertia `-1e-4` is negative"),
+        ("viscous: 1.5e-3", "viscous: -1", 18, 58, "-1", "the viscous friction `-1` is negative"),
+        ("gear_ratio: -62.6", "gear_ratio: 0", 18, 42, "0", "the gear ratio `0` is zero"),
+        ("[0.395, -0.435]", "[-0.395, -0.435]", 18, 76, "-0.395", "`-0.395` for positive speed has the wrong sign"),
+        ("[0.395, -0.435]", "[0.395, 0.435]", 18, 83, "0.435", "`0.435` for negative speed has the wrong sign"),
+        ("name: second", "name: first", 19, 11, "first", "the name `first` of joint 2 is already that of joint 1"),
+        ("name: second", "name: \"a\\nb\"", 19, 11, "\"a\\nb\"", "a joint name is one line"),
+        ("{m: 1.5,", "{m: 1.5, pi: 3, ", 7, 22, "pi", "the parameter name `pi` already has a meaning"),
+        ("{m: 1.5,", "{m: 1.5, sin: 3, ", 7, 22, "sin", "the parameter name `sin` already has a meaning"),
+        ("{m: 1.5,", "{m: 1.5, 2x: 3, ", 7, 22, "2x", "the parameter name `2x` is not an identifier"),
+    ]);
+}
+
+#[test]
+fn a_default_joint_name_can_be_taken_as_well() {
+    let text = with("name: first", "name: joint2").replace("  - name: second\n    type", "  - type");
+    let report = found(&text);
+    assert_eq!(
+        report.short(),
+        "robots/x.yaml:19:5: error: the name `joint2` of joint 2 is already that of joint 1; joint names must differ"
+    );
+}
+
+#[test]
+fn inertia_that_no_mass_distribution_has() {
+    assert_cases(&[
+        (
+            "xx: 0.1",
+            "xx: -0.1",
+            15,
+            16,
+            "{xx: -0.1, yy: 0.12, zz: 0.02}",
+            "smallest eigenvalue about the centre of mass is -0.1 kg m²",
+        ),
+        (
+            "zz: 0.02}",
+            "zz: 0.02, xy: 0.2}",
+            15,
+            16,
+            "{xx: 0.1, yy: 0.12, zz: 0.02, xy: 0.2}",
+            "smallest eigenvalue about the centre of mass is -0.09",
+        ),
+        // 2.5 · 0.3² = 0.225 is more than 0.1 and 0.12.
+        (
+            "inertia_about: com",
+            "inertia_about: origin",
+            15,
+            16,
+            "{xx: 0.1, yy: 0.12, zz: 0.02}",
+            "smallest eigenvalue about the centre of mass is -0.125",
+        ),
+        (
+            "xx: 0.1",
+            "xx: 1e308, yz: 1e308, xy: 1e308",
+            15,
+            16,
+            "{xx: 1e308, yz: 1e308, xy: 1e308, yy: 0.12, zz: 0.02}",
+            "not positive semidefinite",
+        ),
+    ]);
+    let text = with("com: [0, 0, 0.3]", "com: [0, 0, 1e200]").replace("inertia_about: com", "inertia_about: origin");
+    let report = found(&text);
+    assert!(report.errors().any(|error| error.message.contains("not finite")), "{report}");
+}
+
+#[test]
+fn expressions_point_into_the_scalar() {
+    assert_cases(&[
+        ("alpha: pi/2", "alpha: pi/x", 11, 44, "x", "unknown name `x`"),
+        ("\"m / 12\"", "\"m / x\"", 22, 40, "x", "unknown name `x`"),
+        ("\"m / 12\"", "'m / (1'", 22, 40, "(", "this `(` is never closed"),
+        // Escapes and folded lines: the whole scalar.
+        ("\"m / 12\"", "\"m \\x2f x\"", 22, 35, "\"m \\x2f x\"", "unknown name `x`"),
+        ("\"m / 12\"", "1 +\n     x", 22, 35, "1 +\n     x", "unknown name `x`"),
+        ("d: 0.4", "d: 1_000", 11, 23, "1_000", "no digits are grouped"),
+        ("d: 0.4", "d: 012", 11, 23, "012", "leading zero"),
+        ("d: 0.4", "d: true", 11, 23, "true", "unknown name `true`"),
+        ("d: 0.4", "d: 2 +* 3", 11, 26, "*", "`*` stands where a number or a name is needed"),
+        ("{m: 1.5, r: 2*m}", "{r: 2*m, m: 1.5}", 7, 19, "m", "the parameter `m` has no value yet"),
+        ("{m: 1.5, r: 2*m}", "{m: 1.5, r: 2*r}", 7, 27, "r", "the parameter `r` has no value yet"),
+        // A faulty parameter is reported once, not at every use.
+        ("{m: 1.5, ", "{m: 1.5*, ", 7, 20, "*", "the expression ends where"),
+    ]);
+}
+
+#[test]
+fn yaml_itself() {
+    for (text, line, column, message) in [
+        ("", 1, 1, "the file is empty"),
+        ("# nothing\n", 1, 1, "the file is empty"),
+        ("\u{FEFF}", 1, 1, "the file is empty"),
+        ("format: 1\nname: [1, 2\nsource: x\n", 3, 7, "this is not YAML"),
+        ("format: 1\njoints:\n\t- a: 1\n", 3, 2, "this is not YAML: tabs"),
+        ("source: a: b\n", 1, 10, "this is not YAML: mapping values"),
+        ("format: 1\n---\nformat: 1\n", 2, 1, "a second document begins"),
+        ("format: !!int 1\n", 1, 9, "YAML tag in `!!int 1`; tags are not allowed"),
+        ("!robot {format: 1}\n", 1, 1, "tags are not allowed"),
+        ("format: *one\n", 1, 9, "unknown anchor"),
+        ("a: &x [*x]\n", 1, 8, "does not stand for a complete value"),
+        ("*x : 1\n", 1, 1, "unknown anchor"),
+        ("a: &x 1\n*x : 1\n", 2, 1, "a key must be a plain word"),
+        ("a: 1\u{0}b: 2\n", 1, 5, "control character U+0000"),
+        ("é: \u{7}\n", 1, 4, "control character U+0007"),
+    ] {
+        let report = found(text);
+        let error = report.diagnostics.last().unwrap();
+        assert_eq!((error.line, error.column), (line, column), "{text:?}: {}", error.message);
+        assert!(error.message.contains(message), "{text:?}: {}", error.message);
+        assert!(report.to_string().contains(message) && report.short().contains(message), "{text:?}");
+    }
+}
+
+#[test]
+fn bytes_that_are_no_text() {
+    let report = check_bytes("x.yaml", b"format: 1\nname: caf\xE9\n").unwrap_err();
+    let error = &report.diagnostics[0];
+    assert_eq!((error.line, error.column), (2, 10));
+    assert_eq!(error.message, "byte 0xE9 is not UTF-8; a robot file is UTF-8 text");
+    assert!(report.to_string().contains("name: caf\u{FFFD}"), "{report}");
+
+    let report = check_bytes("x.yaml", b"\xFF\xFEf\0o\0").unwrap_err();
+    assert_eq!((report.diagnostics[0].line, report.diagnostics[0].column), (1, 1));
+    assert!(report.to_string().contains("this looks like UTF-16"), "{report}");
+
+    let mut marked = b"\xEF\xBB\xBF".to_vec();
+    marked.extend_from_slice(BASE.as_bytes());
+    assert_eq!(check_bytes("x.yaml", &marked).unwrap().robot, check("x.yaml", BASE).unwrap().robot);
+    marked.push(0xFF);
+    let report = check_bytes("x.yaml", &marked).unwrap_err();
+    assert_eq!((report.diagnostics[0].line, report.diagnostics[0].column), (BASE.lines().count() + 1, 1));
+}
+
+#[test]
+fn size() {
+    let padded = |length: usize| format!("{BASE}#{}", " ".repeat(length - BASE.len() - 1));
+    assert!(check("x.yaml", &padded(1 << 20)).is_ok());
+    for report in [check("x.yaml", &padded((1 << 20) + 1)), check_bytes("x.yaml", padded((1 << 20) + 1).as_bytes())] {
+        let report = report.unwrap_err();
+        assert!(report.short().starts_with("x.yaml:1:1: error: the file has 1048577 bytes; a robot file has at most"));
+        assert!(report.to_string().contains("--> x.yaml:1:1"), "{report}");
+    }
+}
+
+#[test]
+fn number_of_joints() {
+    let arm = |joints: usize| {
+        let mut text = BASE[..BASE.find("  - name: first").unwrap()].replace("parameters: {m: 1.5, r: 2*m}\n", "");
+        for _ in 0..joints {
+            text += "  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}}\n";
+        }
+        text
+    };
+    let robot = check("x.yaml", &arm(64)).unwrap().robot;
+    assert_eq!((robot.dof(), robot.joints[63].name.as_str()), (64, "joint64"));
+    let report = found(&arm(65));
+    assert_eq!(report.short(), "robots/x.yaml:72:5: error: 65 joints; 1 to 64 joints are allowed");
+    let report = found(&arm(0).replace("joints:", "joints: []"));
+    assert_eq!(report.short(), "robots/x.yaml:7:9: error: a robot without joints; 1 to 64 joints are allowed");
+}
+
+#[test]
+fn all_mistakes_of_a_file_are_found_and_shown_up_to_twenty() {
+    let text = with("mass: 2.5", "mass: -1").replace("standard", "distal").replace("alpha: 0", "alpha: x");
+    let lines: Vec<usize> = found(&text).diagnostics.iter().map(|found| found.line).collect();
+    assert_eq!(lines, [4, 13, 21]);
+
+    let mut text = BASE.to_owned();
+    for i in 0..30 {
+        let _ = writeln!(text, "nonsense{i}: 1");
+    }
+    let report = found(&text);
+    assert_eq!(report.diagnostics.len(), 30);
+    assert_eq!(report.to_string().matches("error:").count(), 20);
+    assert!(report.to_string().ends_with("\n\nand 10 more errors"), "{report}");
+    assert!(report.short().ends_with("\nand 10 more errors"), "{report}");
+}
+
+/// Files made to take long or much memory end in an error soon.
+#[test]
+fn hostile_files() {
+    let fill = |unit: &str| unit.repeat((1 << 20) / unit.len());
+    let mut bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n".to_owned();
+    for i in 1..12 {
+        let _ = writeln!(bomb, "a{i}: &a{i} [{}]", vec![format!("*a{}", i - 1); 10].join(", "));
+    }
+    let mut tower = "a0: &a0 [x]\n".to_owned();
+    for i in 1..10_000 {
+        let _ = writeln!(tower, "a{i}: &a{i} [*a{}]", i - 1);
+    }
+    let mut keys = String::new();
+    for i in 0..60_000 {
+        let _ = writeln!(keys, "k{i}: 1");
+    }
+    let unknown = (0..40_000).fold(String::new(), |mut line, i| {
+        let _ = write!(line, "k{i}: é, ");
+        line
+    });
+    let mut parameters = format!("{BASE}\n").replace("parameters: {m: 1.5, r: 2*m}", "parameters:\n  m: 1\n  r: 1");
+    let at = parameters.find("joints:").unwrap();
+    let lines = (0..1900).fold(String::new(), |lines, i| format!("{lines}  p{i:031}: q{i:031}\n"));
+    parameters.insert_str(at, &lines);
+    for (what, text, message) in [
+        ("alias bomb", bomb, "more than 50000 values, aliases (`*name`) written out"),
+        ("tower of aliases", tower, "nested more than 16 levels deep"),
+        ("lists", fill("["), "nested more than 16 levels deep"),
+        ("mappings", fill("{a: "), "nested more than 16 levels deep"),
+        ("blocks", fill("- "), "nested more than 16 levels deep"),
+        ("complex keys", fill("? "), ""),
+        ("items", fill("- 1\n"), "more than 50000 values"),
+        ("entries", keys, "more than 50000 values"),
+        ("same key", fill("a: 1\n"), ""),
+        ("long line of keys", format!("{{{}}}", fill("a: 1, ")), ""),
+        ("long line of unknown keys", format!("{{{unknown}}}"), "unknown key"),
+        ("long word", fill("a"), ""),
+        ("long number", with("d: 0.4", &format!("d: {}", "1".repeat(1 << 19))), "too large"),
+        ("long expression", with("d: 0.4", &format!("d: {}", "1+".repeat(1 << 18))), "more than 1000 numbers"),
+        (
+            "deep expression",
+            with("d: 0.4", &format!("d: \"{}\"", "(".repeat(1 << 18))),
+            "nested more than 64 levels deep",
+        ),
+        ("quotes", fill("'"), ""),
+        ("escapes", format!("\"{}", fill("\\x41")), ""),
+        ("anchors", fill("&a "), ""),
+        ("colons", fill(":"), ""),
+        ("tabs", fill("\t"), ""),
+        ("lines", fill("\n"), "the file is empty"),
+        ("carriage returns", fill("a\r"), ""),
+        ("comments", fill("#\n"), "the file is empty"),
+        ("unknown names", parameters, "unknown name"),
+        ("folded text", format!("a: {}", fill("b\n  ")), ""),
+    ] {
+        let start = Instant::now();
+        let report = check("x.yaml", text.get(..1 << 20).unwrap_or(&text)).expect_err(what);
+        assert!(report.to_string().contains(message), "{what}: {report}");
+        assert!(start.elapsed().as_secs() < 10, "{what}: {:?}", start.elapsed());
+        println!("{what}: {:?}", start.elapsed());
+    }
+}

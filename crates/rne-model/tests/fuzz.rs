@@ -1,0 +1,168 @@
+//! Whatever the bytes, the answer is a robot or a report, never a panic, and it comes soon.
+
+mod common;
+
+use std::time::Instant;
+
+use common::BASE;
+use proptest::prelude::*;
+use rne_model::{Report, check, check_bytes};
+
+/// Reads, renders every way, and checks what must hold of every report.
+fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
+    let start = Instant::now();
+    let result = check_bytes("x.yaml", bytes);
+    let valid = result.is_ok();
+    let report = result.map_or_else(|report| report, |checked| checked.lints);
+    prop_assert_eq!(report.has_errors(), !valid, "{}", report.short());
+    well_formed(&report)?;
+    prop_assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+    Ok(())
+}
+
+fn well_formed(report: &Report) -> Result<(), TestCaseError> {
+    for found in &report.diagnostics {
+        prop_assert!(report.text.get(found.span.clone()).is_some(), "{:?} of {:?}", found.span, report.text);
+        let before = &report.text[..found.span.start];
+        prop_assert_eq!(found.line, before.matches('\n').count() + 1);
+        prop_assert_eq!(found.column, before.rsplit('\n').next().unwrap_or_default().chars().count() + 1);
+        prop_assert!(!found.message.contains('\n'), "{:?}", found.message);
+    }
+    let full = report.to_string();
+    prop_assert_eq!(full.is_empty(), report.is_empty());
+    prop_assert!(!full.contains('\u{1B}'), "{:?}", full);
+    report.render(true);
+    report.short();
+    Ok(())
+}
+
+/// What robot files and YAML are made of.
+fn pieces() -> impl Strategy<Value = String> {
+    prop::sample::select(vec![
+        "format: 1\n",
+        "name: x\n",
+        "source: s\n",
+        "convention: standard\n",
+        "gravity: [0, 0, -9.81]\n",
+        "joints:\n",
+        "  - type: revolute\n",
+        "    dh: {theta: 0, d: 0, a: 0, alpha: pi/2}\n",
+        "    link: {mass: 1}\n",
+        "parameters: {",
+        "a: 1",
+        "2*m",
+        "(",
+        ")",
+        "sin(",
+        "^",
+        "-",
+        "1e9",
+        "1e999",
+        ".inf",
+        "pi",
+        "deg(90)",
+        "{",
+        "}",
+        "[",
+        "]",
+        ", ",
+        ": ",
+        "- ",
+        "? ",
+        "\n",
+        "\n  ",
+        "\n    ",
+        "\r\n",
+        "\t",
+        "'",
+        "\"",
+        "\\x41",
+        "&a ",
+        "*a",
+        "!t ",
+        "|\n",
+        ">\n",
+        "# c",
+        "---\n",
+        "...\n",
+        "%YAML 1.2\n",
+        "<<: ",
+        "~",
+        "é",
+        "\u{FEFF}",
+        "\u{85}",
+        "\u{2028}",
+        "😀",
+    ])
+    .prop_map(str::to_owned)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn arbitrary_bytes(bytes in prop::collection::vec(any::<u8>(), 0..300)) {
+        survive(&bytes)?;
+    }
+
+    #[test]
+    fn arbitrary_strings(text in "\\PC{0,100}") {
+        survive(text.as_bytes())?;
+    }
+
+    #[test]
+    fn arbitrary_pieces(pieces in prop::collection::vec(pieces(), 0..60)) {
+        survive(pieces.concat().as_bytes())?;
+    }
+
+    #[test]
+    fn a_valid_file_with_bytes_overwritten(at in 0..BASE.len(), new in prop::collection::vec(any::<u8>(), 0..4)) {
+        let mut bytes = BASE.as_bytes().to_vec();
+        let end = (at + new.len()).min(bytes.len());
+        bytes.splice(at..end, new);
+        survive(&bytes)?;
+    }
+
+    #[test]
+    fn a_valid_file_with_pieces_inserted_and_cut(
+        changes in prop::collection::vec((0..BASE.len(), 0..12_usize, pieces()), 1..5),
+    ) {
+        let mut text: Vec<char> = BASE.chars().collect();
+        for (at, cut, piece) in changes {
+            let start = at.min(text.len());
+            let end = (start + cut).min(text.len());
+            text.splice(start..end, piece.chars());
+        }
+        survive(text.into_iter().collect::<String>().as_bytes())?;
+    }
+
+    #[test]
+    fn every_expression_of_arithmetic_is_a_number_or_an_error_inside_it(
+        tokens in prop::collection::vec(prop::sample::select(vec![
+            "1", "2.5", "0", "m", "x", "pi", "+", "-", "*", "/", "^", "(", ")", "sqrt(", "deg(", "tan(", " ", "1e300", ".5",
+        ]), 1..20),
+    ) {
+        let expression = tokens.concat();
+        let text = BASE.replace("d: 0.4", &format!("d: \"{expression}\""));
+        match check("x.yaml", &text) {
+            Ok(checked) => prop_assert!(checked.robot.joints[0].row.dh.d.is_finite()),
+            Err(report) => {
+                prop_assert_eq!(report.diagnostics.len(), 1);
+                let quote = text.find("d: \"").unwrap() + 3;
+                let inside = quote..quote + expression.len() + 2;
+                let span = &report.diagnostics[0].span;
+                prop_assert!(inside.start <= span.start && span.end <= inside.end, "{}", report);
+                prop_assert!(!span.is_empty());
+            }
+        }
+    }
+
+    #[test]
+    fn every_float_survives_its_own_notation(value in prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO) {
+        for written in [format!("{value:?}"), format!("{value:e}"), format!("{value}")] {
+            let text = BASE.replace("d: 0.4", &format!("d: {written}"));
+            let robot = check("x.yaml", &text).map_err(|report| TestCaseError::fail(report.to_string()))?.robot;
+            prop_assert_eq!(robot.joints[0].row.dh.d, value);
+        }
+    }
+}
