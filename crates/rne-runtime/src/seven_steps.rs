@@ -105,13 +105,15 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> Force
 ///
 /// - f_{i-1,i} = f_i + f_{i,i+1} - m_i g_i
 /// - n_{i-1,i} = n_i + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
+///
+/// f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two.
 fn joint_wrench<T: Scalar>(
     link: &LinkFrame<T>,
     this: &LinkMotion<T>,
     inertia: &ForceMoment<T>,
     child: &ForceMoment<T>,
 ) -> ForceMoment<T> {
-    let force = (inertia.force + child.force) - this.gravity * link.mass;
+    let force = (this.acceleration - this.gravity) * link.mass + child.force;
     let moment = ((inertia.moment + child.moment) + this.d.cross(&force)) + this.r.cross(&child.force);
     ForceMoment { force, moment }
 }
