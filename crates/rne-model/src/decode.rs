@@ -150,7 +150,11 @@ impl<'d> Fields<'d> {
         default: T,
         reader: impl FnOnce(&Context, &Node) -> Option<T>,
     ) -> Option<T> {
-        self.node.get(key).map_or(Some(default), |node| reader(self.cx, node))
+        match self.node.get(key) {
+            Some(node) => reader(self.cx, node),
+            // What a misspelt key holds is unknown: the default would only cause further complaints.
+            None => (!self.misspelt.contains(&key)).then_some(default),
+        }
     }
 
     /// The value of a key; `Some(None)` when it is not there.
@@ -160,7 +164,7 @@ impl<'d> Fields<'d> {
         key: &'static str,
         reader: impl FnOnce(&Context, &Node) -> Option<T>,
     ) -> Option<Option<T>> {
-        self.node.get(key).map_or(Some(None), |node| reader(self.cx, node).map(Some))
+        self.or(key, None, |cx, node| reader(cx, node).map(Some))
     }
 }
 

@@ -1,7 +1,31 @@
 //! The robot file: one YAML document per robot, with its Denavit-Hartenberg table and inertial data.
 //!
-//! [`check`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every
+//! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every
 //! mistake with line, column and what is allowed. Strings in, data out: nothing here opens a file.
+//!
+//! ```
+//! # #[cfg(feature = "std")] {
+//! let text = "
+//! format: 1
+//! name: pendulum
+//! source: a lecture
+//! convention: standard
+//! gravity: [0, -9.81, 0]
+//! joints:
+//!   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mas: 2, com: [-1/4, 0, 0]}}
+//! ";
+//! let report = rne_model::check("pendulum.yaml", text).unwrap_err();
+//! assert_eq!(
+//!     report.short(),
+//!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, inertia, inertia_about"
+//! );
+//! assert_eq!(report.diagnostics[0].help.as_deref(), Some("did you mean `mass`?"));
+//!
+//! let checked = rne_model::check("pendulum.yaml", &text.replace("mas:", "mass:")).unwrap();
+//! assert_eq!(checked.robot.joints[0].row.link.mass, 2.0);
+//! assert!(checked.lints.is_empty());
+//! # }
+//! ```
 //!
 //! The plain types of the table ([`Row`], [`Angle`], [`Link`], [`Model`], …) need neither `std` nor an allocator.
 #![cfg_attr(not(feature = "std"), no_std)]

@@ -63,6 +63,7 @@ fn keys() {
 fn near_misses_are_recognised() {
     for (old, new, help) in [
         ("source: test", "sorce: test", "did you mean `source`?"),
+        ("link: {mass: r", "link: {mas: 0*r", "did you mean `mass`?"),
         ("convention: standard", "conventions: standard", "did you mean `convention`?"),
         ("inertia_about: com", "inertia-about: com", "did you mean `inertia_about`?"),
         ("standard", "Standard", "did you mean `standard`?"),
