@@ -90,7 +90,11 @@ pub fn compile_keeping(
         .collect();
     drop((arm, states));
     let written = sheet.finish();
-    let kept = written.definitions.iter().filter(|definition| keep.contains(&definition.name.quantity));
+    let of_a_link = |name: &Name| (1..=dof).contains(&name.joint);
+    let kept = written
+        .definitions
+        .iter()
+        .filter(|definition| keep.contains(&definition.name.quantity) && of_a_link(&definition.name));
     outputs.extend(kept.map(|definition| (definition.name, definition.term)));
     let heading = schedule::Heading { robot: &robot.name, dof, function, form };
     schedule::program(&heading, written, &outputs)

@@ -1,0 +1,4 @@
+//! Random robots: the compiler against the runtime, interpreted by the thousand and compiled by the dozen.
+
+mod interpreted;
+mod robots;
