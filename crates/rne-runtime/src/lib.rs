@@ -14,6 +14,7 @@ mod link_frame;
 mod link_state;
 #[cfg(feature = "std")]
 mod load;
+mod operations;
 mod scalar;
 mod seven_steps;
 mod trace;
@@ -26,6 +27,7 @@ pub use capability::InverseDynamics;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(feature = "std")]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+pub use operations::Operations;
 pub use scalar::{Constant, Scalar};
 pub use trace::{LinkTrace, Trace};
 pub use wrench::Wrench;

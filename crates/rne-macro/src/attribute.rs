@@ -1,0 +1,184 @@
+//! The attribute `#[robot(…)]`: what the user asks for.
+
+use proc_macro2::Span;
+use rne_codegen::Form;
+use syn::ext::IdentExt;
+use syn::parse::{ParseStream, Parser};
+use syn::{DeriveInput, Ident, LitInt, LitStr, Meta, Path, Token};
+
+use crate::error::Errors;
+
+/// Everything the attribute says, with defaults for what it leaves out.
+pub(crate) struct Attribute {
+    /// Where the robot is; `None` when that is missing or wrong, which has been reported.
+    pub(crate) source: Option<Source>,
+    /// How it is computed.
+    pub(crate) form: Form,
+    /// The most operations allowed.
+    pub(crate) max_ops: Option<Limit>,
+    /// The path of the crate `rne` in the user's crate.
+    pub(crate) krate: Path,
+}
+
+/// Where the robot is.
+pub(crate) enum Source {
+    /// In the file of this path.
+    Path(LitStr),
+    /// In this text.
+    Yaml(LitStr),
+}
+
+/// A number of operations and where it stands.
+#[derive(Clone, Copy)]
+pub(crate) struct Limit {
+    pub(crate) operations: usize,
+    pub(crate) span: Span,
+}
+
+impl Attribute {
+    /// Reads every `#[robot(…)]` of the item. Mistakes go to `errors` and what they concern keeps its default.
+    pub(crate) fn parse(item: &DeriveInput, errors: &mut Errors) -> Self {
+        let mut entries = Entries::default();
+        let mut place = None;
+        let before = errors.len();
+        for attribute in item.attrs.iter().filter(|attribute| attribute.path().is_ident("robot")) {
+            place.get_or_insert_with(|| attribute.path().clone());
+            match &attribute.meta {
+                Meta::List(list) => {
+                    let parser = |input: ParseStream<'_>| {
+                        entries.list(input, errors);
+                        Ok(())
+                    };
+                    if let Err(error) = Parser::parse2(parser, list.tokens.clone()) {
+                        errors.push(error);
+                    }
+                }
+                Meta::Path(_) | Meta::NameValue(_) => {
+                    errors.at(&attribute.meta, "write this as `#[robot(path = \"…\")]` or `#[robot(yaml = \"…\")]`");
+                }
+            }
+        }
+        match (&entries.source, place) {
+            (Some(_), _) => {}
+            // Something else is wrong with the attribute, perhaps just this.
+            (None, Some(_)) if errors.len() > before => {}
+            (None, Some(place)) => {
+                errors.at(&place, "which robot? `path = \"…\"` or `yaml = \"…\"` is missing here");
+            }
+            (None, None) => errors.at_span(
+                Span::call_site(),
+                "which robot? the attribute `#[robot(path = \"…\")]` is missing: it names the robot file, relative to \
+                 this source file",
+            ),
+        }
+        Self {
+            source: entries.source,
+            form: entries.form.unwrap_or_default(),
+            max_ops: entries.max_ops,
+            krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
+        }
+    }
+}
+
+const KEYS: &str = "`path`, `yaml`, `form`, `max_ops` and `crate`";
+
+#[derive(Default)]
+struct Entries {
+    seen: Vec<String>,
+    source: Option<Source>,
+    form: Option<Form>,
+    max_ops: Option<Limit>,
+    krate: Option<Path>,
+}
+
+impl Entries {
+    /// `key = value, key = value`; a mistake in one entry does not hide one in the next.
+    fn list(&mut self, input: ParseStream<'_>, errors: &mut Errors) {
+        while !input.is_empty() {
+            if let Err(error) = self.entry(input) {
+                errors.push(error);
+                while !input.is_empty() && !input.peek(Token![,]) {
+                    // A token tree is always there: the input is not empty.
+                    let _: syn::Result<proc_macro2::TokenTree> = input.parse();
+                }
+            }
+            if input.parse::<Option<Token![,]>>().is_ok_and(|comma| comma.is_none()) && !input.is_empty() {
+                errors.push(input.error("a comma is missing before this"));
+                return;
+            }
+        }
+    }
+
+    fn entry(&mut self, input: ParseStream<'_>) -> syn::Result<()> {
+        if !input.peek(Ident::peek_any) {
+            return Err(input.error(format!("a key is missing here; there are {KEYS}")));
+        }
+        let key = Ident::parse_any(input)?;
+        let name = key.to_string();
+        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "crate") {
+            return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
+        }
+        if self.seen.contains(&name) {
+            return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
+        }
+        self.seen.push(name.clone());
+        if !input.peek(Token![=]) {
+            let example = match name.as_str() {
+                "path" => "\"robots/arm.yaml\"",
+                "yaml" => "\"…\"",
+                "form" => "\"seven_steps\"",
+                "max_ops" => "500",
+                _ => "::rne",
+            };
+            return Err(syn::Error::new(key.span(), format!("`{name}` needs a value: `{name} = {example}`")));
+        }
+        input.parse::<Token![=]>()?;
+        match name.as_str() {
+            "path" | "yaml" => {
+                let text = string(input, &name)?;
+                if self.source.is_some() {
+                    return Err(syn::Error::new(
+                        key.span(),
+                        "`path` and `yaml` exclude each other: the robot is in a file or here",
+                    ));
+                }
+                self.source = Some(if name == "path" { Source::Path(text) } else { Source::Yaml(text) });
+            }
+            "form" => {
+                let text = string(input, &name)?;
+                self.form =
+                    Some(text.value().parse().map_err(|unknown| syn::Error::new(text.span(), format!("{unknown}")))?);
+            }
+            "max_ops" => self.max_ops = Some(limit(input)?),
+            _ => self.krate = Some(path(input)?),
+        }
+        Ok(())
+    }
+}
+
+fn string(input: ParseStream<'_>, key: &str) -> syn::Result<LitStr> {
+    let start = input.fork();
+    input.parse().map_err(|error: syn::Error| {
+        let is_macro = start.parse::<Path>().is_ok() && start.peek(Token![!]);
+        let hint = if is_macro { "; macros are not expanded here" } else { "" };
+        syn::Error::new(error.span(), format!("the value of `{key}` is a string literal{hint}"))
+    })
+}
+
+fn limit(input: ParseStream<'_>) -> syn::Result<Limit> {
+    let explain = |span| syn::Error::new(span, "the value of `max_ops` is a whole number of operations, such as 500");
+    let number: LitInt = input.parse().map_err(|error| explain(error.span()))?;
+    let operations = number.base10_parse().map_err(|_| explain(number.span()))?;
+    Ok(Limit { operations, span: number.span() })
+}
+
+/// A path, bare or in quotes.
+fn path(input: ParseStream<'_>) -> syn::Result<Path> {
+    let explain = |span| syn::Error::new(span, "the value of `crate` is a path, such as `::rne` or `crate::dynamics`");
+    if input.peek(LitStr) {
+        let text: LitStr = input.parse()?;
+        return text.parse_with(Path::parse_mod_style).map_err(|_| explain(text.span()));
+    }
+    let start = input.span();
+    Path::parse_mod_style(input).map_err(|_| explain(start))
+}

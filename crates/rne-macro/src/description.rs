@@ -1,0 +1,59 @@
+//! A robot and its programs in words, for the documentation of the generated code.
+
+use std::fmt::Write;
+
+use rne_codegen::{Program, emit};
+use rne_model::{Convention, Robot};
+
+/// Which arm this is, and its Denavit-Hartenberg table.
+pub(crate) fn robot(robot: &Robot) -> String {
+    let mut text = format!("{}\n", robot.title.as_deref().unwrap_or(&robot.name));
+    let convention = match robot.convention {
+        Convention::Standard => "standard (distal) Denavit-Hartenberg",
+        Convention::Modified => "modified (proximal) Denavit-Hartenberg",
+    };
+    let [x, y, z] = robot.gravity;
+    let _ = write!(
+        text,
+        "Source: {}\n\n{convention}, acceleration of gravity ({x}, {y}, {z}) m/s² in frame 0\n\n{}",
+        robot.source.trim_end(),
+        emit::dh_table(robot)
+    );
+    format!("The robot that this type stands for, at compile time.\n\n{}", verbatim(&text))
+}
+
+/// What folding made of each program.
+pub(crate) fn operations(programs: &[Program]) -> String {
+    let mut text = "Straight-line code. Operations of one call, of the unfolded recursion → of this code:\n\n\
+                    | method | products | sums | angles |\n|---|---|---|---|\n"
+        .to_owned();
+    for program in programs {
+        let (products, sums) = program.ledger.before();
+        let after = program.operations();
+        let _ = writeln!(
+            text,
+            "| `{}` | {products} → {} | {sums} → {} | {} |",
+            program.function, after.mul, after.add, after.sincos
+        );
+    }
+    text
+}
+
+/// The documentation of one method.
+pub(crate) fn method(program: &Program) -> String {
+    let (products, sums) = program.ledger.before();
+    let after = program.operations();
+    format!(
+        "{}\n\n{} products and {} sums; the recursion has {products} and {sums} before folding.",
+        program.function.summary(),
+        after.mul,
+        after.add
+    )
+}
+
+/// Text that rustdoc shows as it stands: names and sources are no Markdown.
+fn verbatim(text: &str) -> String {
+    let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
+    let fence = "`".repeat(longest.max(2) + 1);
+    format!("{fence}text\n{}\n{fence}", text.trim_end())
+}

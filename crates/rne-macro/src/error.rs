@@ -1,0 +1,45 @@
+//! Mistakes, collected, and how they reach the user.
+
+use std::fmt::Display;
+
+use proc_macro2::{Span, TokenStream};
+use quote::ToTokens;
+use rne_model::{Report, Severity};
+
+/// The mistakes found so far, in order.
+#[derive(Default)]
+pub(crate) struct Errors {
+    found: Vec<syn::Error>,
+}
+
+impl Errors {
+    pub(crate) fn push(&mut self, error: syn::Error) {
+        self.found.push(error);
+    }
+
+    /// A mistake in these tokens.
+    pub(crate) fn at(&mut self, tokens: &impl ToTokens, message: impl Display) {
+        self.push(syn::Error::new_spanned(tokens, message));
+    }
+
+    /// A mistake at this place.
+    pub(crate) fn at_span(&mut self, span: Span, message: impl Display) {
+        self.push(syn::Error::new(span, message));
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.found.len()
+    }
+
+    /// Every mistake as an invocation of `compile_error!`.
+    pub(crate) fn into_tokens(self) -> TokenStream {
+        self.found.iter().map(syn::Error::to_compile_error).collect()
+    }
+}
+
+/// What is wrong with a robot file, for the message of a compiler: without the lints, which stop no build.
+pub(crate) fn describe(mut report: Report) -> String {
+    report.diagnostics.retain(|found| found.severity == Severity::Error);
+    // An empty line keeps the second `error:` apart from the compiler's own.
+    format!("`{}` is no valid robot file\n\n{}\n", report.name, report.render(false))
+}

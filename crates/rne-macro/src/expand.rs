@@ -1,0 +1,137 @@
+//! The expansion: an item in, implementations out.
+
+use std::path::Path;
+
+use proc_macro2::{Span, TokenStream};
+use quote::quote;
+use rne_codegen::{Form, Function, Program, compile};
+use rne_model::{Report, Robot, check_bytes};
+use syn::{Data, DeriveInput};
+
+use crate::attribute::{Attribute, Limit, Source};
+use crate::error::{Errors, describe};
+use crate::implementation::Target;
+use crate::location;
+
+/// The methods of `InverseDynamics`.
+const FUNCTIONS: [Function; 4] =
+    [Function::InverseDynamics, Function::InverseDynamicsWithWrench, Function::GravityTorques, Function::BiasTorques];
+
+/// `#[derive(InverseDynamics)]`.
+///
+/// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is known,
+/// so that the code that uses it causes no errors of its own.
+pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
+    let item: DeriveInput = match syn::parse2(input) {
+        Ok(item) => item,
+        Err(error) => return error.to_compile_error(),
+    };
+    let mut errors = Errors::default();
+    is_struct(&item, &mut errors);
+    let attribute = Attribute::parse(&item, &mut errors);
+    let loaded = attribute.source.as_ref().map(|source| load(source, &mut errors)).unwrap_or_default();
+    let compiled = loaded.robot.and_then(|robot| {
+        let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
+        let programs = programs(&robot, attribute.form, span, &mut errors)?;
+        Some((robot, programs))
+    });
+    let target = Target { item: &item, krate: &attribute.krate };
+    let code = match &compiled {
+        Some((robot, programs)) => {
+            if let (Some(limit), Some(program)) = (attribute.max_ops, programs.first()) {
+                is_within(limit, program, &mut errors);
+            }
+            target.robot(robot, programs)
+        }
+        None => target.stub(loaded.joints_guessed),
+    };
+    let watched = loaded.watched;
+    let errors = errors.into_tokens();
+    quote!(#errors #watched #code)
+}
+
+fn is_struct(item: &DeriveInput, errors: &mut Errors) {
+    let (kind, span) = match &item.data {
+        Data::Struct(_) => return,
+        Data::Enum(data) => ("an enum", data.enum_token.span),
+        Data::Union(data) => ("a union", data.union_token.span),
+    };
+    errors.at_span(span, format!("a robot is a struct, such as `struct {};`, not {kind}", item.ident));
+}
+
+fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
+    let count = program.operations();
+    if count.total() > limit.operations {
+        errors.at_span(
+            limit.span,
+            format!(
+                "`{}` of {} takes {} operations ({} products and {} sums), more than `max_ops = {}`",
+                program.function,
+                program.robot,
+                count.total(),
+                count.mul,
+                count.add,
+                limit.operations
+            ),
+        );
+    }
+}
+
+/// What became of a robot file.
+#[derive(Default)]
+struct Loaded {
+    /// The robot, if the file is valid.
+    robot: Option<Robot>,
+    /// Makes the compiler watch the file.
+    watched: TokenStream,
+    /// How many joints an invalid file seems to have.
+    joints_guessed: usize,
+}
+
+fn load(source: &Source, errors: &mut Errors) -> Loaded {
+    let (name, bytes, watched) = match source {
+        Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new()),
+        Source::Path(path) => match location::read(path) {
+            Ok(file) => (file.shown, file.bytes, watch(&file.absolute)),
+            Err(missing) => {
+                errors.at(path, missing);
+                return Loaded::default();
+            }
+        },
+    };
+    match check_bytes(&name, &bytes) {
+        Ok(checked) => Loaded { robot: Some(checked.robot), watched, joints_guessed: 0 },
+        Err(report) => {
+            let joints_guessed = guess_joints(&report);
+            errors.at_span(source.span(), describe(report));
+            Loaded { robot: None, watched, joints_guessed }
+        }
+    }
+}
+
+/// Every joint has a `dh`.
+fn guess_joints(report: &Report) -> usize {
+    report.text.matches("dh:").count()
+}
+
+/// Tells the compiler that the code depends on the file: it is compiled again when the file changes.
+fn watch(file: &Path) -> TokenStream {
+    // A path that is not Unicode cannot be written in source code.
+    let Some(file) = file.to_str() else { return TokenStream::new() };
+    quote!(
+        const _: &[::core::primitive::u8] = ::core::include_bytes!(#file);
+    )
+}
+
+fn programs(robot: &Robot, form: Form, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
+    let programs: Result<Vec<_>, _> = FUNCTIONS.into_iter().map(|function| compile(robot, function, form)).collect();
+    programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
+}
+
+impl Source {
+    fn span(&self) -> Span {
+        match self {
+            Self::Path(literal) | Self::Yaml(literal) => literal.span(),
+        }
+    }
+}

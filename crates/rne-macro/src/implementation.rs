@@ -1,0 +1,221 @@
+//! The code for a type: constants and the methods of the trait.
+
+use proc_macro2::{Group, Ident, Literal, TokenStream, TokenTree};
+use quote::{format_ident, quote};
+use rne_codegen::{Function, Program, emit};
+use rne_model::Robot;
+use syn::{DeriveInput, GenericParam, Path};
+
+use crate::description;
+
+/// The type that the code is for, and where the library is.
+pub(crate) struct Target<'a> {
+    pub(crate) item: &'a DeriveInput,
+    pub(crate) krate: &'a Path,
+}
+
+/// The constants of a type.
+struct Constants {
+    description: String,
+    name: String,
+    joint_names: Vec<String>,
+    position_limits: Vec<(f64, f64)>,
+    velocity_limits: Vec<f64>,
+    effort_limits: Vec<f64>,
+    operations: rne_codegen::Operations,
+}
+
+impl Target<'_> {
+    /// Everything for a robot and its programs, the first of which is `inverse_dynamics`.
+    pub(crate) fn robot(&self, robot: &Robot, programs: &[Program]) -> TokenStream {
+        let constants = self.constants(&Constants::of(robot, programs));
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
+        let operations = description::operations(programs);
+        let methods = programs.iter().map(|program| self.method(program));
+        quote! {
+            #constants
+
+            #[doc = #operations]
+            #[automatically_derived]
+            impl #impl_generics #krate::InverseDynamics<#dof> for #ident #type_generics #where_clause {
+                #(#methods)*
+            }
+        }
+    }
+
+    /// What stands in for a robot that is not known: every use of it compiles, so that the mistake that is reported
+    /// stays the only one. The trait is implemented for every number of joints.
+    pub(crate) fn stub(&self, joints: usize) -> TokenStream {
+        let constants = self.constants(&Constants::unknown(joints));
+        let (ident, krate) = (&self.item.ident, self.krate);
+        let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let mut generics = self.item.generics.clone();
+        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        let (impl_generics, ..) = generics.split_for_impl();
+        let joints = quote!(__JOINTS);
+        let methods = [
+            Function::InverseDynamics,
+            Function::InverseDynamicsWithWrench,
+            Function::GravityTorques,
+            Function::BiasTorques,
+        ]
+        .map(|function| self.signature(function, &joints, &quote!(*q)));
+        quote! {
+            #constants
+
+            #[automatically_derived]
+            #[allow(unused_variables)]
+            impl #impl_generics #krate::InverseDynamics<#joints> for #ident #type_generics #where_clause {
+                #(#methods)*
+            }
+        }
+    }
+
+    fn method(&self, program: &Program) -> TokenStream {
+        let krate = self.krate;
+        let body = emit::body(program, &quote!(#krate::Scalar));
+        let wrench = (program.function == Function::InverseDynamicsWithWrench)
+            .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
+        let dof = Literal::usize_unsuffixed(program.dof);
+        let documentation = description::method(program);
+        let method = self.signature(program.function, &quote!(#dof), &quote!(#wrench #body));
+        quote!(#[doc = #documentation] #method)
+    }
+
+    /// A method of the trait with the given body, in which `T` is the scalar.
+    fn signature(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
+        let (krate, name) = (self.krate, format_ident!("{}", function.name()));
+        let rates = quote!(qd: &[T; #dof]);
+        let accelerations = quote!(qdd: &[T; #dof]);
+        let arguments = match function {
+            Function::InverseDynamics => quote!(#rates, #accelerations),
+            Function::InverseDynamicsWithWrench => quote!(#rates, #accelerations, wrench: &#krate::Wrench<T>),
+            Function::GravityTorques => TokenStream::new(),
+            Function::BiasTorques => rates,
+        };
+        let method = quote! {
+            fn #name<T: #krate::Scalar>(&self, q: &[T; #dof], #arguments) -> [T; #dof] { #body }
+        };
+        if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
+    }
+
+    /// Whether the user's type has a parameter of that name.
+    fn is_taken(&self, name: &str) -> bool {
+        self.item.generics.params.iter().any(|parameter| match parameter {
+            GenericParam::Type(parameter) => parameter.ident == name,
+            GenericParam::Const(parameter) => parameter.ident == name,
+            GenericParam::Lifetime(_) => false,
+        })
+    }
+
+    fn free_name(&self) -> String {
+        let mut name = "Scalar".to_owned();
+        while self.is_taken(&name) {
+            name.push('_');
+        }
+        name
+    }
+
+    fn constants(&self, constants: &Constants) -> TokenStream {
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, vis, krate) = (&self.item.ident, &self.item.vis, self.krate);
+        let Constants { description, name, joint_names, .. } = constants;
+        let dof = Literal::usize_unsuffixed(joint_names.len());
+        let position_limits = constants.position_limits.iter().map(|(lower, upper)| {
+            let (lower, upper) = (number(*lower), number(*upper));
+            quote!((#lower, #upper))
+        });
+        let velocity_limits = constants.velocity_limits.iter().copied().map(number);
+        let effort_limits = constants.effort_limits.iter().copied().map(number);
+        let [mul, add, div, sincos, statements] = {
+            let operations = &constants.operations;
+            [operations.mul, operations.add, operations.div, operations.sincos, operations.statements]
+                .map(Literal::usize_unsuffixed)
+        };
+        let (f64, str, usize) =
+            (quote!(::core::primitive::f64), quote!(::core::primitive::str), quote!(::core::primitive::usize));
+        quote! {
+            #[doc = #description]
+            #[automatically_derived]
+            #[allow(dead_code)]
+            impl #impl_generics #ident #type_generics #where_clause {
+                /// Number of joints.
+                #vis const DOF: #usize = #dof;
+                /// Name of the robot.
+                #vis const NAME: &'static #str = #name;
+                /// Names of the joints, base to tip.
+                #vis const JOINT_NAMES: [&'static #str; #dof] = [#(#joint_names),*];
+                /// Lowest and highest position of each joint, rad or m; infinite where the robot file has none.
+                #vis const POSITION_LIMITS: [(#f64, #f64); #dof] = [#(#position_limits),*];
+                /// Highest speed of each joint, rad/s or m/s; infinite where the robot file has none.
+                #vis const VELOCITY_LIMITS: [#f64; #dof] = [#(#velocity_limits),*];
+                /// Highest torque or force of each joint, N m or N; infinite where the robot file has none.
+                #vis const EFFORT_LIMITS: [#f64; #dof] = [#(#effort_limits),*];
+                /// Operations of one call of `inverse_dynamics`.
+                #vis const OPERATIONS: #krate::Operations = #krate::Operations {
+                    mul: #mul,
+                    add: #add,
+                    div: #div,
+                    sincos: #sincos,
+                    statements: #statements,
+                };
+            }
+        }
+    }
+}
+
+impl Constants {
+    fn of(robot: &Robot, programs: &[Program]) -> Self {
+        let limits = || robot.joints.iter().map(|joint| &joint.limits);
+        Self {
+            description: description::robot(robot),
+            name: robot.name.clone(),
+            joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
+            position_limits: limits()
+                .map(|limits| limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)))
+                .collect(),
+            velocity_limits: limits().map(|limits| limits.velocity.unwrap_or(f64::INFINITY)).collect(),
+            effort_limits: limits().map(|limits| limits.effort.unwrap_or(f64::INFINITY)).collect(),
+            operations: programs.first().map(Program::operations).unwrap_or_default(),
+        }
+    }
+
+    fn unknown(joints: usize) -> Self {
+        Self {
+            description: String::new(),
+            name: String::new(),
+            joint_names: vec![String::new(); joints],
+            position_limits: vec![(f64::NEG_INFINITY, f64::INFINITY); joints],
+            velocity_limits: vec![f64::INFINITY; joints],
+            effort_limits: vec![f64::INFINITY; joints],
+            operations: rne_codegen::Operations::default(),
+        }
+    }
+}
+
+/// A number that reads back as the same bits, or infinity.
+fn number(value: f64) -> TokenStream {
+    let sign = value.is_sign_negative().then(|| quote!(-));
+    if value.is_infinite() {
+        return quote!(#sign ::core::primitive::f64::INFINITY);
+    }
+    let magnitude = Literal::f64_unsuffixed(value.abs());
+    quote!(#sign #magnitude)
+}
+
+/// The same tokens with every identifier `from` replaced.
+fn renamed(tokens: TokenStream, from: &str, to: &Ident) -> TokenStream {
+    tokens
+        .into_iter()
+        .map(|token| match token {
+            TokenTree::Ident(ident) if ident == from => TokenTree::Ident(Ident::new(&to.to_string(), ident.span())),
+            TokenTree::Group(group) => {
+                let mut inner = Group::new(group.delimiter(), renamed(group.stream(), from, to));
+                inner.set_span(group.span());
+                TokenTree::Group(inner)
+            }
+            token => token,
+        })
+        .collect()
+}
