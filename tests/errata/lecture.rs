@@ -1,0 +1,282 @@
+//! The seven steps as the slides of lecture 38 write them, with every slip of the transcript where it stands.
+//!
+//! Frame i sits on the axis of joint i and is fixed to link i-1; the vectors of link i are written in it, so e_i is
+//! always (0, 0, 1), and a_i, d_i, r_i and I_i are computed again at every angle:
+//!
+//! ```text
+//! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation [a_i]_i
+//! a_i   O_i → O_{i+1}       d_i   O_i → C_i (centre of mass)       r_i   C_i → O_{i+1}       I_i   about C_i
+//! ```
+//!
+//! What the table gives is constant in frame i+1: [r_i]_{i+1} and [I_i]_{i+1}.
+
+use nalgebra::{Matrix3, Vector3};
+use rne::Wrench;
+use rne_model::JointKind::{Prismatic, Revolute};
+use rne_model::Row;
+
+/// A formula as it was printed or spoken; its number in the list of errata comes first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slip {
+    /// Step 1: third column (0, -1, -1) in Q_{i-1}ᵀ.
+    E1ThirdColumn,
+    /// Step 1: Q of frame i with respect to frame i+1.
+    E2WrongQ,
+    /// Step 2: ω_i on the left side.
+    E3LeftSide,
+    /// Step 2, P: [ω̇_{i-1}]_i is turned, although it stands in frame i already.
+    E4TurnedTwice,
+    /// Step 3, P: b_i without its dot.
+    E5NoDot,
+    /// Step 3: the factors of the cross product the other way round.
+    E6FactorsSwapped,
+    /// Step 3: [r_i]_i is constant.
+    E7ConstantR,
+    /// Step 3: d_i is the joint offset.
+    E8OffsetForD,
+    /// Step 3: a_i connects O_{i-1} to O_i.
+    E9FramesBefore,
+    /// Step 6: f_{i,i+1} is not turned.
+    E10ForceNotTurned,
+    /// Step 6: n_{i,i+1} is not turned.
+    E10MomentNotTurned,
+    /// Step 6: I_i is not turned.
+    E11InertiaNotTurned,
+    /// Step 5: the ground is a frame before frame 1.
+    E13GroundFrame,
+    /// Example: e = (1, 0, 0).
+    E17AxisX,
+    /// Step 1: ω_i = ω_{i-1} for every joint.
+    E22NoJointRate,
+    /// No erratum, a common mistake in step 4, P: ḃ_i ω_i × e_i without the 2.
+    CoriolisOnce,
+    /// No erratum, a common mistake in step 6: without ω_i × I_i ω_i.
+    NoGyroscopicMoment,
+}
+
+/// What moves and pulls at an arm.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    /// θ_i or b_i, without the constant of the table.
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    pub(crate) qdd: Vec<f64>,
+    /// [g]_1
+    pub(crate) gravity: [f64; 3],
+    /// f_{n,n+1}, n_{n,n+1} in frame n+1.
+    pub(crate) wrench: Wrench<f64>,
+}
+
+/// What the seven steps find for link i, in frame i.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Found {
+    /// ω_i
+    pub(crate) omega: Vector3<f64>,
+    /// ω̇_i
+    pub(crate) omega_dot: Vector3<f64>,
+    /// ċ_i
+    pub(crate) velocity: Vector3<f64>,
+    /// c̈_i
+    pub(crate) acceleration: Vector3<f64>,
+    /// g_i
+    pub(crate) gravity: Vector3<f64>,
+    /// f_i
+    pub(crate) inertia_force: Vector3<f64>,
+    /// n_i
+    pub(crate) inertia_moment: Vector3<f64>,
+    /// f_{i-1,i}
+    pub(crate) joint_force: Vector3<f64>,
+    /// n_{i-1,i}
+    pub(crate) joint_moment: Vector3<f64>,
+    /// τ_i
+    pub(crate) tau: f64,
+}
+
+/// Link i at the present angle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placed {
+    /// Q_i
+    pub(crate) turn: Matrix3<f64>,
+    /// Q_iᵀ
+    turn_back: Matrix3<f64>,
+    /// [a_i]_i
+    pub(crate) a: Vector3<f64>,
+    /// [d_i]_i
+    pub(crate) d: Vector3<f64>,
+    /// [r_i]_i
+    pub(crate) r: Vector3<f64>,
+    /// [I_i]_i
+    pub(crate) inertia: Matrix3<f64>,
+    /// b_i
+    offset: f64,
+}
+
+/// Q_i: columns are the axes of frame i+1 in frame i.
+#[rustfmt::skip]
+pub(crate) fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
+    let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
+    Matrix3::new(
+        c,   -s * ca, s * sa,
+        s,   c * ca,  -c * sa,
+        0.0, sa,      ca,
+    )
+}
+
+/// Q_iᵀ, what step 1 multiplies with.
+#[rustfmt::skip]
+pub(crate) fn turn_back(theta: f64, alpha: f64, slip: Option<Slip>) -> Matrix3<f64> {
+    let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
+    let third = if slip == Some(Slip::E1ThirdColumn) { [0.0, -1.0, -1.0] } else { [0.0, sa, ca] };
+    Matrix3::new(
+        c,       s,       third[0],
+        -s * ca, c * ca,  third[1],
+        s * sa,  -c * sa, third[2],
+    )
+}
+
+/// a_i, d_i, r_i and I_i of every link at the joint positions `q`.
+pub(crate) fn place(rows: &[Row], q: &[f64], slip: Option<Slip>) -> Vec<Placed> {
+    let mut placed = Vec::new();
+    let mut frames_before = Vector3::zeros(); // O_{i-1} → O_i
+    for (row, &q) in rows.iter().zip(q) {
+        // θ_i and b_i, one of which moves.
+        let (theta, b) = match row.kind {
+            Revolute => (row.dh.theta.radians + q, row.dh.d),
+            Prismatic => (row.dh.theta.radians, row.dh.d + q),
+        };
+        let alpha = row.dh.alpha.radians;
+        let (turn, turn_back) = (turn(theta, alpha), turn_back(theta, alpha, slip));
+
+        let frames = Vector3::new(row.dh.a * theta.cos(), row.dh.a * theta.sin(), b); // O_i → O_{i+1}
+        let a = if slip == Some(Slip::E9FramesBefore) { frames_before } else { frames };
+        frames_before = turn.transpose() * frames;
+
+        let constant_r = -Vector3::from(row.link.com);
+        let r = if slip == Some(Slip::E7ConstantR) { constant_r } else { turn * constant_r };
+
+        let slides = row.kind == Prismatic;
+        let d = if slip == Some(Slip::E8OffsetForD) && slides { Vector3::new(0.0, 0.0, b) } else { a - r };
+
+        let constant_inertia = Matrix3::from(row.link.inertia.rows());
+        let inertia = if slip == Some(Slip::E11InertiaNotTurned) {
+            constant_inertia
+        } else {
+            turn * constant_inertia * turn.transpose()
+        };
+        placed.push(Placed { turn, turn_back, a, d, r, inertia, offset: b });
+    }
+    placed
+}
+
+/// The seven steps for the standard table `rows`, correct when `slip` is `None`.
+pub(crate) fn seven_steps(rows: &[Row], state: &State, slip: Option<Slip>) -> Vec<Found> {
+    let links = place(rows, &state.q, slip);
+    let mut found = forward(rows, &links, state, slip);
+    backward(rows, &links, state, slip, &mut found);
+    found
+}
+
+/// Steps 1 to 5.
+fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) -> Vec<Found> {
+    let e = axis(slip);
+    let mut all = Vec::new();
+    // Link 0 rests in frame 1.
+    let mut prev = Found { gravity: state.gravity.into(), ..Found::default() };
+    if slip == Some(Slip::E13GroundFrame) {
+        prev.gravity = links[0].turn.transpose() * prev.gravity;
+    }
+    let mut r_prev = Vector3::zeros();
+    for (i, (row, link)) in rows.iter().zip(links).enumerate() {
+        let (rate, rate_dot) = (state.qd[i], state.qdd[i]);
+        let qt = match i {
+            _ if slip == Some(Slip::E2WrongQ) => link.turn.transpose(),
+            0 => Matrix3::identity(), // Q_0
+            _ => links[i - 1].turn_back,
+        };
+
+        // Step 1, R: ω_i = Q_{i-1}ᵀ ω_{i-1} + θ̇_i e_i   P: without θ̇_i e_i
+        let omega = match row.kind {
+            Revolute if slip == Some(Slip::E22NoJointRate) => qt * prev.omega,
+            Revolute => qt * prev.omega + rate * e,
+            Prismatic => qt * prev.omega,
+        };
+        let mut this = Found { omega, ..Found::default() };
+
+        // Step 2, R: ω̇_i = Q_{i-1}ᵀ ω̇_{i-1} + θ̈_i e_i + θ̇_i ω_i × e_i   P: the first term
+        let right_side = match row.kind {
+            Revolute => qt * prev.omega_dot + rate_dot * e + rate * this.omega.cross(&e),
+            Prismatic if slip == Some(Slip::E4TurnedTwice) => qt * (qt * prev.omega_dot),
+            Prismatic => qt * prev.omega_dot,
+        };
+        let left_side = if slip == Some(Slip::E3LeftSide) { &mut this.omega } else { &mut this.omega_dot };
+        *left_side = right_side;
+
+        // Step 3: ċ_i = Q_{i-1}ᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i   P: + ḃ_i e_i
+        let lever =
+            if slip == Some(Slip::E6FactorsSwapped) { r_prev.cross(&prev.omega) } else { prev.omega.cross(&r_prev) };
+        this.velocity = qt * (prev.velocity + lever) + this.omega.cross(&link.d);
+        if row.kind == Prismatic {
+            this.velocity += if slip == Some(Slip::E5NoDot) { link.offset } else { rate } * e;
+        }
+
+        // Step 4: c̈_i = Q_{i-1}ᵀ (c̈_{i-1} + ω̇_{i-1} × r_{i-1} + ω_{i-1} × (ω_{i-1} × r_{i-1}))
+        //               + ω̇_i × d_i + ω_i × (ω_i × d_i)   P: + b̈_i e_i + 2 ḃ_i ω_i × e_i
+        let joint_origin =
+            prev.acceleration + prev.omega_dot.cross(&r_prev) + prev.omega.cross(&prev.omega.cross(&r_prev));
+        this.acceleration =
+            qt * joint_origin + this.omega_dot.cross(&link.d) + this.omega.cross(&this.omega.cross(&link.d));
+        if row.kind == Prismatic {
+            let factor = if slip == Some(Slip::CoriolisOnce) { 1.0 } else { 2.0 };
+            this.acceleration += rate_dot * e + factor * rate * this.omega.cross(&e);
+        }
+
+        // Step 5: g_i = Q_{i-1}ᵀ g_{i-1}
+        this.gravity = qt * prev.gravity;
+
+        all.push(this);
+        (prev, r_prev) = (this, link.r);
+    }
+    all
+}
+
+/// Steps 6 and 7.
+fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, found: &mut [Found]) {
+    let e = axis(slip);
+    // f_{i,i+1} and n_{i,i+1}, in frame i+1
+    let (mut force, mut moment) = state.wrench.vectors();
+    for ((row, link), this) in rows.iter().zip(links).zip(found).rev() {
+        let mass = row.link.mass;
+
+        // [f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1}, n as well
+        if slip != Some(Slip::E10ForceNotTurned) {
+            force = link.turn * force;
+        }
+        if slip != Some(Slip::E10MomentNotTurned) {
+            moment = link.turn * moment;
+        }
+
+        // Step 6: f_i = m_i c̈_i
+        //         n_i = I_i ω̇_i + ω_i × (I_i ω_i)
+        //         f_{i-1,i} = f_i + f_{i,i+1} - m_i g_i
+        //         n_{i-1,i} = n_i + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
+        this.inertia_force = mass * this.acceleration;
+        this.inertia_moment = link.inertia * this.omega_dot;
+        if slip != Some(Slip::NoGyroscopicMoment) {
+            this.inertia_moment += this.omega.cross(&(link.inertia * this.omega));
+        }
+        this.joint_force = this.inertia_force + force - mass * this.gravity;
+        this.joint_moment = this.inertia_moment + moment + link.d.cross(&this.joint_force) + link.r.cross(&force);
+
+        // Step 7, R: τ_i = e_i · n_{i-1,i}   P: τ_i = e_i · f_{i-1,i}
+        this.tau = match row.kind {
+            Revolute => e.dot(&this.joint_moment),
+            Prismatic => e.dot(&this.joint_force),
+        };
+        (force, moment) = (this.joint_force, this.joint_moment);
+    }
+}
+
+/// e_i, the axis of joint i in frame i.
+fn axis(slip: Option<Slip>) -> Vector3<f64> {
+    if slip == Some(Slip::E17AxisX) { Vector3::x() } else { Vector3::z() }
+}
