@@ -56,7 +56,13 @@ fn torques_agree(yaml: &str, seed: u64) -> Result<(), TestCaseError> {
         let program = compile(&robot, function, Form::SevenSteps).expect("finite constants");
         for _ in 0..3 {
             let state = State::random(&mut rng, robot.dof());
-            prop_assert_eq!(interpreted(&program, &state), runtime(&arm, function, &state), "{} of\n{}", function, yaml);
+            prop_assert_eq!(
+                interpreted(&program, &state),
+                runtime(&arm, function, &state),
+                "{} of\n{}",
+                function,
+                yaml
+            );
         }
     }
     Ok(())

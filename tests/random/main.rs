@@ -1,4 +1,5 @@
 //! Random robots: the compiler against the runtime, interpreted by the thousand and compiled by the dozen.
 
+mod compiled;
 mod interpreted;
 mod robots;

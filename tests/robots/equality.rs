@@ -1,0 +1,42 @@
+//! The heart of it: generated code computes what the generic runtime computes, bit for bit.
+
+use fastrand::Rng;
+use rne::InverseDynamics;
+
+use crate::shipped::{Shipped, Visitor, visit_all};
+use crate::states::{self, State};
+
+/// States per robot.
+const STATES: usize = 10_000;
+
+struct Equality;
+
+impl Visitor for Equality {
+    fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, robot: &R) {
+        let arm = R::arm();
+        let mut rng = Rng::with_seed(38);
+        let mut differing = 0;
+        for index in 0..STATES {
+            let State { q, qd, qdd, wrench } = states::any::<DOF, R>(&mut rng, index);
+            let equal = [
+                (robot.inverse_dynamics(&q, &qd, &qdd), arm.inverse_dynamics(&q, &qd, &qdd)),
+                (
+                    robot.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench),
+                    arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench),
+                ),
+                (robot.gravity_torques(&q), arm.gravity_torques(&q)),
+                (robot.bias_torques(&q, &qd), arm.bias_torques(&q, &qd)),
+            ]
+            .iter()
+            .all(|(generated, runtime)| generated == runtime && generated.iter().all(|torque| torque.is_finite()));
+            differing += usize::from(!equal);
+        }
+        println!("{:16} {differing} of {STATES} states differ", R::NAME);
+        assert_eq!(differing, 0, "{}", R::NAME);
+    }
+}
+
+#[test]
+fn generated_code_equals_the_runtime_in_every_bit() {
+    visit_all(&mut Equality);
+}

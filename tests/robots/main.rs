@@ -1,0 +1,9 @@
+//! The shipped robots, derived: equality with the runtime, golden values, accuracy in single precision, operation counts.
+
+mod dense;
+mod equality;
+mod golden;
+mod operations;
+mod shipped;
+mod single_precision;
+mod states;
