@@ -7,9 +7,13 @@ use rne_model::{JointKind, Robot};
 
 use super::expression::let_statement;
 use super::formula::formula;
-use crate::ledger::{Fate, Ledger, Place};
+use super::table::angle;
+use crate::ledger::{Cause, Fate, Ledger, Place};
 use crate::program::{Binding, Expression, Finding, Found, Program, Sign, Statement};
-use crate::quantity::{Name, Quantity, Step};
+use crate::quantity::{Component, Name, Quantity, Step};
+
+/// Width of a comment.
+const WIDTH: usize = 100;
 
 /// Which part of a program to list, and how much to say.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,6 +24,8 @@ pub struct Listing {
     pub step: Option<Step>,
     /// Say what components became that are no statement, and what folded.
     pub explain: bool,
+    /// Name at most so many reasons why operations are gone, the commonest first.
+    pub reasons: Option<usize>,
 }
 
 /// The statements of a program as Rust text with a comment per joint and step.
@@ -38,12 +44,14 @@ pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
         }
         let kind = robot.joints.get(joint - 1).map_or(JointKind::Revolute, |joint| joint.row.kind);
         let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
-        let _ = writeln!(text, "    // {}", formula(step, kind, joint));
+        for formula in formula(step, kind, joint).split(",  ") {
+            let _ = writeln!(text, "    // {formula}");
+        }
         for statement in statements {
             let _ = writeln!(text, "{}", statement_line(statement));
         }
         if what.explain {
-            explain(&mut text, program, joint, step);
+            explain(&mut text, robot, program, joint, step, what.reasons);
         }
         text.push('\n');
     }
@@ -72,35 +80,54 @@ pub(super) fn statement_line(statement: &Statement) -> String {
     }
 }
 
-fn explain(text: &mut String, program: &Program, joint: usize, step: Step) {
+fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step, most: Option<usize>) {
     let mut groups: Vec<(String, Vec<String>)> = Vec::new();
     for Finding { name, value } in &program.findings {
         let quantity = name.quantity;
         if name.joint != joint || quantity.step() != Some(step) || !quantity.is_of_the_lecture() {
             continue;
         }
-        let Some(became) = became(*name, value) else { continue };
+        let Some(became) = became(robot, *name, value) else { continue };
         match groups.iter_mut().find(|(other, _)| *other == became) {
             Some((_, names)) => names.push(name.to_string()),
             None => groups.push((became, vec![name.to_string()])),
         }
     }
     for (became, names) in groups {
-        let _ = writeln!(text, "    // {}{became}", names.join(", "));
+        comment(text, &format!("{}{became}", names.join(", ")));
     }
-    if let Some(line) = folded(&program.ledger, |place| place.joint == joint && place.step == step) {
-        let _ = writeln!(text, "    // {line}");
+    if let Some(line) = folded(robot, &program.ledger, |place| place.joint == joint && place.step == step, most) {
+        comment(text, &line);
     }
 }
 
-fn became(name: Name, found: &Found) -> Option<String> {
+/// A blank at which no comment breaks.
+const TIED: &str = "\u{A0}";
+
+/// A comment, broken between words where it is too long; the lines after the first are indented.
+fn comment(text: &mut String, comment: &str) {
+    let mut line = "    //".to_owned();
+    for word in comment.split(' ') {
+        if line.chars().count() + 1 + word.chars().count() > WIDTH {
+            let _ = writeln!(text, "{}", line.replace(TIED, " "));
+            "    //  ".clone_into(&mut line);
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    let _ = writeln!(text, "{}", line.replace(TIED, " "));
+}
+
+fn became(robot: &Robot, name: Name, found: &Found) -> Option<String> {
     Some(match found {
         // the statement says it
         Found::Computed => return None,
         Found::Same(..) if name.quantity == Quantity::Torque => return None,
         Found::Same(other, Sign::Plus) => format!(" = {other}"),
         Found::Same(other, Sign::Minus) => format!(" = -{other}"),
-        Found::Constant(value, cause) => format!(" = {value}: {cause}"),
+        Found::Constant(0.0, cause) => format!(" = 0: {}", why(robot, *cause, 0)),
+        Found::Constant(value, Cause::GravityDirection(_)) => format!(" = {value}: gravity in frame 0"),
+        Found::Constant(value, _) => format!(" = {value}, of constants"),
         Found::Inside => ": inside the statement that uses it".to_owned(),
         Found::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
         Found::Unused => ": not needed".to_owned(),
@@ -108,7 +135,7 @@ fn became(name: Name, found: &Found) -> Option<String> {
 }
 
 /// How many operations are left at the places that pass, and why the others are not there.
-pub(super) fn folded(ledger: &Ledger, here: impl Fn(&Place) -> bool) -> Option<String> {
+fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: Option<usize>) -> Option<String> {
     let (products, sums) = ledger.total(|line| here(&line.place));
     if products + sums == 0 {
         return None;
@@ -118,7 +145,8 @@ pub(super) fn folded(ledger: &Ledger, here: impl Fn(&Place) -> bool) -> Option<S
     for line in ledger.lines().filter(|line| here(&line.place)) {
         let reason = match line.fate {
             Fate::Kept => continue,
-            Fate::Zero(cause) | Fate::One(cause) => cause.to_string(),
+            Fate::Zero(cause) => why(robot, cause, 0),
+            Fate::One(cause) => why(robot, cause, 1),
             Fate::Constant => "constants".to_owned(),
             Fate::Cancelled => "x - x".to_owned(),
             Fate::Shared => "computed before".to_owned(),
@@ -128,11 +156,42 @@ pub(super) fn folded(ledger: &Ledger, here: impl Fn(&Place) -> bool) -> Option<S
     }
     let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
     reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    // naming the last one takes no more room than counting it
+    let named = most.filter(|&most| most + 1 < reasons.len()).unwrap_or(reasons.len());
+    let others: usize = reasons.iter().skip(named).map(|(_, count)| count).sum();
+    let mut gone: Vec<String> =
+        reasons.iter().take(named).map(|(reason, count)| format!("{count} ({reason})").replace(' ', TIED)).collect();
+    if others > 0 {
+        gone.push(format!("{others} for other reasons"));
+    }
     let mut text = format!("{products} products and {sums} sums, {kept_products} and {kept_sums} left");
-    for (position, (reason, count)) in reasons.iter().enumerate() {
-        let _ = write!(text, "{}{count} ({reason})", if position == 0 { ". Gone: " } else { ", " });
+    if !gone.is_empty() {
+        let _ = write!(text, ". Gone: {}", gone.join(", "));
     }
     Some(text)
+}
+
+/// A cause in the words of the table; `magnitude` is what it made of a number, 0 or 1.
+fn why(robot: &Robot, cause: Cause, magnitude: u8) -> String {
+    let Cause::Table(mut name) = cause else { return cause.to_string() };
+    if let (Quantity::Inertia, Component::Matrix(row, column)) = (name.quantity, name.component)
+        && row > column
+    {
+        // a symmetric tensor, and the file writes the upper half
+        name.component = Component::Matrix(column, row);
+    }
+    let row = robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| &joint.row.dh);
+    match (name.quantity, row) {
+        (Quantity::TwistSine | Quantity::TwistCosine, Some(dh)) => {
+            format!("alpha{} = {}", name.joint, angle(&dh.alpha))
+        }
+        (Quantity::ThetaSine | Quantity::ThetaCosine, Some(dh)) => {
+            format!("theta{} = {}", name.joint, angle(&dh.theta))
+        }
+        // a factor of -1 is folded like 1
+        _ if magnitude == 1 && name.quantity != Quantity::TipRotation => format!("{name} is 1 or -1"),
+        _ => Cause::Table(name).to_string(),
+    }
 }
 
 impl Program {

@@ -66,7 +66,8 @@ fn number(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value}") }
 }
 
-fn angle(angle: &Angle) -> String {
+/// An angle; a right one as a multiple of π.
+pub(super) fn angle(angle: &Angle) -> String {
     let Some(right) = angle.right else { return number(angle.radians) };
     // One full turn or less is written as a multiple of π; more keeps its digits.
     let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
