@@ -1,2 +1,53 @@
-//! cli
-fn main() {}
+//! The command line of rne: a thin shell over functions that take arguments and return text.
+
+mod arguments;
+mod check;
+mod emit;
+mod eval;
+mod heading;
+mod highlight;
+mod layout;
+mod numbers;
+mod ops;
+mod outcome;
+mod output_file;
+mod robot_file;
+mod show;
+mod terminal;
+mod tour;
+mod worksheet;
+
+use std::process::ExitCode;
+
+use clap::Parser as _;
+
+use crate::arguments::{Arguments, Command};
+use crate::outcome::{Failure, Outcome};
+
+fn main() -> ExitCode {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // A reader that has gone away needs no help.
+            let _ = error.print();
+            return if error.use_stderr() { outcome::USAGE.into() } else { ExitCode::SUCCESS };
+        }
+    };
+    let (name, outcome) = run(arguments.command);
+    match outcome {
+        Ok(outcome) => terminal::show(&outcome),
+        Err(failure) => terminal::complain(name, &failure),
+    }
+}
+
+/// The command's name, as its help is asked for, and what it returned.
+fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
+    match command {
+        None => ("rne", tour::run()),
+        Some(Command::Check(arguments)) => ("rne check", Ok(check::run(&arguments))),
+        Some(Command::Show(arguments)) => ("rne show", show::run(&arguments)),
+        Some(Command::Emit(arguments)) => ("rne emit", emit::run(&arguments)),
+        Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
+        Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
+    }
+}

@@ -1,0 +1,62 @@
+//! The grammar of the command line, and the values that several commands take.
+
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Parser, Subcommand};
+use rne_codegen::{Form, Function, Step};
+
+use crate::terminal::HELP_STYLES;
+use crate::{check, emit, eval, ops, show};
+
+/// The dynamics compiler for robot arms.
+#[derive(Parser)]
+#[command(name = "rne", version, styles = HELP_STYLES, disable_help_subcommand = true)]
+#[command(about = "The dynamics compiler for robot arms: a Denavit-Hartenberg table in, straight-line Rust out")]
+#[command(after_help = "\
+Without a command, a tour: the PUMA 560 from its table to its torques, computed as it runs.
+
+Examples:
+  rne                                              the tour
+  rne check robots/*.yaml                          are the files in order?
+  rne show robots/puma560.yaml --joint 2           the code of joint 2, step by step
+  rne ops robots/*.yaml                            what each function costs
+  rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
+  rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself
+
+Exit status: 0 fine, 1 the input is at fault, 2 the command line is.
+Colours appear on terminals only; NO_COLOR turns them off. `rne COMMAND --help` says more.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+#[derive(Subcommand)]
+pub(crate) enum Command {
+    Check(check::Arguments),
+    Show(show::Arguments),
+    Emit(emit::Arguments),
+    Ops(ops::Arguments),
+    Eval(eval::Arguments),
+}
+
+/// Reads the name of a function; help and messages list them all.
+pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
+    let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
+    PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| name.parse::<Function>())
+}
+
+/// Reads the name of a form.
+pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
+    let value = |form: Form| match form {
+        Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
+    };
+    PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
+}
+
+/// Reads the number of a step.
+pub(crate) fn step(text: &str) -> Result<Step, String> {
+    let step = Step::ALL.into_iter().find(|step| step.number().to_string() == text);
+    step.ok_or_else(|| {
+        let steps: Vec<String> = Step::ALL.iter().map(|step| format!("{} {}", step.number(), step.title())).collect();
+        format!("the steps are {}", steps.join(", "))
+    })
+}

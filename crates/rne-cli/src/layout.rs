@@ -1,0 +1,90 @@
+//! Text in columns.
+
+use std::fmt::Write as _;
+
+/// On which side of its column a cell stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Align {
+    Left,
+    Right,
+}
+
+/// Lines of cells, each column as wide as its widest cell, two blanks between them.
+pub(crate) fn columns<const N: usize>(alignment: [Align; N], lines: &[[String; N]]) -> Vec<String> {
+    let mut widths = [0; N];
+    for line in lines {
+        for (column, cell) in widths.iter_mut().zip(line) {
+            *column = width(cell).max(*column);
+        }
+    }
+    let line = |cells: &[String; N]| {
+        let mut line = String::new();
+        for (position, ((cell, &width), align)) in cells.iter().zip(&widths).zip(alignment).enumerate() {
+            let gap = if position == 0 { "" } else { "  " };
+            let _ = match align {
+                Align::Left => write!(line, "{gap}{}", left(cell, width)),
+                Align::Right => write!(line, "{gap}{}", right(cell, width)),
+            };
+        }
+        line.truncate(line.trim_end().len());
+        line
+    };
+    lines.iter().map(line).collect()
+}
+
+/// A text, then blanks up to a width.
+pub(crate) fn left(text: &str, to: usize) -> String {
+    format!("{text}{}", " ".repeat(to.saturating_sub(width(text))))
+}
+
+/// Blanks, then a text.
+pub(crate) fn right(text: &str, to: usize) -> String {
+    format!("{}{text}", " ".repeat(to.saturating_sub(width(text))))
+}
+
+/// Columns that a text takes: the dots of ω̇ and c̈ stand above their letters.
+pub(crate) fn width(text: &str) -> usize {
+    text.chars().filter(|c| !('\u{300}'..='\u{36F}').contains(c)).count()
+}
+
+/// Words put into lines of a width; lines after the first start with `indent`.
+pub(crate) fn wrap(text: &str, to: usize, indent: &str) -> String {
+    let mut lines = String::new();
+    let mut at = 0;
+    for word in text.split_whitespace() {
+        if at > 0 && at + 1 + width(word) > to {
+            let _ = write!(lines, "\n{indent}");
+            at = width(indent);
+        } else if at > 0 {
+            lines.push(' ');
+            at += 1;
+        }
+        lines.push_str(word);
+        at += width(word);
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dots_take_no_column() {
+        assert_eq!(width("ω̇2 + q̈2"), 7);
+        assert_eq!(left("c̈", 3), "c̈  ");
+        assert_eq!(right("c̈", 3), "  c̈");
+    }
+
+    #[test]
+    fn long_text_breaks_between_words() {
+        assert_eq!(wrap("one two three", 7, "  "), "one two\n  three");
+        assert_eq!(wrap("unbreakable", 3, ""), "unbreakable");
+    }
+
+    #[test]
+    fn columns_are_as_wide_as_their_widest_cell() {
+        let lines = [["a".to_owned(), "10".to_owned()], ["bcd".to_owned(), "1".to_owned()]];
+        assert_eq!(columns([Align::Left, Align::Right], &lines), ["a    10", "bcd   1"]);
+    }
+}

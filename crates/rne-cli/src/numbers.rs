@@ -1,0 +1,88 @@
+//! Numbers on the command line and in tables.
+
+use std::str::FromStr;
+
+/// A comma-separated list of finite numbers, as `--q` takes it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct List(pub(crate) Vec<f64>);
+
+impl FromStr for List {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim().is_empty() {
+            return Err("the list is empty; write numbers with commas between them, such as 0.1,-0.2".to_owned());
+        }
+        let number = |(index, element): (usize, &str)| {
+            let (element, place) = (element.trim(), index + 1);
+            if element.is_empty() {
+                return Err(format!("number {place} is missing; write numbers with commas between them"));
+            }
+            let hint = "write decimal numbers with commas between them, such as 0.1,-0.2";
+            let value = element.parse::<f64>().map_err(|_| format!("number {place}, `{element}`, is none; {hint}"))?;
+            if value.is_finite() {
+                return Ok(value);
+            }
+            Err(format!("number {place}, `{element}`, is not finite"))
+        };
+        text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(List)
+    }
+}
+
+/// All digits that a number needs to be read back; zero has no sign.
+pub(crate) fn exact(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-5 || value.abs() >= 1e16 {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// Texts of numbers, their decimal points in one column.
+pub(crate) fn at_the_point(texts: &[String]) -> Vec<String> {
+    let places = |text: &String| text.find('.').unwrap_or_else(|| text.find('e').unwrap_or(text.len()));
+    let most = texts.iter().map(places).max().unwrap_or(0);
+    texts.iter().map(|text| format!("{}{text}", " ".repeat(most - places(text)))).collect()
+}
+
+/// Digits behind the point in a worksheet.
+const DIGITS: usize = 6;
+
+/// Width of a number of a worksheet.
+pub(crate) const WIDTH: usize = 12;
+
+/// A number for a worksheet: fixed digits, an exact zero alone, the point always in the same column.
+pub(crate) fn fixed(value: f64) -> String {
+    if value == 0.0 {
+        // the column of the point is one left of the digits
+        return format!("{:>1$}{2}", "0", WIDTH - DIGITS - 1, " ".repeat(DIGITS + 1));
+    }
+    if value.abs() < 1e-5 || value.abs() >= 1e5 {
+        return format!("{value:>WIDTH$.4e}");
+    }
+    format!("{value:>WIDTH$.DIGITS$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists() {
+        assert_eq!("-0.1, 2e-3,3".parse(), Ok(List(vec![-0.1, 2e-3, 3.0])));
+        for bad in ["", "1,,2", "1,", "pi", "nan", "inf", "1e999", "--qd"] {
+            assert!(bad.parse::<List>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_stand_at_the_point() {
+        assert_eq!(fixed(-1.5), "   -1.500000");
+        assert_eq!(fixed(0.0), "    0       ");
+        assert_eq!(fixed(-0.0), fixed(0.0));
+        assert_eq!(fixed(1.25e-17), "  1.2500e-17");
+        assert_eq!(at_the_point(&["1.5".to_owned(), "-10".to_owned()]), ["  1.5", "-10"]);
+    }
+}

@@ -1,0 +1,75 @@
+//! What a command returns: text for the reader, or why there is none.
+
+use rne_codegen::CompileError;
+use rne_model::Report;
+use serde::Serialize;
+
+use crate::terminal::ERROR;
+
+/// Exit status when the input is at fault.
+pub(crate) const INPUT: u8 = 1;
+
+/// Exit status when the command line is at fault.
+pub(crate) const USAGE: u8 = 2;
+
+/// A command that did its work.
+#[derive(Debug, Default)]
+pub(crate) struct Outcome {
+    /// For standard output, styled.
+    pub(crate) text: String,
+    /// Remarks for standard error, styled: not part of the answer.
+    pub(crate) remark: String,
+    /// Whether the answer is that the input is at fault.
+    pub(crate) at_fault: bool,
+}
+
+impl Outcome {
+    pub(crate) fn text(text: String) -> Self {
+        Self { text, ..Self::default() }
+    }
+
+    pub(crate) fn json(value: &impl Serialize) -> Result<Self, Failure> {
+        let text = serde_json::to_string_pretty(value).map_err(Failure::input)?;
+        Ok(Self::text(text + "\n"))
+    }
+
+    pub(crate) fn remark(remark: String) -> Self {
+        Self { remark, ..Self::default() }
+    }
+}
+
+/// A command that could not do its work.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// What is wrong and what to do, styled.
+    pub(crate) text: String,
+    pub(crate) status: u8,
+}
+
+impl Failure {
+    /// Something is wrong with a file or its contents.
+    pub(crate) fn input(message: impl std::fmt::Display) -> Self {
+        Self { text: headed(message), status: INPUT }
+    }
+
+    /// Something is wrong with the command line.
+    pub(crate) fn usage(message: impl std::fmt::Display) -> Self {
+        Self { text: headed(message), status: USAGE }
+    }
+
+    /// The robot is valid but too large to be compiled.
+    pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
+        Self::input(format_args!("{file}: {error}"))
+    }
+}
+
+/// Errors of a robot file, as the compiler shows them too.
+impl From<&Report> for Failure {
+    fn from(report: &Report) -> Self {
+        Self { text: report.render(true), status: INPUT }
+    }
+}
+
+fn headed(message: impl std::fmt::Display) -> String {
+    format!("{ERROR}error{ERROR:#}: {message}")
+}

@@ -1,0 +1,70 @@
+//! Reading robot files, and what to say when that fails.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use rne_model::{Checked, Robot, check_bytes};
+
+use crate::outcome::Failure;
+use crate::terminal::TYPED;
+
+/// So many files of a folder are named where one is missing.
+const NAMED: usize = 16;
+
+/// A valid robot with its lints.
+pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
+    let bytes = fs::read(path).map_err(|error| match error.kind() {
+        ErrorKind::NotFound => Failure::input(missing(path)),
+        ErrorKind::IsADirectory => Failure::input(format_args!(
+            "{0} is a folder; name the robot files in it, such as {TYPED}{1}{TYPED:#}",
+            path.display(),
+            path.join("*.yaml").display()
+        )),
+        _ => Failure::input(format_args!("{} cannot be read: {error}", path.display())),
+    })?;
+    check_bytes(&path.display().to_string(), &bytes).map_err(|report| Failure::from(&report))
+}
+
+/// A valid robot. `rne check` tells of its lints, the other commands do not.
+pub(crate) fn robot(path: &Path) -> Result<Robot, Failure> {
+    Ok(read(path)?.robot)
+}
+
+fn missing(path: &Path) -> String {
+    let mut text = format!("there is no robot file {}", path.display());
+    let folder = path.parent().filter(|folder| folder.is_dir() && !folder.as_os_str().is_empty());
+    let probably = candidates(path).into_iter().find(|candidate| candidate.is_file());
+    if let Some(probably) = probably {
+        let _ = write!(text, "; did you mean {TYPED}{}{TYPED:#}?", probably.display());
+    } else if let Some(names) = folder.map(robots_in).filter(|names| !names.is_empty()) {
+        let more = if names.len() > NAMED { ", …" } else { "" };
+        let shown = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let _ = write!(text, "; {} has {shown}{more}", path.with_file_name("").display());
+    } else {
+        let _ = write!(text, "; a robot file is YAML, such as {TYPED}robots/puma560.yaml{TYPED:#} of this project");
+    }
+    text
+}
+
+/// Where the file may be instead: with its extension, or in `robots/`.
+fn candidates(path: &Path) -> Vec<PathBuf> {
+    let Some(name) = path.file_name() else { return Vec::new() };
+    let shipped = Path::new("robots").join(name);
+    vec![path.with_extension("yaml"), shipped.with_extension("yaml")]
+}
+
+/// The names of the robot files of a folder, sorted; a plan, `NAME.plan.yaml`, is none.
+fn robots_in(folder: &Path) -> Vec<String> {
+    let paths = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let is_robot = |path: &PathBuf| {
+        let stem = path.file_stem().map(Path::new);
+        path.extension().is_some_and(|extension| extension == "yaml")
+            && stem.and_then(Path::extension).is_none_or(|extension| extension != "plan")
+    };
+    let name = |path: PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
+    let mut names: Vec<String> = paths.filter(is_robot).filter_map(name).collect();
+    names.sort();
+    names
+}

@@ -1,0 +1,143 @@
+//! `rne show`: the generated code, annotated for reading.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use rne_codegen::emit::{self, Listing};
+use rne_codegen::{Form, Function, Quantity, Step, compile_keeping};
+use rne_model::Robot;
+
+use crate::outcome::{Failure, Outcome};
+use crate::terminal::QUIET;
+use crate::{arguments, heading, highlight, robot_file};
+
+/// Show the generated code of a function, step by step, with what was folded and why
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne show robots/puma560.yaml --joint 2
+  rne show robots/puma560.yaml --joint 2 --step 4
+  rne show robots/scara_cobra600.yaml --function gravity_torques
+  rne show robots/planar2.yaml --step 3                 the velocities, which torques do not need
+  rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
+
+Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of link 2 along z, dw ω̇, dc ċ, ddc c̈,
+f1_2_x and n1_2_x what link 1 exerts on link 2. `rne emit` writes a file with the meaning of every name.")]
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// One joint only, counted from 1 at the base
+    #[arg(long, value_name = "I")]
+    joint: Option<usize>,
+    /// One of the seven steps only
+    #[arg(long, value_name = "S", value_parser = arguments::step)]
+    step: Option<Step>,
+    /// How it is computed
+    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name())]
+    form: Form,
+    /// Which function of the robot
+    #[arg(long, value_name = "F", value_parser = arguments::function(),
+        default_value = Function::InverseDynamics.name())]
+    function: Function,
+    /// Compute these for every link, even where no torque needs them; --step 3 keeps the velocity
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
+    keep: Vec<Kept>,
+}
+
+/// A quantity of the lecture that may be folded away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+enum Kept {
+    /// Angular velocity ω
+    Omega,
+    /// Angular acceleration ω̇
+    OmegaDot,
+    /// Velocity of the centre of mass ċ, step 3
+    Velocity,
+    /// Acceleration of the centre of mass c̈
+    Acceleration,
+    /// Acceleration of gravity g
+    Gravity,
+    /// f_i = m c̈ by itself
+    InertiaForce,
+    /// n_i, about the centre of mass
+    InertiaMoment,
+    /// f_{i-1,i}
+    JointForce,
+    /// n_{i-1,i}
+    JointMoment,
+}
+
+impl Kept {
+    const fn quantity(self) -> Quantity {
+        match self {
+            Self::Omega => Quantity::Omega,
+            Self::OmegaDot => Quantity::OmegaDot,
+            Self::Velocity => Quantity::Velocity,
+            Self::Acceleration => Quantity::Acceleration,
+            Self::Gravity => Quantity::Gravity,
+            Self::InertiaForce => Quantity::InertiaForce,
+            Self::InertiaMoment => Quantity::InertiaMoment,
+            Self::JointForce => Quantity::JointForce,
+            Self::JointMoment => Quantity::JointMoment,
+        }
+    }
+
+    /// The quantity in words and with its letter.
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Omega => "angular velocities ω",
+            Self::OmegaDot => "angular accelerations ω̇",
+            Self::Velocity => "velocities ċ of step 3",
+            Self::Acceleration => "accelerations c̈",
+            Self::Gravity => "gravity g of every link",
+            Self::InertiaForce => "inertia forces f",
+            Self::InertiaMoment => "inertia moments n",
+            Self::JointForce => "joint forces",
+            Self::JointMoment => "joint moments",
+        }
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let file = arguments.file.display().to_string();
+    let robot = robot_file::robot(&arguments.file)?;
+    check_joint(&robot, arguments.joint)?;
+
+    let mut keep = arguments.keep.clone();
+    if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
+        keep.push(Kept::Velocity);
+    }
+    let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
+    let program = compile_keeping(&robot, arguments.function, arguments.form, &quantities)
+        .map_err(|error| Failure::compile(&file, &error))?;
+
+    let mut text = heading::robot(&robot);
+    let _ = writeln!(text, "\n{}", heading::counts(&program));
+    if !keep.is_empty() {
+        let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
+        let _ = writeln!(text, "{QUIET}kept for reading, and counted: {}{QUIET:#}", words.join(", "));
+    }
+    let what = Listing { joint: arguments.joint, step: arguments.step, explain: true, ..Listing::default() };
+    text.push('\n');
+    text.push_str(&highlight::listing(&emit::listing(&robot, &program, what)));
+    Ok(Outcome::text(text))
+}
+
+fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
+    match joint {
+        Some(joint) if joint == 0 || joint > robot.dof() => {
+            let joints: Vec<String> = robot
+                .joints
+                .iter()
+                .enumerate()
+                .map(|(index, joint)| format!("{} ({})", index + 1, joint.name))
+                .collect();
+            let message = format!("{} has no joint {joint}; its joints are {}", robot.name, joints.join(", "));
+            Err(Failure::usage(message))
+        }
+        _ => Ok(()),
+    }
+}
