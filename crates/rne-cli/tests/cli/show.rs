@@ -1,0 +1,70 @@
+//! `rne show` and `rne ops`: listings and counts.
+
+use crate::call::{fails, fine};
+use serde_json::Value;
+
+#[test]
+fn one_joint_of_the_lectures_arm() {
+    insta::assert_snapshot!(fine(&["show", "robots/planar1.yaml", "--joint", "1"]));
+}
+
+#[test]
+fn one_step_of_a_prismatic_joint() {
+    insta::assert_snapshot!(fine(&["show", "robots/cylindrical_rpp.yaml", "--joint", "3", "--step", "4"]));
+}
+
+#[test]
+fn velocities_are_shown_when_step_3_is() {
+    let robot = "robots/planar2.yaml";
+    let usual = fine(&["show", robot]);
+    assert!(!usual.contains("let dc2_x") && !usual.contains("kept for reading"));
+    let asked = fine(&["show", robot, "--step", "3"]);
+    assert!(asked.contains("let dc2_x = ") && asked.contains("kept for reading, and counted: velocities"), "{asked}");
+    assert!(!asked.contains("step 4"), "only step 3: {asked}");
+    let kept = fine(&["show", robot, "--keep", "velocity,inertia_force"]);
+    assert!(kept.contains("let dc2_x = ") && kept.contains("let f2_x = "), "{kept}");
+}
+
+#[test]
+fn joints_and_steps_that_are_not_there() {
+    let robot = "robots/puma560.yaml";
+    for joint in ["0", "7"] {
+        fails(2, &["show", robot, "--joint", joint], &["has no joint", "1 (j1)", "6 (j6)", "rne show --help"]);
+    }
+    for step in ["0", "8", "x"] {
+        fails(2, &["show", robot, "--step", step], &["1 angular velocity", "7 torque"]);
+    }
+    fails(2, &["show", robot, "--function", "torques"], &["inverse_dynamics", "bias_torques"]);
+    fails(2, &["show", robot, "--form", "eight_steps"], &["seven_steps"]);
+    fails(2, &["show", robot, "--keep", "speed"], &["velocity"]);
+}
+
+#[test]
+fn counts_as_json() {
+    let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
+    let json: Value = serde_json::from_str(&json).expect("JSON");
+    let entries = json.as_array().expect("a list");
+    assert_eq!(entries.len(), 8, "two robots, four functions, one form");
+    for entry in entries {
+        let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
+        let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];
+        expected.sort_unstable();
+        assert_eq!(keys, expected);
+        for count in ["mul", "add", "div", "sincos", "statements"] {
+            assert!(entry[count].is_u64(), "{entry}");
+        }
+    }
+    let entry = entries.iter().find(|entry| entry["robot"] == "planar1" && entry["function"] == "gravity_torques");
+    let entry = entry.expect("the lecture's arm at rest");
+    assert_eq!((&entry["form"], &entry["mul"], &entry["sincos"]), (&"seven_steps".into(), &3.into(), &1.into()));
+}
+
+#[test]
+fn counts_as_a_table() {
+    insta::assert_snapshot!(fine(&["ops", "robots/planar2.yaml"]));
+    let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
+    let rows = all.lines().filter(|line| line.contains("seven_steps"));
+    let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
+    assert_eq!(widths.len(), 8);
+    assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
+}
