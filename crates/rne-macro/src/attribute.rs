@@ -65,8 +65,8 @@ impl Attribute {
             (None, Some(place)) => {
                 errors.at(&place, "which robot? `path = \"…\"` or `yaml = \"…\"` is missing here");
             }
-            (None, None) => errors.at_span(
-                Span::call_site(),
+            (None, None) => errors.at(
+                &item.ident,
                 "which robot? the attribute `#[robot(path = \"…\")]` is missing: it names the robot file, relative to \
                  this source file",
             ),
@@ -97,14 +97,13 @@ impl Entries {
         while !input.is_empty() {
             if let Err(error) = self.entry(input) {
                 errors.push(error);
-                while !input.is_empty() && !input.peek(Token![,]) {
-                    // A token tree is always there: the input is not empty.
-                    let _: syn::Result<proc_macro2::TokenTree> = input.parse();
-                }
+                skip_entry(input);
             }
             if input.parse::<Option<Token![,]>>().is_ok_and(|comma| comma.is_none()) && !input.is_empty() {
                 errors.push(input.error("a comma is missing before this"));
-                return;
+                if !input.peek(Ident::peek_any) {
+                    skip_entry(input);
+                }
             }
         }
     }
@@ -153,6 +152,14 @@ impl Entries {
             _ => self.krate = Some(path(input)?),
         }
         Ok(())
+    }
+}
+
+/// Skips what is left of an entry, up to its comma.
+fn skip_entry(input: ParseStream<'_>) {
+    while !input.is_empty() && !input.peek(Token![,]) {
+        // A token tree is always there: the input is not empty.
+        let _: syn::Result<proc_macro2::TokenTree> = input.parse();
     }
 }
 

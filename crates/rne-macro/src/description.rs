@@ -1,6 +1,6 @@
 //! A robot and its programs in words, for the documentation of the generated code.
 
-use std::fmt::Write;
+use std::fmt::{Debug, Write};
 
 use rne_codegen::{Program, emit};
 use rne_model::{Convention, Robot};
@@ -15,8 +15,8 @@ pub(crate) fn robot(robot: &Robot) -> String {
     let [x, y, z] = robot.gravity;
     let _ = write!(
         text,
-        "Source: {}\n\n{convention}, acceleration of gravity ({x}, {y}, {z}) m/s² in frame 0\n\n{}",
-        robot.source.trim_end(),
+        "{}\n\n{convention}, acceleration of gravity ({x}, {y}, {z}) m/s² in frame 0\n\n{}",
+        wrapped(&format!("Source: {}", robot.source.trim_end())),
         emit::dh_table(robot)
     );
     format!("The robot that this type stands for, at compile time.\n\n{}", verbatim(&text))
@@ -44,11 +44,35 @@ pub(crate) fn method(program: &Program) -> String {
     let (products, sums) = program.ledger.before();
     let after = program.operations();
     format!(
-        "{}\n\n{} products and {} sums; the recursion has {products} and {sums} before folding.",
+        "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.",
         program.function.summary(),
         after.mul,
-        after.add
+        after.add,
+        after.sincos
     )
+}
+
+/// The values of a constant, which rustdoc does not show of an array.
+pub(crate) fn values(values: &[impl Debug]) -> String {
+    format!("\n\n{}", verbatim(&format!("{values:?}")))
+}
+
+/// Text in lines of a width that a page has room for.
+fn wrapped(text: &str) -> String {
+    const WIDTH: usize = 100;
+    let mut lines = String::new();
+    let mut column = 0;
+    for word in text.split_whitespace() {
+        let width = word.chars().count();
+        if column > 0 {
+            let breaks = column + 1 + width > WIDTH;
+            lines.push(if breaks { '\n' } else { ' ' });
+            column = if breaks { 0 } else { column + 1 };
+        }
+        lines.push_str(word);
+        column += width;
+    }
+    lines
 }
 
 /// Text that rustdoc shows as it stands: names and sources are no Markdown.

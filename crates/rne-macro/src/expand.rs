@@ -4,18 +4,14 @@ use std::path::Path;
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::{Form, Program, compile};
 use rne_model::{Report, Robot, check_bytes};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
-use crate::implementation::Target;
+use crate::implementation::{METHODS, Target};
 use crate::location;
-
-/// The methods of `InverseDynamics`.
-const FUNCTIONS: [Function; 4] =
-    [Function::InverseDynamics, Function::InverseDynamicsWithWrench, Function::GravityTorques, Function::BiasTorques];
 
 /// `#[derive(InverseDynamics)]`.
 ///
@@ -43,7 +39,7 @@ pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
             }
             target.robot(robot, programs)
         }
-        None => target.stub(loaded.joints_guessed),
+        None => target.stub(loaded.joints),
     };
     let watched = loaded.watched;
     let errors = errors.into_tokens();
@@ -84,8 +80,8 @@ struct Loaded {
     robot: Option<Robot>,
     /// Makes the compiler watch the file.
     watched: TokenStream,
-    /// How many joints an invalid file seems to have.
-    joints_guessed: usize,
+    /// How many joints it has, or seems to have if it is invalid.
+    joints: usize,
 }
 
 fn load(source: &Source, errors: &mut Errors) -> Loaded {
@@ -100,11 +96,11 @@ fn load(source: &Source, errors: &mut Errors) -> Loaded {
         },
     };
     match check_bytes(&name, &bytes) {
-        Ok(checked) => Loaded { robot: Some(checked.robot), watched, joints_guessed: 0 },
+        Ok(checked) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched },
         Err(report) => {
-            let joints_guessed = guess_joints(&report);
+            let joints = guess_joints(&report);
             errors.at_span(source.span(), describe(report));
-            Loaded { robot: None, watched, joints_guessed }
+            Loaded { robot: None, watched, joints }
         }
     }
 }
@@ -124,7 +120,7 @@ fn watch(file: &Path) -> TokenStream {
 }
 
 fn programs(robot: &Robot, form: Form, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
-    let programs: Result<Vec<_>, _> = FUNCTIONS.into_iter().map(|function| compile(robot, function, form)).collect();
+    let programs: Result<Vec<_>, _> = METHODS.into_iter().map(|function| compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

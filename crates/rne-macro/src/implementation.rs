@@ -1,12 +1,16 @@
 //! The code for a type: constants and the methods of the trait.
 
-use proc_macro2::{Group, Ident, Literal, TokenStream, TokenTree};
+use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
 use rne_codegen::{Function, Program, emit};
 use rne_model::Robot;
-use syn::{DeriveInput, GenericParam, Path};
+use syn::{DeriveInput, GenericParam, Path, Visibility};
 
 use crate::description;
+
+/// The methods of `InverseDynamics`.
+pub(crate) const METHODS: [Function; 4] =
+    [Function::InverseDynamics, Function::InverseDynamicsWithWrench, Function::GravityTorques, Function::BiasTorques];
 
 /// The type that the code is for, and where the library is.
 pub(crate) struct Target<'a> {
@@ -16,7 +20,8 @@ pub(crate) struct Target<'a> {
 
 /// The constants of a type.
 struct Constants {
-    description: String,
+    /// For the documentation.
+    description: Option<String>,
     name: String,
     joint_names: Vec<String>,
     position_limits: Vec<(f64, f64)>,
@@ -38,6 +43,7 @@ impl Target<'_> {
 
             #[doc = #operations]
             #[automatically_derived]
+            #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
             impl #impl_generics #krate::InverseDynamics<#dof> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
@@ -54,18 +60,11 @@ impl Target<'_> {
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
-        let methods = [
-            Function::InverseDynamics,
-            Function::InverseDynamicsWithWrench,
-            Function::GravityTorques,
-            Function::BiasTorques,
-        ]
-        .map(|function| self.signature(function, &joints, &quote!(*q)));
+        let methods = METHODS.map(|function| self.signature(function, &joints, &quote!(*q)));
         quote! {
             #constants
 
             #[automatically_derived]
-            #[allow(unused_variables)]
             impl #impl_generics #krate::InverseDynamics<#joints> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
@@ -110,17 +109,30 @@ impl Target<'_> {
     }
 
     fn free_name(&self) -> String {
-        let mut name = "Scalar".to_owned();
+        let mut name = "Number".to_owned();
         while self.is_taken(&name) {
             name.push('_');
         }
         name
     }
 
+    /// The visibility of the type. Its `pub` counts as generated: with that of the user, so would the constants count as
+    /// the user's, and the compiler would warn of each that is never used.
+    fn visibility(&self) -> Visibility {
+        let mut visibility = self.item.vis.clone();
+        match &mut visibility {
+            Visibility::Public(token) => token.span = Span::call_site(),
+            Visibility::Restricted(restricted) => restricted.pub_token.span = Span::call_site(),
+            Visibility::Inherited => {}
+        }
+        visibility
+    }
+
     fn constants(&self, constants: &Constants) -> TokenStream {
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
-        let (ident, vis, krate) = (&self.item.ident, &self.item.vis, self.krate);
+        let (ident, vis, krate) = (&self.item.ident, self.visibility(), self.krate);
         let Constants { description, name, joint_names, .. } = constants;
+        let description = description.as_ref().map(|description| quote!(#[doc = #description]));
         let dof = Literal::usize_unsuffixed(joint_names.len());
         let position_limits = constants.position_limits.iter().map(|(lower, upper)| {
             let (lower, upper) = (number(*lower), number(*upper));
@@ -133,24 +145,31 @@ impl Target<'_> {
             [operations.mul, operations.add, operations.div, operations.sincos, operations.statements]
                 .map(Literal::usize_unsuffixed)
         };
+        let [positions, velocities, efforts] = [
+            ("Lowest and highest position of each joint, rad or m", description::values(&constants.position_limits)),
+            ("Highest speed of each joint, rad/s or m/s", description::values(&constants.velocity_limits)),
+            ("Highest torque or force of each joint, N m or N", description::values(&constants.effort_limits)),
+        ]
+        .map(|(what, values)| format!("{what}; infinite where the robot file has none.{values}"));
+        let names = format!("Names of the joints, base to tip.{}", description::values(joint_names));
         let (f64, str, usize) =
             (quote!(::core::primitive::f64), quote!(::core::primitive::str), quote!(::core::primitive::usize));
         quote! {
-            #[doc = #description]
+            #description
             #[automatically_derived]
-            #[allow(dead_code)]
+            #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
             impl #impl_generics #ident #type_generics #where_clause {
                 /// Number of joints.
                 #vis const DOF: #usize = #dof;
                 /// Name of the robot.
                 #vis const NAME: &'static #str = #name;
-                /// Names of the joints, base to tip.
+                #[doc = #names]
                 #vis const JOINT_NAMES: [&'static #str; #dof] = [#(#joint_names),*];
-                /// Lowest and highest position of each joint, rad or m; infinite where the robot file has none.
+                #[doc = #positions]
                 #vis const POSITION_LIMITS: [(#f64, #f64); #dof] = [#(#position_limits),*];
-                /// Highest speed of each joint, rad/s or m/s; infinite where the robot file has none.
+                #[doc = #velocities]
                 #vis const VELOCITY_LIMITS: [#f64; #dof] = [#(#velocity_limits),*];
-                /// Highest torque or force of each joint, N m or N; infinite where the robot file has none.
+                #[doc = #efforts]
                 #vis const EFFORT_LIMITS: [#f64; #dof] = [#(#effort_limits),*];
                 /// Operations of one call of `inverse_dynamics`.
                 #vis const OPERATIONS: #krate::Operations = #krate::Operations {
@@ -169,7 +188,7 @@ impl Constants {
     fn of(robot: &Robot, programs: &[Program]) -> Self {
         let limits = || robot.joints.iter().map(|joint| &joint.limits);
         Self {
-            description: description::robot(robot),
+            description: Some(description::robot(robot)),
             name: robot.name.clone(),
             joint_names: robot.joints.iter().map(|joint| joint.name.clone()).collect(),
             position_limits: limits()
@@ -183,7 +202,7 @@ impl Constants {
 
     fn unknown(joints: usize) -> Self {
         Self {
-            description: String::new(),
+            description: None,
             name: String::new(),
             joint_names: vec![String::new(); joints],
             position_limits: vec![(f64::NEG_INFINITY, f64::INFINITY); joints],

@@ -1,4 +1,6 @@
-//! The derive macros of `rne`.
+//! The derive macros of `rne`; use them through that crate.
+//!
+//! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`.
 
 mod attribute;
 mod description;
@@ -6,10 +8,135 @@ mod error;
 mod expand;
 mod implementation;
 mod location;
+#[cfg(test)]
+mod tests;
 
 use proc_macro::TokenStream;
 
-/// Derives.
+/// Implements the trait `InverseDynamics` for a struct: the robot of a robot file, compiled together with the struct.
+///
+/// ```ignore
+/// use rne::InverseDynamics;
+///
+/// #[derive(InverseDynamics)]
+/// #[robot(path = "../robots/puma560.yaml")]
+/// pub struct Puma560;
+///
+/// let tau: [f64; 6] = Puma560.inverse_dynamics(&q, &qd, &qdd);
+/// ```
+///
+/// The robot file is read by the compiler. The recursion is unrolled for this one robot, everything that its table makes
+/// zero or one is folded, and what is left are straight-line methods: no allocation, no panic, no loop, no branch, no
+/// `unsafe`. They are generic over the scalar and need neither `std` nor the file at run time. A change of the file
+/// causes a new build.
+///
+/// The struct may have fields, lifetimes and parameters; the methods use none of them.
+///
+/// # `path = "…"`
+///
+/// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. A file that is not
+/// there is looked for in the package's folder (that of `Cargo.toml`); this serves editors that do not tell a macro its
+/// source file.
+///
+/// # `yaml = "…"`
+///
+/// The text of a robot file, in place of `path`:
+///
+/// ```
+/// use rne::InverseDynamics;
+///
+/// /// A uniform rod of 2.5 kg and 0.8 m that turns about one end, and hangs along x.
+/// #[derive(InverseDynamics)]
+/// #[robot(yaml = "
+///     format: 1
+///     name: rod
+///     source: lecture 38, one-link example
+///     convention: standard
+///     gravity: [9.81, 0, 0]
+///     joints:
+///       - type: revolute
+///         dh: {theta: 0, d: 0, a: 0.8, alpha: 0}
+///         link: {mass: 2.5, com: [-0.4, 0, 0], inertia: {yy: 2.5*0.8^2/12, zz: 2.5*0.8^2/12}}
+/// ")]
+/// struct Rod;
+///
+/// let [tau] = Rod.inverse_dynamics(&[0.6], &[1.3], &[-0.7]);
+/// assert!((tau - (2.5 * 0.8 * 0.8 * -0.7 / 3.0 + 2.5 * 9.81 * 0.4 * 0.6_f64.sin())).abs() < 1e-14);
+/// ```
+///
+/// # `form = "seven_steps"`
+///
+/// How the torques are computed. `seven_steps`, the default: every intermediate value is one of the textbook's ω, ω̇, ċ,
+/// c̈, g, f, n of a link.
+///
+/// # `max_ops = N`
+///
+/// The build fails when one call of `inverse_dynamics` takes more than `N` multiplications and additions together: a
+/// budget that a change of the table cannot exceed unnoticed. `rne ops FILE`, or the constant `OPERATIONS`, tells how many
+/// there are.
+///
+/// ```
+/// # use rne::InverseDynamics;
+/// #[derive(InverseDynamics)]
+/// #[robot(max_ops = 10, yaml = "
+///     format: 1
+///     name: slide
+///     source: own numbers
+///     convention: standard
+///     gravity: [0, 0, -9.81]
+///     joints:
+///       - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 2}}
+/// ")]
+/// struct Slide;
+///
+/// assert!(Slide::OPERATIONS.total() <= 10);
+/// ```
+///
+/// # `crate = path`
+///
+/// Where the generated code finds `rne`, when that is not `::rne`: under another name, or re-exported by another crate.
+/// A path, bare or in quotes, like serde's.
+///
+/// ```
+/// mod dynamics {
+///     pub use rne::*;
+/// }
+///
+/// #[derive(dynamics::InverseDynamics)]
+/// #[robot(crate = crate::dynamics, yaml = "
+///     format: 1
+///     name: slide
+///     source: own numbers
+///     convention: standard
+///     gravity: [0, 0, -9.81]
+///     joints:
+///       - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 2}}
+/// ")]
+/// struct Slide;
+/// # fn main() {}
+/// ```
+///
+/// # Constants
+///
+/// The type gets, as visible as it is itself:
+///
+/// | constant | |
+/// |---|---|
+/// | `DOF: usize` | number of joints |
+/// | `NAME: &str` | name of the robot |
+/// | `JOINT_NAMES: [&str; DOF]` | base to tip |
+/// | `POSITION_LIMITS: [(f64, f64); DOF]` | lowest and highest, rad or m; infinite where the file has none |
+/// | `VELOCITY_LIMITS: [f64; DOF]` | rad/s or m/s; infinite where the file has none |
+/// | `EFFORT_LIMITS: [f64; DOF]` | N m or N; infinite where the file has none |
+/// | `OPERATIONS: rne::Operations` | what one call of `inverse_dynamics` takes |
+///
+/// # Errors and lints
+///
+/// A mistake in the robot file is an error of the compiler with file, line, column, the line itself, what is allowed, and
+/// often what was probably meant. Whatever uses the struct still compiles, so that the mistake stands alone.
+///
+/// Lints, values that are allowed and yet suspicious (degrees for radians, 1.5708 for pi/2), are not shown: a macro has no
+/// way to warn. `rne check FILE` shows them.
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
 pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
     expand::inverse_dynamics(input.into()).into()

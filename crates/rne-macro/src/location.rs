@@ -21,18 +21,37 @@ pub(crate) struct RobotFile {
 #[derive(Debug)]
 pub(crate) enum Missing {
     /// It is in none of these places.
-    NotFound { written: String, tried: Vec<String> },
+    NotFound { written: String, tried: Vec<Place> },
     /// It is there and cannot be read.
     Unreadable { shown: String, error: io::Error },
+}
+
+/// A place where the file may be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    /// Which place that is, in words.
+    what: &'static str,
+    /// The file there.
+    file: PathBuf,
 }
 
 impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::NotFound { written, tried } => {
-                write!(f, "there is no robot file `{written}`; these places were tried:")?;
-                tried.iter().try_for_each(|place| write!(f, "\n  {place}"))?;
-                f.write_str("\nA relative path starts at the folder of the source file, like that of `include_str!`.")
+                write!(f, "there is no robot file `{written}`")?;
+                // An absolute path is one place, and has been named.
+                if Path::new(written).is_absolute() {
+                    return Ok(());
+                }
+                f.write_str("\n")?;
+                for Place { what, file } in tried {
+                    write!(f, "\n  {what}: {}", file.display())?;
+                }
+                f.write_str(
+                    "\n\na relative path starts at the folder of the source file, as with `include_str!`; \
+                     a file in the package folder is found as well\n",
+                )
             }
             Self::Unreadable { shown, error } => write!(f, "the robot file `{shown}` cannot be read: {error}"),
         }
@@ -46,17 +65,17 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     let working_directory = env::current_dir().unwrap_or_default();
     let written = literal.value();
     let places = places(Path::new(&written), source_file.as_deref(), package.as_deref());
-    let shown = |place: &Path| shown(&working_directory.join(place), &working_directory, package.as_deref());
-    for place in &places {
-        match fs::read(place) {
-            Ok(bytes) => {
-                return Ok(RobotFile { absolute: working_directory.join(place), shown: shown(place), bytes });
-            }
+    let short = |file: &Path| short(&working_directory.join(file), &working_directory, package.as_deref());
+    for Place { file, .. } in &places {
+        let shown = || short(file).map_or_else(|| written.clone(), |file| file.display().to_string());
+        match fs::read(file) {
+            Ok(bytes) => return Ok(RobotFile { absolute: working_directory.join(file), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-            Err(error) => return Err(Missing::Unreadable { shown: shown(place), error }),
+            Err(error) => return Err(Missing::Unreadable { shown: shown(), error }),
         }
     }
-    Err(Missing::NotFound { tried: places.iter().map(|place| shown(place)).collect(), written })
+    let tried = places.into_iter().map(|place| Place { file: short(&place.file).unwrap_or(place.file), ..place });
+    Err(Missing::NotFound { tried: tried.collect(), written })
 }
 
 /// The file in which the literal stands. The compiler knows it; some editors do not.
@@ -65,29 +84,28 @@ fn source_file(span: Span) -> Option<PathBuf> {
 }
 
 /// Where the file may be: beside the source file as with `include_str!`, then in the package's own folder. The second is
-/// for editors that do not tell the source file and for documentation tests, which have none of their own.
-fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) -> Vec<PathBuf> {
-    let beside = source_file.and_then(Path::parent).map(Path::to_owned);
-    let unknown = if source_file.is_none() { package.map(|package| package.join("src")) } else { None };
-    let mut places = Vec::new();
-    for folder in beside.into_iter().chain(unknown).chain(package.map(Path::to_owned)) {
-        let place = folder.join(written);
-        if !places.contains(&place) {
+/// for editors that do not tell the source file, and for documentation tests, which have none of their own.
+fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) -> Vec<Place> {
+    let beside = source_file.and_then(Path::parent).map(|folder| ("beside the source file", folder.to_owned()));
+    let sources = package.filter(|_| beside.is_none()).map(|package| ("in the sources", package.join("src")));
+    let package = package.map(|package| ("in the package folder", package.to_owned()));
+    let mut places: Vec<Place> = Vec::new();
+    for (what, folder) in beside.into_iter().chain(sources).chain(package) {
+        let place = Place { what, file: folder.join(written) };
+        // An absolute path is the same from everywhere.
+        if places.iter().all(|other| other.file != place.file) {
             places.push(place);
         }
-    }
-    if places.is_empty() {
-        places.push(written.to_owned());
     }
     places
 }
 
-/// A path as short as it gets: from the working directory, as the compiler shows its own, or from the package.
-fn shown(path: &Path, working_directory: &Path, package: Option<&Path>) -> String {
-    let path = normal(path);
-    let from = |folder: &Path| path.strip_prefix(normal(folder)).ok().map(Path::to_owned);
-    let short = from(working_directory).or_else(|| package.and_then(from)).unwrap_or_else(|| path.clone());
-    short.display().to_string()
+/// A path from the working directory, as the compiler shows its own, or from the package; `None` for one that is in
+/// neither.
+fn short(file: &Path, working_directory: &Path, package: Option<&Path>) -> Option<PathBuf> {
+    let file = normal(file);
+    let from = |folder: &Path| file.strip_prefix(normal(folder)).ok().map(Path::to_owned);
+    from(working_directory).or_else(|| package.and_then(from))
 }
 
 /// A path without `.` and `..`, as far as that is possible without asking the file system.
@@ -103,4 +121,40 @@ fn normal(path: &Path) -> PathBuf {
         }
     }
     normal
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(written: &str, source_file: Option<&str>) -> Vec<String> {
+        places(Path::new(written), source_file.map(Path::new), Some(Path::new("/arm")))
+            .iter()
+            .map(|place| normal(&place.file).display().to_string())
+            .collect()
+    }
+
+    #[test]
+    fn a_path_starts_at_the_source_file() {
+        assert_eq!(found("../robots/x.yaml", Some("/arm/src/main.rs")), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
+        assert_eq!(found("x.yaml", Some("src/main.rs")), ["src/x.yaml", "/arm/x.yaml"]);
+    }
+
+    #[test]
+    fn a_path_starts_in_the_package_when_the_source_file_is_unknown() {
+        assert_eq!(found("../robots/x.yaml", None), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
+    }
+
+    #[test]
+    fn an_absolute_path_is_one_place() {
+        assert_eq!(found("/robots/x.yaml", Some("/arm/src/main.rs")), ["/robots/x.yaml"]);
+    }
+
+    #[test]
+    fn messages_show_a_file_as_the_compiler_would() {
+        let short = |file| short(Path::new(file), Path::new("/work"), Some(Path::new("/elsewhere/arm")));
+        assert_eq!(short("/work/arm/src/../robots/x.yaml"), Some("arm/robots/x.yaml".into()));
+        assert_eq!(short("/elsewhere/arm/robots/x.yaml"), Some("robots/x.yaml".into()));
+        assert_eq!(short("/robots/x.yaml"), None);
+    }
 }
