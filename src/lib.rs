@@ -1,3 +1,80 @@
-//! rne
-pub use rne_runtime::*;
+//! The dynamics compiler for robot arms: a Denavit-Hartenberg table becomes straight-line recursive Newton-Euler code,
+//! while your program is compiled.
+//!
+//! ```
+//! use rne::InverseDynamics;
+//!
+//! #[derive(InverseDynamics)]
+//! #[robot(path = "robots/puma560.yaml")] // beside this source file, or in the folder of Cargo.toml
+//! pub struct Puma560;
+//!
+//! let q = [0.0, 0.8, -0.4, 0.0, 0.5, 0.0]; // rad
+//! let tau: [f64; 6] = Puma560.inverse_dynamics(&q, &[0.1; 6], &[0.0; 6]); // N m
+//! assert_eq!(Puma560::DOF, tau.len());
+//! ```
+//!
+//! `robots/puma560.yaml` holds the table of the arm and the mass, centre of mass and inertia of each link. The
+//! [derive](derive@InverseDynamics) reads it at compile time, writes the seven steps of the recursion for each link, folds
+//! what this arm's right angles and zeros make trivial, and leaves a few hundred multiplications and additions with names
+//! such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The counts, before and after,
+//! stand in the documentation of your type. A mistake in the file is a compiler error that points into the file.
+//!
+//! # What a robot can compute
+//!
+//! One trait per capability, generic over the [`Scalar`]: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
+//!
+//! | trait | methods |
+//! |---|---|
+//! | [`InverseDynamics`] | torques from motion, with or without a [`Wrench`] at the tip; gravity torques; bias torques |
+//!
+//! # A robot at run time
+//!
+//! [`Arm`] implements the same traits for a robot that is loaded when the program runs, by the recursion as a textbook
+//! writes it, with loops and vectors. Generated code computes the same bits and is tested against it. `DynArm` does so for
+//! a number of joints that is not known either.
+//!
+//! ```
+//! # #[cfg(feature = "std")] {
+//! use rne::{Arm, InverseDynamics};
+//! # #[derive(InverseDynamics)]
+//! # #[robot(path = "robots/puma560.yaml")]
+//! # pub struct Puma560;
+//!
+//! let arm = Arm::<6>::from_file("robots/puma560.yaml")?;
+//! let q = [0.0, 0.8, -0.4, 0.0, 0.5, 0.0];
+//! assert_eq!(arm.gravity_torques(&q), Puma560.gravity_torques(&q));
+//!
+//! // Every vector of the seven steps, for a lesson or for a comparison by hand.
+//! let trace = arm.trace(&q, &[0.1; 6], &[0.0; 6], &arm.fixed_base(), None);
+//! assert_eq!(trace.links.len(), 6);
+//! # }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # Without `std`
+//!
+//! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and `Arm::new` need neither `std` nor
+//! an allocator. The robot file is read on the machine that compiles.
+//!
+//! # Conventions
+//!
+//! - Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
+//! - Torques are what the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q), without friction and rotor inertia.
+//! - A table says whether its rows are `standard` (distal) or `modified` (proximal, Craig); it is never guessed.
+//! - `gravity` is the acceleration of gravity in frame 0: `[0, 0, -9.81]` when z points up.
+//! - A [`Wrench`] is exerted by the last link on its environment, at the tip frame, in its axes: τ = τ_free + Jᵀ w.
+//! - Inertia tensors are tensors: `xy` is -∫ x y dm; about the centre of mass unless the file says otherwise.
+//!
+//! # Robot files
+//!
+//! [`model`] reads and checks them, and has the plain types of the table that [`Arm::new`] takes: one YAML document per
+//! arm, where every number may be an expression (`pi/2`, `m*a^2/12`).
+//! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
+#![cfg_attr(not(feature = "std"), no_std)]
+
+#[doc(inline)]
 pub use rne_macro::InverseDynamics;
+#[doc(inline)]
+pub use rne_model as model;
+#[doc(inline)]
+pub use rne_runtime::*;
