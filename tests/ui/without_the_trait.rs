@@ -1,0 +1,8 @@
+#[derive(rne::InverseDynamics)]
+#[robot(path = "robots/rod.yaml")]
+struct Rod;
+
+fn main() {
+    let tau: [f64; 1] = Rod.inverse_dynamics(&[0.6], &[1.3], &[-0.7]);
+    println!("{tau:?}");
+}
