@@ -1,0 +1,57 @@
+//! Generated code is quiet where everything is forbidden.
+#![no_std]
+#![no_implicit_prelude]
+#![forbid(unsafe_code, missing_docs, unused, nonstandard_style, rust_2018_idioms, let_underscore)]
+#![deny(warnings, unreachable_pub, missing_debug_implementations, missing_copy_implementations, unused_qualifications)]
+#![deny(clippy::all, clippy::pedantic, clippy::nursery)]
+#![deny(clippy::indexing_slicing, clippy::panic, clippy::unwrap_used, clippy::expect_used, clippy::integer_division)]
+#![deny(clippy::shadow_reuse, clippy::shadow_same, clippy::absolute_paths, clippy::min_ident_chars)]
+#![deny(clippy::std_instead_of_core, clippy::alloc_instead_of_core, clippy::infinite_loop, clippy::exit)]
+
+use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option};
+use ::dynamics::InverseDynamics;
+
+/// Seven joints, with limits.
+#[derive(InverseDynamics, Clone, Copy, Debug)]
+#[robot(path = "../../../robots/panda.yaml", crate = ::dynamics)]
+pub struct Panda;
+
+/// Standard rows, with a tool of the user's own.
+#[derive(InverseDynamics, Clone, Copy, Debug, PartialEq, Eq)]
+#[robot(path = "../../../robots/puma560.yaml", crate = "::dynamics")]
+pub struct Puma560<T, const TOOLS: usize>
+where
+    T: Copy + PartialEq,
+{
+    /// The tools.
+    pub tools: [Option<T>; TOOLS],
+}
+
+/// Numbers that look like π and e.
+#[derive(InverseDynamics, Clone, Copy, Debug)]
+#[robot(crate = ::dynamics, yaml = "
+    format: 1
+    name: slides
+    source: own numbers
+    convention: standard
+    gravity: [0, 0, -9.81]
+    joints:
+      - type: prismatic
+        dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0.693}
+        link: {mass: 3.14, com: [0.318, 0.707, 1.57]}
+        limits: {position: [-3.14159, 2.718], velocity: 6.283, effort: 0.434}
+      - type: revolute
+        dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0}
+        link: {mass: 3.14, com: [0.318, 0.707, 1.57]}
+")]
+pub struct Slides;
+
+#[derive(InverseDynamics)]
+#[robot(path = "../../../robots/planar1.yaml", crate = ::dynamics)]
+struct Private;
+
+/// Something to call it with.
+#[must_use]
+pub fn torques(angle: f32) -> ([f32; 1], [f64; Panda::DOF]) {
+    (Private.gravity_torques(&[angle]), Panda.gravity_torques(&[0.0; Panda::DOF]))
+}

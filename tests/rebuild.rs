@@ -1,0 +1,105 @@
+//! A change of the robot file reaches the program with the next build.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const MANIFEST: &str = r#"
+[package]
+name = "rebuild"
+version = "0.0.0"
+edition = "2024"
+
+[dependencies]
+rne = { path = '<rne>', default-features = false }
+
+[workspace]
+"#;
+
+const PROGRAM: &str = r#"
+use rne::InverseDynamics;
+
+#[derive(InverseDynamics)]
+#[robot(path = "../robots/slide.yaml")]
+struct Slide;
+
+fn main() {
+    let [force] = Slide.gravity_torques(&[0.0_f64]);
+    println!("{force}");
+}
+"#;
+
+const ROBOT: &str = "
+format: 1
+name: slide
+source: own numbers
+convention: standard
+gravity: [0, 0, -10]
+joints:
+  - type: prismatic
+    dh: {theta: 0, d: 0, a: 0, alpha: 0}
+    link: {mass: <mass>}
+";
+
+/// A program of a user, outside this workspace.
+struct Program {
+    folder: PathBuf,
+}
+
+impl Program {
+    fn new() -> Self {
+        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuild");
+        fs::create_dir_all(folder.join("src")).expect("a folder for sources");
+        fs::create_dir_all(folder.join("robots")).expect("a folder for robots");
+        let manifest = MANIFEST.replace("<rne>", &package.display().to_string());
+        fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
+        fs::write(folder.join("src/main.rs"), PROGRAM).expect("the program");
+        // The versions that are at hand, since they built this test: the builds below need no network.
+        fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
+        Self { folder }
+    }
+
+    fn write_robot(&self, mass: &str) {
+        fs::write(self.folder.join("robots/slide.yaml"), ROBOT.replace("<mass>", mass)).expect("the robot file");
+    }
+
+    fn run(&self) -> Output {
+        Command::new(env!("CARGO"))
+            .args(["run", "--offline", "--quiet", "--target-dir"])
+            .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
+            .current_dir(&self.folder)
+            // Flags of the calling build (coverage, sanitizers) are not the user's.
+            .env_remove("RUSTFLAGS")
+            .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            .output()
+            .expect("cargo runs")
+    }
+
+    fn printed(&self) -> String {
+        let output = self.run();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8_lossy(&output.stdout).trim().to_owned()
+    }
+}
+
+#[test]
+fn a_changed_robot_file_is_compiled_again() {
+    let program = Program::new();
+    program.write_robot("2.5");
+    assert_eq!(program.printed(), "25");
+    program.write_robot("4");
+    assert_eq!(program.printed(), "40");
+
+    // As a user sees it, with the place in the file that an editor can jump to.
+    program.write_robot("-4");
+    let output = program.run();
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(messages.contains("--> robots/slide.yaml:10:18"), "{messages}");
+    assert!(messages.contains("--> src/main.rs:5:16"), "{messages}");
+    assert!(!messages.contains("warning"), "{messages}");
+
+    program.write_robot("0.5");
+    assert_eq!(program.printed(), "5");
+}
