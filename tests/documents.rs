@@ -1,0 +1,111 @@
+//! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
+//!
+//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use rne_codegen::emit::{Listing, listing};
+use rne_codegen::{Form, Function, Program, Step, compile};
+use rne_model::{JointKind, Robot};
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn robot(path: &Path) -> Robot {
+    Robot::from_yaml(&read(path)).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn inverse_dynamics(robot: &Robot) -> Program {
+    compile(robot, Function::InverseDynamics, Form::SevenSteps).expect("finite constants")
+}
+
+/// The shipped robot files, by name.
+fn robot_files() -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(root().join("robots")).expect("the folder of robots");
+    let mut files: Vec<PathBuf> = folder.map(|entry| entry.expect("an entry").path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+    files.retain(|path| !path.to_string_lossy().ends_with(".plan.yaml"));
+    files.sort();
+    files
+}
+
+/// The text of a block of a document.
+fn block(name: &str) -> String {
+    match name {
+        "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
+        "code" => {
+            let robot = robot(&root().join("robots/puma560.yaml"));
+            let program = inverse_dynamics(&robot);
+            let steps = Step::ALL.iter().take(5).map(|&step| {
+                listing(&robot, &program, Listing { joint: Some(3), step: Some(step), ..Listing::default() })
+            });
+            let code: Vec<String> = steps.filter(|text| !text.trim().is_empty()).collect();
+            format!("```rust\n{}```\n", code.join("\n"))
+        }
+        "robots" => robots(),
+        name => panic!("no block is called `{name}`"),
+    }
+}
+
+fn robots() -> String {
+    let mut text = String::from("| robot | joints | products | sums | both | angles |\n|---|---|---|---|---|---|\n");
+    for path in robot_files() {
+        let robot = robot(&path);
+        let counts = inverse_dynamics(&robot).operations();
+        let joints: String = robot
+            .rows()
+            .map(|row| match row.kind {
+                JointKind::Revolute => 'R',
+                JointKind::Prismatic => 'P',
+            })
+            .collect();
+        let title = robot.title.as_deref().unwrap_or(&robot.name);
+        let file = &robot.name;
+        let _ = writeln!(
+            text,
+            "| [{title}](robots/{file}.yaml) | {joints} | {} | {} | {} | {} |",
+            counts.mul,
+            counts.add,
+            counts.total(),
+            counts.sincos
+        );
+    }
+    text
+}
+
+/// A document with every block as it should be.
+fn renewed(document: &str) -> String {
+    let mut text = String::new();
+    let mut lines = document.lines();
+    while let Some(line) = lines.next() {
+        text.push_str(line);
+        text.push('\n');
+        if let Some(heading) = line.strip_prefix("<!-- begin: ") {
+            let name = heading.split([',', ' ']).next().unwrap_or_default();
+            text.push_str(&block(name));
+            let end = lines.by_ref().find(|line| *line == "<!-- end -->").expect("every block ends");
+            text.push_str(end);
+            text.push('\n');
+        }
+    }
+    text
+}
+
+#[test]
+fn documents_say_what_the_code_prints() {
+    for path in [root().join("README.md")] {
+        let document = read(&path);
+        let renewed = renewed(&document);
+        if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
+            std::fs::write(&path, &renewed).expect("a writable file");
+        } else {
+            assert_eq!(document, renewed, "{}: RNE_WRITE_DOCUMENTS=1 cargo test --test documents", path.display());
+        }
+    }
+}
