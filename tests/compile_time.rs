@@ -1,0 +1,92 @@
+//! What a derive costs the user's build: a chain of 30 dense joints, built in a crate of its own.
+//!
+//! `cargo test --test compile_time -- --nocapture` prints the figures. The expansion alone is timed where it is written:
+//! `cargo test -p rne-macro expansion -- --nocapture`.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Instant;
+
+use rne::DynArm;
+use rne_codegen::{Form, Function, compile};
+use rne_model::Robot;
+
+const JOINTS: usize = 30;
+
+/// A chain in which no number is zero and no angle right.
+fn chain() -> String {
+    let mut text =
+        format!("format: 1\nname: chain\nsource: no arm\nconvention: standard\ngravity: [1, 2, -9]\njoints:\n");
+    for joint in 1..=JOINTS {
+        let _ = writeln!(
+            text,
+            "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    link: {{mass: 1.{joint}, \
+             com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
+        );
+    }
+    text
+}
+
+/// A user's crate that derives the chain and prints its torques at q = q̇ = q̈ = 0.1.
+fn user() -> PathBuf {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("chain");
+    fs::create_dir_all(folder.join("src")).expect("a folder for sources");
+    let manifest = format!(
+        "[package]\nname = \"chain\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
+         rne = {{ path = '{}', default-features = false }}\n\n[workspace]\n",
+        package.display()
+    );
+    let program = format!(
+        "use rne::InverseDynamics;\n\n#[derive(InverseDynamics)]\n#[robot(path = \"../chain.yaml\")]\nstruct Chain;\n\n\
+         fn main() {{\n    let x = [0.1_f64; {JOINTS}];\n    println!(\"{{:?}}\", Chain.inverse_dynamics(&x, &x, &x));\n}}\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
+    fs::write(folder.join("chain.yaml"), chain()).expect("the robot file");
+    fs::write(folder.join("src/main.rs"), program).expect("the program");
+    // The versions that are at hand, since they built this test: the build below needs no network.
+    fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
+    folder
+}
+
+fn cargo(folder: &Path, command: &str) -> String {
+    let output = Command::new(env!("CARGO"))
+        .args([command, "--offline", "--quiet", "--target-dir"])
+        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
+        .current_dir(folder)
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).trim().to_owned()
+}
+
+#[test]
+fn a_chain_of_thirty_joints_builds() {
+    let robot = Robot::from_yaml(&chain()).unwrap_or_else(|report| panic!("{report}"));
+    let start = Instant::now();
+    let operations: usize = Function::ALL
+        .iter()
+        .map(|&function| compile(&robot, function, Form::SevenSteps).expect("finite constants").operations().total())
+        .sum();
+    println!(
+        "{JOINTS} joints, four functions, {operations} operations: compiled to programs in {:.1?}",
+        start.elapsed()
+    );
+
+    let folder = user();
+    cargo(&folder, "build"); // its dependencies, and itself once
+    let main = folder.join("src/main.rs");
+    let program = fs::read_to_string(&main).expect("the program");
+    fs::write(&main, program + "// changed\n").expect("the program");
+    let start = Instant::now();
+    cargo(&folder, "build");
+    println!("{JOINTS} joints: the user's crate is built again in {:.1?} (dev profile)", start.elapsed());
+
+    let x = [0.1; JOINTS];
+    let torques = DynArm::from_robot(&robot).inverse_dynamics(&x, &x, &x).expect("the right length");
+    assert_eq!(cargo(&folder, "run"), format!("{torques:?}"));
+}
