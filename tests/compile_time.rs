@@ -18,7 +18,7 @@ const JOINTS: usize = 30;
 /// A chain in which no number is zero and no angle right.
 fn chain() -> String {
     let mut text =
-        format!("format: 1\nname: chain\nsource: no arm\nconvention: standard\ngravity: [1, 2, -9]\njoints:\n");
+        String::from("format: 1\nname: chain\nsource: no arm\nconvention: standard\ngravity: [1, 2, -9]\njoints:\n");
     for joint in 1..=JOINTS {
         let _ = writeln!(
             text,
