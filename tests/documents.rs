@@ -9,6 +9,9 @@ use rne_codegen::emit::{Listing, listing};
 use rne_codegen::{Form, Function, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
+/// The documents with blocks.
+const DOCUMENTS: &[&str] = &["README.md"];
+
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -99,7 +102,8 @@ fn renewed(document: &str) -> String {
 
 #[test]
 fn documents_say_what_the_code_prints() {
-    for path in [root().join("README.md")] {
+    for name in DOCUMENTS {
+        let path = root().join(name);
         let document = read(&path);
         let renewed = renewed(&document);
         if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
@@ -108,4 +112,13 @@ fn documents_say_what_the_code_prints() {
             assert_eq!(document, renewed, "{}: RNE_WRITE_DOCUMENTS=1 cargo test --test documents", path.display());
         }
     }
+}
+
+#[test]
+fn the_robot_file_of_the_readme_is_valid() {
+    let document = read(&root().join("README.md"));
+    let (_, rest) = document.split_once("```yaml\n").expect("a robot file");
+    let (yaml, _) = rest.split_once("```").expect("its end");
+    let checked = rne_model::check("README.md", yaml).unwrap_or_else(|report| panic!("{report}"));
+    assert!(checked.lints.is_empty(), "{}", checked.lints);
 }
