@@ -272,10 +272,22 @@ pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&
         return Some(*value);
     }
     let message = format!("unknown {what} {}; it must be {allowed}", node.described());
-    let meant = did_you_mean(&scalar.text, words.iter().map(|(word, _)| *word));
+    let meant = did_you_mean(&scalar.text, words.iter().map(|(word, _)| *word))
+        .or_else(|| synonym(&scalar.text).filter(|meant| words.iter().any(|(word, _)| word == meant)));
     cx.refuse(
         Diagnostic::error(node.span.clone(), message)
             .label(format!("must be {allowed}"))
             .maybe_help(meant.map(|meant| format!("did you mean `{meant}`?"))),
     )
+}
+
+/// The format's word for a word of others.
+fn synonym(word: &str) -> Option<&'static str> {
+    Some(match word.to_lowercase().as_str() {
+        "r" | "rotary" | "rotational" | "rotation" | "hinge" | "continuous" | "turning" => "revolute",
+        "p" | "t" | "linear" | "translational" | "translation" | "sliding" | "slider" => "prismatic",
+        "distal" | "classic" | "classical" | "paul" => "standard",
+        "proximal" | "craig" | "khalil" | "mdh" => "modified",
+        _ => return None,
+    })
 }

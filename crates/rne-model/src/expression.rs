@@ -11,6 +11,7 @@
 use std::f64::consts::PI;
 use std::ops::Range;
 
+use crate::diagnostic::Diagnostic;
 use crate::source::quoted;
 use crate::spelling::did_you_mean;
 
@@ -189,6 +190,7 @@ impl Expression {
 
     /// The value. `Err(None)` when it depends on a faulty parameter: that mistake is reported where it was made.
     pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<f64, Option<Mistake>> {
+        let mut divides_by_zero = false;
         let value = match &self.kind {
             Kind::Number(value) => *value,
             Kind::Name(name) => match names.meaning(name) {
@@ -204,7 +206,15 @@ impl Expression {
                 Meaning::Unknown => return Err(Some(unknown_name(name, self.range.clone(), names))),
             },
             Kind::Negate(operand) => -operand.evaluate(text, names)?,
-            Kind::Binary(operator, a, b) => operator.apply(a.evaluate(text, names)?, b.evaluate(text, names)?),
+            Kind::Binary(operator, a, b) => {
+                let (a, b) = (a.evaluate(text, names)?, b.evaluate(text, names)?);
+                divides_by_zero = match operator {
+                    Operator::Divide => b == 0.0,
+                    Operator::Power => a == 0.0,
+                    _ => false,
+                };
+                operator.apply(a, b)
+            }
             Kind::Call(function, argument) => function.apply(argument.evaluate(text, names)?),
         };
         if value.is_finite() {
@@ -216,14 +226,68 @@ impl Expression {
                 format!("{part} is not a real number; numbers are real and finite"),
                 "check for the root of a negative number and for 0/0",
             )
+        } else if divides_by_zero {
+            (format!("{part} is infinite; numbers are finite"), "check for a division by zero")
         } else {
-            (format!("{part} is infinite or too large; numbers are finite"), "check for a division by zero")
+            (
+                format!("{part} is too large for a 64-bit float; numbers are below 1.8e308"),
+                "check the exponents and the factors",
+            )
         };
         Err(Some(Mistake::new(self.range.clone(), message).help(help)))
     }
 }
 
+/// A number as a robot file has it: a decimal, or an expression over numbers, `pi`, `+ - * / ^`, parentheses and
+/// `sqrt sin cos tan deg`. There are no parameters.
+///
+/// ```
+/// assert_eq!(rne_model::number("-pi/2"), Ok(-std::f64::consts::FRAC_PI_2));
+/// assert_eq!(rne_model::number("pi/x").unwrap_err().message, "unknown name `x`");
+/// ```
+///
+/// # Errors
+///
+/// What is wrong, and where in the text.
+pub fn number(text: &str) -> Result<f64, Diagnostic> {
+    struct Nameless;
+    impl Names for Nameless {
+        fn meaning(&self, _: &str) -> Meaning {
+            Meaning::Unknown
+        }
+        fn similar(&self, _: &str) -> Option<String> {
+            None
+        }
+    }
+    let value = Expression::parse(text).map_err(Some).and_then(|expression| expression.evaluate(text, &Nameless));
+    match value {
+        // -0 is 0, as in a file.
+        Ok(value) => Ok(value + 0.0),
+        Err(mistake) => {
+            let Mistake { range, message, help } =
+                mistake.unwrap_or_else(|| Mistake::new(0..text.len(), "this is no number"));
+            let column = text.get(..range.start).map_or(0, |before| before.chars().count()) + 1;
+            // What a file allows is more than what is allowed here.
+            let help = (!help.contains(ALLOWED)).then_some(help);
+            Err(Diagnostic { column, ..Diagnostic::error(range, message).maybe_help(help) })
+        }
+    }
+}
+
+/// Whether a name is one that textbooks give a joint variable: q, q2, q_2, theta2.
+fn is_joint_variable(name: &str) -> bool {
+    let index = name.strip_prefix("theta").or_else(|| name.strip_prefix('q'));
+    index.is_some_and(|index| index.trim_start_matches('_').chars().all(|c| c.is_ascii_digit() || c == 'i'))
+}
+
 fn unknown_name(name: &str, range: Range<usize>, names: &impl Names) -> Mistake {
+    if ["nan", "inf", "infinity"].contains(&name.to_lowercase().as_str()) {
+        return no_digits(name, range);
+    }
+    if is_joint_variable(name) && names.similar(name).is_none() {
+        return Mistake::new(range, format!("unknown name {}", quoted(name)))
+            .help("if this is the joint variable: it is added by itself; write the constant part alone, such as 0");
+    }
     let known = did_you_mean(name, ["pi"].into_iter().chain(Function::NAMES)).map(str::to_owned);
     let mistake = Mistake::new(range, format!("unknown name {}", quoted(name)));
     match known.or_else(|| names.similar(name)) {
@@ -392,7 +456,7 @@ impl<'t> Parser<'t> {
                 .help(format!("{help}; {ALLOWED}"))
         };
         if mantissa == 0 {
-            return Err(wrong("numbers are finite and written in digits", "a limit that is unknown is left out"));
+            return Err(no_digits(self.text.get(range.clone()).unwrap_or_default(), range));
         }
         if tail.starts_with('_') {
             return Err(wrong("no digits are grouped", "delete the `_`"));
@@ -447,12 +511,24 @@ impl<'t> Parser<'t> {
     }
 
     fn no_operator(&mut self) -> Mistake {
-        let range = self.here();
         let c = self.peek().unwrap_or(' ');
+        let range = self.here();
+        let before = self.text.get(..self.at).unwrap_or_default().trim_end();
+        let degrees = before.trim_start_matches(|c: char| !c.is_ascii_digit());
+        if c == '°' && degrees.parse::<f64>().is_ok() {
+            let message = format!("{} is not part of an expression", quoted("°"));
+            return Mistake::new(range, message).help(format!("angles are in radians: write `deg({degrees})`"));
+        }
         foreign(c, range.clone()).unwrap_or_else(|| {
             Mistake::new(range, format!("{} stands where an operator is needed", quoted(&c.to_string())))
         })
     }
+}
+
+/// `.nan`, `NaN`, `.inf`: what other readers take for a number.
+fn no_digits(found: &str, range: Range<usize>) -> Mistake {
+    Mistake::new(range, format!("{} is not a number here: numbers are finite and written in digits", quoted(found)))
+        .help(format!("a limit that is unknown is left out; {ALLOWED}"))
 }
 
 /// Characters that come with numbers copied from papers and other formats.

@@ -115,7 +115,10 @@ fn what_is_no_number_says_why_and_where() {
         (".inf", 1, 4, "`.inf` is not a number here: numbers are finite", "left out"),
         ("-.INF", 2, 5, "numbers are finite", "left out"),
         (".nan", 1, 4, "numbers are finite", "left out"),
-        ("inf", 1, 3, "unknown name `inf`", "a finite decimal"),
+        ("inf", 1, 3, "`inf` is not a number here: numbers are finite", "left out"),
+        ("NaN", 1, 3, "`NaN` is not a number here: numbers are finite", "left out"),
+        ("q1", 1, 2, "unknown name `q1`", "added by itself"),
+        ("pi/2 + theta_2", 8, 14, "unknown name `theta_2`", "added by itself"),
         ("true", 1, 4, "unknown name `true`", "a finite decimal"),
         ("", 1, 0, "a number is missing", "a finite decimal"),
         ("  ", 1, 2, "a number is missing", "a finite decimal"),
@@ -158,7 +161,9 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("m**2", 2, 3, "`**` is not an operator", "`^`"),
         ("2 % 3", 3, 3, "`%` stands where an operator is needed", ""),
         ("* 3", 1, 1, "`*` stands where a number", ""),
-        ("1 + 1/0", 5, 7, "`1/0` is infinite or too large", "division by zero"),
+        ("1 + 1/0", 5, 7, "`1/0` is infinite", "division by zero"),
+        ("0^-1", 1, 4, "`0^-1` is infinite", "division by zero"),
+        ("1 + 2^9999", 5, 10, "`2^9999` is too large for a 64-bit float", "check the exponents"),
         ("1/(1/0)", 3, 7, "is infinite", "division by zero"),
         ("2*sqrt(-1)", 3, 10, "`sqrt(-1)` is not a real number", "root"),
         ("0/0", 1, 3, "not a real number", ""),
@@ -168,7 +173,9 @@ fn mistakes_in_expressions_point_at_their_column() {
         ("2·3", 2, 3, "`·` is not part", "write `*`"),
         ("−1", 1, 3, "`−` is not part", "minus sign of the keyboard"),
         ("π/2", 1, 2, "`π` is not part", "write `pi`"),
-        ("90°", 3, 4, "`°` is not part", "`deg(…)`"),
+        ("90°", 3, 4, "`°` is not part", "write `deg(90)`"),
+        ("-22.5 °", 7, 8, "`°` is not part", "write `deg(22.5)`"),
+        ("°", 1, 2, "`°` is not part", "`deg(…)`"),
     ] {
         let found = mistake(text);
         assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);

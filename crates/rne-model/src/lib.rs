@@ -1,7 +1,8 @@
 //! The robot file: one YAML document per robot, with its Denavit-Hartenberg table and inertial data.
 //!
 //! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every
-//! mistake with line, column and what is allowed. Strings in, data out: nothing here opens a file.
+//! mistake with line, column and what is allowed. Strings in, data out: nothing here opens a file; who does reads it with
+//! [`read_limited`].
 //!
 //! ```
 //! # #[cfg(feature = "std")] {
@@ -66,4 +67,8 @@ pub use check::{Checked, check, check_bytes};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
+pub use expression::number;
+#[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Motor, Robot};
+#[cfg(feature = "std")]
+pub use source::read_limited;

@@ -1,7 +1,7 @@
 //! Lints: values that are allowed and yet are probably not what was meant.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use std::ops::Range;
+use std::ops::{Range, RangeInclusive};
 
 use crate::angle::nearest_right_angle;
 use crate::decode::Context;
@@ -17,6 +17,8 @@ const NEARLY: f64 = 2e-4;
 const LONGEST: f64 = 20.0;
 /// No arm has a heavier link, kg.
 const HEAVIEST: f64 = 2000.0;
+/// What the acceleration of gravity measures on Earth, generously, m/s².
+const GRAVITY: RangeInclusive<f64> = 8.0..=11.0;
 /// Four turns; more in a revolute joint's limits are degrees.
 const WIDEST: f64 = 8.0 * PI;
 
@@ -55,6 +57,33 @@ fn right_angle_spelling(radians: f64) -> String {
         2.0 => format!("{sign}pi"),
         n if n % 2.0 == 0.0 => format!("{sign}{}*pi", n / 2.0),
         n => format!("{sign}{n}*pi/2"),
+    }
+}
+
+/// Gravity of another size than on Earth, or upwards.
+pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
+    let size = libm::sqrt(x * x + y * y + z * z);
+    if size != 0.0 && !GRAVITY.contains(&size) {
+        let message = format!("gravity accelerates by {} m/s²; on Earth it is 9.81 m/s²", rounded(size));
+        let label = if GRAVITY.contains(&(size / 1000.0)) {
+            "millimetres?"
+        } else if GRAVITY.contains(&(size * 9.81)) {
+            "in multiples of g?"
+        } else {
+            "another planet?"
+        };
+        cx.report(
+            Diagnostic::lint(node.span.clone(), message)
+                .label(label)
+                .help("gravity is an acceleration in m/s², such as `[0, 0, -9.81]`; without gravity write `[0, 0, 0]`"),
+        );
+    } else if x == 0.0 && y == 0.0 && z > 0.0 {
+        let message = format!("gravity {} points along the positive z axis of frame 0", quoted(cx.raw(node)));
+        cx.report(Diagnostic::lint(node.span.clone(), message).label("upwards?").help(format!(
+            "the acceleration of gravity points down: is `[0, 0, {}]` meant? if z of frame 0 points down, as where the \
+             arm hangs from the ceiling, it is right as it stands",
+            rounded(-z)
+        )));
     }
 }
 

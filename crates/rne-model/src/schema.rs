@@ -7,7 +7,7 @@ use crate::decode::{Context, Parameter, choice, list, not_negative, number, read
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Entry, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
-use crate::source::{quoted, rounded};
+use crate::source::{is_control, is_line_break, quoted, rounded};
 use crate::{
     Angle, Convention, Dh, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Row, Transform,
     inertia, lint,
@@ -28,12 +28,12 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     read_mapping!(cx, node, "a robot file", {
         _format: required "format" format,
         name: required "name" robot_name,
-        title: optional "title" text,
-        source: required "source" text,
-        notes: optional "notes" text,
+        title: optional "title" |cx, node| one_line(cx, node, "title"),
+        source: required "source" lines,
+        notes: optional "notes" lines,
         parameters: or(Vec::new()) "parameters" parameters,
         convention: required "convention" convention,
-        gravity: required "gravity" |cx, node| list(cx, node, "[x, y, z] (m/s²)", number),
+        gravity: required "gravity" gravity,
         base: or(Transform::IDENTITY) "base" transform,
         tool: or(Transform::IDENTITY) "tool" transform,
         joints: required "joints" joints,
@@ -58,6 +58,42 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
         quoted(&name)
     );
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("a name for people goes into `title`"))
+}
+
+/// A text of one line: it stands in headings and in comments of generated code.
+fn one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
+    let text = printable(cx, node, &format!("the {what}"), is_line_break)?;
+    if !text.contains(is_line_break) {
+        return Some(text);
+    }
+    let message = format!("the {what} {} has a line break; a {what} is one line", quoted(&text));
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("more than one line"))
+}
+
+/// A text that may have several lines.
+fn lines(cx: &Context, node: &Node) -> Option<String> {
+    printable(cx, node, "the text", |c| is_line_break(c) || c == '\t')
+}
+
+/// A text without control characters but those allowed.
+fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) -> bool) -> Option<String> {
+    let text = text(cx, node)?;
+    let Some(control) = text.chars().find(|&c| is_control(c) && !is_allowed(c)) else {
+        return Some(text);
+    };
+    let message = format!(
+        "{what} {} has the control character U+{:04X}; it must be readable text",
+        quoted(&text),
+        u32::from(control)
+    );
+    cx.refuse(Diagnostic::error(node.span.clone(), message).label("control character"))
+}
+
+/// The acceleration of gravity in frame 0.
+fn gravity(cx: &Context, node: &Node) -> Option<[f64; 3]> {
+    let gravity = list(cx, node, "[x, y, z] (m/s²)", number)?;
+    lint::gravity(cx, node, gravity);
+    Some(gravity)
 }
 
 fn convention(cx: &Context, node: &Node) -> Option<Convention> {
@@ -155,7 +191,7 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
 
 fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
     read_mapping!(cx, node, "a joint", {
-        name: or(default_name.to_owned()) "name" joint_name,
+        name: or(default_name.to_owned()) "name" |cx, node| one_line(cx, node, "joint name"),
         kind: required "type" joint_kind,
         dh: required "dh" dh,
         link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" link,
@@ -167,15 +203,6 @@ fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
     }
     let (link, written_inertia) = link;
     Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor })
-}
-
-fn joint_name(cx: &Context, node: &Node) -> Option<String> {
-    let name = text(cx, node)?;
-    if !name.contains(char::is_control) {
-        return Some(name);
-    }
-    let message = format!("the joint name {} has a line break; a joint name is one line", quoted(&name));
-    cx.refuse(Diagnostic::error(node.span.clone(), message))
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {

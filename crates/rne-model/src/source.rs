@@ -1,5 +1,6 @@
 //! From bytes to text: what must hold before YAML is spoken of.
 
+use std::io::{self, Read};
 use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, Problems};
@@ -7,13 +8,25 @@ use crate::diagnostic::{Diagnostic, Problems};
 /// The largest file that is read. The longest table, 64 joints, needs a fiftieth of it.
 const MAX_BYTES: usize = 1 << 20;
 
+/// The bytes of a robot file for [`check_bytes`](crate::check_bytes), and no more of them than tell that a file is too
+/// long: a device without an end, or a huge file, takes neither memory nor time.
+///
+/// # Errors
+///
+/// As [`Read::read_to_end`].
+pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    reader.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
 /// Whether a file of `length` bytes is read at all.
 pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {
     if length > MAX_BYTES {
         problems.push(
             Diagnostic::error(
                 0..0,
-                format!("the file has {length} bytes; a robot file has at most {MAX_BYTES} (1 MiB)"),
+                format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a robot file may have"),
             )
             .help("one file describes one robot of at most 64 joints; is this the right file?"),
         );
@@ -36,18 +49,30 @@ pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, problems: &Prob
     );
 }
 
-/// Reports the first control character: YAML forbids them, and the parser takes U+0000 for the end of the file.
+/// Reports the first control character: YAML forbids them, the parser takes U+0000 for the end of the file, and a
+/// terminal takes some for commands.
 pub(crate) fn is_printable(text: &str, problems: &Problems) -> bool {
-    let forbidden = |c: &(usize, char)| c.1.is_ascii_control() && !matches!(c.1, '\t' | '\n' | '\r');
+    let forbidden = |c: &(usize, char)| c.1.is_control() && !matches!(c.1, '\t' | '\n' | '\r' | '\u{85}');
     let Some((at, character)) = text.char_indices().find(forbidden) else { return true };
     problems.push(
         Diagnostic::error(
-            at..at + 1,
+            at..at + character.len_utf8(),
             format!("control character U+{:04X}; only tab and line breaks are allowed", u32::from(character)),
         )
         .help("delete it; is this a text file?"),
     );
     false
+}
+
+/// Whether a character breaks the line, for some program at least.
+pub(crate) fn is_line_break(c: char) -> bool {
+    matches!(c, '\n' | '\r' | '\u{85}' | '\u{2028}' | '\u{2029}')
+}
+
+/// Whether a character does something instead of showing something: controls terminals, or turns the direction of text,
+/// which compilers refuse in source code.
+pub(crate) fn is_control(c: char) -> bool {
+    c.is_control() || matches!(c, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
 }
 
 /// A value for a message: shortened, control characters escaped, in backticks.

@@ -68,6 +68,9 @@ fn near_misses_are_recognised() {
         ("inertia_about: com", "inertia-about: com", "did you mean `inertia_about`?"),
         ("standard", "Standard", "did you mean `standard`?"),
         ("revolute", "revolut", "did you mean `revolute`?"),
+        ("revolute", "R", "did you mean `revolute`?"),
+        ("prismatic", "P", "did you mean `prismatic`?"),
+        ("standard", "distal", "did you mean `standard`?"),
         ("name: first", "name: first\n    mass: 1", "`mass` belongs under `link`"),
         ("name: first", "name: first\n    offset: 1", "a joint offset is the constant in `theta` or `d`"),
         ("source: test", "source: test\n<<: {a: 1}", "YAML merge keys are not part of the format; write the keys out"),
@@ -164,7 +167,8 @@ fn values() {
         ("[0.395, -0.435]", "[-0.395, -0.435]", 18, 76, "-0.395", "`-0.395` for positive speed has the wrong sign"),
         ("[0.395, -0.435]", "[0.395, 0.435]", 18, 83, "0.435", "`0.435` for negative speed has the wrong sign"),
         ("name: second", "name: first", 19, 11, "first", "the name `first` of joint 2 is already that of joint 1"),
-        ("name: second", "name: \"a\\nb\"", 19, 11, "\"a\\nb\"", "a joint name is one line"),
+        ("name: second", "name: \"a\\nb\"", 19, 11, "\"a\\nb\"", "has a line break; a joint name is one line"),
+        ("name: second", "name: \"a\\tb\"", 19, 11, "\"a\\tb\"", "joint name `a\\tb` has the control character U+0009"),
         ("{m: 1.5,", "{m: 1.5, pi: 3, ", 7, 22, "pi", "the parameter name `pi` already has a meaning"),
         ("{m: 1.5,", "{m: 1.5, sin: 3, ", 7, 22, "sin", "the parameter name `sin` already has a meaning"),
         ("{m: 1.5,", "{m: 1.5, 2x: 3, ", 7, 22, "2x", "the parameter name `2x` is not an identifier"),
@@ -261,6 +265,7 @@ fn yaml_itself() {
         ("a: &x 1\n*x : 1\n", 2, 1, "a key must be a plain word"),
         ("a: 1\u{0}b: 2\n", 1, 5, "control character U+0000"),
         ("é: \u{7}\n", 1, 4, "control character U+0007"),
+        ("é: \u{9B}\n", 1, 4, "control character U+009B"),
     ] {
         let report = found(text);
         let error = report.diagnostics.last().unwrap();
@@ -290,13 +295,63 @@ fn bytes_that_are_no_text() {
     assert_eq!((report.diagnostics[0].line, report.diagnostics[0].column), (BASE.lines().count() + 1, 1));
 }
 
+/// Titles and names stand in headings and in comments of generated code; texts may have lines, and nothing that a
+/// terminal takes for a command.
+#[test]
+fn texts() {
+    let title = |title: &str| with("source: test", &format!("source: test\ntitle: {title}"));
+    for (text, place, message) in [
+        ("\"a\\nb\"", (4, 8), "the title `a\\nb` has a line break; a title is one line"),
+        ("|\n  a\n  b", (5, 3), "has a line break"),
+        ("\"a\\u2028b\"", (4, 8), "has a line break"),
+        ("\"a\\rb\"", (4, 8), "has a line break"),
+        ("\"a\\tb\"", (4, 8), "the title `a\\tb` has the control character U+0009; it must be readable text"),
+        ("\"\\e[2J\"", (4, 8), "has the control character U+001B"),
+        ("\"\\x9b2J\"", (4, 8), "has the control character U+009B"),
+        ("\"\\u202Earm\"", (4, 8), "has the control character U+202E"),
+    ] {
+        let report = found(&title(text));
+        let [error] = report.diagnostics.as_slice() else { panic!("{text}: {report}") };
+        assert_eq!((error.line, error.column), place, "{text}");
+        assert!(error.message.contains(message), "{text}: {}", error.message);
+    }
+    let block = check("x.yaml", &title("|\n  An arm\n")).expect("one line").robot;
+    assert_eq!(block.title.as_deref(), Some("An arm"), "the end of a block is no line break");
+
+    let lines = with("source: test", "source: \"a\\n\\tb\"\nnotes: |\n  one\n  two\n");
+    let robot = check("x.yaml", &lines).expect("texts of several lines").robot;
+    assert_eq!((robot.source.as_str(), robot.notes.as_deref()), ("a\n\tb", Some("one\ntwo")));
+    for key in ["source", "notes"] {
+        let text = with("source: test", "").replace("name: base\n", "name: base\nsource: a\n");
+        let text = text.replace(
+            if key == "source" { "source: a" } else { "joints:" },
+            &match key {
+                "source" => "source: \"\\e]0;x\"".to_owned(),
+                _ => "notes: \"\\e]0;x\"\njoints:".to_owned(),
+            },
+        );
+        let report = found(&text);
+        assert!(report.to_string().contains("has the control character U+001B"), "{key}: {report}");
+    }
+}
+
+/// What has no end, or is far too long, is not read to the end.
+#[test]
+fn a_reader_without_an_end() {
+    let bytes = rne_model::read_limited(std::io::repeat(b'#')).expect("it reads");
+    assert_eq!(bytes.len(), (1 << 20) + 1);
+    let report = check_bytes("x.yaml", &bytes).unwrap_err();
+    assert!(report.short().contains("more than 1048576 bytes"), "{report}");
+    assert_eq!(rne_model::read_limited(BASE.as_bytes()).expect("it reads"), BASE.as_bytes());
+}
+
 #[test]
 fn size() {
     let padded = |length: usize| format!("{BASE}#{}", " ".repeat(length - BASE.len() - 1));
     assert!(check("x.yaml", &padded(1 << 20)).is_ok());
     for report in [check("x.yaml", &padded((1 << 20) + 1)), check_bytes("x.yaml", padded((1 << 20) + 1).as_bytes())] {
         let report = report.unwrap_err();
-        assert!(report.short().starts_with("x.yaml:1:1: error: the file has 1048577 bytes; a robot file has at most"));
+        assert!(report.short().starts_with("x.yaml:1:1: error: the file has more than 1048576 bytes (1 MiB)"));
         assert!(report.to_string().contains("--> x.yaml:1:1"), "{report}");
     }
 }

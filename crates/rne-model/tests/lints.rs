@@ -25,6 +25,23 @@ fn lints() {
         ("alpha: pi/2", "alpha: -90", 11, 41, "the angle `-90` rad is more than a full turn", "write `deg(-90)`"),
         ("alpha: pi/2", "alpha: 180/2", 11, 41, "the angle `180/2` = 90 rad", "write `deg(…)`"),
         ("rpy: [0, 0, pi]", "rpy: [0, 0, 180]", 6, 36, "more than a full turn", "`deg(180)`"),
+        (
+            "[0, 0, -9.81]",
+            "[0, 0, -9810]",
+            5,
+            10,
+            "gravity accelerates by 9810 m/s²; on Earth it is 9.81 m/s²",
+            "an acceleration in m/s²",
+        ),
+        ("[0, 0, -9.81]", "[0, 0, -1]", 5, 10, "gravity accelerates by 1 m/s²", "such as `[0, 0, -9.81]`"),
+        (
+            "[0, 0, -9.81]",
+            "[0, 0, 9.81]",
+            5,
+            10,
+            "gravity `[0, 0, 9.81]` points along the positive z",
+            "`[0, 0, -9.81]`",
+        ),
         ("d: 0.4", "d: 400", 11, 23, "the length `400` m is over 20 m", "lengths are in metres"),
         ("a: 0, alpha: pi/2", "a: -21, alpha: pi/2", 11, 31, "the length `-21` m", "metres"),
         ("com: [0, 0, 0.3]", "com: [0, 0, 300]", 14, 19, "the length `300` m", "metres"),
@@ -82,6 +99,11 @@ fn what_is_no_lint() {
         // A massless link that is not the last, with inertia.
         ("mass: 2.5", "mass: 0"),
         ("d: 0.4", "d: 20"),
+        // Along any other axis a sign says nothing, and an arm may float.
+        ("[0, 0, -9.81]", "[9.81, 0, 0]"),
+        ("[0, 0, -9.81]", "[0, 6.9, 6.9]"),
+        ("[0, 0, -9.81]", "[0, 0, 0]"),
+        ("[0, 0, -9.81]", "[0, 0, -10]"),
         ("[-pi, pi]", "[-8*pi, 8*pi]"),
     ] {
         assert_eq!(found(&with(old, new)).to_string(), "", "{new}");
