@@ -50,6 +50,75 @@ impl fmt::Display for Cause {
     }
 }
 
+/// Everything because of which a number is exactly zero or one: a product needs one zero, a sum needs all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Causes([Option<Cause>; Self::MOST]);
+
+impl Causes {
+    /// More than three are not told apart.
+    const MOST: usize = 3;
+
+    pub(crate) const fn one(cause: Cause) -> Self {
+        Self([Some(cause), None, None])
+    }
+
+    /// The causes, the weightiest first.
+    pub fn iter(&self) -> impl Iterator<Item = Cause> {
+        self.0.into_iter().flatten()
+    }
+
+    /// The name of the one table entry that is the cause, if it is one alone.
+    pub(crate) fn entry(&self) -> Option<Name> {
+        match self.0 {
+            [Some(Cause::Table(name)), None, _] => Some(name),
+            [Some(Cause::GravityDirection(axis)), None, _] => Some(Name::vector(Quantity::Gravity, 0, axis)),
+            _ => None,
+        }
+    }
+
+    /// Both together, as a sum of two zeros needs them. That a frame turns about its own axis goes without saying.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let mut all: Vec<Cause> = self.iter().chain(other.iter()).collect();
+        all.sort_unstable_by(|a, b| b.weight().cmp(&a.weight()).then(a.cmp(b)));
+        all.dedup();
+        if all.first().is_some_and(|cause| !cause.is_geometry()) {
+            all.retain(|cause| !cause.is_geometry());
+        }
+        let mut causes = all.into_iter();
+        Self([causes.next(), causes.next(), causes.next()])
+    }
+}
+
+impl fmt::Display for Causes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, cause) in self.iter().enumerate() {
+            if index > 0 {
+                f.write_str(" and ")?;
+            }
+            cause.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl Cause {
+    /// How much a cause tells, the rank of its variant.
+    const fn weight(&self) -> u8 {
+        match self {
+            Self::Arithmetic => 0,
+            Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame => 1,
+            Self::Table(_) => 2,
+            Self::GravityDirection(_) => 3,
+            Self::FixedBase | Self::FreeTip | Self::AtRest | Self::NoAcceleration => 4,
+        }
+    }
+
+    /// Whether it holds for every arm: zeros of Rx, Rz and e.
+    const fn is_geometry(&self) -> bool {
+        matches!(self, Self::Arithmetic | Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame)
+    }
+}
+
 /// An entry of the table in the words of the table.
 struct Entry(Name);
 
@@ -81,9 +150,9 @@ pub enum Fate {
     /// It stands in the generated code.
     Kept,
     /// A factor or summand is zero.
-    Zero(Cause),
+    Zero(Causes),
     /// A factor is 1 or -1.
-    One(Cause),
+    One(Causes),
     /// Both operands are constants: done at compile time.
     Constant,
     /// x - x.
@@ -153,7 +222,7 @@ impl Ledger {
         })
     }
 
-    /// (products, sums) of the recursion before folding: what a generic implementation performs.
+    /// (products, sums) of the seven steps before folding, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {
         self.total(|_| true)

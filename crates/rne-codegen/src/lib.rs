@@ -28,7 +28,7 @@ use rne_model::Robot;
 
 pub use function::{Form, Function, UnknownName};
 pub use interpret::{Arguments, Interpreter};
-pub use ledger::{Cause, Fate, Ledger, Line, Operation, Place};
+pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use program::{Binding, Constant, Expression, Finding, Found, Operations, Output, Program, Sign, Statement};
 pub use quantity::{Axis, Component, Name, Quantity, Step};
 

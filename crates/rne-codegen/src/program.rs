@@ -3,8 +3,8 @@
 //! One `Program`, many renderers: tokens, text, counts, an interpreter.
 
 use crate::function::{Form, Function};
-use crate::ledger::{Cause, Ledger, Place};
-use crate::quantity::{Name, Quantity};
+use crate::ledger::{Causes, Ledger, Place};
+use crate::quantity::Name;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,15 +31,13 @@ pub struct Program {
     pub ledger: Ledger,
 }
 
-/// A named constant.
+/// A named constant. A number that is two entries of the table stands under each name that the statements use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Constant {
     /// Its name.
     pub name: Name,
     /// Its value, finite.
     pub value: f64,
-    /// Other quantities with the same value or its negative.
-    pub also: Vec<(Name, Sign)>,
 }
 
 /// Whether a value enters as itself or negated.
@@ -124,7 +122,7 @@ pub enum Found {
     /// It is another name, or its negative: an earlier statement or an argument.
     Same(Name, Sign),
     /// It is a constant, and why it is that one.
-    Constant(f64, Cause),
+    Constant(f64, Causes),
     /// It is computed inside another statement.
     Inside,
     /// Nothing that is returned depends on it.
@@ -172,18 +170,6 @@ impl Program {
             output.value.count(&mut count);
         }
         count
-    }
-
-    /// What a component of a quantity became.
-    #[must_use]
-    pub fn finding(&self, name: Name) -> Option<&Found> {
-        self.findings.iter().find(|finding| finding.name == name).map(|finding| &finding.value)
-    }
-
-    /// Whether an argument array (`q`, `qd`, `qdd`) or the wrench is used for joint `joint`.
-    #[must_use]
-    pub fn uses(&self, quantity: Quantity, joint: usize) -> bool {
-        self.arguments.iter().any(|name| name.quantity == quantity && name.joint == joint)
     }
 }
 

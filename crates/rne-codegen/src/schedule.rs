@@ -1,6 +1,6 @@
 //! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use crate::CompileError;
 use crate::function::{Form, Function};
@@ -10,6 +10,9 @@ use crate::program::{Binding, Constant, Expression, Finding, Found, Output, Prog
 use crate::quantity::{Name, Quantity, Step};
 use crate::symbol::Symbol;
 use crate::worksheet::Written;
+
+/// Where a statement stands: the index of its node, and an order among those that stand behind one node.
+type Position = (usize, usize);
 
 /// What the program is of.
 pub(crate) struct Heading<'a> {
@@ -27,7 +30,7 @@ pub(crate) fn program(
 ) -> Result<Program, CompileError> {
     let uses = count_uses(&written, outputs);
     drop_unused(&mut written, &uses);
-    let schedule = Schedule::new(&written, uses);
+    let schedule = Schedule::new(&written, uses, outputs);
     let constants = schedule.constants()?;
     let mut statements = schedule.statements();
     let outputs = schedule.outputs(outputs, &mut statements);
@@ -102,12 +105,20 @@ struct Given {
 struct Schedule<'w> {
     written: &'w Written,
     uses: Vec<usize>,
+    is_output: Vec<bool>,
     names: Vec<Option<Given>>,
+    /// Whether a name means the negative of its node.
+    signs: HashMap<Name, bool>,
 }
 
 impl<'w> Schedule<'w> {
-    fn new(written: &'w Written, uses: Vec<usize>) -> Self {
-        let mut schedule = Self { written, names: vec![None; uses.len()], uses };
+    fn new(written: &'w Written, uses: Vec<usize>, outputs: &[(Name, Term)]) -> Self {
+        let mut is_output = vec![false; uses.len()];
+        for (_, term) in outputs {
+            is_output[term.node.index()] = true;
+        }
+        let signs = written.definitions.iter().map(|definition| (definition.name, definition.term.negative)).collect();
+        let mut schedule = Self { written, names: vec![None; uses.len()], uses, is_output, signs };
         schedule.take_given_names();
         schedule.name_shared_terms();
         schedule
@@ -164,7 +175,7 @@ impl<'w> Schedule<'w> {
             let part = parts.entry(base).or_default();
             *part += 1;
             // with the sign that needs no minus; operands have their names, for they are older
-            let negative = !is_constant && self.operation(node).0;
+            let negative = !is_constant && self.operation(id).0;
             self.names[index] = Some(Given { name: Name { part: *part, ..base }, negative });
         }
     }
@@ -187,28 +198,59 @@ impl<'w> Schedule<'w> {
     fn constants(&self) -> Result<Vec<Constant>, CompileError> {
         let mut constants = Vec::new();
         for (id, node) in self.written.graph.nodes() {
-            let (Node::Constant(magnitude), Some(given)) = (node, self.names[id.index()]) else { continue };
-            if !self.is_live(id) || magnitude == 0.0 {
-                continue;
-            }
-            let value = if given.negative { -magnitude } else { magnitude };
-            if !value.is_finite() {
-                return Err(CompileError::NotFinite { name: given.name });
-            }
-            let mut also = Vec::new();
-            for definition in &self.written.definitions {
-                let other = (definition.name, sign(definition.term.negative != given.negative));
-                if definition.term.node == id && definition.name != given.name && !also.contains(&other) {
-                    also.push(other);
+            let Node::Constant(magnitude) = node else { continue };
+            for given in self.constant_names(id) {
+                let value = if given.negative { -magnitude } else { magnitude };
+                if !value.is_finite() {
+                    return Err(CompileError::NotFinite { name: given.name });
                 }
+                constants.push(Constant { name: given.name, value });
             }
-            constants.push(Constant { name: given.name, value, also });
         }
+        // by link, as the statements are
+        constants.sort_by_key(|constant| (constant.name.joint, constant.name));
         Ok(constants)
     }
 
-    /// Statements with their position: the index of their node.
-    fn statements(&self) -> Vec<(usize, Statement)> {
+    /// The names under which the live statements use a constant.
+    fn constant_names(&self, id: NodeId) -> Vec<Given> {
+        let mut names: Vec<Given> = Vec::new();
+        let mut put = |given: Option<Given>| {
+            if let Some(given) = given
+                && !names.iter().any(|known| known.name == given.name)
+            {
+                names.push(given);
+            }
+        };
+        if self.uses[id.index()] == 0 || self.written.graph.node(id) == Node::Constant(0.0) {
+            return names;
+        }
+        for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
+            let uses = match node {
+                Node::Sum(a, b) => a.node == id || b.node == id,
+                Node::Product(a, b) => a == id || b == id,
+                Node::Sine(angle) | Node::Cosine(angle) => angle.node == id,
+                Node::Constant(_) | Node::Argument(_) => false,
+            };
+            if uses {
+                put(self.constant_name(user, id));
+            }
+        }
+        if self.is_output[id.index()] {
+            put(self.names[id.index()]);
+        }
+        names
+    }
+
+    /// The name of a constant where `user` uses it.
+    fn constant_name(&self, user: NodeId, id: NodeId) -> Option<Given> {
+        let role = self.written.roles.get(&(user, id)).copied();
+        let given = role.and_then(|name| Some(Given { name, negative: *self.signs.get(&name)? }));
+        given.or(self.names[id.index()])
+    }
+
+    /// Statements with their position.
+    fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
         let mut angles = BTreeSet::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
@@ -222,13 +264,13 @@ impl<'w> Schedule<'w> {
                 }
                 Node::Sum(..) | Node::Product(..) => {
                     let Some(given) = self.names[id.index()] else { continue };
-                    let (negative, value) = self.operation(node);
+                    let (negative, value) = self.operation(id);
                     let value = signed(negative != given.negative, value);
                     let place = self.place(id, given.name);
                     Statement { place, binding: Binding::Value { name: given.name, value } }
                 }
             };
-            statements.push((id.index(), statement));
+            statements.push(((id.index(), 0), statement));
         }
         statements
     }
@@ -257,21 +299,20 @@ impl<'w> Schedule<'w> {
     }
 
     /// Outputs as variables; a torque gets a statement of its own name.
-    fn outputs(&self, outputs: &[(Name, Term)], statements: &mut Vec<(usize, Statement)>) -> Vec<Output> {
+    fn outputs(&self, outputs: &[(Name, Term)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
         let mut returned = Vec::with_capacity(outputs.len());
         for &(name, term) in outputs {
             let value = self.expression(term);
             let is_torque = name.quantity == Quantity::Torque && !matches!(value, Expression::Zero);
-            let Some(definition) =
-                self.written.definitions.iter().find(|definition| definition.name == name).filter(|_| is_torque)
-            else {
+            let named = self.written.definitions.iter().enumerate().find(|(_, definition)| definition.name == name);
+            let Some((order, definition)) = named.filter(|_| is_torque) else {
                 returned.push(Output { name, value });
                 continue;
             };
             let place = Place { joint: name.joint, step: Step::Torque, quantity: Quantity::Torque };
-            // after the last node that was there when it was named
+            // after the last node that was there when it was named, and after torques named before it
             statements.push((
-                definition.after.saturating_sub(1),
+                (definition.after.saturating_sub(1), order),
                 Statement { place, binding: Binding::Value { name, value } },
             ));
             returned.push(Output { name, value: Expression::Variable(name) });
@@ -287,7 +328,7 @@ impl<'w> Schedule<'w> {
                 let Term { node, negative } = definition.term;
                 let value = match self.written.graph.node(node) {
                     Node::Constant(magnitude) => {
-                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.cause)
+                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes)
                     }
                     _ if !self.is_live(node) => Found::Unused,
                     _ => match self.names[node.index()] {
@@ -303,27 +344,31 @@ impl<'w> Schedule<'w> {
 
     /// A term as an expression: the name of its node, or what the node computes.
     fn expression(&self, term: Term) -> Expression {
-        let (negative, expression) = self.operand(term.node);
+        let (negative, expression) = self.operand(None, term.node);
         signed(negative != term.negative, expression)
     }
 
-    /// A node as a sign and an expression. Signs are carried outwards, to where they cost nothing.
-    fn operand(&self, id: NodeId) -> (bool, Expression) {
+    /// A node, as `user` uses it, as a sign and an expression. Signs are carried outwards, to where they cost nothing.
+    fn operand(&self, user: Option<NodeId>, id: NodeId) -> (bool, Expression) {
         let node = self.written.graph.node(id);
         if node == Node::Constant(0.0) {
             return (false, Expression::Zero);
         }
-        match self.names[id.index()] {
+        let given = match (node, user) {
+            (Node::Constant(_), Some(user)) => self.constant_name(user, id),
+            _ => self.names[id.index()],
+        };
+        match given {
             Some(given) => (given.negative, Expression::Variable(given.name)),
-            None => self.operation(node),
+            None => self.operation(id),
         }
     }
 
-    fn operation(&self, node: Node) -> (bool, Expression) {
-        match node {
+    fn operation(&self, id: NodeId) -> (bool, Expression) {
+        match self.written.graph.node(id) {
             Node::Sum(a, b) => {
-                let (a_sign, a_value) = self.operand(a.node);
-                let (b_sign, b_value) = self.operand(b.node);
+                let (a_sign, a_value) = self.operand(Some(id), a.node);
+                let (b_sign, b_value) = self.operand(Some(id), b.node);
                 let (a_value, b_value) = (Box::new(a_value), Box::new(b_value));
                 match (a_sign != a.negative, b_sign != b.negative) {
                     (false, false) => (false, Expression::Sum(a_value, b_value)),
@@ -333,8 +378,8 @@ impl<'w> Schedule<'w> {
                 }
             }
             Node::Product(a, b) => {
-                let (a_sign, a_value) = self.operand(a);
-                let (b_sign, b_value) = self.operand(b);
+                let (a_sign, a_value) = self.operand(Some(id), a);
+                let (b_sign, b_value) = self.operand(Some(id), b);
                 (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
             }
             // leaves always have a name, but for the zero that no operation keeps
@@ -372,6 +417,11 @@ fn negated(expression: &Expression) -> Option<Expression> {
             };
             Some(Expression::Difference(Box::new(first), second.clone()))
         }
-        Expression::Variable(_) | Expression::Product(..) => None,
+        Expression::Product(a, b) => match (negated(a), negated(b)) {
+            (Some(a), _) => Some(Expression::Product(Box::new(a), b.clone())),
+            (None, Some(b)) => Some(Expression::Product(a.clone(), Box::new(b))),
+            (None, None) => None,
+        },
+        Expression::Variable(_) => None,
     }
 }

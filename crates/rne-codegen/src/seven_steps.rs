@@ -60,7 +60,6 @@ pub(crate) fn inverse_dynamics<'s>(
         let JointState { q, qd, qdd } = *state;
         let rotation = rotation(line, sheet, index + 1, link, q);
         let back = rotation.transpose();
-        let d = centre_of_mass(line, sheet, index + 1, link, q);
         let (omega_before, omega_dot_before) = (omega, omega_dot);
 
         // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
@@ -75,8 +74,10 @@ pub(crate) fn inverse_dynamics<'s>(
             Prismatic => back * omega_dot_before,
         });
 
+        let d = centre_of_mass(line, sheet, index + 1, link, q);
+
         // 3   ċ_i = R_iᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i      (+ q̇_i e)
-        let omega_cross_r = line.vector(Quantity::OmegaCrossR, || omega_before.cross(r));
+        let omega_cross_r = line.of_link_before().vector(Quantity::OmegaCrossR, || omega_before.cross(r));
         let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
         c_dot = line.vector(Quantity::Velocity, || {
             let turning = back * (c_dot + omega_cross_r) + omega_cross_d;

@@ -3,17 +3,16 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use crate::graph::Term;
-use crate::ledger::Cause;
 use crate::quantity::Axis;
-use crate::worksheet::Worksheet;
+use crate::worksheet::{CausesId, Worksheet};
 
 /// A number on a worksheet.
 #[derive(Clone, Copy)]
 pub(crate) struct Symbol<'s> {
     pub(crate) sheet: &'s Worksheet,
     pub(crate) term: Term,
-    /// Why it is zero or one, if it is a constant.
-    pub(crate) cause: Cause,
+    /// Why it is the constant that it is, if it is one.
+    pub(crate) causes: CausesId,
 }
 
 impl<'s> Add for Symbol<'s> {

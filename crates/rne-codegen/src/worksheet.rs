@@ -1,9 +1,10 @@
 //! The sheet on which a function is written: the graph, the names given to its nodes, and the ledger of what folded.
 
 use std::cell::RefCell;
+use std::collections::HashMap;
 
-use crate::graph::{Graph, Outcome, Side, Term};
-use crate::ledger::{Cause, Fate, Ledger, Operation, Place};
+use crate::graph::{Graph, NodeId, Outcome, Side, Term};
+use crate::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
 use crate::quantity::{Axis, Component, Name, Quantity};
 use crate::symbol::{Matrix, Symbol, Vector};
 
@@ -13,7 +14,7 @@ pub(crate) struct Definition {
     pub(crate) name: Name,
     pub(crate) term: Term,
     /// Why it is the constant that it is, if it is one.
-    pub(crate) cause: Cause,
+    pub(crate) causes: Causes,
     /// How many nodes there were when it got the name.
     pub(crate) after: usize,
 }
@@ -33,6 +34,52 @@ pub(crate) struct Written {
     pub(crate) definitions: Vec<Definition>,
     /// By node index; `None` for what belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
+    /// As what a constant entered a node: (node, constant) → its name there.
+    pub(crate) roles: HashMap<(NodeId, NodeId), Name>,
+}
+
+/// The index of [`Causes`] on their sheet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct CausesId(usize);
+
+/// Causes and their unions, each kept once.
+#[derive(Default)]
+struct KnownCauses {
+    list: Vec<Causes>,
+    ids: HashMap<Causes, CausesId>,
+    unions: HashMap<(CausesId, CausesId), CausesId>,
+}
+
+impl KnownCauses {
+    fn id(&mut self, causes: Causes) -> CausesId {
+        let next = CausesId(self.list.len());
+        let id = *self.ids.entry(causes).or_insert(next);
+        if id == next {
+            self.list.push(causes);
+        }
+        id
+    }
+
+    fn get(&self, id: CausesId) -> Causes {
+        self.list[id.0]
+    }
+
+    fn union(&mut self, a: CausesId, b: CausesId) -> CausesId {
+        if a == b {
+            return a;
+        }
+        if let Some(&known) = self.unions.get(&(a, b)) {
+            return known;
+        }
+        let id = self.id(self.get(a).and(self.get(b)));
+        self.unions.insert((a, b), id);
+        id
+    }
+
+    /// The weightier of two.
+    fn weightier(&self, a: CausesId, b: CausesId) -> CausesId {
+        if self.get(b) > self.get(a) { b } else { a }
+    }
 }
 
 /// A sheet being written. [`Symbol`]s refer to it, so that formulas are written with operators.
@@ -44,6 +91,7 @@ pub(crate) struct Worksheet {
 #[derive(Default)]
 struct State {
     written: Written,
+    causes: KnownCauses,
     place: Option<Place>,
     axis: Option<Axis>,
 }
@@ -51,8 +99,9 @@ struct State {
 impl Worksheet {
     /// A number that stands for itself; `cause` tells why it is what it is.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
-        let term = self.state.borrow_mut().written.graph.constant(value);
-        Symbol { sheet: self, term, cause }
+        let state = &mut *self.state.borrow_mut();
+        let term = state.written.graph.constant(value);
+        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(cause)) }
     }
 
     /// A number of the table under its name.
@@ -62,8 +111,9 @@ impl Worksheet {
 
     /// An argument of the function.
     pub(crate) fn argument(&self, name: Name) -> Symbol<'_> {
-        let term = self.state.borrow_mut().written.graph.argument(name);
-        Symbol { sheet: self, term, cause: Cause::Arithmetic }
+        let state = &mut *self.state.borrow_mut();
+        let term = state.written.graph.argument(name);
+        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(Cause::Arithmetic)) }
     }
 
     /// The zero vector, with its cause.
@@ -75,10 +125,11 @@ impl Worksheet {
     pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
         let state = &mut *self.state.borrow_mut();
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
-        let cause = if is_entry { Cause::Table(name) } else { symbol.cause };
+        let causes = if is_entry { state.causes.id(Causes::one(Cause::Table(name))) } else { symbol.causes };
         let after = state.written.graph.len();
-        state.written.definitions.push(Definition { name, term: symbol.term, cause, after });
-        Symbol { cause, ..symbol }
+        let told = state.causes.get(causes);
+        state.written.definitions.push(Definition { name, term: symbol.term, causes: told, after });
+        Symbol { causes, ..symbol }
     }
 
     /// A vector of the table under its name.
@@ -93,54 +144,53 @@ impl Worksheet {
 
     /// The lines of one joint.
     pub(crate) fn joint(&self, joint: usize) -> JointLines<'_> {
-        JointLines { sheet: self, joint }
+        JointLines { sheet: self, joint, named: joint }
     }
 
     pub(crate) fn sine_and_cosine<'s>(&'s self, angle: Symbol<'s>) -> (Symbol<'s>, Symbol<'s>) {
         let state = &mut *self.state.borrow_mut();
         let sine = state.written.graph.sine(angle.term);
         let cosine = state.written.graph.cosine(angle.term);
-        let symbol = |term| Symbol { sheet: self, term, cause: Cause::Arithmetic };
+        let causes = state.causes.id(Causes::one(Cause::Arithmetic));
+        let symbol = |term| Symbol { sheet: self, term, causes };
         (symbol(sine), symbol(cosine))
     }
 
     pub(crate) fn sum<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let state = &mut *self.state.borrow_mut();
         let (term, outcome) = state.written.graph.sum(a.term, b.term);
-        // Of two zeros, the sum is zero for the weightier reason.
         let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
-        let cause = match outcome {
-            Outcome::Zero(_) if both_zero => a.cause.max(b.cause),
-            Outcome::Zero(Side::Right) => a.cause,
-            Outcome::Zero(Side::Left) => b.cause,
-            _ => Cause::Arithmetic,
-        };
-        let reason = match outcome {
-            Outcome::Zero(Side::Left) => a.cause,
-            Outcome::Zero(Side::Right) => b.cause,
-            _ => Cause::Arithmetic,
+        let (causes, reason) = match outcome {
+            // a sum is zero when both are
+            Outcome::Zero(_) if both_zero => (state.causes.union(a.causes, b.causes), b.causes),
+            Outcome::Zero(Side::Right) => (a.causes, b.causes),
+            Outcome::Zero(Side::Left) => (b.causes, a.causes),
+            _ => (state.arithmetic(), state.arithmetic()),
         };
         state.record(Operation::Sum, outcome, reason);
-        Symbol { sheet: self, term, cause }
+        state.record_roles(term, outcome, [a, b]);
+        Symbol { sheet: self, term, causes }
     }
 
     pub(crate) fn product<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let state = &mut *self.state.borrow_mut();
         let (term, outcome) = state.written.graph.product(a.term, b.term);
         let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
-        let zero_or_one = match outcome {
-            Outcome::Zero(_) if both_zero => a.cause.max(b.cause),
-            Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.cause,
-            Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.cause,
-            _ => Cause::Arithmetic,
+        let reason = match outcome {
+            // a product is zero when either is
+            Outcome::Zero(_) if both_zero => state.causes.weightier(a.causes, b.causes),
+            Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.causes,
+            Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.causes,
+            _ => state.arithmetic(),
         };
-        let cause = match outcome {
-            Outcome::One(Side::Left) => b.cause,
-            Outcome::One(Side::Right) => a.cause,
-            _ => zero_or_one,
+        let causes = match outcome {
+            Outcome::One(Side::Left) => b.causes,
+            Outcome::One(Side::Right) => a.causes,
+            _ => reason,
         };
-        state.record(Operation::Product, outcome, zero_or_one);
-        Symbol { sheet: self, term, cause }
+        state.record(Operation::Product, outcome, reason);
+        state.record_roles(term, outcome, [a, b]);
+        Symbol { sheet: self, term, causes }
     }
 
     /// Sets the component that the next operations belong to.
@@ -167,9 +217,28 @@ impl Worksheet {
 }
 
 impl State {
-    fn record(&mut self, operation: Operation, outcome: Outcome, cause: Cause) {
+    fn arithmetic(&mut self) -> CausesId {
+        self.causes.id(Causes::one(Cause::Arithmetic))
+    }
+
+    /// Remembers as what a constant enters a new node: the same number may be a length here and a mass there.
+    fn record_roles(&mut self, term: Term, outcome: Outcome, operands: [Symbol<'_>; 2]) {
+        if outcome != Outcome::Computed {
+            return;
+        }
+        for operand in operands {
+            if self.written.graph.value(operand.term).is_some()
+                && let Some(name) = self.causes.get(operand.causes).entry()
+            {
+                self.written.roles.insert((term.node, operand.term.node), name);
+            }
+        }
+    }
+
+    fn record(&mut self, operation: Operation, outcome: Outcome, causes: CausesId) {
         // Constants of the table are formed outside any step: a runtime forms them once, too.
         let Some(place) = self.place else { return };
+        let cause = self.causes.get(causes);
         let fate = match outcome {
             Outcome::Computed => Fate::Kept,
             Outcome::Shared => Fate::Shared,
@@ -189,26 +258,34 @@ impl State {
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
     sheet: &'s Worksheet,
+    /// The joint at whose place the lines stand.
     joint: usize,
+    /// The joint whose name the quantities bear.
+    named: usize,
 }
 
 impl<'s> JointLines<'s> {
+    /// The same lines, for quantities that belong to the link before.
+    pub(crate) fn of_link_before(self) -> Self {
+        Self { named: self.joint.saturating_sub(1), ..self }
+    }
+
     /// A quantity that is one number.
     pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
         let value = self.within(quantity, formula);
-        self.sheet.name(Name::scalar(quantity, self.joint), value)
+        self.sheet.name(Name::scalar(quantity, self.named), value)
     }
 
     /// A vector.
     pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
         let value = self.within(quantity, formula);
-        self.sheet.entry_vector(quantity, self.joint, value)
+        self.sheet.entry_vector(quantity, self.named, value)
     }
 
     /// A matrix.
     pub(crate) fn matrix(&self, quantity: Quantity, formula: impl FnOnce() -> Matrix<'s>) -> Matrix<'s> {
         let value = self.within(quantity, formula);
-        self.sheet.entry_matrix(quantity, self.joint, value)
+        self.sheet.entry_matrix(quantity, self.named, value)
     }
 
     fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {

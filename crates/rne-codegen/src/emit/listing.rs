@@ -6,9 +6,9 @@ use std::fmt::Write;
 use rne_model::{JointKind, Robot};
 
 use super::expression::let_statement;
-use super::formula::formula;
+use super::formula::formulas;
 use super::table::angle;
-use crate::ledger::{Cause, Fate, Ledger, Place};
+use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::program::{Binding, Expression, Finding, Found, Program, Sign, Statement};
 use crate::quantity::{Component, Name, Quantity, Step};
 
@@ -44,7 +44,7 @@ pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
         }
         let kind = robot.joints.get(joint - 1).map_or(JointKind::Revolute, |joint| joint.row.kind);
         let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
-        for formula in formula(step, kind, joint).split(",  ") {
+        for formula in formulas(step, kind, joint) {
             let _ = writeln!(text, "    // {formula}");
         }
         for statement in statements {
@@ -125,8 +125,10 @@ fn became(robot: &Robot, name: Name, found: &Found) -> Option<String> {
         Found::Same(..) if name.quantity == Quantity::Torque => return None,
         Found::Same(other, Sign::Plus) => format!(" = {other}"),
         Found::Same(other, Sign::Minus) => format!(" = -{other}"),
-        Found::Constant(0.0, cause) => format!(" = 0: {}", why(robot, *cause, 0)),
-        Found::Constant(value, Cause::GravityDirection(_)) => format!(" = {value}: gravity in frame 0"),
+        Found::Constant(0.0, causes) => format!(" = 0: {}", why(robot, causes, 0)),
+        Found::Constant(value, causes) if causes.iter().any(|cause| matches!(cause, Cause::GravityDirection(_))) => {
+            format!(" = {value}: gravity in frame 0")
+        }
         Found::Constant(value, _) => format!(" = {value}, of constants"),
         Found::Inside => ": inside the statement that uses it".to_owned(),
         Found::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
@@ -145,8 +147,8 @@ fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: O
     for line in ledger.lines().filter(|line| here(&line.place)) {
         let reason = match line.fate {
             Fate::Kept => continue,
-            Fate::Zero(cause) => why(robot, cause, 0),
-            Fate::One(cause) => why(robot, cause, 1),
+            Fate::Zero(causes) => mainly(robot, &causes, 0),
+            Fate::One(causes) => mainly(robot, &causes, 1),
             Fate::Constant => "constants".to_owned(),
             Fate::Cancelled => "x - x".to_owned(),
             Fate::Shared => "computed before".to_owned(),
@@ -171,8 +173,32 @@ fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: O
     Some(text)
 }
 
-/// A cause in the words of the table; `magnitude` is what it made of a number, 0 or 1.
-fn why(robot: &Robot, cause: Cause, magnitude: u8) -> String {
+/// Causes in the words of the table; `magnitude` is what they made of a number, 0 or 1. Likes are told in one breath:
+/// d1_x = d1_y = 0.
+fn why(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
+    let mut words: Vec<String> = causes.iter().map(|cause| one_cause(robot, cause, magnitude)).collect();
+    words.dedup();
+    for (likeness, joint) in [(" = 0", " = "), (" in frame 0", ", ")] {
+        let alike: Vec<usize> = (0..words.len()).filter(|&index| words[index].ends_with(likeness)).collect();
+        let (Some(&first), true) = (alike.first(), alike.len() > 1) else { continue };
+        let stems: Vec<&str> = alike.iter().map(|&index| words[index].trim_end_matches(likeness)).collect();
+        let told = format!("{}{likeness}", stems.join(joint)).replace(", gravity has", ",");
+        words[first] = told;
+        let mut index = 0;
+        words.retain(|_| {
+            index += 1;
+            index - 1 == first || !alike.contains(&(index - 1))
+        });
+    }
+    words.join(" and ")
+}
+
+/// The weightiest of several causes, for a tally.
+fn mainly(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
+    causes.iter().next().map_or_else(String::new, |cause| one_cause(robot, cause, magnitude))
+}
+
+fn one_cause(robot: &Robot, cause: Cause, magnitude: u8) -> String {
     let Cause::Table(mut name) = cause else { return cause.to_string() };
     if let (Quantity::Inertia, Component::Matrix(row, column)) = (name.quantity, name.component)
         && row > column

@@ -9,8 +9,8 @@ use rne_model::Robot;
 use super::listing::{Listing, listing};
 use super::signature::{ArgumentArray, arguments};
 use super::table::{convention, dh_table};
-use crate::program::{Binding, Program, Sign};
-use crate::quantity::{Name, Quantity};
+use crate::program::{Binding, Program};
+use crate::quantity::Quantity;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]
@@ -132,29 +132,21 @@ fn function(robot: &Robot, program: &Program) -> String {
             let _ = writeln!(text, "    let [{}] = *{name};", elements.join(", "));
         }
     }
-    text.push_str("\n    // constants of the table\n");
+    if program.returns_zero() || !program.constants.is_empty() {
+        text.push_str("\n    // constants\n");
+    }
     if program.returns_zero() {
         text.push_str("    let zero: T = Scalar::from_f64(0.0);\n");
     }
     for constant in &program.constants {
-        let _ = write!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
-        if !constant.also.is_empty() {
-            let also: Vec<String> = constant.also.iter().map(signed_name).collect();
-            let _ = write!(text, " // also {}", also.join(", "));
-        }
-        text.push('\n');
+        let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
     }
-    text.push('\n');
-    text.push_str(&listing(robot, program, Listing::default()));
+    let statements = listing(robot, program, Listing::default());
+    if !statements.trim().is_empty() {
+        let _ = write!(text, "\n{statements}");
+    }
     text.push('\n');
     let outputs: Vec<String> = program.outputs.iter().map(|output| super::expression::line(&output.value)).collect();
     let _ = writeln!(text, "    [{}]\n}}", outputs.join(", "));
     text
-}
-
-fn signed_name((name, sign): &(Name, Sign)) -> String {
-    match sign {
-        Sign::Plus => name.to_string(),
-        Sign::Minus => format!("-{name}"),
-    }
 }

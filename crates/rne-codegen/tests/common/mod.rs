@@ -18,6 +18,21 @@ pub(crate) fn shipped() -> Vec<Robot> {
     paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))).collect()
 }
 
+/// The robots of the other tests as well: dense and random ones.
+pub(crate) fn all() -> Vec<Robot> {
+    let mut robots = shipped();
+    for folder in ["tests/dense", "tests/random/files"] {
+        let folder = format!("{}/../../{folder}", env!("CARGO_MANIFEST_DIR"));
+        let entries = std::fs::read_dir(folder).expect("the folder of robots");
+        let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+        paths.sort();
+        let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
+        robots.extend(paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))));
+    }
+    robots
+}
+
 /// All functions of a robot.
 pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
     Function::ALL.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
