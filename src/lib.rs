@@ -5,7 +5,7 @@
 //! use rne::InverseDynamics;
 //!
 //! #[derive(InverseDynamics)]
-//! #[robot(path = "robots/puma560.yaml")] // beside this source file, or in the folder of Cargo.toml
+//! #[robot(path = "robots/puma560.yaml")] // from the folder of this source file
 //! pub struct Puma560;
 //!
 //! let q = [0.0, 0.8, -0.4, 0.0, 0.5, 0.0]; // rad

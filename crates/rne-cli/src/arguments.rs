@@ -9,14 +9,14 @@ use crate::{check, emit, eval, ops, show};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
-#[command(name = "rne", version, styles = HELP_STYLES, disable_help_subcommand = true)]
+#[command(name = "rne", version, styles = HELP_STYLES)]
 #[command(about = "The dynamics compiler for robot arms: a Denavit-Hartenberg table in, straight-line Rust out")]
 #[command(after_help = "\
 Without a command, a tour: the PUMA 560 from its table to its torques, computed as it runs.
 
 Examples:
   rne                                              the tour
-  rne check robots/*.yaml                          are the files in order?
+  rne check robots/*.yaml                          are the files in order? - is standard input
   rne show robots/puma560.yaml --joint 2           the code of joint 2, step by step
   rne ops robots/*.yaml                            what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
@@ -50,6 +50,11 @@ pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
         Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
     };
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
+}
+
+/// Reads the number of a joint; which numbers there are, the robot says.
+pub(crate) fn joint(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "a joint is given by its number, counted from 1 at the base".to_owned())
 }
 
 /// Reads the number of a step.

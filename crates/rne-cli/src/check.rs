@@ -19,7 +19,7 @@ Example:
 
 Exit status 1 when a file has errors; lints are warnings and leave it at 0.")]
 pub(crate) struct Arguments {
-    /// Robot files
+    /// Robot files; - is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
 }

@@ -22,10 +22,11 @@ use crate::{arguments, robot_file};
 Examples:
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace --axes lecture
-  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-1.1
+  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --wrench 3,-2,0,0,0,0.5 --json
 
-One number per joint, base to tip: rad for a revolute, m for a prismatic joint. Nothing is assumed to be zero:
+One number per joint, base to tip: rad for a revolute, m for a prismatic joint; pi/2 and 'deg(30)' are numbers.
+Nothing is assumed to be zero:
 gravity_torques takes --q, bias_torques --q and --qd, inverse_dynamics all three.")]
 pub(crate) struct Arguments {
     /// Robot file

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use rne_codegen::{Program, emit};
-use rne_model::{Convention, Robot, Transform};
+use rne_model::{Robot, Transform};
 
 use crate::terminal::{QUIET, TITLE};
 
@@ -12,7 +12,7 @@ pub(crate) fn robot(robot: &Robot) -> String {
     let mut text = String::new();
     let title = robot.title.as_deref().unwrap_or(&robot.name);
     let _ = writeln!(text, "{TITLE}{title}{TITLE:#}");
-    let _ = writeln!(text, "{}", convention(robot.convention));
+    let _ = writeln!(text, "{}", emit::convention(robot));
     let [x, y, z] = robot.gravity;
     let _ = writeln!(text, "acceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²");
     for (what, place) in
@@ -20,7 +20,7 @@ pub(crate) fn robot(robot: &Robot) -> String {
     {
         if *place != Transform::IDENTITY {
             let [x, y, z] = place.xyz;
-            let [roll, pitch, yaw] = place.rpy.map(|angle| angle.radians);
+            let [roll, pitch, yaw] = place.rpy.map(|angle| emit::angle(&angle));
             let _ = writeln!(text, "{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad");
         }
     }
@@ -32,14 +32,6 @@ pub(crate) fn robot(robot: &Robot) -> String {
         };
     }
     text
-}
-
-/// The convention in one line.
-fn convention(convention: Convention) -> &'static str {
-    match convention {
-        Convention::Standard => "standard (distal) Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
-        Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
-    }
 }
 
 /// The operations of a program, before and after, in one line.

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-/// A comma-separated list of finite numbers, as `--q` takes it.
+/// A comma-separated list of finite numbers, as `--q` takes it. Each is written as in a robot file: `pi/2`, `deg(30)`.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct List(pub(crate) Vec<f64>);
 
@@ -18,12 +18,11 @@ impl FromStr for List {
             if element.is_empty() {
                 return Err(format!("number {place} is missing; write numbers with commas between them"));
             }
-            let hint = "write decimal numbers with commas between them, such as 0.1,-0.2";
-            let value = element.parse::<f64>().map_err(|_| format!("number {place}, `{element}`, is none; {hint}"))?;
-            if value.is_finite() {
-                return Ok(value);
-            }
-            Err(format!("number {place}, `{element}`, is not finite"))
+            rne_model::number(element).map_err(|mistake| {
+                let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
+                let hint = mistake.help.as_deref().unwrap_or(hint);
+                format!("number {place}, `{element}`, is none: {}; {hint}", mistake.message)
+            })
         };
         text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(List)
     }
@@ -67,12 +66,15 @@ pub(crate) fn fixed(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
     use super::*;
 
     #[test]
     fn lists() {
         assert_eq!("-0.1, 2e-3,3".parse(), Ok(List(vec![-0.1, 2e-3, 3.0])));
-        for bad in ["", "1,,2", "1,", "pi", "nan", "inf", "1e999", "--qd"] {
+        assert_eq!("pi/2,-deg(90),2*(1+1)".parse(), Ok(List(vec![FRAC_PI_2, -FRAC_PI_2, 4.0])));
+        for bad in ["", "1,,2", "1,", "m", "nan", "inf", "1e999", "--qd", "1/0"] {
             assert!(bad.parse::<List>().is_err(), "{bad}");
         }
     }

@@ -1,7 +1,7 @@
 //! Files that are written: whole or not at all.
 
-use std::fs::{self, OpenOptions};
-use std::io::{self, ErrorKind, Write as _};
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 use std::process;
 
@@ -9,11 +9,16 @@ use std::process;
 pub(crate) enum Existing {
     Nothing,
     Text(String),
-    /// A file that is no text.
+    /// A file that is no text, or longer than any that is generated.
     Other,
     Folder,
+    /// A device, a pipe, a socket.
+    Special,
     Unreadable(io::Error),
 }
+
+/// Far more than the code of the largest robot.
+const LONGEST: u64 = 64 << 20;
 
 /// Whether writing changed anything.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,15 +28,25 @@ pub(crate) enum Written {
 }
 
 pub(crate) fn existing(path: &Path) -> Existing {
-    match fs::read_to_string(path) {
-        Ok(text) => Existing::Text(text),
-        Err(error) => match error.kind() {
-            ErrorKind::NotFound => Existing::Nothing,
-            ErrorKind::InvalidData => Existing::Other,
-            _ if path.is_dir() => Existing::Folder,
-            _ => Existing::Unreadable(error),
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_dir() => Existing::Folder,
+        Ok(metadata) if !metadata.is_file() => Existing::Special,
+        Ok(metadata) if metadata.len() > LONGEST => Existing::Other,
+        Ok(_) => match File::open(path).and_then(text) {
+            Ok(text) => Existing::Text(text),
+            Err(error) if error.kind() == ErrorKind::InvalidData => Existing::Other,
+            Err(error) => Existing::Unreadable(error),
         },
+        Err(error) if error.kind() == ErrorKind::NotFound => Existing::Nothing,
+        Err(error) => Existing::Unreadable(error),
     }
+}
+
+/// The text of a file, which may grow while it is read.
+fn text(file: File) -> io::Result<String> {
+    let mut text = String::new();
+    file.take(LONGEST).read_to_string(&mut text)?;
+    Ok(text)
 }
 
 /// Whether two paths lead to one existing file.
@@ -47,7 +62,7 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
     // The file behind a symbolic link, not the link.
     let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if fs::read(&path).is_ok_and(|old| old == text.as_bytes()) {
+    if matches!(existing(&path), Existing::Text(old) if old == text) {
         return Ok(Written::Unchanged);
     }
     let permissions = fs::metadata(&path).ok().map(|metadata| metadata.permissions());

@@ -1,11 +1,11 @@
 //! Reading robot files, and what to say when that fails.
 
 use std::fmt::Write as _;
-use std::fs;
-use std::io::ErrorKind;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Robot, check_bytes};
+use rne_model::{Checked, Robot, check_bytes, read_limited};
 
 use crate::outcome::Failure;
 use crate::terminal::TYPED;
@@ -13,18 +13,23 @@ use crate::terminal::TYPED;
 /// So many files of a folder are named where one is missing.
 const NAMED: usize = 16;
 
-/// A valid robot with its lints.
+/// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
-    let bytes = fs::read(path).map_err(|error| match error.kind() {
+    let (name, bytes) = if path == Path::new("-") {
+        ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
+    } else {
+        (path.display().to_string(), File::open(path).and_then(read_limited))
+    };
+    let bytes = bytes.map_err(|error| match error.kind() {
         ErrorKind::NotFound => Failure::input(missing(path)),
         ErrorKind::IsADirectory => Failure::input(format_args!(
             "{0} is a folder; name the robot files in it, such as {TYPED}{1}{TYPED:#}",
             path.display(),
             path.join("*.yaml").display()
         )),
-        _ => Failure::input(format_args!("{} cannot be read: {error}", path.display())),
+        _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    check_bytes(&path.display().to_string(), &bytes).map_err(|report| Failure::from(&report))
+    check_bytes(&name, &bytes).map_err(|report| Failure::from(&report))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

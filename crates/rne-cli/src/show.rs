@@ -29,7 +29,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// One joint only, counted from 1 at the base
-    #[arg(long, value_name = "I")]
+    #[arg(long, value_name = "I", value_parser = arguments::joint)]
     joint: Option<usize>,
     /// One of the seven steps only
     #[arg(long, value_name = "S", value_parser = arguments::step)]

@@ -28,8 +28,8 @@ const Q: [f64; 6] = [0.3, -0.8, 0.5, 1.1, -0.4, 0.6];
 const QD: [f64; 6] = [0.9, -0.5, 0.4, 1.2, -0.3, 0.7];
 const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
 
-/// Columns of the tour's sentences.
-const WIDTH: usize = 96;
+/// Columns of the tour's sentences and rules.
+const WIDTH: usize = 80;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
     let robot = check(FILE, YAML).map_err(|report| Failure::from(&report))?.robot;
@@ -72,7 +72,7 @@ fn opening() -> String {
 }
 
 fn chapter(text: &mut String, number: usize, title: &str, about: &str) {
-    let rule = "─".repeat(WIDTH.saturating_sub(title.chars().count() + 5));
+    let rule = "─".repeat(WIDTH.saturating_sub(title.chars().count() + "── 1   ".chars().count()));
     let _ = writeln!(text, "\n\n{QUIET}──{QUIET:#} {TITLE}{number}  {title}{TITLE:#} {QUIET}{rule}{QUIET:#}\n");
     let _ = writeln!(text, "{}\n", wrap(about, WIDTH, ""));
 }

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::{Form, Program, compile};
+use rne_codegen::{Form, Function, Program, compile};
 use rne_model::{Report, Robot, check_bytes};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
-use crate::implementation::{METHODS, Target};
+use crate::implementation::Target;
 use crate::location;
 
 /// `#[derive(InverseDynamics)]`.
@@ -120,7 +120,8 @@ fn watch(file: &Path) -> TokenStream {
 }
 
 fn programs(robot: &Robot, form: Form, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
-    let programs: Result<Vec<_>, _> = METHODS.into_iter().map(|function| compile(robot, function, form)).collect();
+    let programs: Result<Vec<_>, _> =
+        Function::ALL.into_iter().map(|function| compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

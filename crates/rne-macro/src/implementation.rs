@@ -8,10 +8,6 @@ use syn::{DeriveInput, GenericParam, Path, Visibility};
 
 use crate::description;
 
-/// The methods of `InverseDynamics`.
-pub(crate) const METHODS: [Function; 4] =
-    [Function::InverseDynamics, Function::InverseDynamicsWithWrench, Function::GravityTorques, Function::BiasTorques];
-
 /// The type that the code is for, and where the library is.
 pub(crate) struct Target<'a> {
     pub(crate) item: &'a DeriveInput,
@@ -60,7 +56,7 @@ impl Target<'_> {
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
-        let methods = METHODS.map(|function| self.signature(function, &joints, &quote!(*q)));
+        let methods = Function::ALL.map(|function| self.signature(function, &joints, &quote!(*q)));
         quote! {
             #constants
 

@@ -32,11 +32,15 @@ use proc_macro::TokenStream;
 ///
 /// The struct may have fields, lifetimes and parameters; the methods use none of them.
 ///
+/// The methods name their variables as the textbook does, `m1`, `w2_z`, `tau3`. A constant of such a name that is in scope
+/// where the struct stands (`const m1: f64`, against Rust's custom of capitals) would take their place and fail to compile;
+/// put the struct into a module of its own then.
+///
 /// # `path = "…"`
 ///
-/// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. A file that is not
-/// there is looked for in the package's folder (that of `Cargo.toml`); this serves editors that do not tell a macro its
-/// source file.
+/// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where the compiler does
+/// not tell a macro its source file, in documentation tests and in some editors, it starts at the package's folder (that
+/// of `Cargo.toml`) or its `src`.
 ///
 /// # `yaml = "…"`
 ///

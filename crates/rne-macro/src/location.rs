@@ -1,9 +1,11 @@
 //! From the path in the attribute to the bytes of the file.
 
+use std::fs::File;
 use std::path::{Component, Path, PathBuf};
-use std::{env, fmt, fs, io};
+use std::{env, fmt, io};
 
 use proc_macro2::Span;
+use rne_model::read_limited;
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -20,8 +22,8 @@ pub(crate) struct RobotFile {
 /// Why there is no robot file.
 #[derive(Debug)]
 pub(crate) enum Missing {
-    /// It is in none of these places.
-    NotFound { written: String, tried: Vec<Place> },
+    /// It is in none of these places. Perhaps another path was meant.
+    NotFound { written: String, tried: Vec<Place>, meant: Option<String> },
     /// It is there and cannot be read.
     Unreadable { shown: String, error: io::Error },
 }
@@ -38,7 +40,7 @@ pub(crate) struct Place {
 impl fmt::Display for Missing {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NotFound { written, tried } => {
+            Self::NotFound { written, tried, meant } => {
                 write!(f, "there is no robot file `{written}`")?;
                 // An absolute path is one place, and has been named.
                 if Path::new(written).is_absolute() {
@@ -48,10 +50,11 @@ impl fmt::Display for Missing {
                 for Place { what, file } in tried {
                     write!(f, "\n  {what}: {}", file.display())?;
                 }
-                f.write_str(
-                    "\n\na relative path starts at the folder of the source file, as with `include_str!`; \
-                     a file in the package folder is found as well\n",
-                )
+                f.write_str("\n\na relative path starts at the folder of the source file, as with `include_str!`")?;
+                if let Some(meant) = meant {
+                    write!(f, "; did you mean `{meant}`?")?;
+                }
+                f.write_str("\n")
             }
             Self::Unreadable { shown, error } => write!(f, "the robot file `{shown}` cannot be read: {error}"),
         }
@@ -68,14 +71,19 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     let short = |file: &Path| short(&working_directory.join(file), &working_directory, package.as_deref());
     for Place { file, .. } in &places {
         let shown = || short(file).map_or_else(|| written.clone(), |file| file.display().to_string());
-        match fs::read(file) {
+        match File::open(file).and_then(read_limited) {
             Ok(bytes) => return Ok(RobotFile { absolute: working_directory.join(file), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(Missing::Unreadable { shown: shown(), error }),
         }
     }
-    let tried = places.into_iter().map(|place| Place { file: short(&place.file).unwrap_or(place.file), ..place });
-    Err(Missing::NotFound { tried: tried.collect(), written })
+    let source_folder = source_file.as_deref().and_then(Path::parent).map(|folder| working_directory.join(folder));
+    let meant = source_folder
+        .and_then(|folder| neighbours(Path::new(&written), &folder).find(|path| folder.join(path).is_file()));
+    let tried = places
+        .into_iter()
+        .map(|place| Place { file: short(&place.file).unwrap_or_else(|| normal(&place.file)), ..place });
+    Err(Missing::NotFound { tried: tried.collect(), meant: meant.map(|path| path.display().to_string()), written })
 }
 
 /// The file in which the literal stands. The compiler knows it; some editors do not.
@@ -83,11 +91,12 @@ fn source_file(span: Span) -> Option<PathBuf> {
     if proc_macro::is_available() { span.unwrap().local_file() } else { None }
 }
 
-/// Where the file may be: beside the source file as with `include_str!`, then in the package's own folder. The second is
-/// for editors that do not tell the source file, and for documentation tests, which have none of their own.
+/// Where the file may be: beside the source file, as with `include_str!`. Editors that do not tell the source file, and
+/// documentation tests, which have none of their own, have the package's folders instead.
 fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) -> Vec<Place> {
     let beside = source_file.and_then(Path::parent).map(|folder| ("beside the source file", folder.to_owned()));
-    let sources = package.filter(|_| beside.is_none()).map(|package| ("in the sources", package.join("src")));
+    let package = package.filter(|_| beside.is_none());
+    let sources = package.map(|package| ("in the sources", package.join("src")));
     let package = package.map(|package| ("in the package folder", package.to_owned()));
     let mut places: Vec<Place> = Vec::new();
     for (what, folder) in beside.into_iter().chain(sources).chain(package) {
@@ -98,6 +107,19 @@ fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) ->
         }
     }
     places
+}
+
+/// The same file name with its folders, in the folders above that of the source file, nearest first: what is meant where
+/// one `..` too few or too many is written.
+fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let named: PathBuf = written.components().filter(|part| matches!(part, Component::Normal(_))).collect();
+    let levels = normal(source_folder).components().filter(|part| matches!(part, Component::Normal(_))).count();
+    let relative = written.is_relative() && named.file_name().is_some();
+    (0..=levels).filter(move |_| relative).map(move |up| {
+        let mut path: PathBuf = (0..up).map(|_| Component::ParentDir).collect();
+        path.push(&named);
+        path
+    })
 }
 
 /// A path from the working directory, as the compiler shows its own, or from the package; `None` for one that is in
@@ -136,13 +158,24 @@ mod tests {
 
     #[test]
     fn a_path_starts_at_the_source_file() {
-        assert_eq!(found("../robots/x.yaml", Some("/arm/src/main.rs")), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
-        assert_eq!(found("x.yaml", Some("src/main.rs")), ["src/x.yaml", "/arm/x.yaml"]);
+        assert_eq!(found("../robots/x.yaml", Some("/arm/src/main.rs")), ["/arm/robots/x.yaml"]);
+        assert_eq!(found("x.yaml", Some("src/main.rs")), ["src/x.yaml"]);
     }
 
     #[test]
     fn a_path_starts_in_the_package_when_the_source_file_is_unknown() {
         assert_eq!(found("../robots/x.yaml", None), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
+    }
+
+    #[test]
+    fn the_folders_above_are_neighbours() {
+        let near = |written| {
+            let paths = neighbours(Path::new(written), Path::new("/arm/src"));
+            paths.map(|path| path.to_str().expect("Unicode").replace('\\', "/")).collect::<Vec<_>>()
+        };
+        assert_eq!(near("robots/x.yaml"), ["robots/x.yaml", "../robots/x.yaml", "../../robots/x.yaml"]);
+        assert_eq!(near("../../../x.yaml"), ["x.yaml", "../x.yaml", "../../x.yaml"]);
+        assert!(near("/x.yaml").is_empty() && near("..").is_empty());
     }
 
     #[test]

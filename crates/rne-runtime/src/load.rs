@@ -1,9 +1,9 @@
 //! Robots from robot files, at run time.
 
-use std::fs;
+use std::fs::File;
 use std::path::Path;
 
-use rne_model::{Robot, check_bytes};
+use rne_model::{Robot, check_bytes, read_limited};
 
 use crate::{Arm, DynArm, LoadError, WrongJointCount};
 
@@ -53,6 +53,7 @@ impl DynArm {
 }
 
 fn read(path: &Path) -> Result<Robot, LoadError> {
-    let bytes = fs::read(path).map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
+    let bytes = File::open(path).and_then(read_limited);
+    let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
     Ok(check_bytes(&path.display().to_string(), &bytes)?.robot)
 }

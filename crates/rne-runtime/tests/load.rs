@@ -55,6 +55,11 @@ fn mistakes_are_named() {
     let error = DynArm::from_file("no/such/robot.yaml").unwrap_err();
     assert!(error.to_string().starts_with("cannot read no/such/robot.yaml: "), "{error}");
 
+    if cfg!(unix) {
+        let error = DynArm::from_file("/dev/zero").unwrap_err();
+        assert!(error.to_string().contains("more than 1048576 bytes"), "no end, and no endless reading: {error}");
+    }
+
     let error = DynArm::from_yaml("name: Nameless").unwrap_err();
     assert!(matches!(&error, LoadError::Invalid(report) if report.has_errors()), "{error}");
 }

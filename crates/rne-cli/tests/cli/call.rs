@@ -1,6 +1,7 @@
 //! Calling `rne` as a user does: from the root of the project, as a process of its own.
 
 use std::fs;
+use std::io::Write as _;
 use std::path::PathBuf;
 use std::process::{Command, Output, Stdio};
 
@@ -22,9 +23,22 @@ pub(crate) fn command(arguments: &[&str]) -> Command {
 }
 
 pub(crate) fn rne(arguments: &[&str]) -> Called {
-    let Output { status, stdout, stderr } = command(arguments).output().expect("rne starts");
+    called(command(arguments).output().expect("rne starts"))
+}
+
+fn called(output: Output) -> Called {
+    let Output { status, stdout, stderr } = output;
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
     Called { out: text(stdout), err: text(stderr), status: status.code().expect("no signal") }
+}
+
+/// A call that reads this text from standard input.
+pub(crate) fn rne_reading(arguments: &[&str], text: &str) -> Called {
+    let mut command = command(arguments);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("rne starts");
+    child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("it reads");
+    called(child.wait_with_output().expect("rne ends"))
 }
 
 /// A call that succeeds and says nothing on standard error.

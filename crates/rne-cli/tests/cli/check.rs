@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::call::{fails, fine, folder, rne};
+use crate::call::{ROOT, fails, fine, folder, rne, rne_reading};
 
 #[test]
 fn shipped_robots_are_in_order() {
@@ -42,12 +42,33 @@ fn a_file_that_is_not_there() {
 }
 
 #[test]
+fn standard_input() {
+    let good = fs::read_to_string(format!("{ROOT}/robots/planar1.yaml")).expect("a robot");
+    let called = rne_reading(&["check", "-"], &good);
+    assert_eq!((called.status, called.out.as_str()), (0, "ok -  planar1, R, standard\n"));
+    let called = rne_reading(&["check", "-"], &good.replace("mass: m,", "mass: -1,"));
+    assert!(called.status == 1 && called.out.contains("--> <standard input>:"), "{called:?}");
+}
+
+/// A device without an end, and a file far too long, are refused at once.
+#[test]
+#[cfg(unix)]
+fn files_without_an_end() {
+    fails(1, &["show", "/dev/zero"], &["/dev/zero:1:1", "more than 1048576 bytes"]);
+    let huge = folder("huge").join("huge.yaml");
+    fs::File::create(&huge).and_then(|file| file.set_len(3 << 30)).expect("a sparse file");
+    fails(1, &["show", huge.to_str().expect("UTF-8")], &["huge.yaml:1:1", "more than 1048576 bytes"]);
+    fs::remove_file(&huge).expect("it is gone");
+}
+
+#[test]
 fn usage() {
     for arguments in [&["check"][..], &["chek", "x"], &["show"], &["ops"], &["eval"], &["emit"]] {
         let called = rne(arguments);
         assert_eq!((called.status, called.out.as_str()), (2, ""), "{arguments:?}");
         assert!(called.err.contains("Usage"), "{}", called.err);
     }
+    assert_eq!(fine(&["help", "check"]), fine(&["check", "--help"]));
     let help = fine(&["--help"]);
     for command in ["check", "show", "emit", "ops", "eval"] {
         assert!(help.contains(&format!("  {command} ")), "{help}");

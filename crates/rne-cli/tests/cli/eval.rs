@@ -62,6 +62,12 @@ fn a_leading_minus_is_a_value() {
 }
 
 #[test]
+fn numbers_are_written_as_in_a_file() {
+    let call = |q| fine(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", q]);
+    assert_eq!(call("pi/2,-deg(30)"), call("1.5707963267948966,-0.5235987755982988"));
+}
+
+#[test]
 fn the_worksheet() {
     let state = ["--q", "0.6", "--qd", "1.3", "--qdd", "-0.7"];
     let call = |more: &[&str]| {
@@ -109,8 +115,9 @@ fn arguments_that_do_not_fit() {
     let wrench = ["--q", three, "--qd", three, "--qdd", three, "--wrench", "1,2,3"];
     call(2, &wrench, &["--wrench needs 6 numbers, not 3", "fx,fy,fz,nx,ny,nz"]);
     for bad in ["1,nan,3", "1,inf,3", "1,1e999,3"] {
-        call(2, &["--q", bad], &["--q", "number 2", "not finite"]);
+        call(2, &["--q", bad], &["--q", "number 2", "is none", if bad.contains('e') { "too large" } else { "finite" }]);
     }
+    call(2, &["--q", "1,90°,3"], &["number 2", "write `deg(90)`"]);
     for bad in ["1,x,3", "1,,3"] {
         call(2, &["--q", bad], &["number 2"]);
     }

@@ -1,6 +1,6 @@
 //! `rne show` and `rne ops`: listings and counts.
 
-use crate::call::{fails, fine};
+use crate::call::{ROOT, fails, fine, rne_reading};
 use serde_json::Value;
 
 #[test]
@@ -31,12 +31,21 @@ fn joints_and_steps_that_are_not_there() {
     for joint in ["0", "7"] {
         fails(2, &["show", robot, "--joint", joint], &["has no joint", "1 (j1)", "6 (j6)", "rne show --help"]);
     }
+    fails(2, &["show", robot, "--joint", "one"], &["--joint", "by its number, counted from 1 at the base"]);
     for step in ["0", "8", "x"] {
         fails(2, &["show", robot, "--step", step], &["1 angular velocity", "7 torque"]);
     }
     fails(2, &["show", robot, "--function", "torques"], &["inverse_dynamics", "bias_torques"]);
     fails(2, &["show", robot, "--form", "eight_steps"], &["seven_steps"]);
     fails(2, &["show", robot, "--keep", "speed"], &["velocity"]);
+}
+
+#[test]
+fn the_base_is_written_as_the_table_is() {
+    let text = std::fs::read_to_string(format!("{ROOT}/robots/planar1.yaml")).expect("a robot");
+    let turned = text.replace("\njoints:", "\nbase: {rpy: [0, pi/2, -0.5]}\njoints:");
+    let called = rne_reading(&["show", "-"], &turned);
+    assert!(called.out.contains("roll pitch yaw (0, π/2, -0.5) rad"), "{called:?}");
 }
 
 #[test]

@@ -50,7 +50,10 @@ fn the_tour_is_computed_and_fits() {
     }
     let dots = |c: &char| ('\u{300}'..='\u{36F}').contains(c);
     for line in tour.lines() {
-        assert!(line.chars().filter(|c| !dots(c)).count() <= 100, "too wide: {line}");
+        // sentences and rules fit every terminal, code is as wide as rustfmt makes it
+        let is_code = line.starts_with(' ') || line.contains(" mul ") || line.contains("  qd ");
+        let most = if is_code { 100 } else { 80 };
+        assert!(line.chars().filter(|c| !dots(c)).count() <= most, "too wide: {line}");
     }
 }
 

@@ -9,6 +9,6 @@ mod text;
 mod tokens;
 
 pub use listing::{Listing, listing};
-pub use table::dh_table;
+pub use table::{angle, convention, dh_table};
 pub use text::rust_file;
 pub use tokens::body;

@@ -45,8 +45,9 @@ pub fn dh_table(robot: &Robot) -> String {
     text
 }
 
-/// The convention in one line.
-pub(super) fn convention(robot: &Robot) -> &'static str {
+/// The convention of a robot's table in one line.
+#[must_use]
+pub fn convention(robot: &Robot) -> &'static str {
     match robot.convention {
         Convention::Standard => "standard (distal) Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
         Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
@@ -66,8 +67,9 @@ fn number(value: f64) -> String {
     if value == 0.0 { "0".to_owned() } else { format!("{value}") }
 }
 
-/// An angle; a right one as a multiple of π.
-pub(super) fn angle(angle: &Angle) -> String {
+/// An angle as text; a right one, up to a full turn, as a multiple of π.
+#[must_use]
+pub fn angle(angle: &Angle) -> String {
     let Some(right) = angle.right else { return number(angle.radians) };
     // One full turn or less is written as a multiple of π; more keeps its digits.
     let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
