@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use rne_codegen::emit::{Listing, listing};
+use rne_codegen::emit::{self, Listing, listing};
 use rne_codegen::{Form, Function, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
@@ -49,7 +49,10 @@ fn block(name: &str) -> String {
                 listing(&robot, &program, Listing { joint: Some(3), step: Some(step), ..Listing::default() })
             });
             let code: Vec<String> = steps.filter(|text| !text.trim().is_empty()).collect();
-            format!("```rust\n{}```\n", code.join("\n"))
+            let code = code.join("\n");
+            let emitted = emit::rust_file(&robot, &[program]);
+            assert!(emitted.contains(&code), "the heading of the block says where it is from");
+            format!("```rust\n{code}```\n")
         }
         "robots" => robots(),
         name => panic!("no block is called `{name}`"),

@@ -1,11 +1,64 @@
 //! What the user sees: each likely mistake as the compiler reports it, and what has to compile without a word.
 //!
-//! The messages in `tests/ui/*.stderr` are rustc's of the toolchain that wrote them;
-//! `TRYBUILD=overwrite cargo test --test ui` writes them again.
+//! The messages in `tests/ui/*.stderr` are the derive's own, in the frame that rustc puts around them;
+//! `TRYBUILD=overwrite cargo test --test ui` writes them again. Messages whose words are rustc's (`tests/ui/rustc`) change with
+//! its versions: of those, the code, the place and the names are looked for.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 
 #[test]
 fn mistakes_and_their_messages() {
     let cases = trybuild::TestCases::new();
     cases.compile_fail("tests/ui/*.rs");
     cases.pass("tests/ui/pass/*.rs");
+}
+
+/// File, and what the one message has in it.
+const BY_RUSTC: [(&str, &[&str]); 3] = [
+    ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
+    ("crate_is_elsewhere", &["error[E0433]", "crate_is_elsewhere.rs:4:48", "`dynamics`"]),
+    ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
+];
+
+#[test]
+fn mistakes_that_rustc_finds_by_itself() {
+    let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("by_rustc");
+    fs::create_dir_all(folder.join("src/bin")).expect("a folder for sources");
+    fs::create_dir_all(folder.join("src/robots")).expect("a folder for robots");
+    let manifest = format!(
+        "[package]\nname = \"by_rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
+         rne = {{ path = '{}', default-features = false }}\n\n[workspace]\n",
+        package.display()
+    );
+    fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
+    // The versions that are at hand, since they built this test: the builds below need no network.
+    fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
+    for robot in ["rod.yaml", "two.yaml"] {
+        let source = package.join("tests/ui/robots").join(robot);
+        fs::copy(source, folder.join("src/robots").join(robot)).expect("a robot file");
+    }
+    for (name, _) in BY_RUSTC {
+        let source = package.join(format!("tests/ui/rustc/{name}.rs"));
+        fs::copy(source, folder.join(format!("src/bin/{name}.rs"))).expect("a program");
+    }
+    for (name, parts) in BY_RUSTC {
+        let output = Command::new(env!("CARGO"))
+            .args(["check", "--offline", "--quiet", "--color", "never", "--bin", name, "--target-dir"])
+            .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
+            .current_dir(&folder)
+            // Flags of the calling build (coverage, sanitizers) are not the user's.
+            .env_remove("RUSTFLAGS")
+            .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            .output()
+            .expect("cargo runs");
+        let messages = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success(), "{name} compiles");
+        for part in parts {
+            assert!(messages.contains(part), "{name}: no `{part}` in {messages}");
+        }
+        assert_eq!(messages.matches("error[").count(), 1, "{name}: {messages}");
+    }
 }

@@ -124,7 +124,7 @@ proptest! {
     }
 
     #[test]
-    fn every_vector_of_every_step_equals_the_runtime(dof in 1_usize..=8, seed in any::<u64>()) {
+    fn every_vector_of_every_step_equals_the_runtime(dof in 1_usize..=12, seed in any::<u64>()) {
         intermediates_agree(&robots::yaml(seed, dof), seed)?;
     }
 }

@@ -87,6 +87,9 @@ fn numbers(value: &Value) -> Vec<f64> {
 }
 
 fn relative_error(found: &[f64], expected: &[f64]) -> f64 {
+    // `f64::max` drops what is not a number
+    assert!(found.iter().chain(expected).all(|torque| torque.is_finite()), "{found:?} {expected:?}");
+    assert_eq!(found.len(), expected.len());
     let scale = expected.iter().fold(0.0_f64, |scale, torque| scale.max(torque.abs()));
     let error = found.iter().zip(expected).fold(0.0_f64, |error, (a, b)| error.max((a - b).abs()));
     // gravity does not act on a gantry's horizontal axes alone: a state without torques must be one here as well

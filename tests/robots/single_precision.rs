@@ -32,7 +32,10 @@ impl Visitor for SinglePrecision {
             let double = robot.inverse_dynamics(&q.map(f64::from), &qd.map(f64::from), &qdd.map(f64::from));
             let scale = double.iter().fold(0.0_f64, |scale, torque| scale.max(torque.abs()));
             for (single, double) in single.iter().zip(double) {
-                worst = worst.max((f64::from(*single) - double).abs() / scale);
+                let error = (f64::from(*single) - double).abs();
+                // `f64::max` drops what is not a number, and there is no ratio to zero
+                assert!(error.is_finite(), "{}: {single} for {double}", R::NAME);
+                worst = worst.max(if error == 0.0 { 0.0 } else { error / scale });
             }
         }
         assert!(worst <= TOLERANCE, "{}: {worst}", R::NAME);

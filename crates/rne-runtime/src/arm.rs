@@ -76,7 +76,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     ///
     /// Joint arrays as in [`InverseDynamics::inverse_dynamics`].
     #[must_use]
-    pub fn inverse_dynamics_on_moving_base<T: Scalar>(
+    pub fn inverse_dynamics_on_moving_base_with_wrench<T: Scalar>(
         &self,
         q: &[T; DOF],
         qd: &[T; DOF],
@@ -92,7 +92,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
-    /// [`inverse_dynamics_on_moving_base`](Self::inverse_dynamics_on_moving_base); [`fixed_base`](Self::fixed_base) for
+    /// [`inverse_dynamics_on_moving_base_with_wrench`](Self::inverse_dynamics_on_moving_base_with_wrench); [`fixed_base`](Self::fixed_base) for
     /// an arm that stands still.
     #[must_use]
     pub fn trace<T: Scalar>(
@@ -120,7 +120,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
 
 impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
     fn inverse_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF] {
-        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), None)
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), None)
     }
 
     fn inverse_dynamics_with_wrench<T: Scalar>(
@@ -130,7 +130,7 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         qdd: &[T; DOF],
         wrench: &Wrench<T>,
     ) -> [T; DOF] {
-        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), Some(wrench))
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
     fn gravity_torques<T: Scalar>(&self, q: &[T; DOF]) -> [T; DOF] {

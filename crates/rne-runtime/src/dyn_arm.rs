@@ -99,7 +99,7 @@ impl<S: Constant> DynArm<S> {
     /// # Errors
     /// When an argument does not have one element per joint.
     pub fn inverse_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), None)
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), None)
     }
 
     /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
@@ -113,7 +113,7 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         wrench: &Wrench<T>,
     ) -> Result<Vec<T>, WrongLength> {
-        self.inverse_dynamics_on_moving_base(q, qd, qdd, &self.fixed_base(), Some(wrench))
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
@@ -138,7 +138,7 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When a joint argument does not have one element per joint.
-    pub fn inverse_dynamics_on_moving_base<T: Scalar>(
+    pub fn inverse_dynamics_on_moving_base_with_wrench<T: Scalar>(
         &self,
         q: &[T],
         qd: &[T],
@@ -152,7 +152,7 @@ impl<S: Constant> DynArm<S> {
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
-    /// [`inverse_dynamics_on_moving_base`](Self::inverse_dynamics_on_moving_base).
+    /// [`inverse_dynamics_on_moving_base_with_wrench`](Self::inverse_dynamics_on_moving_base_with_wrench).
     ///
     /// # Errors
     /// When a joint argument does not have one element per joint.

@@ -10,6 +10,9 @@ use simba::simd::SimdRealField;
 ///
 /// Implemented for everything that is simba's [`SimdRealField`] and `Copy`. A type of your own that is no such field (an
 /// interval, say) implements this trait itself; a foreign one needs a newtype.
+///
+/// The ring operators come with their assigning forms, `+=` and so on: nalgebra's sums and products of matrices ask for
+/// them, and the generic recursion is written in nalgebra.
 pub trait Scalar:
     Copy
     + Debug
@@ -31,9 +34,12 @@ pub trait Scalar:
     #[must_use]
     fn from_f64(value: f64) -> Self;
 
-    /// A constant that is stored in single precision; never passes through `f64` when this type is `f32`.
+    /// A constant that is stored in single precision; never passes through `f64` when this type is `f32`. A type of your
+    /// own may leave it out.
     #[must_use]
-    fn from_f32(value: f32) -> Self;
+    fn from_f32(value: f32) -> Self {
+        Self::from_f64(value.into())
+    }
 
     /// Sine and cosine of an angle in rad.
     #[must_use]

@@ -24,8 +24,10 @@ fn the_same_bits_as_arm() {
             assert_eq!(dyn_arm.gravity_torques(&q), Ok(arm.gravity_torques(&q).to_vec()));
             assert_eq!(dyn_arm.bias_torques(&q, &qd), Ok(arm.bias_torques(&q, &qd).to_vec()));
             assert_eq!(
-                dyn_arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH)),
-                Ok(arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH)).to_vec())
+                dyn_arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH)),
+                Ok(arm
+                    .inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH))
+                    .to_vec())
             );
             let trace = arm.trace(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH));
             let dyn_trace = dyn_arm.trace(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH)).expect("six joints");

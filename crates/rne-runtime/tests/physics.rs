@@ -49,7 +49,7 @@ fn gravity_is_an_upward_acceleration_of_the_base() {
         let arm = Arm::new(six_joints(convention));
         let (q, qd, qdd) = (numbers.array(3.0), numbers.array(2.0), numbers.array(2.0));
         let lifted = BaseMotion { acceleration: [0.0, 0.0, 9.81], ..BaseMotion::fixed([0.0; 3]) };
-        let tau = arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &lifted, None);
+        let tau = arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &lifted, None);
         assert_close("τ", &tau, &arm.inverse_dynamics(&q, &qd, &qdd));
     }
 }
@@ -63,7 +63,7 @@ fn a_base_that_spins_about_the_first_axis_is_a_faster_first_joint() {
             (numbers.array(3.0), numbers.array(2.0), numbers.array(2.0));
         let [spin, spin_up] = numbers.array(2.0);
         let base = BaseMotion { omega: [0.0, 0.0, spin], omega_dot: [0.0, 0.0, spin_up], ..arm.fixed_base() };
-        let on_spinning_base = arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &base, None);
+        let on_spinning_base = arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &base, None);
         qd[0] += spin;
         qdd[0] += spin_up;
         assert_close("τ", &on_spinning_base, &arm.inverse_dynamics(&q, &qd, &qdd));
@@ -76,8 +76,8 @@ fn the_velocity_of_the_base_changes_no_torque() {
     let (q, qd, qdd) = (common::SIX_Q, common::SIX_QD, common::SIX_QDD);
     let slow = BaseMotion { velocity: [0.0; 3], ..SIX_BASE };
     assert_eq!(
-        arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &SIX_BASE, None),
-        arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &slow, None)
+        arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &SIX_BASE, None),
+        arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &slow, None)
     );
 }
 
@@ -204,7 +204,10 @@ fn a_trace_ends_in_the_torques() {
         let arm = Arm::new(Model { tool: tool(), base: Transform::IDENTITY, ..six_joints(convention) });
         let (q, qd, qdd) = (common::SIX_Q, common::SIX_QD, common::SIX_QDD);
         let trace = arm.trace(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH));
-        assert_eq!(trace.tau(), arm.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH)));
+        assert_eq!(
+            trace.tau(),
+            arm.inverse_dynamics_on_moving_base_with_wrench(&q, &qd, &qdd, &SIX_BASE, Some(&SIX_WRENCH))
+        );
     }
 }
 

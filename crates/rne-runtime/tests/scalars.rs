@@ -4,7 +4,10 @@
 mod common;
 
 use common::{Numbers, SIX_Q, SIX_QD, SIX_QDD, SIX_WRENCH, relative_error, six_joints};
+use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
 use num_dual::Dual64;
+use num_traits::{One, Zero};
 use rne_model::Convention::{Modified, Standard};
 use rne_runtime::{Arm, DynArm, InverseDynamics, Scalar, Wrench};
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
@@ -166,4 +169,77 @@ fn the_run_time_arm_takes_every_scalar_too() {
     assert_eq!(found, arm.gravity_torques(&q));
     let q = SIX_Q.map(WideF64x4::splat);
     assert_eq!(dyn_arm.gravity_torques(&q).expect("six joints"), arm.gravity_torques(&q));
+}
+
+/// A type of a user's own that is no real field to nalgebra.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Own(f64);
+
+macro_rules! operators {
+    ($($operator:ident $method:ident $assigning:ident $assign:ident,)*) => {
+        $(
+            impl $operator for Own {
+                type Output = Self;
+                fn $method(self, other: Self) -> Self {
+                    Self(self.0.$method(other.0))
+                }
+            }
+            impl $assigning for Own {
+                fn $assign(&mut self, other: Self) {
+                    self.0.$assign(other.0);
+                }
+            }
+        )*
+    };
+}
+
+operators! {
+    Add add AddAssign add_assign,
+    Sub sub SubAssign sub_assign,
+    Mul mul MulAssign mul_assign,
+    Div div DivAssign div_assign,
+}
+
+impl Neg for Own {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Zero for Own {
+    fn zero() -> Self {
+        Self(0.0)
+    }
+    fn is_zero(&self) -> bool {
+        self.0 == 0.0
+    }
+}
+
+impl One for Own {
+    fn one() -> Self {
+        Self(1.0)
+    }
+}
+
+impl Scalar for Own {
+    fn from_f64(value: f64) -> Self {
+        Self(value)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = Scalar::sin_cos(self.0);
+        (Self(sin), Self(cos))
+    }
+}
+
+#[test]
+fn a_type_of_ones_own_needs_a_constant_and_a_sine() {
+    let model = six_joints(Modified);
+    let state = [SIX_Q, SIX_QD, SIX_QDD];
+    let [q, qd, qdd] = state.map(|x| x.map(Own));
+    let expected = Arm::new(model).inverse_dynamics(&SIX_Q, &SIX_QD, &SIX_QDD);
+    assert_eq!(Arm::new(model).inverse_dynamics(&q, &qd, &qdd), expected.map(Own));
+    let single = Arm::new(model.to_f32());
+    let expected = single.inverse_dynamics(&SIX_Q, &SIX_QD, &SIX_QDD);
+    assert_eq!(single.inverse_dynamics(&q, &qd, &qdd), expected.map(Own), "constants in single precision");
 }

@@ -92,7 +92,7 @@ fn six_joints_torques() {
         let (q, qd, qdd) = (&SIX_Q, &SIX_QD, &SIX_QDD);
         assert_close("no wrench", &arm.inverse_dynamics(q, qd, qdd), &free);
         assert_close("tip wrench", &arm.inverse_dynamics_with_wrench(q, qd, qdd, &SIX_WRENCH), &wrench);
-        let tau = arm.inverse_dynamics_on_moving_base(q, qd, qdd, &SIX_BASE, Some(&SIX_WRENCH));
+        let tau = arm.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &SIX_BASE, Some(&SIX_WRENCH));
         assert_close("tip wrench, moving base", &tau, &moving);
     }
 }

@@ -1,7 +1,7 @@
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "robots/rod.yaml", crate = ::dynamics)]
+#[robot(path = "../robots/rod.yaml", crate = ::dynamics)]
 struct Rod;
 
 fn main() {

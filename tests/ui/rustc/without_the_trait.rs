@@ -1,5 +1,5 @@
 #[derive(rne::InverseDynamics)]
-#[robot(path = "robots/rod.yaml")]
+#[robot(path = "../robots/rod.yaml")]
 struct Rod;
 
 fn main() {

@@ -1,7 +1,7 @@
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "robots/two.yaml")]
+#[robot(path = "../robots/two.yaml")]
 struct Two;
 
 fn main() {
