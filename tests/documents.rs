@@ -125,3 +125,19 @@ fn the_robot_file_of_the_readme_is_valid() {
     let checked = rne_model::check("README.md", yaml).unwrap_or_else(|report| panic!("{report}"));
     assert!(checked.lints.is_empty(), "{}", checked.lints);
 }
+
+/// The script finds what it breaks, and the page has a line for each mutation that some test noticed.
+#[test]
+fn the_page_of_mutations_is_the_script_s() {
+    let (script, page) = (read(&root().join("scripts/mutate")), read(&root().join("docs/mutations.md")));
+    let mut mutations = 0;
+    for line in script.lines().filter(|line| line.starts_with("mutate '")) {
+        let [_, what, file, old, ..] = line.split('\'').collect::<Vec<_>>()[..] else { panic!("{line}") };
+        let source = read(&root().join("crates/rne-codegen/src").join(file.trim()));
+        assert_eq!(source.matches(old).count(), 1, "scripts/mutate: {what}: `{old}` must occur once in {file}");
+        let row = page.lines().find_map(|row| row.strip_prefix(&format!("| {what} | ")));
+        assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: scripts/mutate '{what}'");
+        mutations += 1;
+    }
+    assert_eq!(page.lines().filter(|row| row.ends_with("` |")).count(), mutations);
+}

@@ -107,7 +107,7 @@ pub(crate) fn relative_error(actual: &[f64], expected: &[f64]) -> f64 {
     assert_eq!(actual.len(), expected.len());
     let largest = expected.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     let worst = actual.iter().zip(expected).fold(0.0_f64, |m, (a, e)| {
-        assert!(a.is_finite(), "{actual:?}");
+        assert!(a.is_finite() && e.is_finite(), "{actual:?} {expected:?}");
         m.max((a - e).abs())
     });
     if largest == 0.0 { worst } else { worst / largest }
