@@ -5,7 +5,7 @@
 //! use rne::InverseDynamics;
 //!
 //! #[derive(InverseDynamics)]
-//! #[robot(path = "robots/puma560.yaml")] // from the folder of this source file
+//! #[robot(path = "../robots/puma560.yaml")] // relative to this source file
 //! pub struct Puma560;
 //!
 //! let q = [0.0, 0.8, -0.4, 0.0, 0.5, 0.0]; // rad
@@ -37,7 +37,7 @@
 //! # #[cfg(feature = "std")] {
 //! use rne::{Arm, InverseDynamics};
 //! # #[derive(InverseDynamics)]
-//! # #[robot(path = "robots/puma560.yaml")]
+//! # #[robot(path = "../robots/puma560.yaml")]
 //! # pub struct Puma560;
 //!
 //! let arm = Arm::<6>::from_file("robots/puma560.yaml")?;

@@ -38,9 +38,8 @@ use proc_macro::TokenStream;
 ///
 /// # `path = "…"`
 ///
-/// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where the compiler does
-/// not tell a macro its source file, in documentation tests and in some editors, it starts at the package's folder (that
-/// of `Cargo.toml`) or its `src`.
+/// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where a macro is
+/// not told its source file, as in some editors, it starts at the package's `src` or at its folder (that of `Cargo.toml`).
 ///
 /// # `yaml = "…"`
 ///

@@ -91,8 +91,8 @@ fn source_file(span: Span) -> Option<PathBuf> {
     if proc_macro::is_available() { span.unwrap().local_file() } else { None }
 }
 
-/// Where the file may be: beside the source file, as with `include_str!`. Editors that do not tell the source file, and
-/// documentation tests, which have none of their own, have the package's folders instead.
+/// Where the file may be: beside the source file, as with `include_str!`. Where the source file is
+/// unknown, as in some editors, the package's folders stand in for its folder.
 fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) -> Vec<Place> {
     let beside = source_file.and_then(Path::parent).map(|folder| ("beside the source file", folder.to_owned()));
     let package = package.filter(|_| beside.is_none());
