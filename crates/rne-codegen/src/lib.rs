@@ -10,6 +10,7 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 pub mod emit;
+mod exact;
 mod function;
 mod graph;
 mod interpret;
@@ -17,6 +18,7 @@ mod ledger;
 mod links;
 mod program;
 mod quantity;
+pub mod reduced;
 mod schedule;
 mod seven_steps;
 mod symbol;

@@ -140,6 +140,10 @@ pub enum Quantity {
     Inertia,
     /// Rotation into the tip frame, of the table's last twist and the tool.
     TipRotation,
+    /// h = m c̄ of regrouped matter, about the origin of the link's frame.
+    FirstMoment,
+    /// S = ∫ r rᵀ dm of regrouped matter.
+    SecondMoment,
 
     // Step 1.
     /// θ + q, where θ is no right angle.
@@ -152,9 +156,15 @@ pub enum Quantity {
     Rotation,
     /// ω: angular velocity.
     Omega,
+    /// ω in frame N, on the axis but not turning with the joint.
+    OmegaUnturned,
     // Step 2.
     /// ω̇: angular acceleration.
     OmegaDot,
+    /// U = [ω̇]× + [ω]×[ω]×: accelerations of the points of a link.
+    Gradient,
+    /// U in frame N.
+    GradientUnturned,
     // Step 3.
     /// ω × r: velocity of the next joint as seen from the centre of mass.
     OmegaCrossR,
@@ -171,6 +181,10 @@ pub enum Quantity {
     TwiceRate,
     /// c̈: acceleration of the centre of mass.
     Acceleration,
+    /// a: acceleration of the frame's origin, less gravity.
+    OriginAcceleration,
+    /// a in frame N.
+    OriginAccelerationUnturned,
     // Step 5.
     /// g: acceleration of gravity.
     Gravity,
@@ -189,6 +203,10 @@ pub enum Quantity {
     JointForce,
     /// n_{i-1,i}: moment exerted by link i-1 on link i, about J_i.
     JointMoment,
+    /// f: force on a link and all behind it, of regrouped matter.
+    ReducedForce,
+    /// n: moment on a link and all behind it, of regrouped matter.
+    ReducedMoment,
     // Step 7.
     /// τ: torque of a revolute, force of a prismatic joint.
     Torque,
@@ -199,14 +217,16 @@ impl Quantity {
     #[must_use]
     pub const fn step(self) -> Option<Step> {
         match self {
-            Self::Angle | Self::Sine | Self::Cosine | Self::Rotation | Self::Omega => Some(Step::AngularVelocity),
-            Self::OmegaDot => Some(Step::AngularAcceleration),
+            Self::Angle | Self::Sine | Self::Cosine | Self::Rotation | Self::Omega | Self::OmegaUnturned => Some(Step::AngularVelocity),
+            Self::OmegaDot | Self::Gradient | Self::GradientUnturned => Some(Step::AngularAcceleration),
             Self::Velocity => Some(Step::Velocity),
             Self::OmegaCrossR
             | Self::D
             | Self::OmegaCrossD
             | Self::JointPointAcceleration
             | Self::TwiceRate
+            | Self::OriginAcceleration
+            | Self::OriginAccelerationUnturned
             | Self::Acceleration => Some(Step::Acceleration),
             Self::Gravity => Some(Step::Gravity),
             Self::ChildForce
@@ -214,6 +234,8 @@ impl Quantity {
             | Self::InertiaForce
             | Self::AngularMomentum
             | Self::InertiaMoment
+            | Self::ReducedForce
+            | Self::ReducedMoment
             | Self::JointForce
             | Self::JointMoment => Some(Step::Wrenches),
             Self::Torque => Some(Step::Torque),
@@ -257,6 +279,15 @@ impl Quantity {
             Self::R => "r",
             Self::Inertia => "i",
             Self::TipRotation | Self::Rotation => "rot",
+            Self::FirstMoment => "h",
+            Self::SecondMoment => "p",
+            Self::OmegaUnturned => "wn",
+            Self::Gradient => "u",
+            Self::GradientUnturned => "un",
+            Self::OriginAcceleration => "a",
+            Self::OriginAccelerationUnturned => "an",
+            Self::ReducedForce => "f",
+            Self::ReducedMoment => "n",
             Self::Angle => "angle",
             Self::Sine => "s",
             Self::Cosine => "c",
@@ -287,7 +318,12 @@ impl Quantity {
             Self::Two => prefix.to_owned(),
             Self::Constant => format!("{prefix}_1"),
             Self::JointForce | Self::JointMoment => format!("{prefix}h_i_x"),
-            Self::Inertia | Self::Rotation | Self::TipRotation => format!("{prefix}i_xy"),
+            Self::Inertia
+            | Self::Rotation
+            | Self::TipRotation
+            | Self::SecondMoment
+            | Self::Gradient
+            | Self::GradientUnturned => format!("{prefix}i_xy"),
             Self::Position
             | Self::Rate
             | Self::RateDot
@@ -331,7 +367,16 @@ impl Quantity {
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
             Self::Rotation => "R: frame i → frame i-1",
+            Self::FirstMoment => "first moment of regrouped matter about the frame's origin",
+            Self::SecondMoment => "second moment ∫ r rᵀ dm of regrouped matter",
             Self::Omega => "ω: angular velocity",
+            Self::OmegaUnturned => "ω in frame N, on the axis but not turning with the joint",
+            Self::Gradient => "U = [ω̇]× + [ω]×[ω]×",
+            Self::GradientUnturned => "U in frame N",
+            Self::OriginAcceleration => "acceleration of the frame's origin, less gravity",
+            Self::OriginAccelerationUnturned => "the same in frame N",
+            Self::ReducedForce => "force on the link and all behind it, of regrouped matter",
+            Self::ReducedMoment => "moment on the link and all behind it, of regrouped matter",
             Self::OmegaDot => "ω̇: angular acceleration",
             Self::OmegaCrossR => "ω × r",
             Self::D => "d: joint → centre of mass",

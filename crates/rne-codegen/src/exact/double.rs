@@ -1,0 +1,194 @@
+//! Numbers of twice the precision: the unevaluated sum of two `f64`, about 106 bits.
+//!
+//! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18, 1971.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// `high + low`, with |low| at most half a unit in the last place of `high`.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Double {
+    pub(crate) high: f64,
+    pub(crate) low: f64,
+}
+
+/// π/2 to 106 bits.
+const HALF_PI: Double = Double { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
+
+impl Double {
+    pub(crate) const fn new(value: f64) -> Self {
+        Self { high: value, low: 0.0 }
+    }
+
+    /// The number whose shortest decimal is that of `value`: 0.1 is a tenth, not the binary fraction next to it.
+    pub(crate) fn decimal(value: f64) -> Self {
+        let (digits, exponent) = decimal_digits(value.abs());
+        let ten = Self::new(10.0);
+        #[allow(clippy::cast_precision_loss)] // the rest of the digits is in `low`
+        let high = digits as f64;
+        #[allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // integers of at most 17 digits
+        let low = (i128::from(digits) - high as i128) as f64;
+        let mut number = quick_sum(high, low);
+        for _ in 0..exponent.abs() {
+            number = if exponent > 0 { number * ten } else { number / ten };
+        }
+        if value < 0.0 { -number } else { number }
+    }
+
+    pub(crate) fn to_f64(self) -> f64 {
+        self.high + self.low
+    }
+
+    pub(crate) fn sqrt(self) -> Self {
+        if self.high <= 0.0 {
+            return Self::default();
+        }
+        // one step of Newton from the rounded root
+        let root = Self::new(self.high.sqrt());
+        root + (self - root * root) / (root + root)
+    }
+
+    /// Sine and cosine of an angle in rad.
+    pub(crate) fn sin_cos(self) -> (Self, Self) {
+        let quarters = (self.high / HALF_PI.high).round();
+        let r = self - HALF_PI * Self::new(quarters);
+        let square = r * r;
+        // Taylor; |r| ≤ π/4, so that the last term is below 1e-33
+        let (mut sine, mut cosine) = (r, Self::new(1.0));
+        let (mut sine_term, mut cosine_term) = (r, Self::new(1.0));
+        for k in 1..14 {
+            let k = f64::from(k);
+            cosine_term = -(cosine_term * square / Self::new((2.0 * k - 1.0) * (2.0 * k)));
+            sine_term = -(sine_term * square / Self::new((2.0 * k) * (2.0 * k + 1.0)));
+            cosine = cosine + cosine_term;
+            sine = sine + sine_term;
+        }
+        match quarters.rem_euclid(4.0) {
+            0.0 => (sine, cosine),
+            1.0 => (cosine, -sine),
+            2.0 => (-sine, -cosine),
+            _ => (-cosine, sine),
+        }
+    }
+}
+
+/// The digits and the decimal exponent of the shortest decimal that reads back as `value`.
+pub(crate) fn decimal_digits(value: f64) -> (u64, i32) {
+    let text = format!("{value:e}");
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let digits = format!("{whole}{fraction}").parse().unwrap_or(0);
+    let places = i32::try_from(fraction.len()).unwrap_or(0);
+    (digits, exponent.parse().unwrap_or(0) - places)
+}
+
+/// a + b when |a| ≥ |b|.
+fn quick_sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    Double { high, low: b - (high - a) }
+}
+
+/// a + b, exactly.
+fn two_sum(a: f64, b: f64) -> Double {
+    let high = a + b;
+    let back = high - a;
+    Double { high, low: (a - (high - back)) + (b - back) }
+}
+
+/// a · b, exactly, by splitting each into halves of 26 bits.
+fn two_product(a: f64, b: f64) -> Double {
+    let split = |x: f64| {
+        let big = 134_217_729.0 * x; // 2²⁷ + 1
+        let high = big - (big - x);
+        (high, x - high)
+    };
+    let high = a * b;
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    Double { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
+}
+
+impl Add for Double {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (s, t) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
+        let s = quick_sum(s.high, s.low + t.high);
+        quick_sum(s.high, s.low + t.low)
+    }
+}
+
+impl Neg for Double {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for Double {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Double {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let p = two_product(self.high, other.high);
+        quick_sum(p.high, p.low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for Double {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other * Self::new(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::new(second);
+        let quotient = quick_sum(first, second);
+        quotient + Self::new(rest.high / other.high)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn close(a: Double, b: Double) -> bool {
+        (a - b).to_f64().abs() <= 1e-30 * b.to_f64().abs().max(1e-3)
+    }
+
+    #[test]
+    fn decimals_are_what_they_say() {
+        let tenth = Double::decimal(0.1);
+        assert!(close(tenth * Double::new(10.0), Double::new(1.0)));
+        assert_ne!(tenth.low, 0.0, "the f64 next to a tenth is not a tenth");
+        assert!(close(Double::decimal(-2.5e-3) * Double::new(400.0), Double::new(-1.0)));
+        assert_eq!(decimal_digits(0.4318), (4318, -4));
+        assert_eq!(decimal_digits(1.2e300), (12, 299));
+        assert_eq!(decimal_digits(0.0), (0, 0));
+    }
+
+    #[test]
+    fn quotients_and_roots_have_twice_the_digits() {
+        let third = Double::new(1.0) / Double::new(3.0);
+        assert!(close(third * Double::new(3.0), Double::new(1.0)));
+        let root = Double::new(2.0).sqrt();
+        assert!(close(root * root, Double::new(2.0)));
+    }
+
+    #[test]
+    fn sine_and_cosine_hold_their_identities() {
+        for angle in [0.3, 1.0, 2.0, -2.5, 3.0, 5.9] {
+            let (s, c) = Double::new(angle).sin_cos();
+            assert!(close(s * s + c * c, Double::new(1.0)), "{angle}");
+            assert!((s.to_f64() - angle.sin()).abs() < 2e-16 && (c.to_f64() - angle.cos()).abs() < 2e-16, "{angle}");
+            let (twice, _) = Double::new(2.0 * angle).sin_cos();
+            assert!(close(twice, s * c * Double::new(2.0)), "{angle}");
+        }
+    }
+}

@@ -1,0 +1,203 @@
+//! Images of numbers in two prime fields.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+const BITS: u32 = 61;
+const MASK: u64 = (1 << BITS) - 1;
+/// The primes are 2⁶¹ - 1 and 2⁶¹ - 31.
+const BELOW: [u64; 2] = [1, 31];
+
+/// The image of a real number under the two ring homomorphisms into the fields of 2⁶¹ - 1 and 2⁶¹ - 31 elements.
+///
+/// Sums, products and quotients of numbers have the sums, products and quotients of their images, without rounding. Two
+/// different rational functions agree at a random point of a field with a probability below 10⁻¹⁵, in both below 10⁻³⁰.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub(crate) struct Image([u64; 2]);
+
+impl Image {
+    pub(crate) const ZERO: Self = Self([0, 0]);
+    pub(crate) const ONE: Self = Self([1, 1]);
+
+    /// The image of an integer.
+    pub(crate) const fn integer(value: u64) -> Self {
+        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
+        Self([value % p, value % q])
+    }
+
+    /// Residues in the two fields, each reduced.
+    pub(crate) const fn residues(first: u64, second: u64) -> Self {
+        let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
+        Self([first % p, second % q])
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self == Self::ZERO
+    }
+
+    /// Of an image and its negative, one is the negative one: images have no order, this only picks one of the two.
+    pub(crate) fn is_negative(self) -> bool {
+        match self.0 {
+            [0, second] => second > MASK / 2,
+            [first, _] => first > MASK / 2,
+        }
+    }
+
+    /// A well-mixed key of 64 bits.
+    pub(crate) fn key(self) -> u64 {
+        self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
+    }
+
+    /// The inverse; `None` when an image is zero.
+    pub(crate) fn inverse(self) -> Option<Self> {
+        let [first, second] = self.0;
+        (first != 0 && second != 0).then(|| {
+            // Fermat: x^(p - 2) = 1/x
+            Self([power(first, prime(0) - 2, 0), power(second, prime(1) - 2, 1)])
+        })
+    }
+
+    /// A square root; `None` unless both images are squares.
+    pub(crate) fn sqrt(self) -> Option<Self> {
+        Some(Self([root(self.0[0], 0)?, root(self.0[1], 1)?]))
+    }
+}
+
+const fn prime(field: usize) -> u64 {
+    MASK + 1 - BELOW[field]
+}
+
+fn add(a: u64, b: u64, field: usize) -> u64 {
+    let sum = a + b;
+    if sum >= prime(field) { sum - prime(field) } else { sum }
+}
+
+/// 2⁶¹ = `BELOW` in the field, so the upper bits come back multiplied by it.
+fn reduce(x: u128, field: usize) -> u64 {
+    let below = u128::from(BELOW[field]);
+    let folded = (x & u128::from(MASK)) + (x >> BITS) * below;
+    #[allow(clippy::cast_possible_truncation)] // below 2⁶²
+    let folded = ((folded & u128::from(MASK)) + (folded >> BITS) * below) as u64;
+    if folded >= prime(field) { folded - prime(field) } else { folded }
+}
+
+fn multiply(a: u64, b: u64, field: usize) -> u64 {
+    reduce(u128::from(a) * u128::from(b), field)
+}
+
+fn power(base: u64, mut exponent: u64, field: usize) -> u64 {
+    let (mut result, mut square) = (1, base);
+    while exponent > 0 {
+        if exponent & 1 == 1 {
+            result = multiply(result, square, field);
+        }
+        square = multiply(square, square, field);
+        exponent >>= 1;
+    }
+    result
+}
+
+/// A square root modulo the prime of a field, by the method of Tonelli and Shanks.
+fn root(square: u64, field: usize) -> Option<u64> {
+    let p = prime(field);
+    if square == 0 {
+        return Some(0);
+    }
+    let power = |base, exponent| power(base, exponent, field);
+    if power(square, (p - 1) / 2) != 1 {
+        return None;
+    }
+    let twos = (p - 1).trailing_zeros();
+    let odd = (p - 1) >> twos;
+    let non_residue = (2..).find(|&candidate| power(candidate, (p - 1) / 2) != 1)?;
+    let (mut order, mut generator) = (twos, power(non_residue, odd));
+    let (mut t, mut r) = (power(square, odd), power(square, odd.div_ceil(2)));
+    while t != 1 {
+        let mut least = 0;
+        let mut probe = t;
+        while probe != 1 {
+            probe = multiply(probe, probe, field);
+            least += 1;
+        }
+        let factor = power(generator, 1 << (order - least - 1));
+        order = least;
+        generator = multiply(factor, factor, field);
+        t = multiply(t, generator, field);
+        r = multiply(r, factor, field);
+    }
+    Some(r)
+}
+
+impl Add for Image {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self([add(self.0[0], other.0[0], 0), add(self.0[1], other.0[1], 1)])
+    }
+}
+
+impl Neg for Image {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        let negative = |residue: u64, field: usize| if residue == 0 { 0 } else { prime(field) - residue };
+        Self([negative(self.0[0], 0), negative(self.0[1], 1)])
+    }
+}
+
+impl Sub for Image {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Image {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self([multiply(self.0[0], other.0[0], 0), multiply(self.0[1], other.0[1], 1)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LARGE: Image = Image([prime(0) - 2, prime(1) - 2]);
+
+    #[test]
+    fn the_moduli_are_prime() {
+        // Fermat's test to the first twelve primes decides below 3.3e24 (Sorenson, Webster 2015) in Miller's form
+        for field in 0..2 {
+            let (p, twos) = (prime(field), (prime(field) - 1).trailing_zeros());
+            for witness in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37] {
+                let mut x = power(witness, (p - 1) >> twos, field);
+                let passes = x == 1
+                    || (0..twos).any(|_| {
+                        let last = x == p - 1;
+                        x = multiply(x, x, field);
+                        last
+                    });
+                assert!(passes, "{p} to the base {witness}");
+            }
+        }
+    }
+
+    #[test]
+    fn arithmetic_is_that_of_a_field() {
+        let three = Image::integer(3);
+        assert_eq!(LARGE + three, Image::ONE);
+        assert_eq!(LARGE * LARGE, Image::integer(4));
+        assert_eq!(three - LARGE, Image::integer(5));
+        assert_eq!(-Image::ZERO, Image::ZERO);
+        for image in [three, LARGE, Image::residues(1 << 60, 12_345)] {
+            assert_eq!(image * image.inverse().unwrap(), Image::ONE);
+            let square = image * image;
+            let root = square.sqrt().unwrap();
+            assert_eq!(root * root, square);
+            assert_ne!(image.is_negative(), (-image).is_negative());
+        }
+        assert_eq!(Image::ZERO.inverse(), None);
+    }
+}

@@ -1,0 +1,275 @@
+//! Exact constants: a value to 106 bits beside its images in two prime fields.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use rne_model::{Angle, InertiaReference, Joint, QuarterTurns};
+
+use super::double::{Double, decimal_digits};
+use super::field::Image;
+
+/// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Number {
+    pub(crate) value: Double,
+    pub(crate) image: Image,
+}
+
+impl Number {
+    pub(crate) const ZERO: Self = Self { value: Double::new(0.0), image: Image::ZERO };
+    pub(crate) const ONE: Self = Self { value: Double::new(1.0), image: Image::ONE };
+
+    /// A small integer.
+    pub(crate) fn integer(value: u32) -> Self {
+        Self { value: Double::new(f64::from(value)), image: Image::integer(u64::from(value)) }
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self.image.is_zero()
+    }
+
+    /// 1 or -1.
+    pub(crate) fn is_unit(self) -> bool {
+        self.image == Image::ONE || self.image == -Image::ONE
+    }
+
+    /// 1/x; `None` for zero.
+    pub(crate) fn inverse(self) -> Option<Self> {
+        if self.is_unit() {
+            return Some(self);
+        }
+        Some(Self { value: Double::new(1.0) / self.value, image: self.image.inverse()? })
+    }
+
+    /// √x; `None` when the value is negative or an image is no square.
+    pub(crate) fn sqrt(self) -> Option<Self> {
+        if self.is_zero() {
+            return Some(self);
+        }
+        let root = Self { value: self.value.sqrt(), image: self.image.sqrt()? };
+        (self.value.high > 0.0).then_some(root)
+    }
+
+    /// The nearest `f64`.
+    pub(crate) fn to_f64(self) -> f64 {
+        self.value.to_f64()
+    }
+
+    /// Of a number and its negative, the same one is always called negative.
+    pub(crate) fn is_negative(self) -> bool {
+        self.value.high < 0.0
+    }
+
+    pub(crate) fn abs(self) -> Self {
+        if self.is_negative() { -self } else { self }
+    }
+
+    /// Zero has no dust: what is zero in the fields is zero.
+    fn settled(self) -> Self {
+        if self.image.is_zero() { Self::ZERO } else { self }
+    }
+}
+
+impl Add for Number {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        if self.is_zero() {
+            return other;
+        }
+        if other.is_zero() {
+            return self;
+        }
+        Self { value: self.value + other.value, image: self.image + other.image }.settled()
+    }
+}
+
+impl Neg for Number {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { value: -self.value, image: -self.image }
+    }
+}
+
+impl Sub for Number {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Number {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        if self.is_zero() || other.is_zero() {
+            return Self::ZERO;
+        }
+        if self.image == Image::ONE {
+            return other;
+        }
+        if other.image == Image::ONE {
+            return self;
+        }
+        Self { value: self.value * other.value, image: self.image * other.image }
+    }
+}
+
+/// A constant turn: sine and cosine of an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Turn {
+    pub(crate) sin: Number,
+    pub(crate) cos: Number,
+}
+
+impl Turn {
+    pub(crate) const NONE: Self = Self { sin: Number::ZERO, cos: Number::ONE };
+
+    /// The turn by the sum of both angles.
+    pub(crate) fn then(self, other: Self) -> Self {
+        Self { sin: self.sin * other.cos + self.cos * other.sin, cos: self.cos * other.cos - self.sin * other.sin }
+    }
+
+    pub(crate) fn back(self) -> Self {
+        Self { sin: -self.sin, cos: self.cos }
+    }
+
+    /// How many quarters, if it is a right angle.
+    pub(crate) fn quarters(self) -> Option<QuarterTurns> {
+        let (sin, cos) = (self.sin.image, self.cos.image);
+        if sin.is_zero() {
+            return Some(if cos == Image::ONE { QuarterTurns::Zero } else { QuarterTurns::Two });
+        }
+        cos.is_zero().then(|| if sin == Image::ONE { QuarterTurns::One } else { QuarterTurns::Three })
+    }
+
+    /// The angle, rad, between -π and π.
+    pub(crate) fn radians(self) -> f64 {
+        self.sin.to_f64().atan2(self.cos.to_f64())
+    }
+}
+
+/// How the numbers of a robot file are read into the fields.
+///
+/// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and cosine of
+/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign.
+///
+/// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by a
+/// random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Reading {
+    pub(crate) seed: u64,
+    /// The magnitude of the decimal that is read as an unknown.
+    pub(crate) unknown: Option<f64>,
+}
+
+impl Reading {
+    /// A number of the file.
+    pub(crate) fn decimal(&self, value: f64) -> Number {
+        let magnitude = value.abs();
+        let image = if self.unknown == Some(magnitude) {
+            let seed = self.seed ^ magnitude.to_bits();
+            Image::residues(mixed(seed), mixed(!seed))
+        } else {
+            let (digits, exponent) = decimal_digits(magnitude);
+            let ten = Image::integer(10);
+            // ten is no divisor of either prime
+            let factor = if exponent < 0 { ten.inverse().unwrap_or(ten) } else { ten };
+            (0..exponent.abs()).fold(Image::integer(digits), |image, _| image * factor)
+        };
+        let number = Number { value: Double::decimal(magnitude), image };
+        if value < 0.0 { -number } else { number }
+    }
+
+    /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's origin.
+    pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
+        let (written, reference) = &joint.written_inertia;
+        let written = written.rows().map(|row| row.map(|x| self.decimal(x)));
+        if *reference == InertiaReference::Com {
+            return written;
+        }
+        let mass = self.decimal(joint.row.link.mass);
+        let com = joint.row.link.com.map(|x| self.decimal(x));
+        let square = com.iter().fold(Number::ZERO, |sum, &x| sum + x * x);
+        [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| {
+                // Steiner: I = J - m (c·c 1 - c cᵀ)
+                let steiner = if i == j { square - com[i] * com[j] } else { -(com[i] * com[j]) };
+                written[i][j] - mass * steiner
+            })
+        })
+    }
+
+    /// A constant angle of the file.
+    pub(crate) fn turn(&self, angle: &Angle) -> Turn {
+        if let Some(right) = angle.right {
+            let (sin, cos) = right.sin_cos();
+            return Turn { sin: self.decimal(sin), cos: self.decimal(cos) };
+        }
+        let (sin, cos) = Double::new(angle.radians).sin_cos();
+        let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
+        let rest = angle.radians - quarters * std::f64::consts::FRAC_PI_2;
+        // angles that are written differently, such as 0.9 and π - 0.9, meet here but for their last bits
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most π/4 · 10¹²
+        let magnitude = (rest.abs() * 1e12).round() as u64;
+        let point = self.point(0xA11E, magnitude);
+        let (mut s, mut c) = if rest < 0.0 { (-point.0, point.1) } else { point };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 3
+        for _ in 0..quarters.rem_euclid(4.0) as u8 {
+            (s, c) = (c, -s);
+        }
+        Turn { sin: Number { value: sin, image: s }, cos: Number { value: cos, image: c } }
+    }
+
+    /// A random point (sine, cosine) of the circle.
+    pub(crate) fn point(&self, kind: u64, index: u64) -> (Image, Image) {
+        let t = self.random(kind, index);
+        let square = t * t;
+        // 1 + t² is zero for two t in 2⁶¹
+        let scale = (Image::ONE + square).inverse().unwrap_or(Image::ONE);
+        ((t + t) * scale, (Image::ONE - square) * scale)
+    }
+
+    /// A random image.
+    pub(crate) fn random(&self, kind: u64, index: u64) -> Image {
+        let seed = mixed(self.seed ^ mixed(kind ^ mixed(index)));
+        Image::residues(mixed(seed ^ 1), mixed(seed ^ 2))
+    }
+}
+
+/// The finalizer of splitmix64 (Steele, Lea, Flood 2014).
+fn mixed(x: u64) -> u64 {
+    let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    x ^ (x >> 31)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimals_add_up_exactly() {
+        let reading = Reading::default();
+        let [a, b, c] = [0.1, 0.2, 0.3].map(|x| reading.decimal(x));
+        assert!((a + b - c).is_zero(), "in f64 it is 5.6e-17");
+        assert_eq!((a + b - c).to_f64(), 0.0);
+        assert_eq!((a * b).to_f64(), 0.02);
+    }
+
+    #[test]
+    fn turns_are_points_of_the_circle() {
+        let reading = Reading::default();
+        for radians in [0.0, 0.9, std::f64::consts::PI, 2.0, -1.0] {
+            let turn = reading.turn(&Angle::new(radians));
+            assert!((turn.sin * turn.sin + turn.cos * turn.cos - Number::ONE).is_zero(), "{radians}");
+            assert!((turn.sin.to_f64() - radians.sin()).abs() < 1e-15, "{radians}");
+            assert_eq!(turn.then(turn.back()).quarters(), Some(QuarterTurns::Zero));
+        }
+        let (a, b) = (reading.turn(&Angle::new(0.9)), reading.turn(&Angle::new(std::f64::consts::PI - 0.9)));
+        assert_eq!(a.sin.image, b.sin.image);
+        assert_eq!(a.cos.image, -b.cos.image);
+    }
+}

@@ -1,0 +1,63 @@
+//! The reduced form: the same torques with far fewer operations.
+//!
+//! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration of
+//! the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
+
+mod evaluator;
+mod inward;
+mod moves;
+mod outward;
+mod plan;
+mod pseudo_inertia;
+mod regroup;
+mod rows;
+mod search;
+mod sheet;
+mod trick;
+mod writer;
+
+pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
+pub use search::Progress;
+pub use sheet::Cost;
+pub use trick::Trick;
+
+#[cfg(test)]
+mod tests {
+    use super::evaluator::Evaluator;
+    use super::*;
+    use crate::Function;
+
+    #[test]
+    fn counts() {
+        for name in ["planar2", "puma560", "stanford", "panda", "ur5", "wam7", "scara_cobra600", "puma560_mdh", "iiwa14"] {
+            let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../robots/");
+            let text = std::fs::read(format!("{root}{name}.yaml")).unwrap();
+            let robot = rne_model::check_bytes(name, &text).unwrap().robot;
+            let mut evaluator = Evaluator::new(&robot, Function::InverseDynamics);
+            let mut plan = Plan::new(robot.dof());
+            println!("{name}: {:?}", evaluator.cost(&plan));
+            let start = std::time::Instant::now();
+            let mut search = super::search::Search::new(&robot, &[]);
+            search.greedy(420);
+            println!("   greedy {:?} {} plans {:?}", search.best.0, search.plans, start.elapsed());
+            if !cfg!(debug_assertions) {
+                let start = std::time::Instant::now();
+                let _ = search.descend(&mut |_| (start.elapsed().as_secs() < 8).then_some(0.0));
+                println!("   descent {} {:?} {} plans {:?}", search.best.0.total(), search.best.0, search.plans, start.elapsed());
+                continue;
+            }
+            plan.gyrostat = true;
+            println!("   gyrostat {:?}", evaluator.cost(&plan));
+            plan.gyrostat = false;
+            plan.turned_last_frame = true;
+            println!("   phi {:?}", evaluator.cost(&plan));
+            plan.turned_last_frame = false;
+            for joint in &mut plan.joints { joint.switches.axis_column = true; }
+            println!("   ucol {:?}", evaluator.cost(&plan));
+            let start = std::time::Instant::now();
+            let n = if cfg!(debug_assertions) { 20 } else { 2000 };
+            for _ in 0..n { evaluator.cost(&plan); }
+            println!("   {:?} each", start.elapsed() / n);
+        }
+    }
+}

@@ -1,0 +1,418 @@
+//! The way out, base to tip: how each link moves (the reduced form, sections 3 and 5).
+//!
+//! ```text
+//! ω_i = R_iᵀ ω_{i-1} + q̇ z        ω̇_i = R_iᵀ ω̇_{i-1} + q̇ (ω_y, -ω_x, 0) + q̈ z        a_i = R_iᵀ (a_{i-1} + U_{i-1} p_i)
+//! U = [ω̇]× + [ω]×[ω]×              acceleration of the point r of a link: a + U r;       a_0 = -g
+//! ```
+//!
+//! R_i = Rx(α) Rz(θ) turns in two steps. Between them stands frame N, on the axis but not turning with the joint; a group of
+//! parallel axes shares one N.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use super::plan::{JointPlan, Plan, Side};
+use super::regroup::{Parameters, group_start, is_parallel};
+use super::rows::{Row, Table};
+use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
+use crate::exact::Number;
+use crate::quantity::{Axis, Name, Quantity};
+
+/// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
+#[derive(Clone, Copy)]
+pub(crate) struct Gradient<'s> {
+    pub(crate) u: [[Symbol<'s>; 3]; 3],
+    /// U33 - U22, U11 - U33, U22 - U11
+    pub(crate) differences: [Symbol<'s>; 3],
+}
+
+impl<'s> Gradient<'s> {
+    pub(crate) fn new(omega: Vector<'s>, omega_dot: Vector<'s>) -> Self {
+        let ([x, y, z], [dx, dy, dz]) = (omega.0, omega_dot.0);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        Self {
+            u: [[-(yy + zz), xy - dz, xz + dy], [xy + dz, -(xx + zz), yz - dx], [xz - dy, yz + dx, -(xx + yy)]],
+            differences: [zz - yy, xx - zz, yy - xx],
+        }
+    }
+
+    /// When U z is known already, with ω and ω̇_z (section 5.3).
+    fn with_axis_column(omega: Vector<'s>, omega_dot_z: Symbol<'s>, column: Vector<'s>) -> Self {
+        let ([x, y, z], [u13, u23, u33]) = (omega.0, column.0);
+        let (xx, zz, xy, xz, yz) = (x * x, z * z, x * y, x * z, y * z);
+        let (dx, dy) = (yz - u23, u13 - xz);
+        let (u22, middle) = (-(xx + zz), xx - zz);
+        let u11 = middle + u33;
+        Self {
+            u: [[u11, xy - omega_dot_z, u13], [xy + omega_dot_z, u22, u23], [xz - dy, yz + dx, u33]],
+            differences: [u33 - u22, middle, u22 - u11],
+        }
+    }
+
+    /// U v
+    pub(crate) fn of(&self, v: Vector<'s>) -> Vector<'s> {
+        Vector([0, 1, 2].map(|row| Vector(self.u[row]).dot(v)))
+    }
+
+    /// U z
+    fn column_z(&self) -> Vector<'s> {
+        Vector([0, 1, 2].map(|row| self.u[row][2]))
+    }
+}
+
+/// The motion of a link in one frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'s> {
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+    /// Of the frame's origin, less gravity, times λ.
+    pub(crate) acceleration: Vector<'s>,
+    pub(crate) gradient: Gradient<'s>,
+}
+
+/// What the way back needs to know of a link.
+#[derive(Clone, Copy)]
+pub(crate) struct Moved<'s> {
+    /// In the link's frame.
+    pub(crate) own: Motion<'s>,
+    /// In frame N on its axis.
+    pub(crate) unturned: Motion<'s>,
+    pub(crate) twist: SymbolicTurn<'s>,
+    /// From frame N of the group to the link's.
+    pub(crate) group_turn: SymbolicTurn<'s>,
+    /// From the frame of the link before, about z.
+    pub(crate) turn: SymbolicTurn<'s>,
+}
+
+/// One group of parallel axes: what its frame N takes over from the link before the group.
+#[derive(Clone, Copy)]
+struct Group<'s> {
+    omega: Vector<'s>,
+    omega_dot: Vector<'s>,
+    /// U z of the first axis, in N.
+    column: Vector<'s>,
+    rate: Symbol<'s>,
+    rate_dot: Symbol<'s>,
+}
+
+/// The arm under a plan, as both ways see it.
+pub(crate) struct Arm<'a> {
+    pub(crate) table: &'a Table,
+    pub(crate) plan: &'a Plan,
+    pub(crate) parameters: &'a Parameters,
+}
+
+impl<'a> Arm<'a> {
+    pub(crate) fn rows(&self) -> &'a [Row] {
+        &self.table.rows
+    }
+
+    /// O_{i-1} to axis i in axes of link i-1, with the slide of frame i-1, and d with that of frame i; times `scale`.
+    pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
+        let row = &self.rows()[index];
+        let [x, y, z] = row.offset;
+        let slides = &self.parameters.slides;
+        let before = index.checked_sub(1).map_or(Number::ZERO, |before| slides[before]);
+        let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
+        ([x, y, z - before].map(|length| length * scale), d * scale)
+    }
+
+    /// Whether the last link is only a spin.
+    pub(crate) fn is_spin(&self, index: usize) -> bool {
+        self.parameters.sphere.is_some() && index + 1 == self.rows().len()
+    }
+}
+
+/// d along the axis, in axes of the link before.
+pub(crate) fn along_axis(row: &Row, d: Number) -> [Number; 3] {
+    [Number::ZERO, -(d * row.alpha.sin), d * row.alpha.cos]
+}
+
+pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The motion of all links.
+pub(crate) fn motions<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Moved<'s>> {
+    let lambda = arm.parameters.lambda;
+    let zeros = writer.zeros();
+    let at_rest = Motion {
+        omega: zeros,
+        omega_dot: zeros,
+        acceleration: writer.vector(arm.table.gravity.map(|g| -(g * lambda))),
+        gradient: Gradient::new(zeros, zeros),
+    };
+    let mut before = at_rest;
+    let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
+    let mut group = None;
+    for index in 0..arm.rows().len() {
+        let link = match arm.rows()[index].kind {
+            Revolute => revolute(writer, arm, index, before, &moved, &mut group),
+            Prismatic => prismatic(writer, arm, index, before, &moved),
+        };
+        before = link.own;
+        moved.push(link);
+    }
+    moved
+}
+
+/// The acceleration of the next joint's point, in the axes of the link before, and the part of it that is U p.
+///
+/// It may be formed in the frame N of the link before: then its own part is in N.
+fn joint_point<'s>(
+    writer: &'s Writer,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+    p: [Number; 3],
+) -> (Vector<'s>, Vector<'s>, bool) {
+    let Some(link) = moved.last() else { return (before.acceleration, writer.zeros(), false) };
+    let unturned = arm.plan.joints[index - 1].switches.origin_unturned && arm.rows()[index - 1].kind == Revolute;
+    let p = writer.vector(p);
+    if unturned {
+        let part = link.unturned.gradient.of(link.group_turn.about_z(p));
+        (link.group_turn.back_about_z(link.unturned.acceleration + part), part, true)
+    } else {
+        let part = before.gradient.of(p);
+        (before.acceleration + part, part, false)
+    }
+}
+
+fn revolute<'s>(
+    writer: &'s Writer,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+    group: &mut Option<Group<'s>>,
+) -> Moved<'s> {
+    let (rows, joint) = (arm.rows(), index + 1);
+    let row = &rows[index];
+    let JointPlan { outward_offset, switches: on, .. } = arm.plan.joints[index];
+    let (offset, d) = arm.lengths(index, arm.parameters.lambda);
+    let has_d = !d.is_zero();
+    let parallel = is_parallel(rows, index);
+    let (qd, qdd) = (writer.rate(rows, index), writer.rate_dot(rows, index));
+    let twist = writer.constant_turn(row.alpha);
+
+    if arm.is_spin(index) {
+        // only ω and ω̇ of the link before matter, see the way back
+        let motion = Motion {
+            omega: twist.back_about_x(before.omega),
+            omega_dot: twist.back_about_x(before.omega_dot),
+            ..before
+        };
+        let turn = writer.turn(rows, index, index);
+        return Moved { own: motion, unturned: motion, twist, group_turn: turn, turn };
+    }
+
+    let turn = writer.turn(rows, index, index);
+    let group_turn = if parallel { writer.turn(rows, group_start(rows, index), index) } else { turn };
+    let outward = |v: Vector<'s>| rotated_outward(writer, row, turn, on.scaled_twist_outward, v);
+
+    writer.at(Quantity::OriginAcceleration, joint);
+    let p = if has_d && outward_offset == Side::Parent { plus(offset, along_axis(row, d)) } else { offset };
+    let (point, part, part_unturned) = joint_point(writer, arm, index, before, moved, p);
+    let mut acceleration_unturned = match moved.last() {
+        Some(link) if parallel => {
+            let part = if part_unturned { part } else { link.group_turn.about_z(part) };
+            link.unturned.acceleration + part
+        }
+        _ => twist.back_about_x(point),
+    };
+
+    // frame N
+    writer.at(Quantity::OmegaUnturned, joint);
+    let shared = match *group {
+        Some(shared) if parallel => Group { rate: shared.rate + qd, rate_dot: shared.rate_dot + qdd, ..shared },
+        _ => {
+            let axis = writer.vector(along_axis(row, Number::ONE));
+            Group {
+                omega: twist.back_about_x(before.omega),
+                omega_dot: twist.back_about_x(before.omega_dot),
+                column: twist.back_about_x(before.gradient.of(axis)),
+                rate: qd,
+                rate_dot: qdd,
+            }
+        }
+    };
+    *group = Some(shared);
+    let omega_unturned = writer.name(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
+    let spun = |omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot: Vector<'s>| {
+        // ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z
+        let ([wx, wy, _], [x, y, z]) = (omega.0, omega_dot.0);
+        Vector([x + rate * wy, y - rate * wx, z + rate_dot])
+    };
+    let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
+
+    // 1   ω
+    writer.at(Quantity::Omega, joint);
+    let omega = if parallel && on.group_omega {
+        group_turn.back_about_z(omega_unturned)
+    } else {
+        outward(before.omega).plus_z(qd)
+    };
+    let omega = writer.name(Quantity::Omega, joint, omega);
+
+    // 2   ω̇ and U
+    writer.at(Quantity::OmegaDot, joint);
+    let omega_dot = if on.omega_dot_unturned {
+        group_turn.back_about_z(omega_dot_unturned)
+    } else if parallel && on.group_omega_dot {
+        spun(omega, shared.rate, shared.rate_dot, group_turn.back_about_z(shared.omega_dot))
+    } else {
+        spun(omega, qd, qdd, outward(before.omega_dot))
+    };
+    let (omega_dot, gradient, gradient_unturned) = if on.axis_column {
+        let column = group_turn.back_about_z(shared.column);
+        let ([x, y, z], [u13, u23, _]) = (omega.0, column.0);
+        let [_, _, dz] = omega_dot.0;
+        let omega_dot = Vector([y * z - u23, u13 - x * z, dz]);
+        writer.name(Quantity::OmegaDot, joint, omega_dot);
+        writer.at(Quantity::Gradient, joint);
+        (
+            omega_dot,
+            Gradient::with_axis_column(omega, dz, column),
+            Gradient::with_axis_column(omega_unturned, omega_dot_unturned.0[2], shared.column),
+        )
+    } else {
+        writer.name(Quantity::OmegaDot, joint, omega_dot);
+        writer.at(Quantity::Gradient, joint);
+        (omega_dot, Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
+    };
+    name_gradient(writer, Quantity::Gradient, joint, &gradient);
+    name_gradient(writer, Quantity::GradientUnturned, joint, &gradient_unturned);
+
+    // 4   a
+    writer.at(Quantity::OriginAcceleration, joint);
+    let at_joint = has_d && outward_offset == Side::Joint;
+    let lift = gradient_unturned.column_z().times(d);
+    if at_joint {
+        acceleration_unturned = acceleration_unturned + lift;
+    }
+    let mut acceleration = if parallel && !on.group_acceleration {
+        let turned = turn.back_about_z(point);
+        if at_joint { turned + group_turn.back_about_z(lift) } else { turned }
+    } else if parallel || at_joint {
+        group_turn.back_about_z(acceleration_unturned)
+    } else {
+        outward(point)
+    };
+    if has_d && outward_offset == Side::Link {
+        let lift = gradient.column_z().times(d);
+        acceleration = acceleration + lift;
+        acceleration_unturned = acceleration_unturned + group_turn.about_z(lift);
+    }
+    writer.name(Quantity::OriginAcceleration, joint, acceleration);
+    writer.name(Quantity::OriginAccelerationUnturned, joint, acceleration_unturned);
+
+    Moved {
+        own: Motion { omega, omega_dot, acceleration, gradient },
+        unturned: Motion {
+            omega: omega_unturned,
+            omega_dot: omega_dot_unturned,
+            acceleration: acceleration_unturned,
+            gradient: gradient_unturned,
+        },
+        twist,
+        group_turn,
+        turn,
+    }
+}
+
+/// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
+fn prismatic<'s>(
+    writer: &'s Writer,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+) -> Moved<'s> {
+    let (rows, joint) = (arm.rows(), index + 1);
+    let row = &rows[index];
+    let lambda = arm.parameters.lambda;
+    let (offset, d) = arm.lengths(index, lambda);
+    let (twist, turn) = (writer.constant_turn(row.alpha), writer.constant_turn(row.theta));
+    let (qd, qdd) = (writer.rate(rows, index).times(lambda), writer.rate_dot(rows, index).times(lambda));
+    let twice_rate = qd.times(Number::integer(2));
+    let q = writer.position(rows, index).times(lambda) + writer.number(d);
+    let u = writer.vector(row.axis);
+
+    let own = if row.carried {
+        writer.at(Quantity::OriginAcceleration, joint);
+        let arm_vector = writer.vector(offset) + u * q;
+        let acceleration = before.acceleration
+            + before.gradient.of(arm_vector)
+            + before.omega.cross(u * twice_rate)
+            + u * qdd;
+        Motion { acceleration, ..before }
+    } else {
+        writer.at(Quantity::OriginAcceleration, joint);
+        let (point, ..) = joint_point(writer, arm, index, before, moved, offset);
+        let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
+        writer.at(Quantity::Omega, joint);
+        let omega = writer.name(Quantity::Omega, joint, outward(before.omega));
+        writer.at(Quantity::OmegaDot, joint);
+        let omega_dot = writer.name(Quantity::OmegaDot, joint, outward(before.omega_dot));
+        writer.at(Quantity::Gradient, joint);
+        let gradient = Gradient::new(omega, omega_dot);
+        name_gradient(writer, Quantity::Gradient, joint, &gradient);
+        writer.at(Quantity::OriginAcceleration, joint);
+        let [wx, wy, _] = omega.0;
+        let [x, y, z] = (outward(point) + gradient.column_z() * q).0;
+        let acceleration = Vector([x + twice_rate * wy, y - twice_rate * wx, z + qdd]);
+        Motion { omega, omega_dot, acceleration, gradient }
+    };
+    writer.name(Quantity::OriginAcceleration, joint, own.acceleration);
+    Moved { own, unturned: own, twist, group_turn: turn, turn }
+}
+
+fn name_gradient(writer: &Writer, quantity: Quantity, joint: usize, gradient: &Gradient<'_>) {
+    if writer.naming.is_some() {
+        for (row, values) in Axis::ALL.into_iter().zip(gradient.u) {
+            for (column, value) in Axis::ALL.into_iter().zip(values) {
+                writer.define(Name::matrix(quantity, joint, row, column), value);
+            }
+        }
+    }
+}
+
+/// Rz(θ)ᵀ Rx(α)ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
+fn rotated_outward<'s>(
+    writer: &'s Writer,
+    row: &Row,
+    turn: SymbolicTurn<'s>,
+    scaled: bool,
+    v: Vector<'s>,
+) -> Vector<'s> {
+    let twist = writer.constant_turn(row.alpha);
+    let (true, Some(twist_by)) = (scaled, ScaledTwist::new(row)) else {
+        return turn.back_about_z(twist.back_about_x(v));
+    };
+    let [x, y, z] = v.0;
+    let ScaledTwist { ratio, larger, on_sine } = twist_by;
+    let (s, c) = (turn.s.times(larger), turn.c.times(larger));
+    let u = if on_sine { z + y.times(ratio) } else { y + z.times(ratio) };
+    Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
+}
+
+/// The smaller of sin α and cos α as a multiple of the larger.
+pub(crate) struct ScaledTwist {
+    pub(crate) ratio: Number,
+    pub(crate) larger: Number,
+    pub(crate) on_sine: bool,
+}
+
+impl ScaledTwist {
+    /// `None` for right angles.
+    pub(crate) fn new(row: &Row) -> Option<Self> {
+        let (s, c) = (row.alpha.sin, row.alpha.cos);
+        if row.alpha.quarters().is_some() {
+            return None;
+        }
+        let on_sine = s.to_f64().abs() > c.to_f64().abs();
+        let (smaller, larger) = if on_sine { (c, s) } else { (s, c) };
+        Some(Self { ratio: smaller * larger.inverse()?, larger, on_sine })
+    }
+}

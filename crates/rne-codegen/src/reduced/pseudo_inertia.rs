@@ -1,0 +1,167 @@
+//! The ten inertial parameters of a link as its pseudo-inertia: mass, first and second moments about its frame's origin.
+
+use std::ops::Add;
+
+use crate::exact::{Number, Turn};
+
+/// Three numbers along x, y, z.
+pub(crate) type Triple = [Number; 3];
+
+/// A 3 × 3 matrix of numbers, by rows.
+pub(crate) type Square = [[Number; 3]; 3];
+
+/// The matter of a link: P = [S h; hᵀ m], with h = ∫ r dm and S = ∫ r rᵀ dm about the origin of its frame.
+///
+/// S = ½ tr(J) 1 - J for the inertia J about the origin. A change of frame is a congruence of P.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct PseudoInertia {
+    pub(crate) mass: Number,
+    pub(crate) h: Triple,
+    pub(crate) s: Square,
+}
+
+/// An entry of a pseudo-inertia, or the one difference that a choice of gauge may annul.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(crate) enum Entry {
+    Mass,
+    H(usize),
+    S(usize, usize),
+    /// S11 - S22
+    Difference,
+}
+
+impl PseudoInertia {
+    /// From mass, centre of mass and inertia about it.
+    pub(crate) fn of_body(mass: Number, com: Triple, inertia: Square, half: Number) -> Self {
+        let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
+        let s = square(|i, j| {
+            let about_com = if i == j { trace - inertia[i][j] } else { -inertia[i][j] };
+            about_com + mass * com[i] * com[j]
+        });
+        Self { mass, h: com.map(|c| mass * c), s }
+    }
+
+    pub(crate) fn get(&self, entry: Entry) -> Number {
+        match entry {
+            Entry::Mass => self.mass,
+            Entry::H(i) => self.h[i],
+            Entry::S(i, j) => self.s[i][j],
+            Entry::Difference => self.s[0][0] - self.s[1][1],
+        }
+    }
+
+    /// The same matter in axes turned by a rotation: every point r becomes R r.
+    pub(crate) fn turned(&self, rotation: &Square) -> Self {
+        let half = square(|i, j| sum((0..3).map(|k| rotation[i][k] * self.s[k][j])));
+        Self {
+            mass: self.mass,
+            h: apply(rotation, self.h),
+            s: square(|i, j| sum((0..3).map(|k| half[i][k] * rotation[j][k]))),
+        }
+    }
+
+    /// The same matter about another origin: every point r becomes r + t.
+    pub(crate) fn moved(&self, t: Triple) -> Self {
+        Self {
+            mass: self.mass,
+            h: [0, 1, 2].map(|i| self.h[i] + self.mass * t[i]),
+            s: square(|i, j| self.s[i][j] + self.h[i] * t[j] + t[i] * self.h[j] + self.mass * t[i] * t[j]),
+        }
+    }
+
+    /// A rod of matter along the line through `p` with direction `u`: mass, first and second moment along it.
+    pub(crate) fn rod([mass, first, second]: Triple, p: Triple, u: Triple) -> Self {
+        Self {
+            mass,
+            h: [0, 1, 2].map(|i| mass * p[i] + first * u[i]),
+            s: square(|i, j| {
+                mass * p[i] * p[j] + first * (p[i] * u[j] + u[i] * p[j]) + second * u[i] * u[j]
+            }),
+        }
+    }
+}
+
+impl Add for PseudoInertia {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            mass: self.mass + other.mass,
+            h: [0, 1, 2].map(|i| self.h[i] + other.h[i]),
+            s: square(|i, j| self.s[i][j] + other.s[i][j]),
+        }
+    }
+}
+
+pub(crate) fn square(f: impl Fn(usize, usize) -> Number) -> Square {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
+}
+
+pub(crate) fn sum(terms: impl Iterator<Item = Number>) -> Number {
+    terms.fold(Number::ZERO, |sum, term| sum + term)
+}
+
+/// R v
+pub(crate) fn apply(rotation: &Square, v: Triple) -> Triple {
+    [0, 1, 2].map(|i| sum((0..3).map(|k| rotation[i][k] * v[k])))
+}
+
+pub(crate) fn compose(a: &Square, b: &Square) -> Square {
+    square(|i, j| sum((0..3).map(|k| a[i][k] * b[k][j])))
+}
+
+pub(crate) fn transpose(a: &Square) -> Square {
+    square(|i, j| a[j][i])
+}
+
+/// Rx(α)
+pub(crate) fn about_x(turn: Turn) -> Square {
+    let (zero, one, Turn { sin, cos }) = (Number::ZERO, Number::ONE, turn);
+    [[one, zero, zero], [zero, cos, -sin], [zero, sin, cos]]
+}
+
+/// Rz(θ)
+pub(crate) fn about_z(turn: Turn) -> Square {
+    let (zero, one, Turn { sin, cos }) = (Number::ZERO, Number::ONE, turn);
+    [[cos, -sin, zero], [sin, cos, zero], [zero, zero, one]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::exact::Reading;
+    use rne_model::Angle;
+
+    fn numbers<const N: usize>(values: [f64; N]) -> [Number; N] {
+        values.map(|value| Reading::default().decimal(value))
+    }
+
+    fn body() -> PseudoInertia {
+        let [m, x, y, z, xx, yy, zz, xy, xz, yz, half] =
+            numbers([2.5, 0.1, -0.2, 0.3, 0.04, 0.05, 0.06, 0.001, -0.002, 0.003, 0.5]);
+        PseudoInertia::of_body(m, [x, y, z], [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]], half)
+    }
+
+    #[test]
+    fn frames_change_there_and_back() {
+        let turn = Reading::default().turn(&Angle::new(0.7));
+        let rotation = compose(&about_x(turn), &about_z(turn));
+        let there = body().turned(&rotation);
+        assert_eq!(images(&there.turned(&transpose(&rotation))), images(&body()));
+        let [x, y, z] = numbers([0.3, -0.7, 0.2]);
+        assert_eq!(images(&body().moved([x, y, z]).moved([-x, -y, -z])), images(&body()));
+    }
+
+    #[test]
+    fn a_rod_is_matter_on_a_line() {
+        // a point of mass 2 at (1, 2, 3), seen as a rod through the origin along z that has been moved there
+        let [zero, one, two, three] = numbers([0.0, 1.0, 2.0, 3.0]);
+        let rod = PseudoInertia::rod([two, zero, zero], [one, two, three], [zero, zero, one]);
+        let point = PseudoInertia { mass: two, ..PseudoInertia::default() }.moved([one, two, three]);
+        assert_eq!(images(&rod), images(&point));
+    }
+
+    fn images(p: &PseudoInertia) -> Vec<crate::exact::Image> {
+        std::iter::once(p.mass).chain(p.h).chain(p.s.into_iter().flatten()).map(|x| x.image).collect()
+    }
+}
