@@ -10,6 +10,7 @@ mod outward;
 mod plan;
 mod pseudo_inertia;
 mod regroup;
+mod rewrite;
 mod rows;
 mod search;
 mod sheet;
@@ -44,6 +45,18 @@ mod tests {
                 let start = std::time::Instant::now();
                 let _ = search.descend(&mut |_| (start.elapsed().as_secs() < 8).then_some(0.0));
                 println!("   descent {} {:?} {} plans {:?}", search.best.0.total(), search.best.0, search.plans, start.elapsed());
+                search.pool.push((search.best.0.weight(), search.best.1.clone()));
+                let start = std::time::Instant::now();
+                let plan = search.best.1.clone();
+                let frame = super::evaluator::frame(&robot, &plan).unwrap();
+                let writer = super::writer::Writer::new(Function::InverseDynamics, frame.table.reading, false);
+                let outs = super::evaluator::write(&writer, &frame, &plan, &frame.parameters(&plan).unwrap());
+                let dag = super::sheet::Dag::of(&writer.sheet.borrow(), &outs);
+                let mut rewriting = super::rewrite::Rewriting::new(dag, 1, |dag, live| super::evaluator::cost(dag, &frame, live));
+                let mut n = 0;
+                let _ = rewriting.anneal(0.2, |best| Progress { plans: 0, best, phase: "" }, &mut |_| { n += 1; Some(start.elapsed().as_secs_f64() / 10.0) });
+                let (best, _) = rewriting.best();
+                println!("   rewritten {} {:?} {} moves", best.total(), best, n * 512);
                 continue;
             }
             plan.gyrostat = true;

@@ -279,3 +279,4 @@ pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
     search.greedy(DEFAULT_EVALUATIONS);
     search.best.1
 }
+

@@ -83,11 +83,80 @@ pub(crate) enum Identity {
     Value,
 }
 
+/// How a constant came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// From the robot and the plan.
+    Given,
+    /// From two others by their places: negative factors and summands are references with a sign.
+    Sum(Ref, Ref),
+    Product(Ref, Ref),
+    /// One over another.
+    Inverse(u32),
+}
+
+/// Constants, each kept once, none negative.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Numbers {
+    list: Vec<(Number, Source)>,
+    /// Open addressing; never iterated.
+    places: Vec<u32>,
+}
+
+impl Numbers {
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    pub(crate) fn get(&self, place: u32) -> (Number, Source) {
+        self.list[place as usize]
+    }
+
+    fn clear(&mut self) {
+        self.list.clear();
+        self.places.clear();
+        self.places.resize(512, 0);
+    }
+
+    /// The place of a number that is not negative.
+    fn intern(&mut self, number: Number, source: Source) -> u32 {
+        if self.list.len() * 2 >= self.places.len() {
+            let size = (self.places.len() * 2).max(512);
+            self.places.clear();
+            self.places.resize(size, 0);
+            for at in 0..self.list.len() {
+                let slot = self.slot(self.list[at].0.image);
+                self.places[slot] = u32::try_from(at + 1).unwrap_or(u32::MAX);
+            }
+        }
+        let slot = self.slot(number.image);
+        if self.places[slot] == 0 {
+            self.list.push((number, source));
+            self.places[slot] = u32::try_from(self.list.len()).unwrap_or(u32::MAX);
+        }
+        self.places[slot] - 1
+    }
+
+    /// Where a value is, or would be.
+    fn slot(&self, image: Image) -> usize {
+        let mask = self.places.len() - 1;
+        let (magnitude, _) = canonical(image);
+        let mut slot = value_slot(magnitude, mask);
+        while let Some(place) = self.places[slot].checked_sub(1) {
+            if canonical(self.list[place as usize].0.image).0 == magnitude {
+                break;
+            }
+            slot = (slot + 1) & mask;
+        }
+        slot
+    }
+}
+
 /// Operands always stand before the nodes that use them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
     pub(crate) nodes: Vec<Node>,
-    pub(crate) numbers: Vec<Number>,
+    pub(crate) numbers: Numbers,
     identity: Identity,
     /// Open addressing; 0 is empty, otherwise the index of a node plus one. Never iterated.
     structures: Vec<u32>,
@@ -97,20 +166,24 @@ pub(crate) struct Sheet {
 
 impl Sheet {
     pub(crate) fn new(identity: Identity) -> Self {
-        let mut sheet = Self { identity, structures: vec![0; 4096], values: vec![0; 1024], ..Self::default() };
+        let mut sheet = Self { identity, structures: vec![0; 4096], values: vec![0; 2048], ..Self::default() };
         sheet.clear();
         sheet
     }
 
     /// Empties the sheet and keeps its memory. Zero and one are always there.
     pub(crate) fn clear(&mut self) {
-        self.nodes.clear();
         self.numbers.clear();
+        self.clear_nodes();
+    }
+
+    /// Empties the sheet but for its constants, which keep their places.
+    pub(crate) fn clear_nodes(&mut self) {
+        self.nodes.clear();
         self.structures.fill(0);
         self.values.fill(0);
         self.valued = 0;
-        self.constant(Number::ZERO);
-        self.constant(Number::ONE);
+        let _ = (self.constant(Number::ZERO), self.constant(Number::ONE));
     }
 
     pub(crate) fn zero() -> Ref {
@@ -130,7 +203,7 @@ impl Sheet {
     pub(crate) fn number(&self, at: Ref) -> Option<Number> {
         match self.op(at) {
             Op::Constant(index) => {
-                let number = self.numbers[index as usize];
+                let (number, _) = self.numbers.get(index);
                 Some(if at.is_negative() { -number } else { number })
             }
             _ => None,
@@ -138,15 +211,53 @@ impl Sheet {
     }
 
     pub(crate) fn constant(&mut self, number: Number) -> Ref {
+        self.derived(number, Source::Given)
+    }
+
+    /// A constant made from others.
+    pub(crate) fn derived(&mut self, number: Number, source: Source) -> Ref {
         if let Some(known) = self.valued(number.image) {
             return known;
         }
-        let magnitude = number.abs();
-        let index = u32::try_from(self.numbers.len()).unwrap_or(u32::MAX);
-        self.numbers.push(magnitude);
-        let at = self.push(Op::Constant(index), magnitude.image);
+        let place = self.numbers.intern(number.abs(), source);
+        self.constant_at(place).signed(number.is_negative())
+    }
+
+    /// The constant of that place.
+    pub(crate) fn constant_at(&mut self, place: u32) -> Ref {
+        let (number, _) = self.numbers.get(place);
+        if let Some(known) = self.valued(number.image) {
+            return known;
+        }
+        let at = self.push(Op::Constant(place), number.image);
         self.remember_value(at.index());
-        at.signed(number.is_negative())
+        at
+    }
+
+    /// The place of a constant, with the sign of the reference to it.
+    fn place(&self, at: Ref) -> Option<Ref> {
+        match self.op(at) {
+            Op::Constant(place) => Some(Ref::new(place as usize).signed(at.is_negative())),
+            _ => None,
+        }
+    }
+
+    fn constant_sum(&mut self, a: Ref, b: Ref) -> Option<Ref> {
+        let (x, y) = (self.number(a)?, self.number(b)?);
+        let source = Source::Sum(self.place(a)?, self.place(b)?);
+        Some(self.derived(x + y, source))
+    }
+
+    fn constant_product(&mut self, a: Ref, b: Ref) -> Option<Ref> {
+        let (x, y) = (self.number(a)?, self.number(b)?);
+        let source = Source::Product(self.place(a)?, self.place(b)?);
+        Some(self.derived(x * y, source))
+    }
+
+    /// 1/a of a constant.
+    pub(crate) fn constant_inverse(&mut self, a: Ref) -> Option<Ref> {
+        let (x, place) = (self.number(a)?.inverse()?, self.place(a)?);
+        Some(self.derived(x, Source::Inverse(u32::try_from(place.index()).ok()?)))
     }
 
     pub(crate) fn leaf(&mut self, leaf: Leaf, image: Image) -> Ref {
@@ -166,8 +277,8 @@ impl Sheet {
         if a == Self::zero() {
             return b;
         }
-        if let (Some(x), Some(y)) = (self.number(a), self.number(b)) {
-            return self.constant(x + y);
+        if let Some(constant) = self.constant_sum(a, b) {
+            return constant;
         }
         let image = self.image(a) + self.image(b);
         if image.is_zero() {
@@ -180,9 +291,9 @@ impl Sheet {
         }
         // c₁ x + c₂ x = (c₁ + c₂) x
         let ((x, u), (y, v)) = (self.factored(a), self.factored(b));
-        if x == y {
-            let factor = self.scale(u) + self.scale(v);
-            let factor = self.constant(factor);
+        if x == y
+            && let Some(factor) = self.constant_sum(u, v)
+        {
             return self.product(factor, x);
         }
         let (a, b) = if a.index() > b.index() { (b, a) } else { (a, b) };
@@ -202,20 +313,17 @@ impl Sheet {
         if a == one || b == one {
             return (if a == one { b } else { a }).signed(negative);
         }
-        let (x, y) = (self.number(a), self.number(b));
-        let (a, b, x) = match (x, y) {
-            (Some(x), Some(y)) => return self.constant(x * y).signed(negative),
-            (None, Some(y)) => (b, a, Some(y)),
-            _ => (a, b, x),
-        };
-        if let Some(x) = x {
-            // c₁ (c₂ x) = (c₁ c₂) x
-            if let Op::Product(inner, rest) = self.op(b)
-                && let Some(y) = self.number(inner)
-            {
-                let factor = self.constant(x * y);
-                return self.product(factor, rest).signed(negative);
-            }
+        if let Some(constant) = self.constant_product(a, b) {
+            return constant.signed(negative);
+        }
+        let (a, b) = if self.is_constant(b) { (b, a) } else { (a, b) };
+        let has_factor = self.is_constant(a);
+        // c₁ (c₂ x) = (c₁ c₂) x
+        if has_factor
+            && let Op::Product(inner, rest) = self.op(b)
+            && let Some(factor) = self.constant_product(a, inner)
+        {
+            return self.product(factor, rest).signed(negative);
         }
         let image = self.image(a) * self.image(b);
         if self.identity == Identity::Value
@@ -223,7 +331,7 @@ impl Sheet {
         {
             return known.signed(negative);
         }
-        let (a, b) = if x.is_none() && a > b { (b, a) } else { (a, b) };
+        let (a, b) = if !has_factor && a > b { (b, a) } else { (a, b) };
         self.intern(Op::Product(a, b), image).signed(negative)
     }
 
@@ -237,8 +345,8 @@ impl Sheet {
         (at.magnitude(), Ref::new(1).signed(at.is_negative()))
     }
 
-    fn scale(&self, at: Ref) -> Number {
-        self.number(at).unwrap_or(Number::ONE)
+    pub(crate) fn is_constant(&self, at: Ref) -> bool {
+        matches!(self.op(at), Op::Constant(_))
     }
 
     fn push(&mut self, op: Op, image: Image) -> Ref {
@@ -410,7 +518,7 @@ impl Dag {
             }
             let mapped = |at: Ref| map[at.index()].signed(at.is_negative());
             map[index] = match node.op {
-                Op::Constant(number) => target.constant(sheet.numbers[number as usize]),
+                Op::Constant(place) => target.constant(sheet.numbers.get(place).0),
                 Op::Leaf(leaf) => target.leaf(leaf, node.image),
                 Op::Sum(a, b) => target.sum(mapped(a), mapped(b)),
                 Op::Product(a, b) => target.product(mapped(a), mapped(b)),
