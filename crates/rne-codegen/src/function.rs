@@ -87,17 +87,24 @@ pub enum Form {
     /// The seven steps: every intermediate is the lecture's.
     #[default]
     SevenSteps,
+    /// Fewest operations: only the torques keep a physical meaning.
+    Reduced,
+    /// The reduced form after algebraic rewriting, which no longer resembles a recursion. `inverse_dynamics` alone is
+    /// rewritten, and only where a plan file holds the result.
+    Rewritten,
 }
 
 impl Form {
     /// All forms.
-    pub const ALL: [Self; 1] = [Self::SevenSteps];
+    pub const ALL: [Self; 3] = [Self::SevenSteps, Self::Reduced, Self::Rewritten];
 
     /// Its name in the attribute and on the command line.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::SevenSteps => "seven_steps",
+            Self::Reduced => "reduced",
+            Self::Rewritten => "rewritten",
         }
     }
 }

@@ -7,10 +7,11 @@
 use std::collections::HashMap;
 use std::ops::Neg;
 
+use crate::exact::{Image, Number, Reading};
 use crate::quantity::Name;
 
 /// The index of a node in its graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct NodeId(u32);
 
 impl NodeId {
@@ -85,7 +86,8 @@ pub(crate) enum Side {
 /// A key under which an equal node is found again. Operands of a commutative operation are sorted.
 #[derive(PartialEq, Eq, Hash)]
 enum Key {
-    Constant(u64),
+    /// The bits of its value; in an exact graph also its image.
+    Constant(u64, Option<Image>),
     Argument(Name),
     Sine(Term),
     Cosine(Term),
@@ -99,9 +101,45 @@ pub(crate) struct Graph {
     nodes: Vec<Node>,
     // Looked up, never iterated: the order of its entries is not deterministic.
     known: HashMap<Key, NodeId>,
+    /// What constants are exactly, for a graph that is compared in fields instead of being computed.
+    exact: Option<Exact>,
+}
+
+/// The constants of an exact graph.
+struct Exact {
+    reading: Reading,
+    numbers: HashMap<NodeId, Number>,
 }
 
 impl Graph {
+    /// A graph whose constants are exact: it folds what is zero and one, not what rounds to it.
+    pub(crate) fn exact(reading: Reading) -> Self {
+        Self { exact: Some(Exact { reading, numbers: HashMap::new() }), ..Self::default() }
+    }
+
+    /// How an exact graph reads the numbers of a robot.
+    pub(crate) fn reading(&self) -> Option<Reading> {
+        self.exact.as_ref().map(|exact| exact.reading)
+    }
+
+    /// What a constant of an exact graph is.
+    pub(crate) fn number(&self, term: Term) -> Option<Number> {
+        let number = *self.exact.as_ref()?.numbers.get(&term.node)?;
+        Some(if term.negative { -number } else { number })
+    }
+
+    /// A constant of an exact graph.
+    pub(crate) fn constant_number(&mut self, number: Number) -> Term {
+        let magnitude = number.abs();
+        let value = magnitude.to_f64();
+        let key = Key::Constant(value.to_bits(), Some(magnitude.image));
+        let (node, outcome) = self.intern(key, Node::Constant(value));
+        if let (Outcome::Computed, Some(exact)) = (outcome, &mut self.exact) {
+            exact.numbers.insert(node, magnitude);
+        }
+        Term { node, negative: number.is_negative() }
+    }
+
     pub(crate) fn node(&self, id: NodeId) -> Node {
         self.nodes[id.index()]
     }
@@ -116,9 +154,12 @@ impl Graph {
     }
 
     pub(crate) fn constant(&mut self, value: f64) -> Term {
+        if let Some(reading) = self.reading() {
+            return self.constant_number(reading.decimal(value));
+        }
         // -0 is 0: the graph is exact up to the sign of zero
         let magnitude = if value == 0.0 { 0.0 } else { value.abs() };
-        let (node, _) = self.intern(Key::Constant(magnitude.to_bits()), Node::Constant(magnitude));
+        let (node, _) = self.intern(Key::Constant(magnitude.to_bits(), None), Node::Constant(magnitude));
         Term { node, negative: value < 0.0 }
     }
 
@@ -152,7 +193,11 @@ impl Graph {
             return (b, Outcome::Zero(Side::Left));
         }
         if let (Some(left), Some(right)) = (left, right) {
-            return (self.constant(left + right), Outcome::Constants);
+            let sum = match (self.number(a), self.number(b)) {
+                (Some(a), Some(b)) => self.constant_number(a + b),
+                _ => self.constant(left + right),
+            };
+            return (sum, Outcome::Constants);
         }
         if a == -b {
             return (self.constant(0.0), Outcome::Cancelled);
@@ -190,7 +235,11 @@ impl Graph {
             return (b.signed(left < 0.0), Outcome::One(Side::Left));
         }
         if let (Some(left), Some(right)) = (left, right) {
-            return (self.constant(left * right), Outcome::Constants);
+            let product = match (self.number(a), self.number(b)) {
+                (Some(a), Some(b)) => self.constant_number(a * b),
+                _ => self.constant(left * right),
+            };
+            return (product, Outcome::Constants);
         }
         let key = Key::Product(a.node.min(b.node), a.node.max(b.node));
         let (node, outcome) = self.intern(key, Node::Product(a.node, b.node));

@@ -32,7 +32,7 @@ pub struct Interpreter {
 #[derive(Clone, Copy, Debug)]
 enum Instruction {
     Argument(Name),
-    Constant(f64),
+    Constant(Option<Name>, f64),
     SineCosine(usize),
     Negative(usize),
     Sum(usize, usize),
@@ -49,7 +49,7 @@ impl Interpreter {
             builder.define(name, Instruction::Argument(name));
         }
         for constant in &program.constants {
-            builder.define(constant.name, Instruction::Constant(constant.value));
+            builder.define(constant.name, Instruction::Constant(Some(constant.name), constant.value));
         }
         for statement in &program.statements {
             match &statement.binding {
@@ -82,11 +82,24 @@ impl Interpreter {
     where
         T: Copy + Neg<Output = T> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
     {
+        self.run_named(arguments, |_, value| Some(constant(value)), sin_cos)
+    }
+
+    /// As [`Interpreter::run`], with constants by their names: the name of a constant that is just 0 is `None`.
+    pub(crate) fn run_named<T>(
+        &self,
+        arguments: &Arguments<'_, T>,
+        constant: impl Fn(Option<Name>, f64) -> Option<T>,
+        sin_cos: impl Fn(T) -> (T, T),
+    ) -> Option<Vec<T>>
+    where
+        T: Copy + Neg<Output = T> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+    {
         let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
         for &instruction in &self.code {
             let value = match instruction {
                 Instruction::Argument(name) => arguments.get(name)?,
-                Instruction::Constant(value) => constant(value),
+                Instruction::Constant(name, value) => constant(name, value)?,
                 Instruction::SineCosine(angle) => {
                     let (sine, cosine) = sin_cos(slots[angle]);
                     slots.push(sine);
@@ -143,7 +156,7 @@ impl Builder {
         let instruction = match expression {
             // every name is defined before it is used: programs are in order of evaluation
             Expression::Variable(name) => return self.known[name],
-            Expression::Zero => Instruction::Constant(0.0),
+            Expression::Zero => Instruction::Constant(None, 0.0),
             Expression::Negative(a) => Instruction::Negative(self.expression(a)),
             Expression::Sum(a, b) => Instruction::Sum(self.expression(a), self.expression(b)),
             Expression::Difference(a, b) => Instruction::Difference(self.expression(a), self.expression(b)),

@@ -10,6 +10,7 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 pub mod emit;
+mod derivation;
 mod exact;
 mod function;
 mod graph;
@@ -17,6 +18,7 @@ mod interpret;
 mod ledger;
 mod links;
 mod program;
+mod proof;
 mod quantity;
 pub mod reduced;
 mod schedule;
@@ -31,12 +33,11 @@ use rne_model::Robot;
 pub use function::{Form, Function, UnknownName};
 pub use interpret::{Arguments, Interpreter};
 pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
-pub use program::{Binding, Constant, Expression, Finding, Found, Operations, Output, Program, Sign, Statement};
+pub use program::{
+    Binding, Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement,
+};
 pub use quantity::{Axis, Component, Name, Quantity, Step};
 
-use crate::links::Arm;
-use crate::seven_steps::{JointState, Wrench};
-use crate::symbol::Vector;
 use crate::worksheet::Worksheet;
 
 /// Compiles one function of a robot.
@@ -59,38 +60,16 @@ pub fn compile_keeping(
     form: Form,
     keep: &[Quantity],
 ) -> Result<Program, CompileError> {
-    let Form::SevenSteps = form;
+    if form != Form::SevenSteps {
+        return reduced::compile(robot, function, form, None);
+    }
     let sheet = Worksheet::default();
-    let arm = Arm::new(&sheet, robot);
     let dof = robot.dof();
-    let states: Vec<JointState<'_>> = (1..=dof)
-        .map(|joint| {
-            let argument = |quantity| sheet.argument(Name::scalar(quantity, joint));
-            JointState {
-                q: argument(Quantity::Position),
-                qd: if function.has_rates() { argument(Quantity::Rate) } else { sheet.constant(0.0, Cause::AtRest) },
-                qdd: if function.has_accelerations() {
-                    argument(Quantity::RateDot)
-                } else {
-                    sheet.constant(0.0, Cause::NoAcceleration)
-                },
-            }
-        })
-        .collect();
-    let tip = if function.has_wrench() {
-        let argument = |quantity| Vector(Axis::ALL.map(|axis| sheet.argument(Name::vector(quantity, dof + 1, axis))));
-        Wrench { force: argument(Quantity::JointForce), moment: argument(Quantity::JointMoment) }
-    } else {
-        Wrench { force: sheet.zeros(Cause::FreeTip), moment: sheet.zeros(Cause::FreeTip) }
-    };
-
-    let torques = seven_steps::inverse_dynamics(&sheet, &arm, &states, tip);
-    let mut outputs: Vec<_> = torques
+    let mut outputs: Vec<_> = derivation::torques(&sheet, robot, function)
         .into_iter()
         .enumerate()
         .map(|(index, torque)| schedule::output(Name::scalar(Quantity::Torque, index + 1), torque))
         .collect();
-    drop((arm, states));
     let written = sheet.finish();
     let of_a_link = |name: &Name| (1..=dof).contains(&name.joint);
     let kept = written
@@ -103,13 +82,29 @@ pub fn compile_keeping(
 }
 
 /// Why a robot cannot be compiled.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum CompileError {
     /// A constant made from finite numbers of the table overflows.
     NotFinite {
         /// The constant.
         name: Name,
     },
+    /// Code that would be another function than the seven steps; it is never emitted.
+    NotIdentical {
+        /// The function.
+        function: Function,
+        /// The first joint whose torque differs, counted from 1.
+        joint: usize,
+    },
+    /// Code whose torques round too far away from those of the seven steps; it is never emitted.
+    Imprecise {
+        /// The function.
+        function: Function,
+        /// The largest difference, relative to the largest torque.
+        rounding: f64,
+    },
+    /// A plan that does not fit the robot.
+    Plan(String),
 }
 
 impl fmt::Display for CompileError {
@@ -121,6 +116,17 @@ impl fmt::Display for CompileError {
                 name.quantity.meaning(),
                 name.joint
             ),
+            Self::NotIdentical { function, joint } => write!(
+                f,
+                "the reduced form of `{function}` is not the seven steps: the torque of joint {joint} differs. No code is \
+                 written; please report this robot file"
+            ),
+            Self::Imprecise { function, rounding } => write!(
+                f,
+                "the reduced form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
+                 torque. `rne search` finds another plan, `form = \"seven_steps\"` needs none"
+            ),
+            Self::Plan(why) => f.write_str(why),
         }
     }
 }

@@ -8,7 +8,7 @@
 //! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned into
 //! frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
 
-use rne_model::{Angle, Convention, Inertia, JointKind, Robot, Transform};
+use rne_model::{Angle, Convention, JointKind, Robot, Transform};
 
 use crate::ledger::Cause;
 use crate::quantity::{Axis, Name, Quantity};
@@ -46,6 +46,7 @@ impl<'s> Arm<'s> {
     pub(crate) fn new(sheet: &'s Worksheet, robot: &Robot) -> Self {
         let dof = robot.dof();
         let rows: Vec<_> = robot.rows().collect();
+        let joints = &robot.joints;
         let zero = || sheet.constant(0.0, Cause::Arithmetic);
         let along_x = |length: f64| Vector([sheet.constant(length, Cause::Arithmetic), zero(), zero()]);
         let tool = Tool::new(sheet, &robot.tool);
@@ -57,7 +58,7 @@ impl<'s> Arm<'s> {
         for (index, row) in rows.iter().enumerate() {
             let joint = index + 1;
             let written_com = Vector(row.link.com.map(|x| sheet.constant(x, Cause::Arithmetic)));
-            let written_inertia = symmetric(sheet, &row.link.inertia);
+            let written_inertia = sheet.inertia(&joints[index]);
             let is_last = joint == dof;
             let (twist, offset, com, mut r, inertia);
             match robot.convention {
@@ -115,7 +116,7 @@ impl<'s> Tool<'s> {
     fn new(sheet: &'s Worksheet, tool: &Transform) -> Self {
         let number = |value: f64| sheet.constant(value, Cause::Arithmetic);
         let (zero, one) = (number(0.0), number(1.0));
-        let [roll, pitch, yaw] = tool.rpy.map(|angle| (number(angle.sin), number(angle.cos)));
+        let [roll, pitch, yaw] = tool.rpy.map(|angle| sheet.constant_turn(&angle, Cause::Arithmetic));
         let about_x = {
             let (s, c) = roll;
             Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
@@ -135,8 +136,9 @@ impl<'s> Tool<'s> {
 /// Rx(α) of a row of the table.
 fn turn_about_x<'s>(sheet: &'s Worksheet, row: usize, alpha: &Angle) -> Matrix<'s> {
     let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutX), sheet.constant(1.0, Cause::TurnAboutX));
-    let s = sheet.entry(Name::scalar(Quantity::TwistSine, row), alpha.sin);
-    let c = sheet.entry(Name::scalar(Quantity::TwistCosine, row), alpha.cos);
+    let (s, c) = sheet.constant_turn(alpha, Cause::Arithmetic);
+    let s = sheet.name(Name::scalar(Quantity::TwistSine, row), s);
+    let c = sheet.name(Name::scalar(Quantity::TwistCosine, row), c);
     Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
 }
 
@@ -144,10 +146,6 @@ fn turn_about_x<'s>(sheet: &'s Worksheet, row: usize, alpha: &Angle) -> Matrix<'
 fn identity(sheet: &Worksheet) -> Matrix<'_> {
     let (zero, one) = (sheet.constant(0.0, Cause::FirstFrame), sheet.constant(1.0, Cause::FirstFrame));
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
-}
-
-fn symmetric<'s>(sheet: &'s Worksheet, inertia: &Inertia) -> Matrix<'s> {
-    Matrix::from_rows(inertia.rows().map(|row| row.map(|x| sheet.constant(x, Cause::Arithmetic))))
 }
 
 /// Gravity in frame 0; a component that is zero says so.

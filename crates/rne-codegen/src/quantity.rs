@@ -152,6 +152,14 @@ pub enum Quantity {
     Sine,
     /// Cosine of the joint angle.
     Cosine,
+    /// The sum of the angles of parallel joints; the first of them is the name's part.
+    GroupAngle,
+    /// Sine of such a sum.
+    GroupSine,
+    /// Cosine of such a sum.
+    GroupCosine,
+    /// A term of a rewritten graph.
+    Term,
     /// R: turns components of frame i into components of frame i-1.
     Rotation,
     /// ω: angular velocity.
@@ -217,7 +225,14 @@ impl Quantity {
     #[must_use]
     pub const fn step(self) -> Option<Step> {
         match self {
-            Self::Angle | Self::Sine | Self::Cosine | Self::Rotation | Self::Omega | Self::OmegaUnturned => Some(Step::AngularVelocity),
+            Self::Angle
+            | Self::Sine
+            | Self::Cosine
+            | Self::GroupAngle
+            | Self::GroupSine
+            | Self::GroupCosine
+            | Self::Rotation
+            | Self::Omega | Self::OmegaUnturned => Some(Step::AngularVelocity),
             Self::OmegaDot | Self::Gradient | Self::GradientUnturned => Some(Step::AngularAcceleration),
             Self::Velocity => Some(Step::Velocity),
             Self::OmegaCrossR
@@ -261,6 +276,12 @@ impl Quantity {
         )
     }
 
+    /// Whether it is the sine or cosine of an angle, or the angle.
+    #[must_use]
+    pub const fn is_of_an_angle(self) -> bool {
+        matches!(self, Self::Angle | Self::GroupAngle)
+    }
+
     const fn prefix(self) -> &'static str {
         match self {
             Self::Position => "q",
@@ -288,9 +309,10 @@ impl Quantity {
             Self::OriginAccelerationUnturned => "an",
             Self::ReducedForce => "f",
             Self::ReducedMoment => "n",
-            Self::Angle => "angle",
-            Self::Sine => "s",
-            Self::Cosine => "c",
+            Self::Angle | Self::GroupAngle => "angle",
+            Self::Sine | Self::GroupSine => "s",
+            Self::Cosine | Self::GroupCosine => "c",
+            Self::Term => "t",
             Self::Omega => "w",
             Self::OmegaDot => "dw",
             Self::OmegaCrossR => "wxr",
@@ -316,7 +338,8 @@ impl Quantity {
         let prefix = self.prefix();
         match self {
             Self::Two => prefix.to_owned(),
-            Self::Constant => format!("{prefix}_1"),
+            Self::Constant | Self::Term => format!("{prefix}_1"),
+            Self::GroupAngle | Self::GroupSine | Self::GroupCosine => format!("{prefix}h_i"),
             Self::JointForce | Self::JointMoment => format!("{prefix}h_i_x"),
             Self::Inertia
             | Self::Rotation
@@ -366,6 +389,10 @@ impl Quantity {
             Self::Angle => "θ + q",
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
+            Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
+            Self::GroupSine => "its sine",
+            Self::GroupCosine => "its cosine",
+            Self::Term => "a term that has no meaning of its own",
             Self::Rotation => "R: frame i → frame i-1",
             Self::FirstMoment => "first moment of regrouped matter about the frame's origin",
             Self::SecondMoment => "second moment ∫ r rᵀ dm of regrouped matter",
@@ -435,7 +462,10 @@ impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
         match self.quantity {
-            Quantity::Two | Quantity::Constant => {}
+            Quantity::Two | Quantity::Constant | Quantity::Term => {}
+            Quantity::GroupAngle | Quantity::GroupSine | Quantity::GroupCosine => {
+                return write!(f, "{}_{}", self.part, self.joint);
+            }
             // f_{i-1,i}: both links, as in the lecture
             Quantity::JointForce | Quantity::JointMoment => {
                 write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?;

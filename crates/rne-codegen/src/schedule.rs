@@ -46,6 +46,7 @@ pub(crate) fn program(
         outputs,
         findings: schedule.findings(),
         ledger: written.ledger,
+        proof: None,
     })
 }
 
@@ -181,7 +182,7 @@ impl<'w> Schedule<'w> {
     }
 
     fn is_angle(&self, id: NodeId) -> bool {
-        self.names[id.index()].is_some_and(|given| given.name.quantity == Quantity::Angle)
+        self.names[id.index()].is_some_and(|given| given.name.quantity.is_of_an_angle())
     }
 
     fn is_live(&self, id: NodeId) -> bool {

@@ -154,10 +154,13 @@ fn rotation<'s>(
 ) -> Matrix<'s> {
     let (s, c) = match link.kind {
         Revolute => joint_angle(line, sheet, joint, link, q),
-        Prismatic => (
-            sheet.entry(Name::scalar(Quantity::ThetaSine, joint), link.theta.sin),
-            sheet.entry(Name::scalar(Quantity::ThetaCosine, joint), link.theta.cos),
-        ),
+        Prismatic => {
+            let (s, c) = sheet.constant_turn(&link.theta, Cause::Arithmetic);
+            (
+                sheet.name(Name::scalar(Quantity::ThetaSine, joint), s),
+                sheet.name(Name::scalar(Quantity::ThetaCosine, joint), c),
+            )
+        }
     };
     let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutZ), sheet.constant(1.0, Cause::TurnAboutZ));
     let about_z = Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]]);

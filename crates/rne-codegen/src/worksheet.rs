@@ -3,6 +3,9 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
+use rne_model::{Angle, Joint};
+
+use crate::exact::{Number, Reading};
 use crate::graph::{Graph, NodeId, Outcome, Side, Term};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
 use crate::quantity::{Axis, Component, Name, Quantity};
@@ -97,6 +100,37 @@ struct State {
 }
 
 impl Worksheet {
+    /// A sheet whose constants are exact, for a proof.
+    pub(crate) fn exact(reading: Reading) -> Self {
+        let sheet = Self::default();
+        sheet.state.borrow_mut().written.graph = Graph::exact(reading);
+        sheet
+    }
+
+    /// Sine and cosine of a constant angle.
+    pub(crate) fn constant_turn(&self, angle: &Angle, cause: Cause) -> (Symbol<'_>, Symbol<'_>) {
+        let reading = self.state.borrow().written.graph.reading();
+        match reading.map(|reading| reading.turn(angle)) {
+            Some(turn) => (self.exact_number(turn.sin, cause), self.exact_number(turn.cos, cause)),
+            None => (self.constant(angle.sin, cause), self.constant(angle.cos, cause)),
+        }
+    }
+
+    /// The inertia of a link about its centre of mass.
+    pub(crate) fn inertia(&self, joint: &Joint) -> Matrix<'_> {
+        let reading = self.state.borrow().written.graph.reading();
+        Matrix::from_rows(match reading {
+            Some(reading) => reading.inertia(joint).map(|row| row.map(|x| self.exact_number(x, Cause::Arithmetic))),
+            None => joint.row.link.inertia.rows().map(|row| row.map(|x| self.constant(x, Cause::Arithmetic))),
+        })
+    }
+
+    fn exact_number(&self, number: Number, cause: Cause) -> Symbol<'_> {
+        let state = &mut *self.state.borrow_mut();
+        let term = state.written.graph.constant_number(number);
+        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(cause)) }
+    }
+
     /// A number that stands for itself; `cause` tells why it is what it is.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
         let state = &mut *self.state.borrow_mut();

@@ -106,6 +106,12 @@ fn two_product(a: f64, b: f64) -> Double {
     Double { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
 }
 
+impl From<f64> for Double {
+    fn from(value: f64) -> Self {
+        Self::new(value)
+    }
+}
+
 impl Add for Double {
     type Output = Self;
 

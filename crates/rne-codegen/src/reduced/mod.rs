@@ -14,6 +14,7 @@ mod rewrite;
 mod rows;
 mod search;
 mod sheet;
+mod transcript;
 mod trick;
 mod writer;
 
@@ -21,6 +22,31 @@ pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 pub use search::Progress;
 pub use sheet::Cost;
 pub use trick::Trick;
+
+pub(crate) use writer::Point;
+
+use rne_model::Robot;
+
+use crate::CompileError;
+use crate::function::{Form, Function};
+use crate::program::Program;
+use transcript::Drawing;
+
+/// Compiles a function in the reduced form, by a plan or by the default one.
+pub(crate) fn compile(robot: &Robot, function: Function, form: Form, plan: Option<&Plan>) -> Result<Program, CompileError> {
+    let default;
+    let plan = match plan {
+        Some(plan) => plan,
+        None => {
+            default = search::default_plan(robot, &[]);
+            &default
+        }
+    };
+    let misfit = || CompileError::Plan(format!("the plan does not fit `{}`", robot.name));
+    let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
+    let drawing = Drawing::new(&frame, plan, function).ok_or_else(misfit)?;
+    drawing.program(robot, &frame, function, form)
+}
 
 #[cfg(test)]
 mod tests {
@@ -37,6 +63,19 @@ mod tests {
             let mut evaluator = Evaluator::new(&robot, Function::InverseDynamics);
             let mut plan = Plan::new(robot.dof());
             println!("{name}: {:?}", evaluator.cost(&plan));
+            for function in Function::ALL {
+                let start = std::time::Instant::now();
+                match compile(&robot, function, Form::Reduced, Some(&plan)) {
+                    Ok(program) => println!("   {function} {:?} {:?} {:?}", program.operations(), program.proof, start.elapsed()),
+                    Err(error) => println!("   {function} {error}"),
+                }
+                let start = std::time::Instant::now();
+                match compile(&robot, function, Form::Reduced, None) {
+                    Ok(program) => println!("   {function} {:?} {:?} {:?}", program.operations(), program.proof, start.elapsed()),
+                    Err(error) => println!("   {function} {error}"),
+                }
+            }
+            continue;
             let start = std::time::Instant::now();
             let mut search = super::search::Search::new(&robot, &[]);
             search.greedy(420);

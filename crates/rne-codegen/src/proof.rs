@@ -1,0 +1,276 @@
+//! The gate: a program is emitted only if it is the same function of the robot as the seven steps.
+//!
+//! Both are evaluated at random points of two prime fields, without rounding. Rational functions that agree there are
+//! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants were
+//! rounded, so both are run in double precision at random states as well.
+
+use std::collections::HashMap;
+use std::ops::{Add, Mul, Neg, Sub};
+
+use rne_model::{Angle, JointKind, Robot};
+
+use crate::derivation;
+use crate::exact::{Image, Number, Reading, Turn};
+use crate::function::{Form, Function};
+use crate::graph::{Graph, Node, Term};
+use crate::interpret::{Arguments, Interpreter};
+use crate::program::{Program, Proof};
+use crate::quantity::{Component, Name, Quantity};
+use crate::reduced::Point;
+use crate::schedule;
+use crate::worksheet::Worksheet;
+use crate::{CompileError, compile};
+
+/// Points of the fields at which torques are compared.
+const POINTS: u64 = 4;
+/// States at which rounding is measured when code is generated.
+const STATES: usize = 24;
+/// No program is emitted whose torques differ more, relative to the largest.
+const LARGEST_ROUNDING: f64 = 1e-11;
+
+/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
+pub(crate) type Exactly = HashMap<Name, (Number, Option<Turn>)>;
+
+/// Compares a program with the seven steps.
+///
+/// # Errors
+/// When it is another function, or rounds too badly.
+pub(crate) fn prove(
+    robot: &Robot,
+    program: &Program,
+    constants: &Exactly,
+    reading: Reading,
+) -> Result<Proof, CompileError> {
+    identical(robot, program, constants, reading)?;
+    let proof = rounding(robot, program)?;
+    if proof.rounding <= LARGEST_ROUNDING {
+        Ok(proof)
+    } else {
+        Err(CompileError::Imprecise { function: program.function, rounding: proof.rounding })
+    }
+}
+
+/// # Errors
+/// When a torque differs at a point.
+pub(crate) fn identical(
+    robot: &Robot,
+    program: &Program,
+    constants: &Exactly,
+    reading: Reading,
+) -> Result<(), CompileError> {
+    let steps = SevenSteps::new(robot, program.function, reading);
+    let interpreter = Interpreter::new(program);
+    for index in 1..=POINTS {
+        let point = Point::new(reading, index);
+        let expected = steps.torques(robot, &point);
+        let found = values(robot, &interpreter, constants, &point);
+        let differs = |joint: &usize| found.as_ref().and_then(|found| found.get(*joint)) != expected.get(*joint);
+        if let Some(joint) = (0..expected.len()).find(differs) {
+            return Err(CompileError::NotIdentical { function: program.function, joint: joint + 1 });
+        }
+    }
+    Ok(())
+}
+
+/// The seven steps with exact constants.
+struct SevenSteps {
+    graph: Graph,
+    torques: Vec<Term>,
+    reading: Reading,
+}
+
+impl SevenSteps {
+    fn new(robot: &Robot, function: Function, reading: Reading) -> Self {
+        let sheet = Worksheet::exact(reading);
+        let torques = derivation::torques(&sheet, robot, function)
+            .into_iter()
+            .map(|torque| schedule::output(Name::scalar(Quantity::Torque, 0), torque).1)
+            .collect();
+        Self { graph: sheet.finish().graph, torques, reading }
+    }
+
+    fn torques(&self, robot: &Robot, point: &Point) -> Vec<Image> {
+        let mut images: Vec<Image> = Vec::with_capacity(self.graph.len());
+        for (id, node) in self.graph.nodes() {
+            let image = |images: &[Image], term: Term| {
+                let image = images[term.node.index()];
+                if term.negative { -image } else { image }
+            };
+            let value = match node {
+                Node::Constant(_) => {
+                    self.graph.number(Term { node: id, negative: false }).map_or(Image::ZERO, |number| number.image)
+                }
+                Node::Argument(name) => argument(robot, point, name).number,
+                Node::Sine(angle) => self.turn(angle, point).0,
+                Node::Cosine(angle) => self.turn(angle, point).1,
+                Node::Sum(a, b) => image(&images, a) + image(&images, b),
+                Node::Product(a, b) => images[a.index()] * images[b.index()],
+            };
+            images.push(value);
+        }
+        self.torques
+            .iter()
+            .map(|term| {
+                let image = images[term.node.index()];
+                if term.negative { -image } else { image }
+            })
+            .collect()
+    }
+
+    /// Sine and cosine of an angle: q, or a constant and q.
+    fn turn(&self, angle: Term, point: &Point) -> (Image, Image) {
+        match self.graph.node(angle.node) {
+            Node::Argument(name) => signed(point.turn(name.joint - 1), angle.negative),
+            Node::Constant(magnitude) => {
+                let radians = if angle.negative { -magnitude } else { magnitude };
+                let turn = self.reading.turn(&Angle::new(radians));
+                (turn.sin.image, turn.cos.image)
+            }
+            Node::Sum(a, b) => signed(composed(self.turn(a, point), self.turn(b, point)), angle.negative),
+            _ => (Image::ZERO, Image::ZERO),
+        }
+    }
+}
+
+fn signed((sine, cosine): (Image, Image), negative: bool) -> (Image, Image) {
+    (if negative { -sine } else { sine }, cosine)
+}
+
+/// The addition theorem.
+fn composed((s, c): (Image, Image), (sine, cosine): (Image, Image)) -> (Image, Image) {
+    (s * cosine + c * sine, c * cosine - s * sine)
+}
+
+/// A number of a field that may be an angle: then it has a sine and a cosine.
+#[derive(Clone, Copy)]
+struct Value {
+    number: Image,
+    turn: (Image, Image),
+}
+
+impl Value {
+    /// A number that is no angle: its sine would be wrong whatever it is.
+    const fn number(number: Image) -> Self {
+        Self { number, turn: (Image::ZERO, Image::ZERO) }
+    }
+}
+
+impl Add for Value {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { number: self.number + other.number, turn: composed(self.turn, other.turn) }
+    }
+}
+
+impl Neg for Value {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { number: -self.number, turn: signed(self.turn, true) }
+    }
+}
+
+impl Sub for Value {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Value {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self::number(self.number * other.number)
+    }
+}
+
+fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
+    let index = name.joint.wrapping_sub(1);
+    match (name.quantity, name.component) {
+        (Quantity::JointForce, Component::Vector(axis)) => Value::number(point.force(axis as usize)),
+        (Quantity::JointMoment, Component::Vector(axis)) => Value::number(point.moment(axis as usize)),
+        (Quantity::Position, _) => match robot.joints.get(index).map(|joint| joint.row.kind) {
+            Some(JointKind::Revolute) => Value { number: point.position(index), turn: point.turn(index) },
+            _ => Value::number(point.position(index)),
+        },
+        (Quantity::Rate, _) => Value::number(point.rate(index)),
+        _ => Value::number(point.rate_dot(index)),
+    }
+}
+
+/// The torques of a program at a point.
+fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Point) -> Option<Vec<Image>> {
+    let dof = robot.dof();
+    let joints = |quantity| -> Vec<Value> {
+        (1..=dof).map(|joint| argument(robot, point, Name::scalar(quantity, joint))).collect()
+    };
+    let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
+    let arguments = Arguments {
+        q: &q,
+        qd: &qd,
+        qdd: &qdd,
+        force: [0, 1, 2].map(|axis| Value::number(point.force(axis))),
+        moment: [0, 1, 2].map(|axis| Value::number(point.moment(axis))),
+    };
+    let constant = |name: Option<Name>, _| {
+        let Some(name) = name else { return Some(Value::number(Image::ZERO)) };
+        let (number, turn) = constants.get(&name)?;
+        let turn = turn.map_or((Image::ZERO, Image::ZERO), |turn| (turn.sin.image, turn.cos.image));
+        Some(Value { number: number.image, turn })
+    };
+    let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
+    let torques = program.run_named(&arguments, constant, sin_cos)?;
+    Some(torques.into_iter().map(|torque| torque.number).collect())
+}
+
+/// Runs a program and the seven steps in floating point at random states: q ±3, q̇ ±2, q̈ ±4.
+fn rounding(robot: &Robot, program: &Program) -> Result<Proof, CompileError> {
+    let steps = Interpreter::new(&compile(robot, program.function, Form::SevenSteps)?);
+    let reduced = Interpreter::new(program);
+    let mut rng = fastrand::Rng::with_seed(2024);
+    let mut proof = Proof {
+        points: usize::try_from(POINTS).unwrap_or_default(),
+        states: STATES,
+        rounding: 0.0,
+        single: 0.0,
+        single_of_seven_steps: 0.0,
+    };
+    for _ in 0..STATES {
+        let mut random = |range: f64| (0..robot.dof()).map(|_| range * (2.0 * rng.f64() - 1.0)).collect::<Vec<f64>>();
+        let (q, qd, qdd, wrench) = (random(3.0), random(2.0), random(4.0), [5.0, -3.0, 2.0]);
+        let arguments = Arguments { q: &q, qd: &qd, qdd: &qdd, force: wrench, moment: wrench };
+        let [expected, found] =
+            [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
+        let scale = expected.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        if scale == 0.0 {
+            continue;
+        }
+        let error = |torques: &[f64]| {
+            let difference = |(a, b): (&f64, &f64)| (a - b).abs() / scale;
+            torques.iter().zip(&expected).map(difference).fold(0.0, larger)
+        };
+        proof.rounding = larger(proof.rounding, error(&found));
+        let single = |code: &Interpreter| {
+            #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+            let round = |values: &[f64]| values.iter().map(|&x| x as f32).collect::<Vec<f32>>();
+            let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
+            #[allow(clippy::cast_possible_truncation)]
+            let wrench = wrench.map(|x| x as f32);
+            let arguments = Arguments { q: &q, qd: &qd, qdd: &qdd, force: wrench, moment: wrench };
+            #[allow(clippy::cast_possible_truncation)]
+            let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
+            torques.into_iter().map(f64::from).collect::<Vec<f64>>()
+        };
+        proof.single = larger(proof.single, error(&single(&reduced)));
+        proof.single_of_seven_steps = larger(proof.single_of_seven_steps, error(&single(&steps)));
+    }
+    Ok(proof)
+}
+
+/// The larger of two; what is no number is larger than any.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}

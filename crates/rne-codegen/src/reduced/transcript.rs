@@ -1,0 +1,225 @@
+//! From the graph of the reduced form to a program with names, and what its constants are exactly.
+
+use std::collections::HashMap;
+
+use rne_model::Robot;
+
+use super::evaluator::{Frame, write};
+use super::plan::Plan;
+use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
+use super::writer::{Angle, Writer};
+use crate::CompileError;
+use crate::exact::{Image, Number, Turn};
+use crate::function::{Form, Function};
+use crate::graph::{NodeId, Term};
+use crate::ledger::{Cause, Causes, Place};
+use crate::program::Program;
+use crate::proof::{self, Exactly};
+use crate::quantity::{Axis, Component, Name, Quantity, Step};
+use crate::schedule;
+use crate::worksheet::{Birth, Definition, Written};
+
+/// The graph of a function under a plan, with names for its values.
+pub(crate) struct Drawing {
+    pub(crate) dag: Dag,
+    /// Names in the order in which they were given, and the value that bears each.
+    names: Vec<(Name, Image)>,
+    /// Where a value was first written.
+    births: HashMap<Image, (Place, Component)>,
+}
+
+impl Drawing {
+    /// Writes the reduced form.
+    pub(crate) fn new(frame: &Frame, plan: &Plan, function: Function) -> Option<Self> {
+        let parameters = frame.parameters(plan)?;
+        let writer = Writer::new(function, frame.table.reading, true);
+        let outputs = write(&writer, frame, plan, &parameters);
+        let sheet = writer.sheet.into_inner();
+        let naming = writer.naming.map(std::cell::RefCell::into_inner).unwrap_or_default();
+        let mut dag = Dag { sheet: Sheet::new(Identity::Value), outputs: Vec::new() };
+        let mut live = Vec::new();
+        dag.rewrite_from(&sheet, &outputs, &mut live);
+        let names = naming.definitions.iter().map(|&(name, at)| (name, sheet.image(at))).collect();
+        let mut births = HashMap::new();
+        for ((node, birth), _) in sheet.nodes.iter().zip(&naming.births).zip(&live).filter(|(_, live)| **live) {
+            if let Some(birth) = birth {
+                births.entry(positive(node.image)).or_insert(*birth);
+            }
+        }
+        Some(Self { dag, names, births })
+    }
+
+    /// Another graph of the same outputs: values keep their names.
+    pub(crate) fn with(self, dag: Dag) -> Self {
+        Self { dag, ..self }
+    }
+
+    /// The program, proved to be that of the seven steps.
+    pub(crate) fn program(
+        &self,
+        robot: &Robot,
+        frame: &Frame,
+        function: Function,
+        form: Form,
+    ) -> Result<Program, CompileError> {
+        let (mut program, exactly) = self.unproved(robot, frame, function, form)?;
+        program.proof = Some(proof::prove(robot, &program, &exactly, frame.table.reading)?);
+        Ok(program)
+    }
+
+    /// The program, and what its constants are.
+    pub(crate) fn unproved(
+        &self,
+        robot: &Robot,
+        frame: &Frame,
+        function: Function,
+        form: Form,
+    ) -> Result<(Program, Exactly), CompileError> {
+        let mut transcript = Transcript { frame, written: Written::default(), numbers: HashMap::new() };
+        let terms = transcript.nodes(self, form);
+        let mut outputs = Vec::new();
+        for (index, &at) in self.dag.outputs.iter().enumerate() {
+            let name = Name::scalar(Quantity::Torque, index + 1);
+            let term = mapped(&terms, at);
+            transcript.define(name, term);
+            outputs.push((name, term));
+        }
+        for (name, image) in &self.names {
+            let Some(at) = self.dag.sheet.valued(*image).filter(|at| terms[at.index()].is_some()) else { continue };
+            if name.quantity != Quantity::Torque && at.index() > 1 {
+                transcript.define(*name, mapped(&terms, at));
+            }
+        }
+        let Transcript { mut written, numbers, .. } = transcript;
+        written.births.resize_with(written.graph.len(), || None);
+        let heading = schedule::Heading { robot: &robot.name, dof: robot.dof(), function, form };
+        let program = schedule::program(&heading, written, &outputs)?;
+        let mut exactly = Exactly::new();
+        for constant in &program.constants {
+            let known = numbers.get(&constant.value.abs().to_bits());
+            if let Some(&(number, turn)) = known {
+                let negative = number.is_negative() != (constant.value < 0.0);
+                let signed = if negative { (-number, turn.map(Turn::back)) } else { (number, turn) };
+                exactly.insert(constant.name, signed);
+            }
+        }
+        Ok((program, exactly))
+    }
+}
+
+fn positive(image: Image) -> Image {
+    if image.is_negative() { -image } else { image }
+}
+
+fn mapped(terms: &[Option<Term>], at: Ref) -> Term {
+    // what is live has been written before
+    let term = terms[at.index()].unwrap_or(Term { node: NodeId::default(), negative: false });
+    if at.is_negative() { -term } else { term }
+}
+
+/// A sheet of names being filled.
+struct Transcript<'a> {
+    frame: &'a Frame,
+    written: Written,
+    /// By the bits of the rounded magnitude.
+    numbers: HashMap<u64, (Number, Option<Turn>)>,
+}
+
+impl Transcript<'_> {
+    /// Writes the live nodes of a graph; their terms by their places.
+    fn nodes(&mut self, drawing: &Drawing, form: Form) -> Vec<Option<Term>> {
+        let dag = &drawing.dag;
+        let mut live = Vec::new();
+        mark_live(&dag.sheet.nodes, &dag.outputs, &mut live);
+        let mut terms: Vec<Option<Term>> = vec![None; dag.sheet.nodes.len()];
+        for (index, node) in dag.sheet.nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
+            let graph = &mut self.written.graph;
+            let term = match node.op {
+                Op::Constant(place) => {
+                    let (number, _) = dag.sheet.numbers.get(place);
+                    self.constant(number, None)
+                }
+                Op::Leaf(leaf) => self.leaf(leaf),
+                Op::Sum(a, b) => graph.sum(mapped(&terms, a), mapped(&terms, b)).0,
+                Op::Product(a, b) => graph.product(mapped(&terms, a), mapped(&terms, b)).0,
+            };
+            terms[index] = Some(term);
+            let len = self.written.graph.len();
+            let birth = drawing.births.get(&positive(node.image)).map(|&(place, component)| Birth { place, component });
+            let term_place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term };
+            let unborn = (form == Form::Rewritten).then_some(Birth { place: term_place, component: Component::Scalar });
+            let is_operation = matches!(node.op, Op::Sum(..) | Op::Product(..));
+            let birth = if is_operation { birth.or(unborn) } else { None };
+            self.written.births.resize_with(len, || birth);
+        }
+        terms
+    }
+
+    fn constant(&mut self, number: Number, turn: Option<Turn>) -> Term {
+        let value = number.to_f64();
+        self.numbers.insert(value.abs().to_bits(), (number, turn));
+        self.written.graph.constant(value)
+    }
+
+    fn define(&mut self, name: Name, term: Term) {
+        let (after, causes) = (self.written.graph.len(), Causes::one(Cause::Arithmetic));
+        self.written.definitions.push(Definition { name, term, causes, after });
+    }
+
+    fn leaf(&mut self, leaf: Leaf) -> Term {
+        let joint = |joint: u8| usize::from(joint) + 1;
+        let tip = self.frame.table.rows.len() + 1;
+        let axis = |axis: u8| Axis::ALL[usize::from(axis) % 3];
+        let name = match leaf {
+            Leaf::Position(at) => Name::scalar(Quantity::Position, joint(at)),
+            Leaf::Rate(at) => Name::scalar(Quantity::Rate, joint(at)),
+            Leaf::RateDot(at) => Name::scalar(Quantity::RateDot, joint(at)),
+            Leaf::Force(along) => Name::vector(Quantity::JointForce, tip, axis(along)),
+            Leaf::Moment(along) => Name::vector(Quantity::JointMoment, tip, axis(along)),
+            Leaf::Sine(first, last) | Leaf::Cosine(first, last) => {
+                let is_sine = matches!(leaf, Leaf::Sine(..));
+                return self.of_angle(usize::from(first), usize::from(last), is_sine);
+            }
+        };
+        self.written.graph.argument(name)
+    }
+
+    /// Sine or cosine of the summed angle of joints `first` to `last`, counted from 0.
+    fn of_angle(&mut self, first: usize, last: usize, is_sine: bool) -> Term {
+        let rows = &self.frame.table.rows;
+        let constant = Angle::of(rows, first, last).constant;
+        let mut angle = self.written.graph.argument(Name::scalar(Quantity::Position, first + 1));
+        for at in first + 1..=last {
+            let q = self.written.graph.argument(Name::scalar(Quantity::Position, at + 1));
+            let q = if rows[at].reversed == rows[first].reversed { q } else { -q };
+            angle = self.written.graph.sum(angle, q).0;
+            self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, at), angle);
+        }
+        if let Some(turn) = constant {
+            let radians = turn.radians();
+            self.numbers.insert(radians.abs().to_bits(), (Number { value: radians.into(), image: Image::ZERO }, Some(turn)));
+            let theta = self.written.graph.constant(radians);
+            self.define(Name::scalar(Quantity::Theta, last + 1), theta);
+            angle = self.written.graph.sum(theta, angle).0;
+            self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, last), angle);
+        }
+        let graph = &mut self.written.graph;
+        let term = if is_sine { graph.sine(angle) } else { graph.cosine(angle) };
+        let name = if is_sine {
+            group_name(Quantity::GroupSine, Quantity::Sine, first, last)
+        } else {
+            group_name(Quantity::GroupCosine, Quantity::Cosine, first, last)
+        };
+        self.define(name, term);
+        term
+    }
+}
+
+/// `s3` for one joint, `s2_4` for the sum of three.
+fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
+    if first == last {
+        Name::scalar(single, last + 1)
+    } else {
+        Name { part: first + 1, ..Name::scalar(group, last + 1) }
+    }
+}
