@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use rne_codegen::{Form, Function, Step};
 
 use crate::terminal::HELP_STYLES;
-use crate::{check, emit, eval, ops, show};
+use crate::{check, emit, eval, ops, search, show};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -21,6 +21,7 @@ Examples:
   rne ops robots/*.yaml                            what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself
+  rne search my_arm.yaml --seconds 60              look for a form with fewer operations
 
 Exit status: 0 fine, 1 the input is at fault, 2 the command line is.
 Colours appear on terminals only; NO_COLOR turns them off. `rne COMMAND --help` says more.")]
@@ -36,6 +37,7 @@ pub(crate) enum Command {
     Emit(emit::Arguments),
     Ops(ops::Arguments),
     Eval(eval::Arguments),
+    Search(search::Arguments),
 }
 
 /// Reads the name of a function; help and messages list them all.
@@ -48,6 +50,8 @@ pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
 pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
     let value = |form: Form| match form {
         Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
+        Form::Reduced => PossibleValue::new(form.name()).help("Fewest operations; only the torques keep a meaning"),
+        Form::Rewritten => PossibleValue::new(form.name()).help("The reduced form after `rne search --rewrite`"),
     };
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
 }

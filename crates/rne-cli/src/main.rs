@@ -11,7 +11,9 @@ mod numbers;
 mod ops;
 mod outcome;
 mod output_file;
+mod plan_file;
 mod robot_file;
+mod search;
 mod show;
 mod terminal;
 mod tour;
@@ -49,5 +51,6 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Emit(arguments)) => ("rne emit", emit::run(&arguments)),
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
+        Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
     }
 }

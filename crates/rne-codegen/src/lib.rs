@@ -61,7 +61,7 @@ pub fn compile_keeping(
     keep: &[Quantity],
 ) -> Result<Program, CompileError> {
     if form != Form::SevenSteps {
-        return reduced::compile(robot, function, form, None);
+        return reduced::Choice::default_of(robot).compile(robot, function, form);
     }
     let sheet = Worksheet::default();
     let dof = robot.dof();

@@ -40,6 +40,8 @@ pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform}
 #[cfg(feature = "std")]
 mod check;
 #[cfg(feature = "std")]
+mod data_file;
+#[cfg(feature = "std")]
 mod decode;
 #[cfg(feature = "std")]
 mod diagnostic;
@@ -64,6 +66,8 @@ mod spelling;
 
 #[cfg(feature = "std")]
 pub use check::{Checked, check, check_bytes};
+#[cfg(feature = "std")]
+pub use data_file::{DataFile, Value};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]

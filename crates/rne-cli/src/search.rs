@@ -1,0 +1,150 @@
+//! `rne search`: a reduced form with fewer operations.
+
+use std::fmt::Write as _;
+use std::fs::OpenOptions;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant, SystemTime};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rne_codegen::reduced::{self, Cost, Found, PlanFile, Progress, Wanted};
+
+use crate::outcome::{Failure, Outcome};
+use crate::output_file::{self, Written};
+use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
+use crate::{plan_file, robot_file};
+
+/// Look for a reduced form with fewer operations, and write its choices beside the robot file
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne search robots/puma560.yaml --seconds 60             choices only
+  rne search robots/puma560.yaml --seconds 300 --rewrite  and rewrite the graph that they give
+
+Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs no search. A search goes on from the
+plan that is there, and what it writes is never worse. Ctrl-C ends it and keeps the best. Every form that is found
+is proved identical to the seven steps before it is written.")]
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// How long to search
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds)]
+    seconds: f64,
+    /// Rewrite the graphs of the best plans too, for `form = "rewritten"`
+    #[arg(long)]
+    rewrite: bool,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Start from nothing, and write even over a plan that does not belong to the robot
+    #[arg(long)]
+    fresh: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=1e6).contains(&seconds) => Ok(seconds),
+        _ => Err("a search takes a number of seconds, 0 to 1000000".to_owned()),
+    }
+}
+
+/// Set by Ctrl-C.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.file == Path::new("-") {
+        return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
+    }
+    let robot = robot_file::robot(&arguments.file)?;
+    let path = plan_file::path(&arguments.file);
+    let known = if arguments.fresh { None } else { plan_file::read(&arguments.file, &robot)? };
+    // the first Ctrl-C ends the search, the second one the program, if a handler can be had at all
+    let _ = ctrlc::set_handler(|| {
+        if INTERRUPTED.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+    });
+    let wanted = Wanted { rewrite: arguments.rewrite, seed: arguments.seed };
+    let found = watched(&robot, known.as_ref(), wanted, arguments.seconds)
+        .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
+    let written = output_file::replace(&path, &found.to_yaml())
+        .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
+    if written == Written::Anew {
+        touch(&arguments.file);
+    }
+    Ok(Outcome::text(summary(&found, known.as_ref(), &path, written)))
+}
+
+/// Searches with a progress bar on a terminal.
+fn watched(
+    robot: &rne_model::Robot,
+    known: Option<&PlanFile>,
+    wanted: Wanted,
+    seconds: f64,
+) -> Result<Found, rne_codegen::CompileError> {
+    const STEPS: u64 = 1000;
+    let bar = ProgressBar::new(STEPS);
+    let style = ProgressStyle::with_template("{prefix:>10} [{bar:30}] {msg}").map(|style| style.progress_chars("=> "));
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    let start = Instant::now();
+    let mut shown = start;
+    let found = reduced::search(robot, known, wanted, &mut |progress: &Progress| {
+        if INTERRUPTED.load(Ordering::Relaxed) {
+            return None;
+        }
+        let elapsed = start.elapsed();
+        let over = if seconds > 0.0 { elapsed.as_secs_f64() / seconds } else { 1.0 };
+        if shown.elapsed() > Duration::from_millis(100) {
+            shown = Instant::now();
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // 0 to 1000
+            bar.set_position((over.min(1.0) * STEPS as f64) as u64);
+            bar.set_prefix(progress.phase);
+            bar.set_message(format!("{} operations, {} plans", progress.best.total(), progress.plans));
+        }
+        (over < 1.0).then_some(over)
+    });
+    bar.finish_and_clear();
+    found
+}
+
+fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
+    let mut text = String::new();
+    let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
+    let mut line = |form: &str, remark: &reduced::Remark| {
+        let _ = writeln!(
+            text,
+            "{form:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
+             largest torque{QUIET:#}",
+            count(&remark.cost),
+            remark.cost.sincos,
+            remark.proof.rounding,
+            remark.proof.single,
+            remark.proof.single_of_seven_steps,
+        );
+    };
+    line("reduced", &found.reduced);
+    if let Some(rewritten) = &found.rewritten {
+        line("rewritten", rewritten);
+    }
+    let state = match (written, known) {
+        (Written::Unchanged, _) => "is as good as it was",
+        (Written::Anew, Some(_)) => "is better than it was",
+        (Written::Anew, None) => "is written",
+    };
+    let _ = writeln!(text, "{GOOD}ok{GOOD:#} {TYPED}{}{TYPED:#} {state}", path.display());
+    text
+}
+
+/// Builds watch the robot file; a new plan beside it is news to them.
+fn touch(robot_file: &Path) {
+    let touched = |path: &Path| -> io::Result<()> {
+        OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now())
+    };
+    // a robot file that cannot be touched is built anew when it changes
+    let _ = touched(robot_file);
+}

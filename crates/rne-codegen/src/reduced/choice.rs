@@ -1,0 +1,267 @@
+//! Which plan a function is compiled by, and the search for a better one.
+
+use rne_model::Robot;
+
+use super::evaluator::{self, Frame};
+use super::graph_text;
+use super::plan::Plan;
+use super::plan_file::{PlanFile, Remark, Rewritten, fingerprint};
+use super::rewrite::Rewriting;
+use super::search::{Clock, Over, Progress, Search, default_plan};
+use super::sheet::{Cost, Dag};
+use super::transcript::Drawing;
+use super::trick::Trick;
+use crate::CompileError;
+use crate::function::{Form, Function};
+use crate::program::Program;
+
+/// The choices by which a robot's functions are compiled in the reduced form.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The plan of the reduced form.
+    pub plan: Plan,
+    /// The rewritten graph of `inverse_dynamics`, if there is one.
+    pub rewritten: Option<Rewritten>,
+}
+
+impl Choice {
+    /// The choice of a build that has no plan file, without some tricks: the same on every machine.
+    #[must_use]
+    pub fn default_without(robot: &Robot, without: &[Trick]) -> Self {
+        Self { plan: default_plan(robot, without), rewritten: None }
+    }
+
+    /// The choice of a build that has no plan file.
+    #[must_use]
+    pub fn default_of(robot: &Robot) -> Self {
+        Self::default_without(robot, &[])
+    }
+
+    /// Compiles a function, and proves that it is that of the seven steps.
+    ///
+    /// # Errors
+    /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
+    pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
+        if form == Form::Rewritten && function == Function::InverseDynamics {
+            return self.compile_rewritten(robot);
+        }
+        let (frame, drawing) = drawn(robot, &self.plan, function)?;
+        drawing.program(robot, &frame, function, form)
+    }
+
+    fn compile_rewritten(&self, robot: &Robot) -> Result<Program, CompileError> {
+        let Some(Rewritten { plan, graph }) = &self.rewritten else {
+            return Err(CompileError::Plan(format!(
+                "`{0}` has no rewritten graph; `rne search {0}.yaml --rewrite` writes one into its plan file",
+                robot.name
+            )));
+        };
+        let function = Function::InverseDynamics;
+        let (frame, drawing) = drawn(robot, plan, function)?;
+        let dag = graph_text::read(graph, &frame, &drawing.dag.sheet.numbers).map_err(|(line, message)| {
+            CompileError::Plan(format!("line {line} of the rewritten graph of `{}`: {message}", robot.name))
+        })?;
+        drawing.with(dag).program(robot, &frame, function, Form::Rewritten)
+    }
+}
+
+impl From<PlanFile> for Choice {
+    fn from(file: PlanFile) -> Self {
+        Self { plan: file.plan, rewritten: file.rewritten }
+    }
+}
+
+fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawing), CompileError> {
+    let misfit = || CompileError::Plan(format!("the plan does not fit `{}`", robot.name));
+    let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
+    let drawing = Drawing::new(&frame, plan, function).ok_or_else(misfit)?;
+    Ok((frame, drawing))
+}
+
+/// What a plan costs for a function; `None` when it does not fit the robot.
+#[must_use]
+pub fn cost(robot: &Robot, plan: &Plan) -> Option<Cost> {
+    evaluator::Evaluator::new(robot, Function::InverseDynamics).cost(plan)
+}
+
+/// What each trick of a plan saves: by how many operations the code is longer when it is left out.
+#[must_use]
+pub fn savings(robot: &Robot, plan: &Plan) -> Vec<(Trick, isize)> {
+    let mut evaluator = evaluator::Evaluator::new(robot, Function::InverseDynamics);
+    let Some(with) = evaluator.cost(plan) else { return Vec::new() };
+    let used = Trick::ALL.into_iter().filter(|trick| trick.is_in(plan));
+    let saving = |trick: Trick| {
+        let without = evaluator.cost(&trick.left_out_of(plan))?;
+        Some((trick, without.total().cast_signed() - with.total().cast_signed()))
+    };
+    used.filter_map(saving).collect()
+}
+
+/// What a search is asked to do.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Wanted {
+    /// Rewrite the graphs of the best plans as well.
+    pub rewrite: bool,
+    /// Seed of the random numbers.
+    pub seed: u64,
+}
+
+/// What a search found.
+#[derive(Clone, Debug)]
+pub struct Found {
+    /// The plan file.
+    pub file: PlanFile,
+    /// What it says of the reduced form.
+    pub reduced: Remark,
+    /// What it says of the rewritten form.
+    pub rewritten: Option<Remark>,
+}
+
+impl Found {
+    /// The text of the plan file.
+    #[must_use]
+    pub fn to_yaml(&self) -> String {
+        self.file.to_yaml(&self.reduced, self.rewritten.as_ref())
+    }
+}
+
+/// Looks for a cheaper plan, from the one at hand onwards; what was found is never worse.
+///
+/// `clock` is asked now and then how much of the time is over.
+///
+/// # Errors
+/// When the result cannot be proved, which would be a mistake of this program.
+pub fn search(
+    robot: &Robot,
+    known: Option<&PlanFile>,
+    wanted: Wanted,
+    clock: Clock<'_>,
+) -> Result<Found, CompileError> {
+    let mut search = Search::new(robot, &[]);
+    search.greedy(usize::MAX);
+    if let Some(known) = known {
+        search.start_from(&known.plan);
+        if let Some(rewritten) = &known.rewritten {
+            search.start_from(&rewritten.plan);
+        }
+    }
+    // the first part of the time goes to plans, the rest to rewriting
+    let share = if wanted.rewrite { 0.45 } else { 1.0 };
+    let _ = plans(&mut search, wanted.seed, share, clock);
+    let plan = search.best.1.clone();
+    let mut best: Option<(Cost, Rewritten)> = None;
+    if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
+        let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
+        if let Ok(dag) = graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers) {
+            best = Some((evaluator::cost(&dag, &frame, &mut Vec::new()), rewritten.clone()));
+        }
+    }
+    if wanted.rewrite {
+        rewritten(robot, &search, &mut best, share, wanted.seed, clock)?;
+    }
+    let reduced_cost = search.best.0;
+    let file = PlanFile {
+        robot: robot.name.clone(),
+        fingerprint: fingerprint(robot),
+        plan,
+        rewritten: best.as_ref().map(|(_, rewritten)| rewritten.clone()),
+    };
+    let choice = Choice::from(file.clone());
+    let remark = |form, cost| {
+        let program = choice.compile(robot, Function::InverseDynamics, form)?;
+        let proof = program.proof.ok_or_else(|| CompileError::Plan("a program without proof".to_owned()))?;
+        Ok(Remark { cost, proof })
+    };
+    let reduced = remark(Form::Reduced, reduced_cost)?;
+    let rewritten = best.map(|(cost, _)| remark(Form::Rewritten, cost)).transpose()?;
+    Ok(Found { file, reduced, rewritten })
+}
+
+/// Descent, then annealing in rounds until `share` of the time is over.
+fn plans(search: &mut Search, seed: u64, share: f64, clock: Clock<'_>) -> Result<(), Over> {
+    const ROUNDS: u32 = 4;
+    let until = |end: f64, clock: &mut dyn FnMut(&Progress) -> Option<f64>, progress: &Progress| {
+        clock(progress).filter(|over| *over < end)
+    };
+    let half = share * 0.5;
+    let descended = search.descend(&mut |progress| until(half, clock, progress));
+    let start = match descended {
+        Ok(()) => clock(&search.progress("descent")).ok_or(Over)?,
+        // out of its own time, or out of all
+        Err(Over) => clock(&search.progress("descent")).ok_or(Over)?,
+    };
+    for round in 0..ROUNDS {
+        let length = (share - start) / f64::from(ROUNDS);
+        let begin = start + length * f64::from(round);
+        let hottest = if round + 1 == ROUNDS { 2.0 } else { 4.0 };
+        let mut local = |progress: &Progress| clock(progress).map(|over| ((over - begin) / length).clamp(0.0, 1.0));
+        search.anneal(seed.wrapping_add(u64::from(round)), hottest, &mut local)?;
+    }
+    // what annealing found may have better neighbours
+    let _ = search.descend(&mut |progress| until(share + 0.02, clock, progress));
+    Ok(())
+}
+
+/// Rewrites the graphs of the best plans: half of the time all of them, half the four that came out best.
+fn rewritten(
+    robot: &Robot,
+    search: &Search,
+    best: &mut Option<(Cost, Rewritten)>,
+    from: f64,
+    seed: u64,
+    clock: Clock<'_>,
+) -> Result<(), CompileError> {
+    let mut candidates: Vec<Plan> = vec![search.best.1.clone()];
+    candidates.extend(search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != search.best.1));
+    candidates.truncate(16);
+    // (cost, plan, graph, numbers given, frame)
+    let mut graphs: Vec<(Cost, Plan, Dag, usize, Frame)> = Vec::new();
+    if let Some((cost, known)) = best {
+        let (frame, drawing) = drawn(robot, &known.plan, Function::InverseDynamics)?;
+        let given = drawing.dag.sheet.numbers.len();
+        // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
+        let mut dag = drawing.dag.clone();
+        if let Ok(read) = graph_text::read(&known.graph, &frame, &drawing.dag.sheet.numbers) {
+            dag = graph_text::on_numbers_of(&read, &dag);
+        }
+        graphs.push((*cost, known.plan.clone(), dag, given, frame));
+    }
+    for plan in candidates {
+        let Ok((frame, drawing)) = drawn(robot, &plan, Function::InverseDynamics) else { continue };
+        let cost = evaluator::cost(&drawing.dag, &frame, &mut Vec::new());
+        let given = drawing.dag.sheet.numbers.len();
+        graphs.push((cost, plan, drawing.dag, given, frame));
+    }
+    let middle = from + (1.0 - from) * 0.5;
+    'stages: for (stage, begin, end, hottest, most) in [(0, from, middle, 0.2, usize::MAX), (1, middle, 1.0, 0.22, 4)] {
+        graphs.sort_by_key(|(cost, ..)| cost.weight());
+        graphs.truncate(most);
+        #[allow(clippy::cast_precision_loss)] // a handful
+        let length = (end - begin) / graphs.len() as f64;
+        for (index, (cost, _, dag, _, frame)) in graphs.iter_mut().enumerate() {
+            #[allow(clippy::cast_precision_loss)]
+            let start = begin + length * index as f64;
+            let seed = seed.wrapping_add(stage * 100 + index as u64);
+            let mut rewriting = Rewriting::new(dag.clone(), seed, |dag, live| evaluator::cost(dag, frame, live));
+            let mut local = |progress: &Progress| clock(progress).map(|over| ((over - start) / length).clamp(0.0, 1.0));
+            let plans = search.plans;
+            let least = best.as_ref().map(|(cost, _)| *cost);
+            let report = |cost: Cost| Progress {
+                plans,
+                best: least.filter(|least| least.weight() < cost.weight()).unwrap_or(cost),
+                phase: "rewriting",
+            };
+            let ended = rewriting.anneal(hottest, report, &mut local);
+            (*cost, *dag) = rewriting.best();
+            if ended.is_err() {
+                break 'stages;
+            }
+        }
+    }
+    for (cost, plan, dag, given, _) in graphs {
+        if best.as_ref().is_none_or(|(least, _)| cost.weight() < least.weight()) {
+            *best = Some((cost, Rewritten { plan, graph: graph_text::written(&dag, given) }));
+        }
+    }
+    Ok(())
+}
