@@ -1,5 +1,6 @@
 //! The number type that every function of a robot is generic over.
 
+use core::any::Any;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
@@ -44,6 +45,27 @@ pub trait Scalar:
     /// Sine and cosine of an angle in rad.
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
+
+    /// Sines and cosines of several angles in rad, each equal, bit for bit, to [`sin_cos`](Self::sin_cos) of that angle.
+    #[must_use]
+    fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let (mut sines, mut cosines) = (angles, angles);
+        for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+            (*sine, *cosine) = sine.sin_cos();
+        }
+        (sines, cosines)
+    }
+
+    /// `self * factor + addend`: rounded once where the compiled target has an instruction for that, else a product and a
+    /// sum.
+    ///
+    /// Of the scalars here only `f32` and `f64` are ever rounded once, and only with `std` (`core` has no such operation
+    /// yet): on x86-64 built with the target feature `fma`, and on AArch64. It is never a call of a library.
+    #[must_use]
+    #[inline]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        self * factor + addend
+    }
 }
 
 impl<T: SimdRealField + Copy> Scalar for T {
@@ -61,6 +83,54 @@ impl<T: SimdRealField + Copy> Scalar for T {
     fn sin_cos(self) -> (Self, Self) {
         self.simd_sin_cos()
     }
+
+    #[inline]
+    fn mul_add(self, factor: Self, addend: Self) -> Self {
+        let terms = [self, factor, addend];
+        let double = same(terms).and_then(|[a, b, c]: [f64; 3]| same(fused::f64(a, b, c)));
+        let single = || same(terms).and_then(|[a, b, c]: [f32; 3]| same(fused::f32(a, b, c)));
+        double.or_else(single).unwrap_or_else(|| self * factor + addend)
+    }
+}
+
+/// `value` itself if its type is `B`. There is no specialisation in stable Rust; this test is of two constants and
+/// disappears in release builds.
+#[inline]
+fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
+    (&value as &dyn Any).downcast_ref().copied()
+}
+
+/// `a * b + c`, rounded once where the target has an instruction for that; `core` has no such operation yet, only `std`.
+mod fused {
+    macro_rules! fused {
+        ($type:ident) => {
+            #[cfg(all(
+                feature = "std",
+                any(
+                    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
+                    target_arch = "aarch64"
+                )
+            ))]
+            #[inline]
+            pub(super) fn $type(a: $type, b: $type, c: $type) -> $type {
+                a.mul_add(b, c)
+            }
+
+            #[cfg(not(all(
+                feature = "std",
+                any(
+                    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
+                    target_arch = "aarch64"
+                )
+            )))]
+            #[inline]
+            pub(super) fn $type(a: $type, b: $type, c: $type) -> $type {
+                a * b + c
+            }
+        };
+    }
+    fused!(f32);
+    fused!(f64);
 }
 
 /// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without it.
