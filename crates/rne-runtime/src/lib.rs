@@ -10,6 +10,7 @@ mod capability;
 mod dyn_arm;
 #[cfg(feature = "std")]
 mod error;
+mod fused;
 mod link_frame;
 mod link_state;
 #[cfg(feature = "std")]
@@ -17,6 +18,7 @@ mod load;
 mod operations;
 mod scalar;
 mod seven_steps;
+mod sin_cos;
 mod trace;
 mod wrench;
 

@@ -7,6 +7,9 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 use simba::simd::SimdRealField;
 
+use crate::fused::{self, Fused};
+use crate::sin_cos;
+
 /// A real number, or a bundle of them: `f32`, `f64`, simba's SIMD lanes, dual numbers, fixed point.
 ///
 /// Implemented for everything that is simba's [`SimdRealField`] and `Copy`. A type of your own that is no such field (an
@@ -43,6 +46,10 @@ pub trait Scalar:
     }
 
     /// Sine and cosine of an angle in rad.
+    ///
+    /// For `f32` and `f64` these are kernels of this crate, the same arithmetic with and without `std`: within 1 ulp
+    /// (`f64`) and 1 ulp (`f32`) for angles up to 10⁵ rad. Beyond that `std`'s functions follow; without `std` results there
+    /// mean nothing. NaN and infinities give NaN.
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
 
@@ -81,14 +88,30 @@ impl<T: SimdRealField + Copy> Scalar for T {
 
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        self.simd_sin_cos()
+        let double = same(self).and_then(|angle: f64| same(sin_cos::pair(angle)));
+        let single = || same(self).and_then(|angle: f32| same(sin_cos::pair(angle)));
+        double.or_else(single).unwrap_or_else(|| self.simd_sin_cos())
+    }
+
+    #[inline]
+    fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let double = same(angles).and_then(|angles: [f64; N]| same(sin_cos::array(angles)));
+        let single = || same(angles).and_then(|angles: [f32; N]| same(sin_cos::array(angles)));
+        double.or_else(single).unwrap_or_else(|| {
+            let (mut sines, mut cosines) = (angles, angles);
+            for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
+                (*sine, *cosine) = sine.simd_sin_cos();
+            }
+            (sines, cosines)
+        })
     }
 
     #[inline]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
+        const ONCE: bool = fused::AT_HAND;
         let terms = [self, factor, addend];
-        let double = same(terms).and_then(|[a, b, c]: [f64; 3]| same(fused::f64(a, b, c)));
-        let single = || same(terms).and_then(|[a, b, c]: [f32; 3]| same(fused::f32(a, b, c)));
+        let double = same(terms).and_then(|[a, b, c]: [f64; 3]| same(a.mul_add_if::<ONCE>(b, c)));
+        let single = || same(terms).and_then(|[a, b, c]: [f32; 3]| same(a.mul_add_if::<ONCE>(b, c)));
         double.or_else(single).unwrap_or_else(|| self * factor + addend)
     }
 }
@@ -98,39 +121,6 @@ impl<T: SimdRealField + Copy> Scalar for T {
 #[inline]
 fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
     (&value as &dyn Any).downcast_ref().copied()
-}
-
-/// `a * b + c`, rounded once where the target has an instruction for that; `core` has no such operation yet, only `std`.
-mod fused {
-    macro_rules! fused {
-        ($type:ident) => {
-            #[cfg(all(
-                feature = "std",
-                any(
-                    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
-                    target_arch = "aarch64"
-                )
-            ))]
-            #[inline]
-            pub(super) fn $type(a: $type, b: $type, c: $type) -> $type {
-                a.mul_add(b, c)
-            }
-
-            #[cfg(not(all(
-                feature = "std",
-                any(
-                    all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
-                    target_arch = "aarch64"
-                )
-            )))]
-            #[inline]
-            pub(super) fn $type(a: $type, b: $type, c: $type) -> $type {
-                a * b + c
-            }
-        };
-    }
-    fused!(f32);
-    fused!(f64);
 }
 
 /// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without it.

@@ -1,0 +1,70 @@
+//! The angle less a multiple of a right angle: x = n π/2 + y - e.
+//!
+//! After W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980): π/2 is a sum of parts so short that
+//! their products with n have no rounding error, and the parts are subtracted from x one after the other, the largest first.
+//! What a subtraction of a later part rounds away is computed exactly as `(a - s) - b` for `s = a - b` (Dekker's fast sum)
+//! and collected in e.
+
+use crate::fused::Fused;
+
+/// A reduced angle: `head - excess` is x - n π/2.
+pub(super) struct Reduced<T, Bits> {
+    /// n modulo 4 in the two lowest bits; the others mean nothing.
+    pub(super) quadrant: Bits,
+    pub(super) head: T,
+    pub(super) excess: T,
+}
+
+/// For abs(x) ≤ 10⁵, where abs(n) < 2¹⁶ and the distance from a multiple of π/2 to the nearest `f64` is above 10⁻¹⁷.
+///
+/// The parts of π/2 are those of fdlibm's `__ieee754_rem_pio2` (`e_rem_pio2.c`): 33 + 33 + 53 bits.
+#[inline(always)]
+pub(super) fn f64<const FMA: bool>(x: f64) -> Reduced<f64, u64> {
+    use core::f64::consts::FRAC_2_PI;
+    // 1.5 · 2⁵²: to add it rounds to an integer, which then stands in the lowest bits of the sum.
+    const ROUNDER: f64 = 6_755_399_441_055_744.0;
+    const PART_1: f64 = 1.570_796_326_734_125_6;
+    const PART_2: f64 = 6.077_100_506_303_966e-11;
+    const PART_3: f64 = 2.022_266_248_795_950_6e-21;
+
+    let rounded = x.mul_add_if::<FMA>(FRAC_2_PI, ROUNDER);
+    let n = rounded - ROUNDER;
+    // Exact: both are multiples of 2⁻⁵³ or coarser, their difference is below 1.
+    let x1 = (-n).mul_add_if::<FMA>(PART_1, x);
+    let (head, excess_2) = difference(x1, n * PART_2);
+    Reduced { quadrant: rounded.to_bits(), head, excess: n.mul_add_if::<FMA>(PART_3, excess_2) }
+}
+
+/// For abs(x) ≤ 10⁵, where abs(n) < 2¹⁶ and the distance from a multiple of π/2 to the nearest `f32` is above 4 · 10⁻⁹.
+///
+/// Five parts of at most 8 bits, each the nearest to what the former ones leave, and one of 24 bits: π/2 to 2⁻⁷².
+#[inline(always)]
+pub(super) fn f32<const FMA: bool>(x: f32) -> Reduced<f32, u32> {
+    use core::f32::consts::FRAC_2_PI;
+    // 1.5 · 2²³, as above.
+    const ROUNDER: f32 = 12_582_912.0;
+    const PART_1: f32 = 1.570_312_5;
+    const PART_2: f32 = 4.844_665_5e-4;
+    const PART_3: f32 = -6.407_499_3e-7;
+    const PART_4: f32 = 9.895_302e-10;
+    const PART_5: f32 = 2.557_953_8e-12;
+    const PART_6: f32 = 5.390_303e-15;
+
+    let rounded = x.mul_add_if::<FMA>(FRAC_2_PI, ROUNDER);
+    let n = rounded - ROUNDER;
+    // Exact both: multiples of 2⁻²⁴ or coarser, below 1.
+    let x1 = (-n).mul_add_if::<FMA>(PART_1, x);
+    let x2 = (-n).mul_add_if::<FMA>(PART_2, x1);
+    let (x3, excess_3) = difference(x2, n * PART_3);
+    let (x4, excess_4) = difference(x3, n * PART_4);
+    let (head, excess_5) = difference(x4, n * PART_5);
+    let excess = n.mul_add_if::<FMA>(PART_6, excess_3 + excess_4 + excess_5);
+    Reduced { quadrant: rounded.to_bits(), head, excess }
+}
+
+/// `a - b` rounded, and what it is too large by; exact if b is no larger than a, or where the difference is exact.
+#[inline(always)]
+fn difference<T: Copy + core::ops::Sub<Output = T>>(a: T, b: T) -> (T, T) {
+    let rounded = a - b;
+    (rounded, b - (a - rounded))
+}
