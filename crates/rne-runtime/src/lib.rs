@@ -10,7 +10,6 @@ mod capability;
 mod dyn_arm;
 #[cfg(feature = "std")]
 mod error;
-mod fused;
 mod link_frame;
 mod link_state;
 #[cfg(feature = "std")]

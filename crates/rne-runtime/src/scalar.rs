@@ -7,8 +7,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 use simba::simd::SimdRealField;
 
-use crate::fused::{self, Fused};
-use crate::sin_cos;
+use crate::sin_cos::{FUSED, Lanes, sin_cos};
 
 /// A real number, or a bundle of them: `f32`, `f64`, simba's SIMD lanes, dual numbers, fixed point.
 ///
@@ -88,30 +87,35 @@ impl<T: SimdRealField + Copy> Scalar for T {
 
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        let double = same(self).and_then(|angle: f64| same(sin_cos::pair(angle)));
-        let single = || same(self).and_then(|angle: f32| same(sin_cos::pair(angle)));
-        double.or_else(single).unwrap_or_else(|| self.simd_sin_cos())
+        let ([sine], [cosine]) = Self::sin_cos_array([self]);
+        (sine, cosine)
     }
 
     #[inline]
     fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
-        let double = same(angles).and_then(|angles: [f64; N]| same(sin_cos::array(angles)));
-        let single = || same(angles).and_then(|angles: [f32; N]| same(sin_cos::array(angles)));
-        double.or_else(single).unwrap_or_else(|| {
-            let (mut sines, mut cosines) = (angles, angles);
+        let (mut sines, mut cosines) = (angles, angles);
+        let results: (&mut dyn Any, &mut dyn Any) = (&mut sines, &mut cosines);
+        if let Some(angles) = same::<_, [f64; N]>(angles)
+            && let (Some(sines), Some(cosines)) = (results.0.downcast_mut(), results.1.downcast_mut())
+        {
+            sin_cos(&angles, sines, cosines);
+        } else if let Some(angles) = same::<_, [f32; N]>(angles)
+            && let (Some(sines), Some(cosines)) = (results.0.downcast_mut(), results.1.downcast_mut())
+        {
+            sin_cos(&angles, sines, cosines);
+        } else {
             for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
                 (*sine, *cosine) = sine.simd_sin_cos();
             }
-            (sines, cosines)
-        })
+        }
+        (sines, cosines)
     }
 
     #[inline]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
-        const ONCE: bool = fused::AT_HAND;
-        let terms = [self, factor, addend];
-        let double = same(terms).and_then(|[a, b, c]: [f64; 3]| same(a.mul_add_if::<ONCE>(b, c)));
-        let single = || same(terms).and_then(|[a, b, c]: [f32; 3]| same(a.mul_add_if::<ONCE>(b, c)));
+        let terms = [addend, self, factor];
+        let double = same(terms).and_then(|[c, a, b]: [f64; 3]| same(c.plus_product::<FUSED>(a, b)));
+        let single = || same(terms).and_then(|[c, a, b]: [f32; 3]| same(c.plus_product::<FUSED>(a, b)));
         double.or_else(single).unwrap_or_else(|| self * factor + addend)
     }
 }

@@ -1,69 +1,75 @@
-//! The kernel for many angles at once.
-//!
-//! LLVM turns a loop over a fixed number of angles into SIMD instructions if that number fills its registers: six angles
-//! are computed as eight (AVX-512), as 4 + 4 (AVX) or as 2 + 2 + 2 (SSE2, NEON), the surplus being sines of zero.
+//! One number or a register of them: what the kernel computes with.
+
+use core::ops::{Add, Mul, Sub};
 
 use super::Float;
 
-/// Angles are computed in blocks of up to this many.
-const BLOCK: usize = 8;
+/// `f64`, `f32` and, with `std`, the SIMD registers of them.
+pub(crate) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    type Element: Float;
 
-/// Bytes of the widest register of floating-point numbers of the compiled target.
-pub(super) const REGISTER_BYTES: usize = if cfg!(target_feature = "avx512f") {
-    64
-} else if cfg!(target_feature = "avx") {
-    32
-} else if cfg!(any(target_feature = "sse2", target_feature = "neon", target_feature = "simd128")) {
-    16
-} else {
-    1
-};
+    /// The same number in every lane.
+    fn splat(element: Self::Element) -> Self;
 
-/// Sines and cosines of `angles`. `FMA` asks for fused multiply-add: for callers that have enabled it.
-#[inline(always)]
-pub(crate) fn sin_cos_lanes<T: Float, const FMA: bool, const N: usize>(angles: &[T; N]) -> ([T; N], [T; N]) {
-    #[cfg(feature = "std")]
-    if !angles.iter().fold(true, |all, angle| all & angle.is_within_limit()) {
-        return beyond_limit::<T, FMA, N>(angles);
-    }
-    let (mut sines, mut cosines) = ([T::ZERO; N], [T::ZERO; N]);
-    let mut start = 0;
-    while start < N {
-        let count = (N - start).min(BLOCK);
-        let mut padded = [T::ZERO; BLOCK];
-        padded[..count].copy_from_slice(&angles[start..start + count]);
-        let (block_sines, block_cosines) = block::<T, FMA>(&padded, width::<T>(count));
-        sines[start..start + count].copy_from_slice(&block_sines[..count]);
-        cosines[start..start + count].copy_from_slice(&block_cosines[..count]);
-        start += BLOCK;
-    }
-    (sines, cosines)
+    /// `self + a * b`, rounded once if `FMA` (and `std` is there), else twice.
+    fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+
+    /// `self - a * b`, rounded once if `FMA` (and `std` is there), else twice.
+    fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+
+    /// Sine and cosine of x from those of x - n π/2; n modulo 4 stands in the two lowest bits of `rounded`.
+    ///
+    /// | n mod 4 | sine of x | cosine of x |
+    /// |---|---|---|
+    /// | 0 | sine | cosine |
+    /// | 1 | cosine | -sine |
+    /// | 2 | -sine | -cosine |
+    /// | 3 | -cosine | sine |
+    ///
+    /// The lowest bit of n exchanges the two; the second lowest negates the sine of x, that of n + 1 its cosine. Bit
+    /// operations, not branches, for neighbouring angles lie in different quadrants.
+    fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self);
 }
 
-/// Sines and cosines of the first `width` angles.
-#[inline(always)]
-fn block<T: Float, const FMA: bool>(angles: &[T; BLOCK], width: usize) -> ([T; BLOCK], [T; BLOCK]) {
-    let (mut sines, mut cosines) = ([T::ZERO; BLOCK], [T::ZERO; BLOCK]);
-    for lane in 0..width {
-        (sines[lane], cosines[lane]) = angles[lane].reduced_sin_cos::<FMA>();
-    }
-    (sines, cosines)
-}
+macro_rules! number {
+    ($type:ident, sign: $SIGN:literal) => {
+        impl Lanes for $type {
+            type Element = $type;
 
-/// `count`, at most a block, filled up to whole registers; one angle stays alone.
-#[inline(always)]
-fn width<T: Float>(count: usize) -> usize {
-    if count == 1 { 1 } else { count.next_multiple_of(T::REGISTER).min(BLOCK) }
-}
+            #[inline(always)]
+            fn splat(element: $type) -> Self {
+                element
+            }
 
-/// The same when some angle is beyond the limit, infinite or NaN: `std` for those, the kernel for the others.
-#[cfg(feature = "std")]
-#[cold]
-#[inline(never)]
-fn beyond_limit<T: Float, const FMA: bool, const N: usize>(angles: &[T; N]) -> ([T; N], [T; N]) {
-    let (mut sines, mut cosines) = ([T::ZERO; N], [T::ZERO; N]);
-    for ((angle, sine), cosine) in angles.iter().zip(&mut sines).zip(&mut cosines) {
-        (*sine, *cosine) = if angle.is_within_limit() { angle.reduced_sin_cos::<FMA>() } else { angle.std_sin_cos() };
-    }
-    (sines, cosines)
+            #[inline(always)]
+            fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+                #[cfg(feature = "std")]
+                if FMA {
+                    return a.mul_add(b, self);
+                }
+                self + a * b
+            }
+
+            #[inline(always)]
+            fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+                #[cfg(feature = "std")]
+                if FMA {
+                    return (-a).mul_add(b, self);
+                }
+                self - a * b
+            }
+
+            #[inline(always)]
+            fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self) {
+                let (n, sine, cosine) = (rounded.to_bits(), sine.to_bits(), cosine.to_bits());
+                let exchange = (sine ^ cosine) & (n & 1).wrapping_neg();
+                (
+                    Self::from_bits(sine ^ exchange ^ ((n & 2) << ($SIGN - 1))),
+                    Self::from_bits(cosine ^ exchange ^ ((n.wrapping_add(1) & 2) << ($SIGN - 1))),
+                )
+            }
+        }
+    };
 }
+number!(f64, sign: 63);
+number!(f32, sign: 31);

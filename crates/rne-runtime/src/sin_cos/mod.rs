@@ -1,4 +1,4 @@
-//! Sine and cosine of `f64` and `f32` without a branch, so that a loop over several angles becomes SIMD instructions.
+//! Sine and cosine of `f64` and `f32` without a branch, for one angle or, in SIMD registers, for several at once.
 //!
 //! # Promise
 //!
@@ -7,9 +7,9 @@
 //! | `f64` | abs(x) ≤ 10⁵ | < 1 ulp | `f64` |
 //! | `f32` | abs(x) ≤ 10⁵ | < 1 ulp | `f32` alone, for hardware without `f64` |
 //!
-//! An angle has the same bits alone and in an array of any length, and, when compiled for targets without fused
-//! multiply-add, the same bits on all of them. The sine is odd and the cosine even to the last bit: sin(-0) = -0. NaN and
-//! infinities give NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
+//! An angle has the same bits alone and in an array of any length, and the same bits on all targets that are compiled
+//! without fused multiply-add. The sine is odd and the cosine even, to the last bit: sin(-0) = -0. NaN and infinities give
+//! NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
 //!
 //! ```text
 //! cargo run --release -p rne-runtime --example sin_cos_accuracy    # every f32 of the range, 10⁸ f64
@@ -19,32 +19,46 @@
 //! # Method
 //!
 //! 1. [`reduction`]: x = n π/2 + y - e with n the nearest integer to x 2/π, y rounded and e its small excess.
-//! 2. [`polynomial`]: sin(y - e) and cos(y - e) for abs(y) ≤ π/4 (a little more when x 2/π is rounded across a half).
-//! 3. [`quadrant`]: n mod 4 exchanges and negates the two.
-//! 4. [`lanes`]: the three for many angles, and the one test of their range.
+//! 2. [`polynomial`]: sin(y - e) and cos(y - e) for abs(y) ≤ π/4 (a little more where x 2/π is rounded across a half).
+//! 3. [`lanes`]: n mod 4 exchanges and negates the two. All is written once, for a number or a register of numbers.
+//! 4. [`array`]: the three for many angles, and the one test of their range.
 #![allow(clippy::inline_always)] // the kernel must be compiled with the target features of its caller
 
+mod array;
 mod lanes;
 mod polynomial;
-mod quadrant;
 mod reduction;
+#[cfg(feature = "std")]
+mod registers;
 
-pub(crate) use lanes::sin_cos_lanes;
+pub(crate) use array::sin_cos;
+pub(crate) use lanes::Lanes;
 
-use crate::fused::{AT_HAND, Fused};
+use reduction::Reduced;
 
-/// `f32` and `f64`: what the steps above need of them.
-pub(crate) trait Float: Copy + Fused + 'static {
-    const ZERO: Self;
-    /// Angles up to this are reduced exactly enough.
+/// Whether the target this is compiled for multiplies and adds in one instruction, and `std` is there to ask for it: `core`
+/// has no such operation yet.
+pub(crate) const FUSED: bool = cfg!(all(
+    feature = "std",
+    any(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"), target_arch = "aarch64")
+));
+
+/// `f32` and `f64`: constants and the step that differs.
+pub(crate) trait Float: Lanes<Element = Self> + 'static {
     #[cfg(feature = "std")]
-    const LIMIT: Self;
-    /// Numbers in a register of the compiled target.
-    const REGISTER: usize;
+    const ZERO: Self;
+    const HALF: Self;
+    const ONE: Self;
+    const P: &'static [Self];
+    const Q: &'static [Self];
+    /// The widest SIMD register of the compiled target.
+    #[cfg(feature = "std")]
+    type Register: registers::Register<Element = Self>;
 
-    /// The kernel: no branch, and correct up to [`LIMIT`](Self::LIMIT).
-    fn reduced_sin_cos<const FMA: bool>(self) -> (Self, Self);
-    /// Whether the kernel is correct; false for NaN.
+    /// The first of the three steps.
+    fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V>;
+
+    /// Whether the kernel is correct for this angle; false for NaN.
     #[cfg(feature = "std")]
     fn is_within_limit(self) -> bool;
     /// Correct everywhere.
@@ -52,25 +66,36 @@ pub(crate) trait Float: Copy + Fused + 'static {
     fn std_sin_cos(self) -> (Self, Self);
 }
 
+/// Angles up to this, in rad, are reduced exactly enough.
+#[cfg(feature = "std")]
+const LIMIT: f32 = 1e5;
+
 macro_rules! float {
-    ($type:ident, register: $register:expr) => {
+    ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx512:ident, $avx:ident, $other:ident]) => {
         impl Float for $type {
-            const ZERO: Self = 0.0;
             #[cfg(feature = "std")]
-            const LIMIT: Self = 1e5;
-            const REGISTER: usize = $register;
+            const ZERO: Self = 0.0;
+            const HALF: Self = 0.5;
+            const ONE: Self = 1.0;
+            const P: &'static [Self] = &polynomial::$P;
+            const Q: &'static [Self] = &polynomial::$Q;
+
+            #[cfg(all(feature = "std", target_feature = "avx512f"))]
+            type Register = wide::$avx512;
+            #[cfg(all(feature = "std", target_feature = "avx", not(target_feature = "avx512f")))]
+            type Register = wide::$avx;
+            #[cfg(all(feature = "std", not(target_feature = "avx")))]
+            type Register = wide::$other;
 
             #[inline(always)]
-            fn reduced_sin_cos<const FMA: bool>(self) -> (Self, Self) {
-                let angle = reduction::$type::<FMA>(self);
-                let (sine, cosine) = polynomial::$type::<FMA>(angle.head, angle.excess);
-                quadrant::$type(angle.quadrant, sine, cosine)
+            fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V> {
+                reduction::$reduction::<V, FMA>(angle)
             }
 
             #[cfg(feature = "std")]
             #[inline(always)]
             fn is_within_limit(self) -> bool {
-                self.abs() <= Self::LIMIT
+                self.abs() <= LIMIT.into()
             }
 
             #[cfg(feature = "std")]
@@ -80,18 +105,13 @@ macro_rules! float {
         }
     };
 }
-float!(f64, register: lanes::REGISTER_BYTES.div_ceil(8));
-float!(f32, register: lanes::REGISTER_BYTES.div_ceil(4));
+float!(f64, double, P_F64, Q_F64, [f64x8, f64x4, f64x2]);
+float!(f32, single, P_F32, Q_F32, [f32x8, f32x8, f32x4]);
 
-/// Sine and cosine of one angle.
-#[inline]
-pub(crate) fn pair<T: Float>(angle: T) -> (T, T) {
-    let ([sine], [cosine]) = array([angle]);
-    (sine, cosine)
-}
-
-/// Sines and cosines of several angles, with fused multiply-add if the compiled target has it.
-#[inline]
-pub(crate) fn array<T: Float, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
-    sin_cos_lanes::<T, AT_HAND, N>(&angles)
+/// Sine and cosine, correct up to the limit: no branch.
+#[inline(always)]
+fn kernel<V: Lanes, const FMA: bool>(angle: V) -> (V, V) {
+    let Reduced { rounded, head, excess } = V::Element::reduced::<V, FMA>(angle);
+    let (sine, cosine) = polynomial::sine_and_cosine::<V, FMA>(head, excess);
+    V::in_quadrant(rounded, sine, cosine)
 }

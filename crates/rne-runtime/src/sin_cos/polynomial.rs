@@ -8,56 +8,49 @@
 //! The last addition alone costs half a unit in the last place; all that is added there is so small that its own errors are
 //! a fraction of that.
 
-use crate::fused::Fused;
+use super::{Float, Lanes};
 
-macro_rules! sine_and_cosine {
-    ($(#[$source:meta])* $type:ident, $P:expr, $Q:expr) => {
-        $(#[$source])*
-        #[inline(always)]
-        pub(super) fn $type<const FMA: bool>(y: $type, e: $type) -> ($type, $type) {
-            let horner = |coefficients: &[$type]| {
-                let z = y * y;
-                coefficients.iter().rev().copied().reduce(|sum, c| sum.mul_add_if::<FMA>(z, c)).unwrap_or_default()
-            };
-            let z = y * y;
-            let half = 0.5 * z;
-            let w = 1.0 - half;
+/// P and Q of fdlibm (`k_sin.c`, `k_cos.c`).
+pub(super) const P_F64: [f64; 6] = [
+    -1.666_666_666_666_663_2e-1,
+    8.333_333_333_322_49e-3,
+    -1.984_126_982_985_795e-4,
+    2.755_731_370_707_006_8e-6,
+    -2.505_076_025_340_686_3e-8,
+    1.589_690_995_211_55e-10,
+];
+pub(super) const Q_F64: [f64; 6] = [
+    4.166_666_666_666_66e-2,
+    -1.388_888_888_887_411e-3,
+    2.480_158_728_947_673e-5,
+    -2.755_731_435_139_066_3e-7,
+    2.087_572_321_298_175e-9,
+    -1.135_964_755_778_819_5e-11,
+];
 
-            let cube = z * y;
-            // In this order and with these signs a negative zero stays one.
-            let sine = y - (-cube).mul_add_if::<FMA>(horner(&$P), e * w);
+/// P and Q of S. L. Moshier's Cephes library (`sinf.c`).
+pub(super) const P_F32: [f32; 3] = [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4];
+pub(super) const Q_F32: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5];
 
-            let correction = (z * z).mul_add_if::<FMA>(horner(&$Q), y * e);
-            let cosine = w + (((1.0 - w) - half) + correction);
-            (sine, cosine)
-        }
-    };
+/// Sine and cosine of `y - e`.
+#[inline(always)]
+pub(super) fn sine_and_cosine<V: Lanes, const FMA: bool>(y: V, e: V) -> (V, V) {
+    let one = V::splat(V::Element::ONE);
+    let z = y * y;
+    let half = V::splat(V::Element::HALF) * z;
+    let w = one - half;
+
+    // In this order and with these signs the sine of a negative zero is one.
+    let sine = y - (e * w).minus_product::<FMA>(z * y, horner::<V, FMA>(V::Element::P, z));
+
+    let correction = (y * e).plus_product::<FMA>(z * z, horner::<V, FMA>(V::Element::Q, z));
+    let cosine = w + (((one - w) - half) + correction);
+    (sine, cosine)
 }
 
-sine_and_cosine!(
-    /// P and Q are those of fdlibm (`k_sin.c`, `k_cos.c`), errors 2⁻⁵⁸: (sine, cosine).
-    f64,
-    [
-        -1.666_666_666_666_663_2e-1,
-        8.333_333_333_322_49e-3,
-        -1.984_126_982_985_795e-4,
-        2.755_731_370_707_006_8e-6,
-        -2.505_076_025_340_686_3e-8,
-        1.589_690_995_211_55e-10,
-    ],
-    [
-        4.166_666_666_666_66e-2,
-        -1.388_888_888_887_411e-3,
-        2.480_158_728_947_673e-5,
-        -2.755_731_435_139_066_3e-7,
-        2.087_572_321_298_175e-9,
-        -1.135_964_755_778_819_5e-11,
-    ]
-);
-
-sine_and_cosine!(
-    /// P and Q are those of S. L. Moshier's Cephes (`sinf.c`), errors 2⁻²⁸: (sine, cosine).
-    f32,
-    [-1.666_665_5e-1, 8.332_161e-3, -1.951_529_6e-4],
-    [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7e-5]
-);
+/// c_0 + z (c_1 + z (c_2 + ...)).
+#[inline(always)]
+fn horner<V: Lanes, const FMA: bool>(coefficients: &'static [V::Element], z: V) -> V {
+    let [lower @ .., highest] = coefficients else { return z };
+    lower.iter().rev().fold(V::splat(*highest), |sum, &c| V::splat(c).plus_product::<FMA>(z, sum))
+}
