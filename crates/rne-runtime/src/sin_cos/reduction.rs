@@ -39,14 +39,14 @@ pub(super) fn double<V: Lanes<Element = f64>, const FMA: bool>(x: V) -> Reduced<
 
 /// For abs(x) ≤ 10⁵, where abs(n) < 2¹⁶ and no `f32` is nearer to a multiple of π/2 than 4 · 10⁻⁹.
 ///
-/// Five parts of at most 8 bits, each the nearest to what the former ones leave, and one of 24 bits: π/2 to 2⁻⁷².
+/// Five parts of at most 8 bits and one of 24: π/2 to 2⁻⁷³. None is negative, else a negative zero would not stay one.
 #[inline(always)]
 pub(super) fn single<V: Lanes<Element = f32>, const FMA: bool>(x: V) -> Reduced<V> {
     // 1.5 · 2²³, as above.
     const ROUNDER: f32 = 12_582_912.0;
     const PART_1: f32 = 1.570_312_5;
-    const PART_2: f32 = 4.844_665_5e-4;
-    const PART_3: f32 = -6.407_499_3e-7;
+    const PART_2: f32 = 4.825_592e-4;
+    const PART_3: f32 = 1.266_598_7e-6;
     const PART_4: f32 = 9.895_302e-10;
     const PART_5: f32 = 2.557_953_8e-12;
     const PART_6: f32 = 5.390_303e-15;
