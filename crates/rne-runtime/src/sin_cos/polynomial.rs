@@ -37,20 +37,29 @@ pub(super) const Q_F32: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7
 pub(super) fn sine_and_cosine<V: Lanes, const FMA: bool>(y: V, e: V) -> (V, V) {
     let one = V::splat(V::Element::ONE);
     let z = y * y;
+    let square = z * z;
     let half = V::splat(V::Element::HALF) * z;
     let w = one - half;
 
     // In this order and with these signs the sine of a negative zero is one.
-    let sine = y - (e * w).minus_product::<FMA>(z * y, horner::<V, FMA>(V::Element::P, z));
+    let sine = y - (e * w).minus_product::<FMA>(z * y, polynomial::<V, FMA>(V::Element::P, z, square));
 
-    let correction = (y * e).plus_product::<FMA>(z * z, horner::<V, FMA>(V::Element::Q, z));
+    let correction = (y * e).plus_product::<FMA>(square, polynomial::<V, FMA>(V::Element::Q, z, square));
     let cosine = w + (((one - w) - half) + correction);
     (sine, cosine)
 }
 
-/// c_0 + z (c_1 + z (c_2 + ...)).
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations, and c_0, by
+/// far the largest term, last, for its rounding is felt.
 #[inline(always)]
-fn horner<V: Lanes, const FMA: bool>(coefficients: &'static [V::Element], z: V) -> V {
-    let [lower @ .., highest] = coefficients else { return z };
-    lower.iter().rev().fold(V::splat(*highest), |sum, &c| V::splat(c).plus_product::<FMA>(z, sum))
+fn polynomial<V: Lanes, const FMA: bool>(coefficients: &'static [V::Element], z: V, square: V) -> V {
+    let [first, second, others @ ..] = coefficients else { return z };
+    let pair = |pair: &[V::Element]| match *pair {
+        [even, odd] => V::splat(even).plus_product::<FMA>(z, V::splat(odd)),
+        [even, ..] => V::splat(even),
+        [] => z,
+    };
+    let rest = others.chunks(2).rev().map(pair).reduce(|sum, pair| pair.plus_product::<FMA>(square, sum));
+    let linear = V::splat(*second) * z;
+    V::splat(*first) + rest.map_or(linear, |rest| linear.plus_product::<FMA>(square, rest))
 }
