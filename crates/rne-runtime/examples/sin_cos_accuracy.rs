@@ -18,13 +18,14 @@ use rne_runtime::Scalar;
 
 /// Promised for angles up to here, in rad, in units in the last place.
 const LIMIT: f32 = 1e5;
+/// Multiples of π/4 up to there, but the last.
+const MULTIPLES: u32 = 127_322;
 const PROMISE_F64: f64 = 1.0;
 const PROMISE_F32: f64 = 1.0;
 
 const RANDOM_ANGLES: u32 = 100_000_000;
 const THREADS: u32 = 2;
-/// Angles per call; per step between lines of progress.
-const LANES: u32 = 8;
+/// Angles between two reports of progress.
 const STEP: u32 = 1 << 20;
 
 /// The largest error so far and its angle.
@@ -35,9 +36,10 @@ struct Worst<T> {
 }
 
 impl<T: Copy> Worst<T> {
+    /// An error that is no number is infinite.
     fn meets(&mut self, ulp: f64, angle: T) {
-        // Also NaN.
-        if !(ulp <= self.ulp) {
+        let ulp = if ulp.is_nan() { f64::INFINITY } else { ulp };
+        if ulp > self.ulp {
             *self = Self { ulp, angle };
         }
     }
@@ -81,13 +83,13 @@ fn sweep<T: Copy + Debug + Default + Send>(
 
 /// All of both signs: those of negative angles must be the same but for the sign.
 fn every_single(range: Range<u32>, worst: &mut [Worst<f32>; 2]) {
-    for first in range.step_by(LANES as usize) {
-        let angles: [f32; LANES as usize] = std::array::from_fn(|lane| f32::from_bits(first + lane as u32));
+    for first in range.step_by(8) {
+        let angles = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| f32::from_bits(first + lane));
         let (sines, cosines) = Scalar::sin_cos_array(angles);
         let opposite = Scalar::sin_cos_array(angles.map(|angle| -angle));
         let mirrored = (opposite.0.map(|sine| (-sine).to_bits()), opposite.1.map(f32::to_bits));
         if mirrored != (sines.map(f32::to_bits), cosines.map(f32::to_bits)) {
-            worst[0].meets(f64::NAN, angles[0]);
+            worst[0].meets(f64::INFINITY, angles[0]);
         }
         for ((angle, sine), cosine) in angles.into_iter().zip(sines).zip(cosines) {
             let exact = f64::from(angle).sin_cos();
@@ -97,7 +99,7 @@ fn every_single(range: Range<u32>, worst: &mut [Worst<f32>; 2]) {
     }
 }
 
-fn double(angles: [f64; LANES as usize], worst: &mut [Worst<f64>; 2]) {
+fn double(angles: [f64; 8], worst: &mut [Worst<f64>; 2]) {
     let (sines, cosines) = Scalar::sin_cos_array(angles);
     for ((angle, sine), cosine) in angles.into_iter().zip(sines).zip(cosines) {
         let exact = reference::sin_cos(angle);
@@ -109,13 +111,13 @@ fn double(angles: [f64; LANES as usize], worst: &mut [Worst<f64>; 2]) {
 /// Half of them up to the limit, half of them up to two turns.
 fn random_double(range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
     let mut numbers = fastrand::Rng::with_seed(range.start.into());
-    for first in range.step_by(LANES as usize) {
-        let limit = if first / LANES % 2 == 0 { f64::from(LIMIT) } else { 4.0 * std::f64::consts::PI };
+    for first in range.step_by(8) {
+        let limit = if (first / 8).is_multiple_of(2) { f64::from(LIMIT) } else { 4.0 * std::f64::consts::PI };
         double(std::array::from_fn(|_| (2.0 * numbers.f64() - 1.0) * limit), worst);
     }
 }
 
-/// The nearest numbers to n π/4 and three to either side.
+/// The nearest numbers to n π/4, from the fourth below to the third above.
 fn near_multiples(range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
     for n in range {
         let nearest = (f64::from(n + 1) * FRAC_PI_4).to_bits() - 4;
@@ -124,11 +126,10 @@ fn near_multiples(range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
 }
 
 fn main() -> ExitCode {
-    let multiples = (f64::from(LIMIT) / FRAC_PI_4) as u32 - 1;
     let kept = [
         sweep("every f32 up to 1e5", LIMIT.to_bits() + 1, PROMISE_F32, every_single),
         sweep("1e8 random f64     ", RANDOM_ANGLES, PROMISE_F64, random_double),
-        sweep("f64 near n pi/4    ", multiples, PROMISE_F64, near_multiples),
+        sweep("f64 near n pi/4    ", MULTIPLES, PROMISE_F64, near_multiples),
     ];
     if kept == [true; 3] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

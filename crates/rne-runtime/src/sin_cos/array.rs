@@ -73,3 +73,39 @@ fn beyond_limit<T: Float, const FMA: bool, const N: usize>(angles: [T; N]) -> ([
     let pairs = angles.map(|angle| if angle.is_within_limit() { kernel::<T, FMA>(angle) } else { angle.std_sin_cos() });
     (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
 }
+
+#[cfg(all(test, feature = "std"))]
+mod tests {
+    use super::sin_cos_lanes;
+
+    /// Eight angles at a time, and their sines and cosines one by one.
+    fn eights<const FMA: bool>() -> impl Iterator<Item = ([f64; 8], [f64; 8], [f64; 8])> {
+        (-100..100).map(|start| {
+            let start = f64::from(start);
+            let angles = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0].map(|lane| start * 0.37 + start * start * lane);
+            let (mut sines, mut cosines) = ([0.0; 8], [0.0; 8]);
+            sin_cos_lanes::<f64, FMA, 8>(&angles, &mut sines, &mut cosines);
+            (angles, sines, cosines)
+        })
+    }
+
+    #[test]
+    fn an_angle_has_the_same_bits_in_an_array_and_in_registers() {
+        for (angles, sines, cosines) in eights::<{ super::FUSED }>() {
+            let (mut in_registers, mut cosines_in_registers) = ([0.0; 8], [0.0; 8]);
+            super::sin_cos(&angles, &mut in_registers, &mut cosines_in_registers);
+            assert_eq!((sines, cosines), (in_registers, cosines_in_registers));
+        }
+    }
+
+    #[test]
+    fn fused_or_not_the_results_are_one_ulp_from_those_of_std() {
+        for ((angles, fused, _), (_, unfused, _)) in eights::<true>().zip(eights::<false>()) {
+            for ((angle, fused), unfused) in angles.into_iter().zip(fused).zip(unfused) {
+                let ulp = angle.sin().abs() * f64::EPSILON;
+                assert!((fused - angle.sin()).abs() <= 1.5 * ulp, "{angle}");
+                assert!((unfused - angle.sin()).abs() <= 1.5 * ulp, "{angle}");
+            }
+        }
+    }
+}
