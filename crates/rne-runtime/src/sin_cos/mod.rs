@@ -21,7 +21,7 @@
 //! 1. [`reduction`]: x = n π/2 + y - e with n the nearest integer to x 2/π, y rounded and e its small excess.
 //! 2. [`polynomial`]: sin(y - e) and cos(y - e) for abs(y) ≤ π/4 (a little more where x 2/π is rounded across a half).
 //! 3. [`lanes`]: n mod 4 exchanges and negates the two. All is written once, for a number or a register of numbers.
-//! 4. [`array`]: the three for many angles, and the one test of their range.
+//! 4. [`array`](mod@array): the three for many angles, and the one test of their range.
 #![allow(clippy::inline_always)] // the kernel must be compiled with the target features of its caller
 
 mod array;
