@@ -17,6 +17,7 @@ mod load;
 mod operations;
 mod scalar;
 mod seven_steps;
+mod sin_cos;
 mod trace;
 mod wrench;
 

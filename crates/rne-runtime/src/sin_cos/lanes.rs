@@ -1,0 +1,75 @@
+//! One number or a register of them: what the kernel computes with.
+
+use core::ops::{Add, Mul, Sub};
+
+use super::Float;
+
+/// `f64`, `f32` and, with `std`, the SIMD registers of them.
+pub(crate) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+    type Element: Float;
+
+    /// The same number in every lane.
+    fn splat(element: Self::Element) -> Self;
+
+    /// `self + a * b`, rounded once if `FMA` (and `std` is there), else twice.
+    fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+
+    /// `self - a * b`, rounded once if `FMA` (and `std` is there), else twice.
+    fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+
+    /// Sine and cosine of x from those of x - n π/2; n modulo 4 stands in the two lowest bits of `rounded`.
+    ///
+    /// | n mod 4 | sine of x | cosine of x |
+    /// |---|---|---|
+    /// | 0 | sine | cosine |
+    /// | 1 | cosine | -sine |
+    /// | 2 | -sine | -cosine |
+    /// | 3 | -cosine | sine |
+    ///
+    /// The lowest bit of n exchanges the two; the second lowest negates the sine of x, that of n + 1 its cosine. Bit
+    /// operations, not branches, for neighbouring angles lie in different quadrants.
+    fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self);
+}
+
+macro_rules! number {
+    ($type:ident, sign: $SIGN:literal) => {
+        impl Lanes for $type {
+            type Element = $type;
+
+            #[inline(always)]
+            fn splat(element: $type) -> Self {
+                element
+            }
+
+            #[inline(always)]
+            fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+                #[cfg(feature = "std")]
+                if FMA {
+                    return a.mul_add(b, self);
+                }
+                self + a * b
+            }
+
+            #[inline(always)]
+            fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+                #[cfg(feature = "std")]
+                if FMA {
+                    return (-a).mul_add(b, self);
+                }
+                self - a * b
+            }
+
+            #[inline(always)]
+            fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self) {
+                let (n, sine, cosine) = (rounded.to_bits(), sine.to_bits(), cosine.to_bits());
+                let exchange = (sine ^ cosine) & (n & 1).wrapping_neg();
+                (
+                    Self::from_bits(sine ^ exchange ^ ((n & 2) << ($SIGN - 1))),
+                    Self::from_bits(cosine ^ exchange ^ ((n.wrapping_add(1) & 2) << ($SIGN - 1))),
+                )
+            }
+        }
+    };
+}
+number!(f64, sign: 63);
+number!(f32, sign: 31);

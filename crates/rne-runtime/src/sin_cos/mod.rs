@@ -1,0 +1,117 @@
+//! Sine and cosine of `f64` and `f32` without a branch, for one angle or, in SIMD registers, for several at once.
+//!
+//! # Promise
+//!
+//! | | range, rad | error, each of sine and cosine | arithmetic |
+//! |---|---|---|---|
+//! | `f64` | abs(x) ≤ 10⁵ | < 1 ulp | `f64` |
+//! | `f32` | abs(x) ≤ 10⁵ | < 1 ulp | `f32` alone, for hardware without `f64` |
+//!
+//! An angle has the same bits alone and in an array of any length, and the same bits on all targets that are compiled
+//! without fused multiply-add. The sine is odd and the cosine even, to the last bit: sin(-0) = -0. NaN and infinities give
+//! NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
+//!
+//! ```text
+//! cargo run --release -p rne-runtime --example sin_cos_accuracy    # every f32 of the range, 10⁸ f64
+//! cargo run --release -p rne-runtime --example sin_cos_speed
+//! ```
+//!
+//! # Method
+//!
+//! 1. [`reduction`]: x = n π/2 + y - e with n the nearest integer to x 2/π, y rounded and e its small excess.
+//! 2. [`polynomial`]: sin(y - e) and cos(y - e) for abs(y) ≤ π/4 (a little more where x 2/π is rounded across a half).
+//! 3. [`lanes`]: n mod 4 exchanges and negates the two. All is written once, for a number or a register of numbers.
+//! 4. [`array`](mod@array): the three for many angles, and the one test of their range.
+#![allow(clippy::inline_always)] // the kernel must be compiled with the target features of its caller
+
+mod array;
+mod lanes;
+mod polynomial;
+mod reduction;
+#[cfg(feature = "std")]
+mod registers;
+
+pub(crate) use array::sin_cos;
+pub(crate) use lanes::Lanes;
+
+use reduction::Reduced;
+
+/// Whether the target this is compiled for multiplies and adds in one instruction, and `std` is there to ask for it: `core`
+/// has no such operation yet.
+pub(crate) const FUSED: bool = cfg!(all(
+    feature = "std",
+    any(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"), target_arch = "aarch64")
+));
+
+/// `f32` and `f64`: constants and the step that differs.
+pub(crate) trait Float: Lanes<Element = Self> + 'static {
+    #[cfg(feature = "std")]
+    const ZERO: Self;
+    const HALF: Self;
+    const ONE: Self;
+    const P: &'static [Self];
+    const Q: &'static [Self];
+    /// The widest SIMD register of the compiled target.
+    #[cfg(feature = "std")]
+    type Register: registers::Register<Element = Self>;
+
+    /// The first of the three steps.
+    fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V>;
+
+    /// Whether the kernel is correct for this angle; false for NaN.
+    #[cfg(feature = "std")]
+    fn is_within_limit(self) -> bool;
+    /// Correct everywhere.
+    #[cfg(feature = "std")]
+    fn std_sin_cos(self) -> (Self, Self);
+}
+
+/// Angles up to this, in rad, are reduced exactly enough.
+#[cfg(feature = "std")]
+const LIMIT: f32 = 1e5;
+
+macro_rules! float {
+    ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx512:ident, $avx:ident, $other:ident]) => {
+        impl Float for $type {
+            #[cfg(feature = "std")]
+            const ZERO: Self = 0.0;
+            const HALF: Self = 0.5;
+            const ONE: Self = 1.0;
+            const P: &'static [Self] = &polynomial::$P;
+            const Q: &'static [Self] = &polynomial::$Q;
+
+            #[cfg(all(feature = "std", target_feature = "avx512f"))]
+            type Register = wide::$avx512;
+            #[cfg(all(feature = "std", target_feature = "avx", not(target_feature = "avx512f")))]
+            type Register = wide::$avx;
+            #[cfg(all(feature = "std", not(target_feature = "avx")))]
+            type Register = wide::$other;
+
+            #[inline(always)]
+            fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V> {
+                reduction::$reduction::<V, FMA>(angle)
+            }
+
+            #[cfg(feature = "std")]
+            #[inline(always)]
+            fn is_within_limit(self) -> bool {
+                self.abs() <= LIMIT.into()
+            }
+
+            #[cfg(feature = "std")]
+            fn std_sin_cos(self) -> (Self, Self) {
+                self.sin_cos()
+            }
+        }
+    };
+}
+float!(f64, double, P_F64, Q_F64, [f64x8, f64x4, f64x2]);
+float!(f32, single, P_F32, Q_F32, [f32x8, f32x8, f32x4]);
+
+/// Sine and cosine, correct up to the limit: no branch.
+#[inline(always)]
+fn kernel<V: Lanes, const FMA: bool>(angle: V) -> (V, V) {
+    let Reduced { rounded, head, excess } = V::Element::reduced::<V, FMA>(angle);
+    let (sine, cosine) = polynomial::sine_and_cosine::<V, FMA>(head, excess);
+    V::in_quadrant(rounded, sine, cosine)
+}
