@@ -149,6 +149,7 @@ pub fn search(
     let share = if wanted.rewrite { 0.45 } else { 1.0 };
     let _ = plans(&mut search, wanted.seed, share, clock);
     let plan = search.best.1.clone();
+    let plan = search.tidied(&plan);
     let mut best: Option<(Cost, Rewritten)> = None;
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
         let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
@@ -157,7 +158,7 @@ pub fn search(
         }
     }
     if wanted.rewrite {
-        rewritten(robot, &search, &mut best, share, wanted.seed, clock)?;
+        rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
     }
     let reduced_cost = search.best.0;
     let file = PlanFile {
@@ -205,7 +206,7 @@ fn plans(search: &mut Search, seed: u64, share: f64, clock: Clock<'_>) -> Result
 /// Rewrites the graphs of the best plans: half of the time all of them, half the four that came out best.
 fn rewritten(
     robot: &Robot,
-    search: &Search,
+    search: &mut Search,
     best: &mut Option<(Cost, Rewritten)>,
     from: f64,
     seed: u64,
@@ -214,6 +215,8 @@ fn rewritten(
     let mut candidates: Vec<Plan> = vec![search.best.1.clone()];
     candidates.extend(search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != search.best.1));
     candidates.truncate(16);
+    let mut candidates: Vec<Plan> = candidates.iter().map(|plan| search.tidied(plan)).collect();
+    candidates.dedup();
     // (cost, plan, graph, numbers given, frame)
     let mut graphs: Vec<(Cost, Plan, Dag, usize, Frame)> = Vec::new();
     if let Some((cost, known)) = best {

@@ -50,6 +50,10 @@ pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<Frame> {
 }
 
 impl Frame {
+    pub(crate) fn is_of(&self, plan: &Plan) -> bool {
+        self.frames == plan.frames()
+    }
+
     pub(crate) fn turns_last(&self) -> bool {
         self.frames.turned_last
     }
@@ -88,7 +92,7 @@ impl Evaluator {
 
     /// What a plan costs; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
-        let frame = self.frames.iter().find(|frame| frame.frames == plan.frames())?;
+        let frame = self.frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
         self.writer.restart(frame.table.reading);
         let outputs = write(&self.writer, frame, plan, &parameters);

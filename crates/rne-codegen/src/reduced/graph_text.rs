@@ -1,7 +1,7 @@
 //! A rewritten graph as text: one operation per line, in order.
 //!
 //! ```text
-//! d1 = k4 / k7          a constant made from others; k7 is the eighth number of the reduced form under its plan
+//! d1 = k4 / k7          a constant made from others, without its sign; k7 is a number of the reduced form under its plan
 //! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
 //! t13 = d1 * qd3
 //! tau2 = -t13
@@ -127,6 +127,8 @@ pub(crate) fn read(text: &str, frame: &Frame, numbers: &Numbers) -> Result<Dag, 
         };
         let (name, value) = (name.trim(), value.trim());
         let term = reader.operation(value).map_err(|message| (at, message))?;
+        // a constant is kept without its sign
+        let term = if name.starts_with('d') { term.magnitude() } else { term };
         if let Some(joint) = name.strip_prefix("tau").and_then(|joint| joint.parse::<usize>().ok()) {
             let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
             *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term);

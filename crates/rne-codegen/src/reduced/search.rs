@@ -6,7 +6,7 @@ use rne_model::Robot;
 
 use super::evaluator::Evaluator;
 use super::moves::Moves;
-use super::plan::{Moment, Plan, Scale, Side, Slide};
+use super::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches};
 use super::sheet::Cost;
 use super::trick::Trick;
 use crate::function::Function;
@@ -115,7 +115,7 @@ impl Search {
     fn greedy_candidate(&self, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
         let dof = plan.joints.len();
         let mut other = plan.clone();
-        let all = |other: &mut Plan, change: &dyn Fn(&mut super::plan::JointPlan)| {
+        let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
             other.joints.iter_mut().for_each(change);
         };
         const GLOBAL: usize = 12;
@@ -259,6 +259,49 @@ impl Search {
         Ok(())
     }
 
+    /// The plan without the choices that gain nothing, so that the others can be read.
+    pub(crate) fn tidied(&mut self, plan: &Plan) -> Plan {
+        let Some(weight) = self.cost(plan).map(|cost| cost.weight()) else { return plan.clone() };
+        let mut tidy = plan.clone();
+        let mut keep = |search: &mut Self, tidy: &mut Plan, other: Plan| {
+            if other != *tidy && search.cost(&other).is_some_and(|cost| cost.weight() <= weight) {
+                *tidy = other;
+            }
+        };
+        for trick in Trick::ALL {
+            let other = trick.left_out_of(&tidy);
+            keep(self, &mut tidy, other);
+        }
+        let plain = JointPlan::default();
+        for index in 0..tidy.joints.len() {
+            let changes: [fn(&mut JointPlan, &JointPlan); 5] = [
+                |joint, plain| joint.gauge = plain.gauge,
+                |joint, plain| joint.slide = plain.slide,
+                |joint, plain| joint.outward_offset = plain.outward_offset,
+                |joint, plain| joint.inward_offset = plain.inward_offset,
+                |joint, plain| joint.moment = plain.moment,
+            ];
+            for change in changes {
+                let mut other = tidy.clone();
+                change(&mut other.joints[index], &plain);
+                keep(self, &mut tidy, other);
+            }
+            for target in 0..plain.gauge.len() {
+                let mut other = tidy.clone();
+                other.joints[index].gauge[target] = plain.gauge[target];
+                keep(self, &mut tidy, other);
+            }
+            for switch in 0..Switches::NAMES.len() {
+                let mut other = tidy.clone();
+                if let Some(on) = other.joints[index].switches.at(switch) {
+                    *on = false;
+                }
+                keep(self, &mut tidy, other);
+            }
+        }
+        tidy
+    }
+
     fn keep_in_pool(&mut self, weight: usize, plan: &Plan) {
         const MOST: usize = 28;
         if weight > self.best.0.weight() + 9 || self.pool.iter().any(|(_, other)| other == plan) {
@@ -277,6 +320,7 @@ impl Search {
 pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
     let mut search = Search::new(robot, without);
     search.greedy(DEFAULT_EVALUATIONS);
-    search.best.1
+    let plan = search.best.1.clone();
+    search.tidied(&plan)
 }
 

@@ -500,13 +500,6 @@ impl Cost {
 
 impl Dag {
     /// The live nodes of a sheet, written once more in their order with values as identity.
-    pub(crate) fn of(sheet: &Sheet, outputs: &[Ref]) -> Self {
-        let mut dag = Self { sheet: Sheet::new(Identity::Value), outputs: Vec::new() };
-        dag.rewrite_from(sheet, outputs, &mut Vec::new());
-        dag
-    }
-
-    /// As [`Dag::of`], in memory that is there already.
     pub(crate) fn rewrite_from(&mut self, sheet: &Sheet, outputs: &[Ref], live: &mut Vec<bool>) {
         mark_live(&sheet.nodes, outputs, live);
         let target = &mut self.sheet;
