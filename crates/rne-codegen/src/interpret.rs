@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::program::{Binding, Expression, Program};
+use crate::program::{Expression, Program, Statement};
 use crate::quantity::{Component, Name, Quantity};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
@@ -51,20 +51,18 @@ impl Interpreter {
         for constant in &program.constants {
             builder.define(constant.name, Instruction::Constant(Some(constant.name), constant.value));
         }
+        for statement in &program.angles {
+            builder.statement(statement);
+        }
+        for turn in &program.turns {
+            let angle = builder.expression(&turn.angle);
+            let slot = builder.push(Instruction::SineCosine(angle));
+            builder.slots += 1;
+            builder.known.extend(turn.sine.map(|name| (name, slot)));
+            builder.known.extend(turn.cosine.map(|name| (name, slot + 1)));
+        }
         for statement in &program.statements {
-            match &statement.binding {
-                Binding::Value { name, value } => {
-                    let slot = builder.expression(value);
-                    builder.known.insert(*name, slot);
-                }
-                Binding::SineCosine { sine, cosine, angle } => {
-                    let angle = builder.expression(angle);
-                    let slot = builder.push(Instruction::SineCosine(angle));
-                    builder.slots += 1;
-                    builder.known.extend(sine.map(|name| (name, slot)));
-                    builder.known.extend(cosine.map(|name| (name, slot + 1)));
-                }
-            }
+            builder.statement(statement);
         }
         let outputs = program.outputs.iter().map(|output| builder.expression(&output.value)).collect();
         Self { code: builder.code, outputs }
@@ -150,6 +148,11 @@ impl Builder {
     fn define(&mut self, name: Name, instruction: Instruction) {
         let slot = self.push(instruction);
         self.known.insert(name, slot);
+    }
+
+    fn statement(&mut self, Statement { name, value, .. }: &Statement) {
+        let slot = self.expression(value);
+        self.known.insert(*name, slot);
     }
 
     fn expression(&mut self, expression: &Expression) -> usize {

@@ -34,7 +34,7 @@ pub use function::{Form, Function, UnknownName};
 pub use interpret::{Arguments, Interpreter};
 pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use program::{
-    Binding, Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement,
+    Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn,
 };
 pub use quantity::{Axis, Component, Name, Quantity, Step};
 

@@ -21,6 +21,10 @@ pub struct Program {
     pub arguments: Vec<Name>,
     /// The constants that are used.
     pub constants: Vec<Constant>,
+    /// Angles that are sums, each using only what stands before it.
+    pub angles: Vec<Statement>,
+    /// The sines and cosines of all joint angles, evaluated at once.
+    pub turns: Vec<Turn>,
     /// The statements, each using only what stands before it.
     pub statements: Vec<Statement>,
     /// The values returned: the torques, then what was asked to be kept.
@@ -29,6 +33,8 @@ pub struct Program {
     pub findings: Vec<Finding>,
     /// What became of every operation of the recursion.
     pub ledger: Ledger,
+    /// The choices of a program that is not the seven steps, one line each.
+    pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their torques.
     pub proof: Option<Proof>,
 }
@@ -46,6 +52,8 @@ pub struct Proof {
     pub single: f64,
     /// The same of the seven steps themselves in single precision.
     pub single_of_seven_steps: f64,
+    /// (products, sums) of the seven steps before folding.
+    pub before: (usize, usize),
 }
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
@@ -71,29 +79,23 @@ pub enum Sign {
 pub struct Statement {
     /// Step, joint and quantity that it belongs to.
     pub place: Place,
-    /// What it computes.
-    pub binding: Binding,
+    /// The name of its value.
+    pub name: Name,
+    /// The value.
+    pub value: Expression,
 }
 
-/// What a statement computes.
+/// Sine and cosine of an angle; a name is `None` when it is not used.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Binding {
-    /// One value.
-    Value {
-        /// Its name.
-        name: Name,
-        /// The value.
-        value: Expression,
-    },
-    /// Sine and cosine of an angle; a name is `None` when it is not used.
-    SineCosine {
-        /// Name of the sine.
-        sine: Option<Name>,
-        /// Name of the cosine.
-        cosine: Option<Name>,
-        /// The angle, rad.
-        angle: Expression,
-    },
+pub struct Turn {
+    /// Joint and quantity that it belongs to.
+    pub place: Place,
+    /// Name of the sine.
+    pub sine: Option<Name>,
+    /// Name of the cosine.
+    pub cosine: Option<Name>,
+    /// The angle, rad.
+    pub angle: Expression,
 }
 
 /// An expression over arguments, constants and earlier statements.
@@ -170,18 +172,23 @@ impl Operations {
 }
 
 impl Program {
+    /// (products, sums) of the seven steps before folding, step 3 included.
+    #[must_use]
+    pub fn before(&self) -> (usize, usize) {
+        self.proof.map_or_else(|| self.ledger.before(), |proof| proof.before)
+    }
+
     /// The operations of one evaluation.
     #[must_use]
     pub fn operations(&self) -> Operations {
-        let mut count = Operations { statements: self.statements.len(), ..Operations::default() };
-        for statement in &self.statements {
-            match &statement.binding {
-                Binding::Value { value, .. } => value.count(&mut count),
-                Binding::SineCosine { angle, .. } => {
-                    count.sincos += 1;
-                    angle.count(&mut count);
-                }
-            }
+        // all sines and cosines are one statement
+        let statements = self.angles.len() + usize::from(!self.turns.is_empty()) + self.statements.len();
+        let mut count = Operations { statements, sincos: self.turns.len(), ..Operations::default() };
+        for statement in self.angles.iter().chain(&self.statements) {
+            statement.value.count(&mut count);
+        }
+        for turn in &self.turns {
+            turn.angle.count(&mut count);
         }
         for output in &self.outputs {
             output.value.count(&mut count);

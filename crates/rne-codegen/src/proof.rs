@@ -228,7 +228,8 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
 
 /// Runs a program and the seven steps in floating point at random states: q ±3, q̇ ±2, q̈ ±4.
 fn rounding(robot: &Robot, program: &Program) -> Result<Proof, CompileError> {
-    let steps = Interpreter::new(&compile(robot, program.function, Form::SevenSteps)?);
+    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+    let steps = Interpreter::new(&faithful);
     let reduced = Interpreter::new(program);
     let mut rng = fastrand::Rng::with_seed(2024);
     let mut proof = Proof {
@@ -237,6 +238,7 @@ fn rounding(robot: &Robot, program: &Program) -> Result<Proof, CompileError> {
         rounding: 0.0,
         single: 0.0,
         single_of_seven_steps: 0.0,
+        before: faithful.ledger.before(),
     };
     for _ in 0..STATES {
         let mut random = |range: f64| (0..robot.dof()).map(|_| range * (2.0 * rng.f64() - 1.0)).collect::<Vec<f64>>();

@@ -6,7 +6,7 @@ use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::graph::{Node, NodeId, Term};
 use crate::ledger::{Operation, Place};
-use crate::program::{Binding, Constant, Expression, Finding, Found, Output, Program, Sign, Statement};
+use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
 use crate::quantity::{Name, Quantity, Step};
 use crate::symbol::Symbol;
 use crate::worksheet::Written;
@@ -35,6 +35,8 @@ pub(crate) fn program(
     let mut statements = schedule.statements();
     let outputs = schedule.outputs(outputs, &mut statements);
     statements.sort_by_key(|&(position, _)| position);
+    let statements = statements.into_iter().map(|(_, statement)| statement);
+    let (angles, statements) = statements.partition(|statement| statement.name.quantity.is_of_an_angle());
     Ok(Program {
         robot: heading.robot.to_owned(),
         dof: heading.dof,
@@ -42,10 +44,13 @@ pub(crate) fn program(
         form: heading.form,
         arguments: schedule.arguments(),
         constants,
-        statements: statements.into_iter().map(|(_, statement)| statement).collect(),
+        angles,
+        turns: schedule.turns(),
+        statements,
         outputs,
         findings: schedule.findings(),
         ledger: written.ledger,
+        choices: Vec::new(),
         proof: None,
     })
 }
@@ -253,44 +258,34 @@ impl<'w> Schedule<'w> {
     /// Statements with their position.
     fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
-        let mut angles = BTreeSet::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            let statement = match node {
-                Node::Constant(_) | Node::Argument(_) => continue,
-                Node::Sine(angle) | Node::Cosine(angle) => {
-                    if !angles.insert(angle.node) {
-                        continue;
-                    }
-                    self.sine_and_cosine(angle)
-                }
-                Node::Sum(..) | Node::Product(..) => {
-                    let Some(given) = self.names[id.index()] else { continue };
-                    let (negative, value) = self.operation(id);
-                    let value = signed(negative != given.negative, value);
-                    let place = self.place(id, given.name);
-                    Statement { place, binding: Binding::Value { name: given.name, value } }
-                }
-            };
-            statements.push(((id.index(), 0), statement));
+            if let (Node::Sum(..) | Node::Product(..), Some(given)) = (node, self.names[id.index()]) {
+                let (negative, value) = self.operation(id);
+                let value = signed(negative != given.negative, value);
+                let place = self.place(id, given.name);
+                statements.push(((id.index(), 0), Statement { place, name: given.name, value }));
+            }
         }
         statements
     }
 
-    fn sine_and_cosine(&self, angle: Term) -> Statement {
-        let mut pair = [None, None];
-        let mut joint = 0;
+    /// The sines and cosines, in the order in which they were asked for.
+    fn turns(&self) -> Vec<Turn> {
+        let mut turns: Vec<(Term, Turn)> = Vec::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            let slot = match node {
-                Node::Sine(other) if other == angle => 0,
-                Node::Cosine(other) if other == angle => 1,
-                _ => continue,
-            };
-            pair[slot] = self.names[id.index()].map(|given| given.name);
-            joint = pair[slot].map_or(joint, |name| name.joint);
+            let (Node::Sine(angle) | Node::Cosine(angle)) = node else { continue };
+            let name = self.names[id.index()].map(|given| given.name);
+            let known = turns.iter().position(|(other, _)| *other == angle);
+            let index = known.unwrap_or_else(|| {
+                let joint = name.map_or(0, |name| name.joint);
+                let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine };
+                turns.push((angle, Turn { place, sine: None, cosine: None, angle: self.expression(angle) }));
+                turns.len() - 1
+            });
+            let turn = &mut turns[index].1;
+            *(if matches!(node, Node::Sine(_)) { &mut turn.sine } else { &mut turn.cosine }) = name;
         }
-        let [sine, cosine] = pair;
-        let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine };
-        Statement { place, binding: Binding::SineCosine { sine, cosine, angle: self.expression(angle) } }
+        turns.into_iter().map(|(_, turn)| turn).collect()
     }
 
     fn place(&self, id: NodeId, name: Name) -> Place {
@@ -314,7 +309,7 @@ impl<'w> Schedule<'w> {
             // after the last node that was there when it was named, and after torques named before it
             statements.push((
                 (definition.after.saturating_sub(1), order),
-                Statement { place, binding: Binding::Value { name, value } },
+                Statement { place, name, value },
             ));
             returned.push(Output { name, value: Expression::Variable(name) });
         }

@@ -31,3 +31,34 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String>
         Step::Torque => vec![format!("τ{i} = e · n{p},{i}")],
     }
 }
+
+/// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
+/// they are evaluated are choices of the plan.
+pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String> {
+    let (i, p, n) = (joint, joint.saturating_sub(1), joint + 1);
+    let slides = kind == JointKind::Prismatic;
+    match step {
+        Step::AngularVelocity if slides => vec![format!("ω{i} = R{i}ᵀ ω{p}")],
+        Step::AngularVelocity => vec![format!("ω{i} = R{i}ᵀ ω{p} + q̇{i} z")],
+        Step::AngularAcceleration => vec![
+            if slides {
+                format!("ω̇{i} = R{i}ᵀ ω̇{p}")
+            } else {
+                format!("ω̇{i} = R{i}ᵀ ω̇{p} + q̇{i} ω{i} × z + q̈{i} z")
+            },
+            format!("U{i} = [ω̇{i}]× + [ω{i}]×[ω{i}]×"),
+        ],
+        Step::Acceleration if slides => {
+            vec![format!("a{i} = R{i}ᵀ (a{p} + U{p} p{i}) + q{i} U{i} u + 2 q̇{i} ω{i} × u + q̈{i} u")]
+        }
+        Step::Acceleration => vec![format!("a{i} = R{i}ᵀ (a{p} + U{p} p{i}), a0 = -g")],
+        Step::Wrenches => vec![
+            format!("f{i} = m a{i} + U{i} h + R{n} f{n}"),
+            format!("n{i} = antisym(U{i} S) + h × a{i} + R{n} n{n} + p{n} × R{n} f{n}"),
+        ],
+        Step::Torque if slides => vec![format!("τ{i} = u · f{i}")],
+        Step::Torque => vec![format!("τ{i} = z · n{i}")],
+        // gravity is in the acceleration of the base, the velocity is not needed
+        Step::Velocity | Step::Gravity => Vec::new(),
+    }
+}

@@ -6,10 +6,11 @@ use std::fmt::Write;
 use rne_model::{JointKind, Robot};
 
 use super::expression::let_statement;
-use super::formula::formulas;
+use super::formula::{formulas, reduced_formulas};
 use super::table::angle;
 use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
-use crate::program::{Binding, Expression, Finding, Found, Program, Sign, Statement};
+use crate::function::Form;
+use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
 use crate::quantity::{Component, Name, Quantity, Step};
 
 /// Width of a comment.
@@ -31,21 +32,24 @@ pub struct Listing {
 /// The statements of a program as Rust text with a comment per joint and step.
 #[must_use]
 pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
+    if program.form != Form::SevenSteps {
+        return in_order(robot, program, what);
+    }
     let mut text = String::new();
     for (joint, step) in sections(program.dof) {
-        if what.joint.is_some_and(|only| only != joint) || what.step.is_some_and(|only| only != step) {
+        if !what.includes(joint, step) {
             continue;
         }
         let here = |place: &Place| place.joint == joint && place.step == step;
         let statements: Vec<&Statement> =
             program.statements.iter().filter(|statement| here(&statement.place)).collect();
-        if statements.is_empty() && !what.explain {
+        let turns: Vec<&Turn> = program.turns.iter().filter(|turn| here(&turn.place)).collect();
+        if statements.is_empty() && turns.is_empty() && !what.explain {
             continue;
         }
-        let kind = robot.joints.get(joint - 1).map_or(JointKind::Revolute, |joint| joint.row.kind);
-        let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
-        for formula in formulas(step, kind, joint) {
-            let _ = writeln!(text, "    // {formula}");
+        heading(&mut text, robot, program.form, joint, step);
+        for turn in turns {
+            let _ = writeln!(text, "    // {}", turn_line(turn));
         }
         for statement in statements {
             let _ = writeln!(text, "{}", statement_line(statement));
@@ -60,6 +64,52 @@ pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
     text
 }
 
+impl Listing {
+    fn includes(&self, joint: usize, step: Step) -> bool {
+        self.joint.is_none_or(|only| only == joint) && self.step.is_none_or(|only| only == step)
+    }
+}
+
+/// A program whose statements do not keep to joints and steps, in the order in which they are computed.
+fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
+    let mut text = String::new();
+    let mut section = None;
+    for statement in &program.statements {
+        let Place { joint, step, .. } = statement.place;
+        if !what.includes(joint, step) {
+            continue;
+        }
+        if program.form == Form::Reduced && section != Some((joint, step)) {
+            if section.is_some() {
+                text.push('\n');
+            }
+            heading(&mut text, robot, program.form, joint, step);
+            section = Some((joint, step));
+        }
+        let _ = writeln!(text, "{}", statement_line(statement));
+    }
+    text
+}
+
+fn heading(text: &mut String, robot: &Robot, form: Form, joint: usize, step: Step) {
+    let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
+    let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
+    let formulas = if form == Form::SevenSteps { formulas(step, kind, joint) } else { reduced_formulas(step, kind, joint) };
+    for formula in formulas {
+        let _ = writeln!(text, "    // {formula}");
+    }
+}
+
+/// Which sine and cosine stand at the head of the function.
+fn turn_line(turn: &Turn) -> String {
+    let names: Vec<(String, &str)> = [(turn.sine, "sine"), (turn.cosine, "cosine")]
+        .into_iter()
+        .filter_map(|(name, what)| Some((name?.to_string(), what)))
+        .collect();
+    let (names, what): (Vec<String>, Vec<&str>) = names.into_iter().unzip();
+    format!("{}: {} of {}", names.join(", "), what.join(" and "), super::expression::line(&turn.angle))
+}
+
 /// Joints and steps in the order of the recursion: out with steps 1 to 5, back with 6 and 7.
 fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
     let outward = (1..=dof).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
@@ -69,15 +119,7 @@ fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
 
 /// One statement as a line of Rust.
 pub(super) fn statement_line(statement: &Statement) -> String {
-    match &statement.binding {
-        Binding::Value { name, value } => let_statement("    ", &name.to_string(), value),
-        Binding::SineCosine { sine, cosine, angle } => {
-            let [sine, cosine] =
-                [sine, cosine].map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string()));
-            let angle = super::expression::line(angle);
-            format!("    let ({sine}, {cosine}) = Scalar::sin_cos({angle});")
-        }
-    }
+    let_statement("    ", &statement.name.to_string(), &statement.value)
 }
 
 fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step, most: Option<usize>) {

@@ -6,11 +6,11 @@ use std::fmt::Write;
 
 use rne_model::Robot;
 
-use super::listing::{Listing, listing};
+use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
 use super::table::{convention, dh_table};
-use crate::program::{Binding, Program};
-use crate::quantity::Quantity;
+use crate::program::Program;
+use crate::quantity::{Name, Quantity};
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]
@@ -36,6 +36,11 @@ pub trait Scalar:
     fn from_f64(value: f64) -> Self;
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
+    /// The sines and the cosines of several angles in rad.
+    fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let pairs = angles.map(Self::sin_cos);
+        (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+    }
 }
 ";
 
@@ -61,7 +66,7 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     doc("| function | products | sums | angles |");
     doc("|---|---|---|---|");
     for program in programs {
-        let (products, sums) = program.ledger.before();
+        let (products, sums) = program.before();
         let after = program.operations();
         doc(&format!(
             "| `{}` | {products} -> {} | {sums} -> {} | {} |",
@@ -93,12 +98,8 @@ fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     let mut names = BTreeSet::new();
     for program in programs {
         names.extend(program.constants.iter().map(|constant| constant.name));
-        for statement in &program.statements {
-            match &statement.binding {
-                Binding::Value { name, .. } => names.extend([*name]),
-                Binding::SineCosine { sine, cosine, .. } => names.extend(sine.iter().chain(cosine)),
-            }
-        }
+        names.extend(program.angles.iter().chain(&program.statements).map(|statement| statement.name));
+        names.extend(program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine)));
     }
     let quantities: BTreeSet<Quantity> = names.iter().map(|name| name.quantity).collect();
     quantities.into_iter().map(|quantity| (quantity.pattern(), quantity.meaning())).collect()
@@ -141,6 +142,13 @@ fn function(robot: &Robot, program: &Program) -> String {
     for constant in &program.constants {
         let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
     }
+    if !program.turns.is_empty() {
+        text.push_str("\n    // sines and cosines of all angles\n");
+        for statement in &program.angles {
+            let _ = writeln!(text, "{}", statement_line(statement));
+        }
+        let _ = writeln!(text, "{}", turns(program));
+    }
     let statements = listing(robot, program, Listing::default());
     if !statements.trim().is_empty() {
         let _ = write!(text, "\n{statements}");
@@ -149,4 +157,22 @@ fn function(robot: &Robot, program: &Program) -> String {
     let outputs: Vec<String> = program.outputs.iter().map(|output| super::expression::line(&output.value)).collect();
     let _ = writeln!(text, "    [{}]\n}}", outputs.join(", "));
     text
+}
+
+/// The one statement that evaluates all sines and cosines, broken as rustfmt does.
+fn turns(program: &Program) -> String {
+    let name = |name: Option<Name>| name.map_or_else(|| "_".to_owned(), |name| name.to_string());
+    let sines: Vec<String> = program.turns.iter().map(|turn| name(turn.sine)).collect();
+    let cosines: Vec<String> = program.turns.iter().map(|turn| name(turn.cosine)).collect();
+    let angles: Vec<String> = program.turns.iter().map(|turn| super::expression::line(&turn.angle)).collect();
+    let [sines, cosines, angles] = [sines, cosines, angles].map(|list| list.join(", "));
+    if program.turns.len() == 1 {
+        return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
+    }
+    let (left, right) = (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));
+    if left.chars().count() + 1 + right.chars().count() <= 100 {
+        format!("{left} {right}")
+    } else {
+        format!("{left}\n        {right}")
+    }
 }

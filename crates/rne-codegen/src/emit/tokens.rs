@@ -5,13 +5,13 @@ use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
-use crate::program::{Binding, Expression, Program};
+use crate::program::{Expression, Program, Statement};
 use crate::quantity::Name;
 
 /// The body of a program's function: everything between its braces.
 ///
 /// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
-/// `T`; `scalar` is the path of the trait that gives `T` its `from_f64` and `sin_cos`.
+/// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
 #[must_use]
 pub fn body(program: &Program, scalar: &TokenStream) -> TokenStream {
     let arguments = arguments(program).into_iter().map(|ArgumentArray { name, elements }| {
@@ -30,21 +30,32 @@ pub fn body(program: &Program, scalar: &TokenStream) -> TokenStream {
         let (name, value) = (constant.name, literal(constant.value));
         quote!(let #name: T = #scalar::from_f64(#value);)
     });
-    let statements = program.statements.iter().map(|statement| match &statement.binding {
-        Binding::Value { name, value } => quote!(let #name = #value;),
-        Binding::SineCosine { sine, cosine, angle } => {
-            let [sine, cosine] =
-                [sine, cosine].map(|name| name.map_or_else(|| quote!(_), |name| name.to_token_stream()));
-            quote!(let (#sine, #cosine) = #scalar::sin_cos(#angle);)
-        }
-    });
+    let statement = |Statement { name, value, .. }: &Statement| quote!(let #name = #value;);
+    let angles = program.angles.iter().map(statement);
+    let turns = turns(program, scalar);
+    let statements = program.statements.iter().map(statement);
     let outputs = program.outputs.iter().map(|output| &output.value);
     quote! {
         #(#arguments)*
         #zero
         #(#constants)*
+        #(#angles)*
+        #turns
         #(#statements)*
         [#(#outputs),*]
+    }
+}
+
+/// The sines and cosines, all at once.
+fn turns(program: &Program, scalar: &TokenStream) -> TokenStream {
+    let name = |name: Option<Name>| name.map_or_else(|| quote!(_), |name| name.to_token_stream());
+    let sines = program.turns.iter().map(|turn| name(turn.sine));
+    let cosines = program.turns.iter().map(|turn| name(turn.cosine));
+    let angles = program.turns.iter().map(|turn| &turn.angle);
+    match program.turns.len() {
+        0 => TokenStream::new(),
+        1 => quote!(let (#(#sines)*, #(#cosines)*) = #scalar::sin_cos(#(#angles)*);),
+        _ => quote!(let ([#(#sines),*], [#(#cosines),*]) = #scalar::sin_cos_array([#(#angles),*]);),
     }
 }
 
