@@ -132,7 +132,8 @@ std::vector<Peer> peers_of(const std::vector<Plugin>& plugins, const std::string
       peer.name = symbol<const char*(int)>(plugin.library, "rp_name")(k) + plugin.suffix;
       peer.kind = symbol<int(int)>(plugin.library, "rp_kind")(k);
       peer.function = function;
-      peer.context = symbol<void*(int, const char*, const char*)>(plugin.library, "rp_open")(k, robot.c_str(), dir.c_str());
+      const auto open = symbol<void*(int, const char*, const char*)>(plugin.library, "rp_open");
+      peer.context = open(k, robot.c_str(), dir.c_str());
       peers.push_back(peer);
     }
   }
@@ -169,7 +170,8 @@ void time_calls(Peer& peer, const States& s, double* out, bool counts) {
   // Independent: the processor may overlap one call with the next.
   for (size_t first = 0; first < s.count; first += STRETCH) {
     const double start = now();
-    for (size_t k = first; k < first + STRETCH; k++) call(peer.context, s.q + k * n, s.qd + k * n, third + k * n, out + k * n);
+    for (size_t k = first; k < first + STRETCH; k++)
+      call(peer.context, s.q + k * n, s.qd + k * n, third + k * n, out + k * n);
     const double end = now();
     if (counts) peer.independent.push_back((end - start) / STRETCH);
   }
@@ -215,7 +217,8 @@ int main(int argc, char** argv) {
     double* out = array(states.count * MAX_JOINTS);
     for (Peer& peer : peers) check(peer, states, out);
     for (int r = -WARM_UP; r < repetitions; r++) {
-      if (terminal) std::fprintf(stderr, "\r\033[K   %s: %d of %d repetitions", robot.c_str(), std::max(r, 0), repetitions);
+      if (terminal)
+        std::fprintf(stderr, "\r\033[K   %s: %d of %d repetitions", robot.c_str(), std::max(r, 0), repetitions);
       for (Peer& peer : peers) {
         if (peer.is_batch())
           time_batch(peer, states, out, r >= 0);
@@ -224,8 +227,9 @@ int main(int argc, char** argv) {
       }
     }
     for (const Peer& peer : peers)
-      std::fprintf(csv, "%s,%s,%d,%.3f,%.3f,%.3f,%.3f,%.1e\n", robot.c_str(), peer.name.c_str(), peer.kind, median(peer.independent),
-                   minimum(peer.independent), median(peer.chained), minimum(peer.chained), peer.error);
+      std::fprintf(csv, "%s,%s,%d,%.3f,%.3f,%.3f,%.3f,%.1e\n", robot.c_str(), peer.name.c_str(), peer.kind,
+                   median(peer.independent), minimum(peer.independent), median(peer.chained), minimum(peer.chained),
+                   peer.error);
     std::fflush(csv);
   }
   if (terminal) std::fprintf(stderr, "\r\033[K");

@@ -46,7 +46,8 @@ void* rp_open(int, const char* robot, const char* dir) {
                               KDL::Vector(r.gravity[0], r.gravity[1], r.gravity[2]);
   for (int i = 0; i < c->joints; i++) {
     const FlatJoint& j = r.joints[i];
-    const KDL::Frame next = i + 1 < c->joints ? frame(r.joints[i + 1].before_R, r.joints[i + 1].before_p) : KDL::Frame::Identity();
+    const bool last = i + 1 == c->joints;
+    const KDL::Frame next = last ? KDL::Frame::Identity() : frame(r.joints[i + 1].before_R, r.joints[i + 1].before_p);
     const double* I = j.inertia;
     const KDL::RigidBodyInertia inertia(j.mass, KDL::Vector(j.com[0], j.com[1], j.com[2]),
                                         KDL::RotationalInertia(I[0], I[1], I[2], I[3], I[4], I[5]));

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
     source.setCreateForwardZero(true);
     source.setCreateJacobian(false);
     CppAD::cg::ModelLibraryCSourceGen<double> library(source);
-    CppAD::cg::SaveFilesModelLibraryProcessor<double>(library).saveSourcesTo(std::string(argv[2]) + "/" + argv[i] + "_cg");
+    const std::string folder = std::string(argv[2]) + "/" + argv[i] + "_cg";
+    CppAD::cg::SaveFilesModelLibraryProcessor<double>(library).saveSourcesTo(folder);
   }
 }

@@ -27,7 +27,8 @@ inline pinocchio::Model pinocchio_model(const FlatRobot& robot) {
     Eigen::Matrix3d inertia;
     inertia << I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2];
     link = placement(j.after_R, j.after_p);
-    model.appendBodyToJoint(parent, pinocchio::Inertia(j.mass, Eigen::Vector3d(j.com[0], j.com[1], j.com[2]), inertia), link);
+    const Eigen::Vector3d com(j.com[0], j.com[1], j.com[2]);
+    model.appendBodyToJoint(parent, pinocchio::Inertia(j.mass, com, inertia), link);
   }
   return model;
 }

@@ -18,7 +18,8 @@ enum {
   RP_OTHER_BATCH = 4 /* anything else, many states per call */
 };
 
-/* One state per call: `q`, `qd`, `qdd` and `out` each hold as many numbers as the robot has joints. `out` overlaps nothing. */
+/* One state per call: `q`, `qd`, `qdd` and `out` each hold as many numbers as the robot has joints. `out` overlaps
+   nothing. */
 typedef void (*rp_call)(void *ctx, const double *q, const double *qd, const double *qdd, double *out);
 /* Many states per call, as structure of arrays: x[j*count + k] is joint j of state k. `count` is a multiple of 8 and
    every array is aligned to 64 bytes. `out` overlaps nothing. */

@@ -1,5 +1,5 @@
-/* The trigonometry alone, of the angles of all revolute joints: glibc one by one; one pair of libmvec calls for the angles
-   of one state; and libmvec over many states. */
+/* The trigonometry alone, of the angles of all revolute joints: glibc one by one; one pair of libmvec calls for the
+   angles of one state; and libmvec over many states. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

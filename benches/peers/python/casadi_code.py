@@ -27,6 +27,7 @@ FORMS = ("dh", "jf", "base")
 
 # Symbols
 
+
 def constant(x):
     """A constant whose zeros are structural."""
     return ca.sparsify(ca.SX(ca.DM(np.asarray(x, dtype=float))))
@@ -56,6 +57,7 @@ def turn_by(q, theta):
 
 # The formulations: q, v, a are positions, velocities and accelerations
 
+
 def torques_dh(robot, q, v, a):
     standard = robot["convention"] == "standard"
     w, dw, acceleration = ZERO, ZERO, constant(-np.array(robot["gravity"]))
@@ -65,9 +67,9 @@ def torques_dh(robot, q, v, a):
         sa, ca_ = sin_cos(j["alpha"])
         Rx = constant(turn_x(j["alpha"]))
         Rz = constant(turn_z(j["theta"])) if prismatic else turn_by(q[i], constant_theta(j))
-        # In this order, or a constant d would be one operation more.
         d = j["d"] + q[i] + j["offset"] if prismatic else j["d"]
         if standard:
+
             def into(x):
                 return Rx.T @ (Rz.T @ x)
 
@@ -84,6 +86,7 @@ def torques_dh(robot, q, v, a):
                 dw = into(dw + E_Z * a[i] + cross(before, E_Z * v[i]))
                 acceleration = into(acceleration) + cross(dw, offset) + cross(w, cross(w, offset))
         else:
+
             def into(x):
                 return Rz.T @ (Rx.T @ x)
 
@@ -136,8 +139,16 @@ def joint_frames(robot):
         com, mass = turn @ np.array(j["com"], dtype=float) + offset, j["m"]
         inertia = turn @ tensor(j["I"]) @ turn.T + mass * (com @ com * np.eye(3) - np.outer(com, com))
         result.append(
-            dict(prismatic=j["type"] == "P", alpha=alpha, a=a, theta=constant_theta(j), d=constant_d(j),
-                 mass=mass, first=mass * com, inertia=inertia)
+            dict(
+                prismatic=j["type"] == "P",
+                alpha=alpha,
+                a=a,
+                theta=constant_theta(j),
+                d=constant_d(j),
+                mass=mass,
+                first=mass * com,
+                inertia=inertia,
+            )
         )
     return result
 
@@ -223,10 +234,11 @@ def torques_joint_frames(robot, q, v, a, base):
         first, I = constant(link["first"]), constant(link["inertia"])
         forces.append(link["mass"] * acceleration + U @ first)
         # I dw + w x I w, with the products that U has already.
+        Ixx, Iyy, Izz, Ixy, Ixz, Iyz = I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[0, 2], I[1, 2]
         moment = ca.vertcat(
-            I[0, 0] * dw[0] + (I[2, 2] - I[1, 1]) * yz + I[0, 1] * (dw[1] - xz) + I[0, 2] * (dw[2] + xy) + I[1, 2] * (yy - zz),
-            I[1, 1] * dw[1] + (I[0, 0] - I[2, 2]) * xz + I[0, 1] * (dw[0] + yz) + I[1, 2] * (dw[2] - xy) + I[0, 2] * (zz - xx),
-            I[2, 2] * dw[2] + (I[1, 1] - I[0, 0]) * xy + I[0, 2] * (dw[0] - yz) + I[1, 2] * (dw[1] + xz) + I[0, 1] * (xx - yy),
+            Ixx * dw[0] + (Izz - Iyy) * yz + Ixy * (dw[1] - xz) + Ixz * (dw[2] + xy) + Iyz * (yy - zz),
+            Iyy * dw[1] + (Ixx - Izz) * xz + Ixy * (dw[0] + yz) + Iyz * (dw[2] - xy) + Ixz * (zz - xx),
+            Izz * dw[2] + (Iyy - Ixx) * xy + Ixz * (dw[0] - yz) + Iyz * (dw[1] + xz) + Ixy * (xx - yy),
         )
         moments.append(moment + cross(first, acceleration))
         turns.append((Rx, Rz))
@@ -245,6 +257,7 @@ def torques_joint_frames(robot, q, v, a, base):
 
 
 # Code and counts
+
 
 def function(robot, form):
     count = len(robot["joints"])

@@ -1,4 +1,4 @@
-"""A MuJoCo model with the exact frames of the table; the inertias are set after compilation, which would change them."""
+"""A MuJoCo model with the exact frames of the table; inertias are set after compilation, which would change them."""
 
 import mujoco
 import numpy as np
@@ -16,7 +16,7 @@ def xml(robot):
     lines = ['<mujoco><option><flag constraint="disable" contact="disable"/></option><worldbody>']
     for j in robot["joints"]:
         kind = "hinge" if j["type"] == "R" else "slide"
-        lines.append('<body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>' f'<joint type="{kind}" axis="0 0 1"/>')
+        lines.append(f'<body><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/><joint type="{kind}" axis="0 0 1"/>')
     lines.append("</body>" * len(robot["joints"]) + "</worldbody></mujoco>")
     return "".join(lines)
 

@@ -3,7 +3,7 @@
   robot_files.py          write them
   robot_files.py --check  exit with 1 when one is not what would be written
 
-Numbers are the shortest decimals that give the number of the JSON back; right angles become pi/2, so that they stay exact.
+Numbers are the shortest decimals that give the number of the JSON back; right angles become pi/2, to stay exact.
 """
 
 import math
@@ -60,7 +60,7 @@ def yaml(robot):
         f"# Written by benches/peers/python/robot_files.py from {robot['name']}.json.",
         "format: 1",
         f"name: {robot['name']}",
-        f"source: \"{robot['source']}\"",
+        f'source: "{robot["source"]}"',
         f"convention: {robot['convention']}",
         f"gravity: [{', '.join(map(number, robot['gravity']))}]",
         "joints:",

@@ -1,4 +1,4 @@
-"""rtb.py ROBOTS_DIR OUT.csv ROBOT...: roboticstoolbox's C code, one Python call over all states, in the driver's CSV."""
+"""rtb.py ROBOTS_DIR OUT.csv ROBOT...: roboticstoolbox's C code, one Python call over all states; the driver's CSV."""
 
 import sys
 import time
@@ -16,7 +16,8 @@ def build(robot):
     standard = robot["convention"] == "standard"
     links = []
     for j in robot["joints"]:
-        common = dict(a=j["a"], alpha=j["alpha"], offset=j["offset"], m=j["m"], r=j["com"], I=tensor(j["I"]), Jm=0.0, G=1.0)
+        row = {key: j[key] for key in ("a", "alpha", "offset", "m")}
+        common = dict(row, r=j["com"], I=tensor(j["I"]), Jm=0.0, G=1.0)
         if j["type"] == "R":
             kind = roboticstoolbox.RevoluteDH if standard else roboticstoolbox.RevoluteMDH
             links.append(kind(d=j["d"], **common))
@@ -43,7 +44,7 @@ def main():
                 start = time.perf_counter()
                 arm.rne(q, qd, qdd)
                 times.append((time.perf_counter() - start) / len(q) * 1e9)
-            print(f"{name},rtb_c_batch,5,{median(times):.3f},{min(times):.3f},nan,nan,{error:.1e}", file=csv)
+            print(f"{name},rtb_c_batch,3,{median(times):.3f},{min(times):.3f},nan,nan,{error:.1e}", file=csv)
 
 
 if __name__ == "__main__":

@@ -1,10 +1,11 @@
-"""tables.py WORK [--readme FILE]: merges the rounds of a run into WORK/times.csv and WORK/tables.md, and prints the latter.
+"""tables.py WORK [--readme FILE]: merges the rounds of a run into WORK/times.csv and WORK/tables.md; prints the latter.
 
 A median is the median of the rounds' medians, a minimum the least of all rounds. A ratio is one median over another.
 With --readme the tables replace what stands between the markers of the section `Measured` of FILE.
 """
 
 import csv
+import json
 import math
 import sys
 from pathlib import Path
@@ -12,7 +13,7 @@ from statistics import median
 
 from arm import ROBOTS
 
-BATCH_KINDS = {3, 4, 5}  # RP_ID_BATCH, RP_OTHER_BATCH of rnepeer.h; 5: the row of rtb.py
+BATCH_KINDS = {3, 4}  # RP_ID_BATCH, RP_OTHER_BATCH of rnepeer.h
 TOLERANCE = 1e-10  # of the largest torque
 
 # What the project asks of its own rows. Columns: the six larger robots.
@@ -37,7 +38,7 @@ class Times:
         self.rows = {
             key: {
                 "batch": int(rows[0]["kind"]) in BATCH_KINDS,
-                "inverse_dynamics": int(rows[0]["kind"]) in (0, 3, 5),
+                "inverse_dynamics": int(rows[0]["kind"]) in (0, 3),
                 "independent": median(float(row["independent_median"]) for row in rows),
                 "independent_min": min(float(row["independent_min"]) for row in rows),
                 "chained": median(float(row["chained_median"]) for row in rows),
@@ -57,6 +58,9 @@ class Times:
 
     def is_batch(self, peer):
         return any(row["batch"] for (_, p), row in self.rows.items() if p == peer)
+
+    def is_inverse_dynamics(self, peer):
+        return any(row["inverse_dynamics"] for (_, p), row in self.rows.items() if p == peer)
 
     def ours(self, batch):
         return [peer for peer in self.peers if is_ours(peer) and self.is_batch(peer) == batch]
@@ -141,42 +145,31 @@ def required(times):
 
 
 def losses(times):
-    """Every inverse dynamics of others that is faster than all our rows of its kind."""
-    lines = []
-    for key, batch, what in (
-        ("independent", False, "independent calls"),
-        ("chained", False, "chained calls"),
-        ("independent", True, "batch"),
+    """Every inverse dynamics of others that is faster than our slowest or even our fastest row of its kind."""
+    rows = []
+    for what, key, batch in (
+        ("independent", "independent", False),
+        ("chained", "chained", False),
+        ("batch", "independent", True),
     ):
         for robot in times.robots:
             own = [(x, p) for p in times.ours(batch) if (x := times.get(robot, p, key)) is not None]
-            if not own:
-                continue
-            mine, name = min(own)
-            faster = [
+            others = [
                 (x, p)
                 for p in times.peers
-                if not is_ours(p) and times.is_batch(p) == batch and times.rows.get((robot, p), {}).get("inverse_dynamics")
-                if (x := times.get(robot, p, key)) is not None and x < mine
+                if not is_ours(p) and times.is_batch(p) == batch and times.is_inverse_dynamics(p)
+                if (x := times.get(robot, p, key)) is not None
             ]
-            if faster:
-                best, peer = min(faster)
-                lines.append(
-                    f"- {robot}, {what}: {len(faster)} faster than {name} ({nanoseconds(mine)} ns), "
-                    f"the fastest {peer} ({nanoseconds(best)} ns)"
-                )
-    return "\n".join(lines) or "Nowhere in this run: no other inverse dynamics is faster than our fastest row of its kind."
-
-
-def targets(times):
-    """Where our slowest target loses although our fastest does not."""
-    rows = []
-    for peer in times.ours(batch=False):
-        values = [ratio(times, "independent, against the best CasADi row", robot, peer) for robot in times.robots]
-        slower = [robot for robot, x in zip(times.robots, values) if x is not None and x < 1]
-        if slower:
-            rows.append(f"- {peer} is slower than the best CasADi row on: {', '.join(slower)}")
-    return "\n".join(rows)
+            if not own or not others or min(others) > max(own):
+                continue
+            ahead = ", ".join(f"{p} ({nanoseconds(x)})" for x, p in sorted(own) if x > min(others)[0])
+            before_all = sum(other < min(own) for other in others)
+            rows.append(
+                [f"{what}, {robot}", ahead, f"{min(others)[1]} ({nanoseconds(min(others)[0])})", str(before_all)]
+            )
+    if not rows:
+        return "Nowhere in this run: no other inverse dynamics is faster than the slowest of our rows of its kind."
+    return markdown(["calls", "our rows that are beaten (ns)", "by (ns)", "others ahead of all our rows"], rows)
 
 
 def correctness(times):
@@ -192,19 +185,22 @@ def correctness(times):
     )
 
 
-def operations(path):
-    rows = list(csv.DictReader(path.open())) if path.exists() else []
-    robots = [robot for robot in ROBOTS if any(row["robot"] == robot for row in rows)]
-    forms = list(dict.fromkeys(row["form"] for row in rows))
+def operations(casadi, ours):
+    """Of CasADi's functions (a CSV file) and ours (the JSON of `rne ops`)."""
+    counts = {}  # (function, robot): cell
 
-    def cell(robot, form):
-        for row in rows:
-            if (row["robot"], row["form"]) == (robot, form):
-                mul, add = int(row["mul"]), int(row["add"])
-                return f"{mul} + {add} = {mul + add}, {row['sin']}"
-        return "-"
+    def count(function, robot, mul, add, angles):
+        counts[function, robot] = f"{mul} + {add} = {int(mul) + int(add)}, {angles}"
 
-    return markdown(["formulation", *robots], [[form, *(cell(robot, form) for robot in robots)] for form in forms])
+    for row in csv.DictReader(casadi.open()):
+        name = "pin_casadi" if row["form"] == "pin" else f"casadi_{row['form']}"
+        count(name, row["robot"], row["mul"], row["add"], row["sin"])
+    for row in json.loads(ours.read_text()):
+        if row["function"] == "inverse_dynamics":
+            count(f"**rne, {row['form']}**", row["robot"], row["mul"], row["add"], row["sincos"])
+    robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
+    functions = list(dict.fromkeys(function for function, _ in counts))
+    return markdown(["function", *robots], [[f, *(counts.get((f, robot), "-") for robot in robots)] for f in functions])
 
 
 def report(work):
@@ -227,9 +223,8 @@ def report(work):
         required(times),
         "### Where our code loses",
         losses(times),
-        targets(times),
-        "### Operations of CasADi's functions: products + sums = both, angles",
-        operations(work / "build/generated/operations.csv"),
+        "### Operations: products + sums = both, angles",
+        operations(work / "build/generated/operations.csv", work / "build/operations.json"),
     ]
     return "\n\n".join(part for part in parts if part) + "\n", times
 
