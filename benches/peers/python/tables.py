@@ -44,6 +44,7 @@ class Times:
                 "chained": median(float(row["chained_median"]) for row in rows),
                 "chained_min": min(float(row["chained_min"]) for row in rows),
                 "error": max(float(row["error"]) for row in rows),
+                "rounds": [float(row["independent_median"]) for row in rows],
             }
             for key, rows in samples.items()
         }
@@ -180,8 +181,20 @@ def correctness(times):
     others = max((e for (_, p), e in checked.items() if not is_ours(p) and p != "pin_aba"), default=math.nan)
     own = max((e for (_, p), e in checked.items() if is_ours(p)), default=math.nan)
     return (
-        "Every inverse dynamics agrees with the reference torques, 1024 states of each robot. Largest deviation over the "
-        f"largest torque: {own:.1e} of our rows, {others:.1e} of the others (accepted: {TOLERANCE:g})."
+        "Every inverse dynamics agrees with the reference torques, 1024 states of each robot. Largest deviation over "
+        f"the largest torque: {own:.1e} of our rows, {others:.1e} of the others (accepted: {TOLERANCE:g})."
+    )
+
+
+def spread(times):
+    """How much the rounds differ."""
+    if times.rounds < 2:
+        return "One round: how much rounds differ is unknown."
+    ratios = sorted((max(row["rounds"]) / min(row["rounds"]), *key) for key, row in times.rows.items())
+    worst, robot, peer = ratios[-1]
+    return (
+        f"The slowest of {times.rounds} rounds is {100 * (ratios[len(ratios) // 2][0] - 1):.0f} % over the fastest in "
+        f"the median row (independent calls and batch), at worst {100 * (worst - 1):.0f} % ({peer} on {robot})."
     )
 
 
@@ -210,6 +223,7 @@ def report(work):
     parts = [
         (work / "conditions.md").read_text().strip(),
         correctness(times),
+        spread(times),
         "### Independent calls, one state per call: median ns (minimum ns)",
         time_table(times, single, "independent"),
         "### Chained calls, each needs the result before: median ns (minimum ns)",
@@ -218,7 +232,7 @@ def report(work):
         time_table(times, batch, "independent"),
         "### Ratios of medians: how many times faster our rows are",
         ratios(times),
-        "The best CasADi row is the fastest `casadi_*` or `pin_casadi*` row of one state per call, chosen for each robot.",
+        "The best CasADi row is the fastest `casadi_*` or `pin_casadi*` row of one state per call, for each robot.",
         "### What is required",
         required(times),
         "### Where our code loses",
