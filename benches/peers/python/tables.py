@@ -142,6 +142,8 @@ def required(times):
                 reached, total = reached + is_reached, total + 1
                 cells.append(f"{x:.2f} {'reached' if is_reached else 'not reached'}")
             rows.append([peer, *cells])
+    if not total:
+        return "Nothing is required of what this run measured."
     return markdown(["required", *robots], rows) + f"\n\n{reached} of {total} reached."
 
 
