@@ -1,0 +1,34 @@
+// A Pinocchio model with the exact frames of the table, without a URDF in between.
+#pragma once
+#include <pinocchio/multibody.hpp>
+#include <string>
+
+#include "flat.hpp"
+
+inline pinocchio::SE3 placement(const double* R, const double* p) {
+  Eigen::Matrix3d M;
+  M << R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8];
+  return pinocchio::SE3(M, Eigen::Vector3d(p[0], p[1], p[2]));
+}
+
+inline pinocchio::Model pinocchio_model(const FlatRobot& robot) {
+  pinocchio::Model model;
+  model.name = robot.name;
+  model.gravity.linear() = Eigen::Vector3d(robot.gravity[0], robot.gravity[1], robot.gravity[2]);
+  pinocchio::JointIndex parent = 0;
+  pinocchio::SE3 link = pinocchio::SE3::Identity();
+  for (size_t i = 0; i < robot.joints.size(); i++) {
+    const FlatJoint& j = robot.joints[i];
+    const pinocchio::SE3 place = link * placement(j.before_R, j.before_p);
+    const std::string name = "j" + std::to_string(i + 1);
+    parent = j.prismatic ? model.addJoint(parent, pinocchio::JointModelPZ(), place, name)
+                         : model.addJoint(parent, pinocchio::JointModelRZ(), place, name);
+    const double* I = j.inertia;
+    Eigen::Matrix3d inertia;
+    inertia << I[0], I[3], I[4], I[3], I[1], I[5], I[4], I[5], I[2];
+    link = placement(j.after_R, j.after_p);
+    const Eigen::Vector3d com(j.com[0], j.com[1], j.com[2]);
+    model.appendBodyToJoint(parent, pinocchio::Inertia(j.mass, com, inertia), link);
+  }
+  return model;
+}

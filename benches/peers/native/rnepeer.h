@@ -1,0 +1,39 @@
+/* The C interface of a plugin of the comparison. A plugin is a shared library that offers rp_count() competitors.
+
+   Everything is double precision; q, qd, qdd are positions, velocities and accelerations of the joints, base to tip. */
+#ifndef RNEPEER_H
+#define RNEPEER_H
+#include <stddef.h>
+#ifdef __cplusplus
+extern "C" {
+#endif
+#define RP_EXPORT __attribute__((visibility("default")))
+
+/* What a competitor computes. The driver checks the results of the kinds that say so against reference torques. */
+enum {
+  RP_ID = 0,         /* inverse dynamics: out = tau; checked */
+  RP_FD = 1,         /* forward dynamics: third input = tau, out = qdd; checked */
+  RP_OTHER = 2,      /* anything else, one state per call */
+  RP_ID_BATCH = 3,   /* inverse dynamics of many states per call; checked */
+  RP_OTHER_BATCH = 4 /* anything else, many states per call */
+};
+
+/* One state per call: `q`, `qd`, `qdd` and `out` each hold as many numbers as the robot has joints. `out` overlaps
+   nothing. */
+typedef void (*rp_call)(void *ctx, const double *q, const double *qd, const double *qdd, double *out);
+/* Many states per call, as structure of arrays: x[j*count + k] is joint j of state k. `count` is a multiple of 8 and
+   every array is aligned to 64 bytes. `out` overlaps nothing. */
+typedef void (*rp_batch)(void *ctx, const double *q, const double *qd, const double *qdd, double *out, size_t count);
+
+RP_EXPORT int rp_count(void);
+/* For 0 <= k < rp_count(): the name of a competitor, its kind, */
+RP_EXPORT const char *rp_name(int k);
+RP_EXPORT int rp_kind(int k);
+/* its function (an rp_call or an rp_batch, by its kind; null: not offered for this robot), */
+RP_EXPORT void *rp_func(int k, const char *robot);
+/* and the `ctx` of its function. The folder `dir` holds the files of prepare.py. */
+RP_EXPORT void *rp_open(int k, const char *robot, const char *dir);
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,60 @@
+"""prepare.py DIR ROBOT...: the files that the driver and the plugins read.
+
+DIR/<robot>.txt     constant transforms and inertias as plain numbers (native/flat.hpp)
+DIR/<robot>.states  random states and their reference torques, which are Pinocchio's
+DIR/<robot>.mjb     the MuJoCo model, if MuJoCo is there
+"""
+
+import struct
+import sys
+from pathlib import Path
+
+import numpy as np
+import pinocchio
+
+import pinocchio_arm
+from arm import STATES, load, split, states
+
+try:
+    import mujoco
+
+    import mujoco_arm
+except ImportError:
+    mujoco = None
+
+
+def flat(robot):
+    def line(*numbers):
+        return " ".join(repr(float(x)) for x in numbers)
+
+    lines = [str(len(robot["joints"])), line(*robot["gravity"])]
+    for i, j in enumerate(robot["joints"]):
+        lines.append(str(int(j["type"] == "P")))
+        for transform in split(robot, i):
+            lines += [line(*transform[:3, :3].ravel()), line(*transform[:3, 3])]
+        lines += [line(j["m"], *j["com"]), line(*j["I"])]
+    return "\n".join(lines) + "\n"
+
+
+def states_and_torques(robot):
+    model = pinocchio_arm.build(robot)
+    data = model.createData()
+    q, qd, qdd = states(robot)
+    tau = np.array([pinocchio.rnea(model, data, *state) for state in zip(q, qd, qdd)])
+    header = struct.pack("<qq", len(robot["joints"]), STATES)
+    return header + b"".join(np.ascontiguousarray(x, dtype="<f8").tobytes() for x in (q, qd, qdd, tau))
+
+
+def main():
+    folder, names = Path(sys.argv[1]), sys.argv[2:]
+    folder.mkdir(parents=True, exist_ok=True)
+    for name in names:
+        robot = load(name)
+        (folder / f"{name}.txt").write_text(flat(robot))
+        (folder / f"{name}.states").write_bytes(states_and_torques(robot))
+        if mujoco:
+            mujoco.mj_saveModel(mujoco_arm.bare(robot), str(folder / f"{name}.mjb"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,281 @@
+"""tables.py WORK [--readme FILE]: merges the rounds of a run into WORK/times.csv and WORK/tables.md; prints the latter.
+
+A median is the median of the rounds' medians, a minimum the least of all rounds. A ratio is one median over another.
+With --readme the tables replace what stands between the markers of the section `Measured` of FILE.
+"""
+
+import csv
+import json
+import math
+import sys
+from pathlib import Path
+from statistics import median
+
+from arm import ROBOTS
+
+BATCH_KINDS = {3, 4}  # RP_ID_BATCH, RP_OTHER_BATCH of rnepeer.h
+TOLERANCE = 1e-10  # of the largest torque
+
+# What the project asks of its own rows. Columns: the six larger robots.
+REQUIRED_ROBOTS = ["puma560", "stanford", "panda", "iiwa14", "dense7", "dense6_2p"]
+REQUIRED = {
+    "independent, against the best CasADi row": [2.4, 2.2, 2.0, 2.0, 1.8, 1.6],
+    "chained, against the best CasADi row": [2.1, 1.9, 1.7, 1.8, 1.5, 1.4],
+    "independent, against pin_rnea": [11, 11, 7.5, 8.5, 5, 5],
+    "batch, against casadi_base_simd": [1.9, 1.7, 1.7, 1.7, 1.6, 1.6],
+}
+
+
+class Times:
+    """Every competitor's times for every robot."""
+
+    def __init__(self, folder):
+        samples = {}
+        for path in sorted(folder.glob("*.csv")):
+            for row in csv.DictReader(path.open()):
+                samples.setdefault((row["robot"], row["peer"]), []).append(row)
+        self.rounds = max(map(len, samples.values()), default=0)
+        self.rows = {
+            key: {
+                "batch": int(rows[0]["kind"]) in BATCH_KINDS,
+                "inverse_dynamics": int(rows[0]["kind"]) in (0, 3),
+                "independent": median(float(row["independent_median"]) for row in rows),
+                "independent_min": min(float(row["independent_min"]) for row in rows),
+                "chained": median(float(row["chained_median"]) for row in rows),
+                "chained_min": min(float(row["chained_min"]) for row in rows),
+                "error": max(float(row["error"]) for row in rows),
+                "rounds": [float(row["independent_median"]) for row in rows],
+            }
+            for key, rows in samples.items()
+        }
+        measured = {robot for robot, _ in self.rows}
+        self.robots = [robot for robot in ROBOTS if robot in measured]
+        self.peers = list(dict.fromkeys(peer for _, peer in self.rows))
+
+    def get(self, robot, peer, key):
+        """A number, or None where there is none."""
+        x = self.rows.get((robot, peer), {}).get(key, math.nan)
+        return None if math.isnan(x) else x
+
+    def is_batch(self, peer):
+        return any(row["batch"] for (_, p), row in self.rows.items() if p == peer)
+
+    def is_inverse_dynamics(self, peer):
+        return any(row["inverse_dynamics"] for (_, p), row in self.rows.items() if p == peer)
+
+    def ours(self, batch):
+        return [peer for peer in self.peers if is_ours(peer) and self.is_batch(peer) == batch]
+
+    def best_casadi(self, robot, key):
+        """The fastest of CasADi's functions of one state, as (time, name), or None."""
+        peers = [p for p in self.peers if p.startswith(("casadi_", "pin_casadi")) and not self.is_batch(p)]
+        times = [(self.get(robot, p, key), p) for p in peers if self.get(robot, p, key) is not None]
+        return min(times, default=None)
+
+
+def is_ours(peer):
+    return peer.split("_")[0] == "rne"
+
+
+def nanoseconds(x):
+    return f"{x:.0f}" if x >= 60 else f"{x:.1f}"
+
+
+def markdown(head, rows):
+    lines = ["| " + " | ".join(head) + " |", "|---|" + "---:|" * (len(head) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def time_table(times, peers, key):
+    def cell(robot, peer):
+        x = times.get(robot, peer, key)
+        return "-" if x is None else f"{nanoseconds(x)} ({nanoseconds(times.get(robot, peer, key + '_min'))})"
+
+    rows = [[bold(peer), *(cell(robot, peer) for robot in times.robots)] for peer in peers]
+    return markdown(["competitor", *times.robots], [row for row in rows if any(c != "-" for c in row[1:])])
+
+
+def bold(peer):
+    return f"**{peer}**" if is_ours(peer) else peer
+
+
+def rivals(times, measure, robot):
+    """The time to beat, and the key of ours that is compared with it."""
+    key = "chained" if measure.startswith("chained") else "independent"
+    if measure.endswith("best CasADi row"):
+        best = times.best_casadi(robot, key)
+        return (best[0] if best else None), key
+    return times.get(robot, measure.split()[-1], key), key
+
+
+def ratio(times, measure, robot, peer):
+    rival, key = rivals(times, measure, robot)
+    own = times.get(robot, peer, key)
+    return None if rival is None or own is None else rival / own
+
+
+def ratios(times):
+    rows = []
+    for measure in REQUIRED:
+        for peer in times.ours(batch=measure.startswith("batch")):
+            values = [ratio(times, measure, robot, peer) for robot in times.robots]
+            rows.append([measure, peer, *("-" if x is None else f"{x:.2f}" for x in values)])
+    return markdown(["ratio", "our row", *times.robots], rows)
+
+
+def required(times):
+    rows, reached, total = [], 0, 0
+    robots = [robot for robot in REQUIRED_ROBOTS if robot in times.robots]
+    for measure, limits in REQUIRED.items():
+        rows.append([f"**{measure}**", *(f"≥ {limits[REQUIRED_ROBOTS.index(robot)]:g}" for robot in robots)])
+        peers = times.ours(batch=measure.startswith("batch"))
+        if not peers:
+            rows.append(["(no such row of ours in this run)", *("-" for _ in robots)])
+        for peer in peers:
+            cells = []
+            for robot in robots:
+                x = ratio(times, measure, robot, peer)
+                if x is None:
+                    cells.append("-")
+                    continue
+                is_reached = x >= limits[REQUIRED_ROBOTS.index(robot)]
+                reached, total = reached + is_reached, total + 1
+                cells.append(f"{x:.2f} {'reached' if is_reached else 'not reached'}")
+            rows.append([peer, *cells])
+    if not total:
+        return "Nothing is required of what this run measured."
+    return markdown(["required", *robots], rows) + f"\n\n{reached} of {total} reached."
+
+
+def losses(times):
+    """Every inverse dynamics of others that is faster than our slowest or even our fastest row of its kind."""
+    rows = []
+    for what, key, batch in (
+        ("independent", "independent", False),
+        ("chained", "chained", False),
+        ("batch", "independent", True),
+    ):
+        for robot in times.robots:
+            own = [(x, p) for p in times.ours(batch) if (x := times.get(robot, p, key)) is not None]
+            others = [
+                (x, p)
+                for p in times.peers
+                if not is_ours(p) and times.is_batch(p) == batch and times.is_inverse_dynamics(p)
+                if (x := times.get(robot, p, key)) is not None
+            ]
+            if not own or not others or min(others) > max(own):
+                continue
+            ahead = ", ".join(f"{p} ({nanoseconds(x)})" for x, p in sorted(own) if x > min(others)[0])
+            before_all = sum(other < min(own) for other in others)
+            rows.append(
+                [f"{what}, {robot}", ahead, f"{min(others)[1]} ({nanoseconds(min(others)[0])})", str(before_all)]
+            )
+    if not rows:
+        return "Nowhere in this run: no other inverse dynamics is faster than the slowest of our rows of its kind."
+    return markdown(["calls", "our rows that are beaten (ns)", "by (ns)", "others ahead of all our rows"], rows)
+
+
+def correctness(times):
+    checked = {key: row["error"] for key, row in times.rows.items() if not math.isnan(row["error"])}
+    wrong = [f"{peer} on {robot}: {error:.1e}" for (robot, peer), error in checked.items() if error > TOLERANCE]
+    if wrong:
+        return "**Wrong results**, largest deviation over largest reference value: " + "; ".join(wrong)
+    others = max((e for (_, p), e in checked.items() if not is_ours(p) and p != "pin_aba"), default=math.nan)
+    own = max((e for (_, p), e in checked.items() if is_ours(p)), default=math.nan)
+    return (
+        "Every inverse dynamics agrees with the reference torques, 1024 states of each robot. Largest deviation over "
+        f"the largest torque: {own:.1e} of our rows, {others:.1e} of the others (accepted: {TOLERANCE:g})."
+    )
+
+
+def spread(times):
+    """How much the rounds differ."""
+    if times.rounds < 2:
+        return "One round: how much rounds differ is unknown."
+    ratios = sorted((max(row["rounds"]) / min(row["rounds"]), *key) for key, row in times.rows.items())
+    worst, robot, peer = ratios[-1]
+    return (
+        f"The slowest of {times.rounds} rounds is {100 * (ratios[len(ratios) // 2][0] - 1):.0f} % over the fastest in "
+        f"the median row (independent calls and batch), at worst {100 * (worst - 1):.0f} % ({peer} on {robot})."
+    )
+
+
+def operations(casadi, ours):
+    """Of CasADi's functions (a CSV file) and ours (the JSON of `rne ops`)."""
+    counts = {}  # (function, robot): cell
+
+    def count(function, robot, mul, add, angles):
+        counts[function, robot] = f"{mul} + {add} = {int(mul) + int(add)}, {angles}"
+
+    for row in csv.DictReader(casadi.open()):
+        name = "pin_casadi" if row["form"] == "pin" else f"casadi_{row['form']}"
+        count(name, row["robot"], row["mul"], row["add"], row["sin"])
+    for row in json.loads(ours.read_text()):
+        if row["function"] == "inverse_dynamics":
+            count(f"**rne, {row['form']}**", row["robot"], row["mul"], row["add"], row["sincos"])
+    robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
+    functions = list(dict.fromkeys(function for function, _ in counts))
+    return markdown(["function", *robots], [[f, *(counts.get((f, robot), "-") for robot in robots)] for f in functions])
+
+
+def report(work):
+    times = Times(work / "rounds")
+    single = [peer for peer in times.peers if not times.is_batch(peer)]
+    batch = [peer for peer in times.peers if times.is_batch(peer)]
+    parts = [
+        (work / "conditions.md").read_text().strip(),
+        correctness(times),
+        spread(times),
+        "### Independent calls, one state per call: median ns (minimum ns)",
+        time_table(times, single, "independent"),
+        "### Chained calls, each needs the result before: median ns (minimum ns)",
+        time_table(times, single, "chained"),
+        "### Batch of 1024 states: median ns (minimum ns) per state",
+        time_table(times, batch, "independent"),
+        "### Ratios of medians: how many times faster our rows are",
+        ratios(times),
+        "The best CasADi row is the fastest `casadi_*` or `pin_casadi*` row of one state per call, for each robot.",
+        "### What is required",
+        required(times),
+        "### Where our code loses",
+        losses(times),
+        "### Operations: products + sums = both, angles",
+        operations(work / "build/generated/operations.csv", work / "build/operations.json"),
+    ]
+    return "\n\n".join(part for part in parts if part) + "\n", times
+
+
+def write_csv(times, path):
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(["robot", "peer", "batch", "independent", "independent_min", "chained", "chained_min", "error"])
+        for (robot, peer), row in times.rows.items():
+            numbers = (row[key] for key in ("independent", "independent_min", "chained", "chained_min"))
+            writer.writerow([robot, peer, int(row["batch"]), *(f"{x:.3f}" for x in numbers), f"{row['error']:.1e}"])
+
+
+BEGIN, END = "<!-- begin: measured, written by: benches/peers/run --write-readme -->", "<!-- end -->"
+
+
+def write_readme(path, tables):
+    head, begin, rest = path.read_text().partition(BEGIN)
+    _, end, tail = rest.partition(END)
+    if not begin or not end:
+        sys.exit(f"{path.name} has no section between {BEGIN} and {END}")
+    path.write_text(f"{head}{BEGIN}\n{tables}{END}{tail}")
+
+
+def main():
+    work = Path(sys.argv[1])
+    tables, times = report(work)
+    (work / "tables.md").write_text(tables)
+    write_csv(times, work / "times.csv")
+    if sys.argv[2:3] == ["--readme"]:
+        write_readme(Path(sys.argv[3]), tables)
+    print(tables)
+    if "**Wrong results**" in tables:
+        sys.exit(1)
+
+
+if __name__ == "__main__":
+    main()
