@@ -2,6 +2,7 @@
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
+use rne_codegen::reduced::Trick;
 use rne_codegen::{Form, Function, Step};
 
 use crate::terminal::HELP_STYLES;
@@ -54,6 +55,12 @@ pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
         Form::Rewritten => PossibleValue::new(form.name()).help("The reduced form after `rne search --rewrite`"),
     };
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
+}
+
+/// Reads the name of a trick of the reduced form.
+pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
+    let value = |trick: Trick| PossibleValue::new(trick.name()).help(trick.formula());
+    PossibleValuesParser::new(Trick::ALL.map(value)).try_map(|name| name.parse::<Trick>())
 }
 
 /// Reads the number of a joint; which numbers there are, the robot says.

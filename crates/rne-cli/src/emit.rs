@@ -4,11 +4,12 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::{Form, Function, Program, compile, emit};
+use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
+use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
 use crate::{arguments, robot_file};
 
@@ -83,9 +84,8 @@ fn functions(arguments: &Arguments) -> impl Iterator<Item = Function> {
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
-    let compiled = functions(arguments).map(|function| compile(robot, function, arguments.form));
-    let file = arguments.file.display().to_string();
-    compiled.collect::<Result<_, _>>().map_err(|error| Failure::compile(&file, &error))
+    let compiler = Compiler::new(&arguments.file, robot);
+    functions(arguments).map(|function| compiler.compile(function, arguments.form)).collect()
 }
 
 fn is_ours(text: &str) -> bool {

@@ -36,7 +36,7 @@ pub(crate) fn robot(robot: &Robot) -> String {
 
 /// The operations of a program, before and after, in one line.
 pub(crate) fn counts(program: &Program) -> String {
-    let (products, sums) = program.ledger.before();
+    let (products, sums) = program.before();
     let after = program.operations();
     let angles = match after.sincos {
         0 => "no sine or cosine".to_owned(),

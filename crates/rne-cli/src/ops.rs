@@ -1,17 +1,19 @@
 //! `rne ops`: what the functions of a robot cost.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::{Form, Function, Operations, compile};
+use rne_codegen::reduced::{self, Choice, Trick};
+use rne_codegen::{Form, Function, Operations, Program};
 use rne_model::Robot;
 use serde::Serialize;
 
 use crate::layout::{Align, columns};
 use crate::outcome::{Failure, Outcome};
-use crate::robot_file;
+use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
+use crate::{arguments, robot_file};
 
 /// Count the operations of every function, before folding and in the generated code
 #[derive(Args)]
@@ -19,6 +21,8 @@ use crate::terminal::{QUIET, TITLE};
 Example:
   rne ops robots/puma560.yaml robots/scara_cobra600.yaml
   rne ops robots/*.yaml --json
+  rne ops robots/puma560.yaml --tricks               what each trick of the reduced form saves
+  rne ops robots/puma560.yaml --without gyrostat     the reduced form without it
 
 A subtraction counts as an addition, a negation is free, x·x is one multiplication, and sincos counts the
 angles whose sine or cosine is used. Before folding: the recursion as a loop over 3-vectors performs it.")]
@@ -29,6 +33,12 @@ pub(crate) struct Arguments {
     /// A list of {robot, function, form, mul, add, div, sincos, statements}
     #[arg(long)]
     json: bool,
+    /// What each trick of the reduced form saves in `inverse_dynamics`, with its formula
+    #[arg(long, conflicts_with_all = ["json", "without"])]
+    tricks: bool,
+    /// Leave these tricks out of the reduced form; the other choices of its plan stay
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick())]
+    without: Vec<Trick>,
 }
 
 /// The counts of one function of one robot, as JSON has them.
@@ -55,30 +65,75 @@ pub(crate) struct Count {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut counted = Vec::new();
+    let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
     for path in &arguments.files {
-        match robot_file::robot(path).and_then(|robot| Ok((counts(&path.display().to_string(), &robot)?, robot))) {
-            Ok((counts, robot)) => counted.push((robot.name, counts)),
-            Err(failure) => failures.push(failure),
-        }
+        let outcome = robot_file::robot(path).and_then(|robot| {
+            let compiler = Compiler::new(path, &robot);
+            if arguments.tricks {
+                savings.push_str(&tricks(&robot, compiler.choice()?));
+            } else {
+                counted.push((robot.name.clone(), counts(path, &robot, &compiler, &arguments.without)?));
+            }
+            Ok(())
+        });
+        failures.extend(outcome.err());
     }
     let complaints: Vec<&str> = failures.iter().map(|failure| failure.text.as_str()).collect();
     match failures.first() {
         Some(first) => Err(Failure { text: complaints.join("\n\n"), status: first.status }),
+        None if arguments.tricks => Ok(Outcome::text(savings)),
         None if arguments.json => Outcome::json(&entries(&counted)),
         None => Ok(Outcome::text(table(&counted))),
     }
 }
 
-/// Counts every function of a robot in every form.
-pub(crate) fn counts(file: &str, robot: &Robot) -> Result<Vec<Count>, Failure> {
-    let pairs = Function::ALL.into_iter().flat_map(|function| Form::ALL.map(|form| (function, form)));
-    pairs
-        .map(|(function, form)| {
-            let program = compile(robot, function, form).map_err(|error| Failure::compile(file, &error))?;
-            Ok(Count { function, form, before: program.ledger.before(), after: program.operations() })
-        })
-        .collect()
+/// Counts every function of a robot in every form; the reduced form without some tricks alone, if there are any.
+pub(crate) fn counts(
+    file: &Path,
+    robot: &Robot,
+    compiler: &Compiler<'_>,
+    without: &[Trick],
+) -> Result<Vec<Count>, Failure> {
+    let mut counts = Vec::new();
+    let count = |function, form, program: &Program| {
+        Count { function, form, before: program.before(), after: program.operations() }
+    };
+    if !without.is_empty() {
+        let plan = without.iter().fold(compiler.choice()?.plan.clone(), |plan, trick| trick.left_out_of(&plan));
+        let choice = Choice { plan, rewritten: None };
+        for function in Function::ALL {
+            let program = choice.compile(robot, function, Form::Reduced);
+            let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
+            counts.push(count(function, Form::Reduced, &program));
+        }
+        return Ok(counts);
+    }
+    for function in Function::ALL {
+        for form in [Form::SevenSteps, Form::Reduced] {
+            counts.push(count(function, form, &compiler.compile(function, form)?));
+        }
+        if function == Function::InverseDynamics && compiler.choice()?.rewritten.is_some() {
+            counts.push(count(function, Form::Rewritten, &compiler.compile(function, Form::Rewritten)?));
+        }
+    }
+    Ok(counts)
+}
+
+/// What each trick of a plan saves.
+fn tricks(robot: &Robot, choice: &Choice) -> String {
+    let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
+    let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
+    for (trick, saved) in reduced::savings(robot, &choice.plan) {
+        lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
+    }
+    for (index, line) in columns([Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {
+        let _ = match index {
+            0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
+            _ => writeln!(text, "{line}"),
+        };
+    }
+    text
 }
 
 fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {

@@ -1,10 +1,12 @@
 //! Plan files beside robot files.
 
+use std::cell::OnceCell;
 use std::fs::File;
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 
 use crate::outcome::Failure;
@@ -32,7 +34,39 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>,
     }
 }
 
-/// The choices for a robot: those of its plan file, or those that a build makes by itself.
-pub(crate) fn choice(robot_file: &Path, robot: &Robot) -> Result<Choice, Failure> {
-    Ok(read(robot_file, robot)?.map_or_else(|| Choice::default_of(robot), Choice::from))
+/// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are needed.
+pub(crate) struct Compiler<'a> {
+    robot: &'a Robot,
+    file: &'a Path,
+    choice: OnceCell<Choice>,
+}
+
+impl<'a> Compiler<'a> {
+    pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
+        Self { robot, file, choice: OnceCell::new() }
+    }
+
+    /// For a robot that is part of this program, with the text of its plan.
+    pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
+        let name = path(file).display().to_string();
+        let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
+        Ok(Self { robot, file, choice: OnceCell::from(Choice::from(plan)) })
+    }
+
+    /// The choices of the plan file, or those that a build makes by itself.
+    pub(crate) fn choice(&self) -> Result<&Choice, Failure> {
+        if let Some(choice) = self.choice.get() {
+            return Ok(choice);
+        }
+        let plan = read(self.file, self.robot)?;
+        Ok(self.choice.get_or_init(|| plan.map_or_else(|| Choice::default_of(self.robot), Choice::from)))
+    }
+
+    pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
+        let compiled = match form {
+            Form::SevenSteps => compile(self.robot, function, form),
+            Form::Reduced | Form::Rewritten => self.choice()?.compile(self.robot, function, form),
+        };
+        compiled.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+    }
 }

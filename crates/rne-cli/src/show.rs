@@ -9,6 +9,7 @@ use rne_codegen::{Form, Function, Quantity, Step, compile_keeping};
 use rne_model::Robot;
 
 use crate::outcome::{Failure, Outcome};
+use crate::plan_file::Compiler;
 use crate::terminal::QUIET;
 use crate::{arguments, heading, highlight, robot_file};
 
@@ -111,14 +112,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         keep.push(Kept::Velocity);
     }
     let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
-    let program = compile_keeping(&robot, arguments.function, arguments.form, &quantities)
-        .map_err(|error| Failure::compile(&file, &error))?;
+    let program = match arguments.form {
+        Form::SevenSteps => compile_keeping(&robot, arguments.function, arguments.form, &quantities)
+            .map_err(|error| Failure::compile(&file, &error))?,
+        form if keep.is_empty() => Compiler::new(&arguments.file, &robot).compile(arguments.function, form)?,
+        form => {
+            return Err(Failure::usage(format_args!(
+                "only the seven steps have {}; the form {form} keeps torques alone",
+                keep[0].words()
+            )));
+        }
+    };
 
     let mut text = heading::robot(&robot);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
     if !keep.is_empty() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let _ = writeln!(text, "{QUIET}kept for reading, and counted: {}{QUIET:#}", words.join(", "));
+    }
+    if let Some(proof) = &program.proof {
+        text.push('\n');
+        for line in emit::evidence(&program, proof) {
+            let _ = writeln!(text, "{QUIET}{line}{QUIET:#}");
+        }
     }
     let what = Listing { joint: arguments.joint, step: arguments.step, explain: true, ..Listing::default() };
     text.push('\n');

@@ -1,6 +1,7 @@
 //! Bare `rne`: a tour of one robot, from its table to its torques. Every number in it is computed as it runs.
 
 use std::fmt::Write as _;
+use std::path::Path;
 
 use rne::{DynArm, InverseDynamics as _};
 use rne_codegen::emit::{self, Listing};
@@ -10,6 +11,7 @@ use rne_model::{Robot, check};
 use crate::layout::{Align, columns, wrap};
 use crate::numbers::{at_the_point, exact};
 use crate::outcome::{Failure, Outcome};
+use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, QUIET, TITLE, TYPED};
 use crate::{heading, highlight, ops};
 
@@ -18,6 +20,9 @@ const FILE: &str = "robots/puma560.yaml";
 
 /// Its text.
 const YAML: &str = include_str!("../../../robots/puma560.yaml");
+
+/// Its plan of the reduced form.
+const PLAN: &str = include_str!("../../../robots/puma560.plan.yaml");
 
 /// The same robot, compiled into this program.
 #[derive(rne::InverseDynamics)]
@@ -50,7 +55,9 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
         "On the left the recursion as a loop over 3-vectors performs it; on the right the generated code. \
          The functions that leave velocities or accelerations out are compiled for themselves.",
     );
-    text.push_str(&ops::table(&[(robot.name.clone(), ops::counts(FILE, &robot)?)]));
+    let file = Path::new(FILE);
+    let counts = ops::counts(file, &robot, &Compiler::built_in(file, &robot, PLAN)?, &[])?;
+    text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
     chapter(
         &mut text,
         5,

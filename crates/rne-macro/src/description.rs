@@ -28,7 +28,7 @@ pub(crate) fn operations(programs: &[Program]) -> String {
                     | method | products | sums | angles |\n|---|---|---|---|\n"
         .to_owned();
     for program in programs {
-        let (products, sums) = program.ledger.before();
+        let (products, sums) = program.before();
         let after = program.operations();
         let _ = writeln!(
             text,
@@ -39,9 +39,15 @@ pub(crate) fn operations(programs: &[Program]) -> String {
     text
 }
 
+/// Why a form that is not the seven steps can be trusted.
+pub(crate) fn evidence(programs: &[Program]) -> Option<String> {
+    let (program, proof) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)))?;
+    Some(verbatim(&emit::evidence(program, proof).join("\n")))
+}
+
 /// The documentation of one method.
 pub(crate) fn method(program: &Program) -> String {
-    let (products, sums) = program.ledger.before();
+    let (products, sums) = program.before();
     let after = program.operations();
     format!(
         "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.",

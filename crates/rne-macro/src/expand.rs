@@ -4,14 +4,15 @@ use std::path::Path;
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Form, Function, Program};
 use rne_model::{Report, Robot, check_bytes};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
 use crate::implementation::Target;
-use crate::location;
+use crate::location::{self, RobotFile};
 
 /// `#[derive(InverseDynamics)]`.
 ///
@@ -28,7 +29,17 @@ pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
     let loaded = attribute.source.as_ref().map(|source| load(source, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
-        let programs = programs(&robot, attribute.form, span, &mut errors)?;
+        let choice = match (&loaded.plan, attribute.form) {
+            (_, Form::SevenSteps) | (None, _) => None,
+            (Some(file), _) => match PlanFile::read(&file.shown, &String::from_utf8_lossy(&file.bytes), &robot) {
+                Ok(plan) => Some(Choice::from(plan)),
+                Err(report) => {
+                    errors.at_span(span, describe(report));
+                    return None;
+                }
+            },
+        };
+        let programs = programs(&robot, attribute.form, choice, span, &mut errors)?;
         Some((robot, programs))
     });
     let target = Target { item: &item, krate: &attribute.krate };
@@ -41,9 +52,11 @@ pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
         }
         None => target.stub(loaded.joints),
     };
+    // a plan that is not used is not watched
+    let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file.absolute));
     let watched = loaded.watched;
     let errors = errors.into_tokens();
-    quote!(#errors #watched #code)
+    quote!(#errors #watched #plan #code)
 }
 
 fn is_struct(item: &DeriveInput, errors: &mut Errors) {
@@ -80,15 +93,20 @@ struct Loaded {
     robot: Option<Robot>,
     /// Makes the compiler watch the file.
     watched: TokenStream,
+    /// The plan file beside it.
+    plan: Option<RobotFile>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
 }
 
 fn load(source: &Source, errors: &mut Errors) -> Loaded {
-    let (name, bytes, watched) = match source {
-        Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new()),
+    let (name, bytes, watched, plan) = match source {
+        Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None),
         Source::Path(path) => match location::read(path) {
-            Ok(file) => (file.shown, file.bytes, watch(&file.absolute)),
+            Ok(file) => {
+                let plan = location::plan_beside(&file);
+                (file.shown, file.bytes, watch(&file.absolute), plan)
+            }
             Err(missing) => {
                 errors.at(path, missing);
                 return Loaded::default();
@@ -96,11 +114,11 @@ fn load(source: &Source, errors: &mut Errors) -> Loaded {
         },
     };
     match check_bytes(&name, &bytes) {
-        Ok(checked) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched },
+        Ok(checked) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched, plan },
         Err(report) => {
             let joints = guess_joints(&report);
             errors.at_span(source.span(), describe(report));
-            Loaded { robot: None, watched, joints }
+            Loaded { robot: None, watched, plan: None, joints }
         }
     }
 }
@@ -119,9 +137,20 @@ fn watch(file: &Path) -> TokenStream {
     )
 }
 
-fn programs(robot: &Robot, form: Form, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
+fn programs(
+    robot: &Robot,
+    form: Form,
+    choice: Option<Choice>,
+    span: Span,
+    errors: &mut Errors,
+) -> Option<Vec<Program>> {
+    let choice = choice.unwrap_or_else(|| match form {
+        // whatever the choices, the seven steps make none
+        Form::SevenSteps => Choice::none(robot),
+        Form::Reduced | Form::Rewritten => Choice::default_of(robot),
+    });
     let programs: Result<Vec<_>, _> =
-        Function::ALL.into_iter().map(|function| compile(robot, function, form)).collect();
+        Function::ALL.into_iter().map(|function| choice.compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

@@ -33,11 +33,13 @@ impl Target<'_> {
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
         let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
         let operations = description::operations(programs);
+        let evidence = description::evidence(programs).map(|evidence| quote!(#[doc = #evidence]));
         let methods = programs.iter().map(|program| self.method(program));
         quote! {
             #constants
 
             #[doc = #operations]
+            #evidence
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
             impl #impl_generics #krate::InverseDynamics<#dof> for #ident #type_generics #where_clause {

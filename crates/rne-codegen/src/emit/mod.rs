@@ -1,5 +1,6 @@
 //! Renderers of programs: tokens for the macro, text for people.
 
+mod evidence;
 mod expression;
 mod formula;
 mod listing;
@@ -8,6 +9,7 @@ mod table;
 mod text;
 mod tokens;
 
+pub use evidence::evidence;
 pub use listing::{Listing, listing};
 pub use table::{angle, convention, dh_table};
 pub use text::rust_file;

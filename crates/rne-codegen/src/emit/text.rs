@@ -6,6 +6,7 @@ use std::fmt::Write;
 
 use rne_model::Robot;
 
+use super::evidence::evidence;
 use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
 use super::table::{convention, dh_table};
@@ -61,6 +62,12 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     dh_table(robot).lines().for_each(&mut doc);
     doc("```");
     doc("");
+    if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
+        doc("```text");
+        evidence(program, proof).iter().for_each(|line| doc(line));
+        doc("```");
+        doc("");
+    }
     doc("Operations of one call, of the recursion -> of the code below:");
     doc("");
     doc("| function | products | sums | angles |");

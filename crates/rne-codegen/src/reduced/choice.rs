@@ -25,6 +25,12 @@ pub struct Choice {
 }
 
 impl Choice {
+    /// No choice made.
+    #[must_use]
+    pub fn none(robot: &Robot) -> Self {
+        Self { plan: Plan::new(robot.dof()), rewritten: None }
+    }
+
     /// The choice of a build that has no plan file, without some tricks: the same on every machine.
     #[must_use]
     pub fn default_without(robot: &Robot, without: &[Trick]) -> Self {
@@ -42,11 +48,15 @@ impl Choice {
     /// # Errors
     /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
     pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
+        if form == Form::SevenSteps {
+            return crate::compile(robot, function, form);
+        }
         if form == Form::Rewritten && function == Function::InverseDynamics {
             return self.compile_rewritten(robot);
         }
         let (frame, drawing) = drawn(robot, &self.plan, function)?;
-        drawing.program(robot, &frame, function, form)
+        let program = drawing.program(robot, &frame, function, form)?;
+        Ok(Program { choices: self.plan.choices(), ..program })
     }
 
     fn compile_rewritten(&self, robot: &Robot) -> Result<Program, CompileError> {

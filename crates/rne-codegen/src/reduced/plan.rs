@@ -304,6 +304,41 @@ impl Plan {
         }
     }
 
+    /// The choices in words, those of the arm and then those of each joint, without those that are not made.
+    #[must_use]
+    pub fn choices(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        let of_the_arm = [
+            (self.regrouped, "matter on joint axes belongs to the link before".to_owned()),
+            (self.gyrostat, "the last link is a spinning sphere without mass".to_owned()),
+            (self.turned_last_frame, "the last frame is turned so that h_y vanishes".to_owned()),
+            (self.carried_prismatics, "prismatic links keep the axes of the revolute link before".to_owned()),
+            (self.length_scale != Scale::Default, format!("lengths are measured in {}", self.length_scale)),
+            (self.force_scale != Scale::Default, format!("forces are measured by {}", self.force_scale)),
+        ];
+        lines.extend(of_the_arm.into_iter().filter(|(made, _)| *made).map(|(_, words)| words));
+        for (index, joint) in self.joints.iter().enumerate() {
+            let plain = JointPlan::default();
+            let [first, second, third] = joint.gauge;
+            let mut words: Vec<String> = [
+                (joint.gauge != plain.gauge, format!("gauge ({first}, {second}, {third})")),
+                (joint.slide != plain.slide, format!("slide {}", joint.slide)),
+                (joint.outward_offset != plain.outward_offset, format!("outward offset at {}", joint.outward_offset)),
+                (joint.inward_offset != plain.inward_offset, format!("inward offset at {}", joint.inward_offset)),
+                (joint.moment != plain.moment, format!("moment {}", joint.moment)),
+            ]
+            .into_iter()
+            .filter(|(made, _)| *made)
+            .map(|(_, words)| words)
+            .collect();
+            words.extend(joint.switches.list().iter().filter(|(_, on)| *on).map(|(name, _)| name.replace('_', " ")));
+            if !words.is_empty() {
+                lines.push(format!("joint {}: {}", index + 1, words.join(", ")));
+            }
+        }
+        lines
+    }
+
     pub(crate) fn frames(&self) -> Frames {
         Frames { turned_last: self.turned_last_frame, carried: self.carried_prismatics }
     }

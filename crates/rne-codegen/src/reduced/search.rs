@@ -263,7 +263,7 @@ impl Search {
     pub(crate) fn tidied(&mut self, plan: &Plan) -> Plan {
         let Some(weight) = self.cost(plan).map(|cost| cost.weight()) else { return plan.clone() };
         let mut tidy = plan.clone();
-        let mut keep = |search: &mut Self, tidy: &mut Plan, other: Plan| {
+        let keep = |search: &mut Self, tidy: &mut Plan, other: Plan| {
             if other != *tidy && search.cost(&other).is_some_and(|cost| cost.weight() <= weight) {
                 *tidy = other;
             }
