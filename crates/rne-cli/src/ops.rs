@@ -96,8 +96,11 @@ pub(crate) fn counts(
     without: &[Trick],
 ) -> Result<Vec<Count>, Failure> {
     let mut counts = Vec::new();
-    let count = |function, form, program: &Program| {
-        Count { function, form, before: program.before(), after: program.operations() }
+    let count = |function, form, program: &Program| Count {
+        function,
+        form,
+        before: program.before(),
+        after: program.operations(),
     };
     if !without.is_empty() {
         let plan = without.iter().fold(compiler.choice()?.plan.clone(), |plan, trick| trick.left_out_of(&plan));

@@ -101,7 +101,8 @@ fn watched(
         let over = if seconds > 0.0 { elapsed.as_secs_f64() / seconds } else { 1.0 };
         if shown.elapsed() > Duration::from_millis(100) {
             shown = Instant::now();
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)] // 0 to 1000
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
+            // 0 to 1000
             bar.set_position((over.min(1.0) * STEPS as f64) as u64);
             bar.set_prefix(progress.phase);
             bar.set_message(format!("{} operations, {} plans", progress.best.total(), progress.plans));
@@ -142,9 +143,8 @@ fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Writte
 
 /// Builds watch the robot file; a new plan beside it is news to them.
 fn touch(robot_file: &Path) {
-    let touched = |path: &Path| -> io::Result<()> {
-        OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now())
-    };
+    let touched =
+        |path: &Path| -> io::Result<()> { OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now()) };
     // a robot file that cannot be touched is built anew when it changes
     let _ = touched(robot_file);
 }

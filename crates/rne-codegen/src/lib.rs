@@ -9,8 +9,8 @@
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]
 
-pub mod emit;
 mod derivation;
+pub mod emit;
 mod exact;
 mod function;
 mod graph;
@@ -33,9 +33,7 @@ use rne_model::Robot;
 pub use function::{Form, Function, UnknownName};
 pub use interpret::{Arguments, Interpreter};
 pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
-pub use program::{
-    Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn,
-};
+pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
 pub use quantity::{Axis, Component, Name, Quantity, Step};
 
 use crate::worksheet::Worksheet;

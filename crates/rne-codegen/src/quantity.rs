@@ -232,7 +232,8 @@ impl Quantity {
             | Self::GroupSine
             | Self::GroupCosine
             | Self::Rotation
-            | Self::Omega | Self::OmegaUnturned => Some(Step::AngularVelocity),
+            | Self::Omega
+            | Self::OmegaUnturned => Some(Step::AngularVelocity),
             Self::OmegaDot | Self::Gradient | Self::GradientUnturned => Some(Step::AngularAcceleration),
             Self::Velocity => Some(Step::Velocity),
             Self::OmegaCrossR
@@ -300,15 +301,12 @@ impl Quantity {
             Self::R => "r",
             Self::Inertia => "i",
             Self::TipRotation | Self::Rotation => "rot",
-            Self::FirstMoment => "h",
             Self::SecondMoment => "p",
             Self::OmegaUnturned => "wn",
             Self::Gradient => "u",
             Self::GradientUnturned => "un",
             Self::OriginAcceleration => "a",
             Self::OriginAccelerationUnturned => "an",
-            Self::ReducedForce => "f",
-            Self::ReducedMoment => "n",
             Self::Angle | Self::GroupAngle => "angle",
             Self::Sine | Self::GroupSine => "s",
             Self::Cosine | Self::GroupCosine => "c",
@@ -325,9 +323,9 @@ impl Quantity {
             Self::Gravity => "g",
             Self::ChildForce => "fc",
             Self::ChildMoment => "nc",
-            Self::InertiaForce | Self::JointForce => "f",
-            Self::AngularMomentum => "h",
-            Self::InertiaMoment | Self::JointMoment => "n",
+            Self::InertiaForce | Self::JointForce | Self::ReducedForce => "f",
+            Self::AngularMomentum | Self::FirstMoment => "h",
+            Self::InertiaMoment | Self::JointMoment | Self::ReducedMoment => "n",
             Self::Torque => "tau",
         }
     }

@@ -307,10 +307,7 @@ impl<'w> Schedule<'w> {
             };
             let place = Place { joint: name.joint, step: Step::Torque, quantity: Quantity::Torque };
             // after the last node that was there when it was named, and after torques named before it
-            statements.push((
-                (definition.after.saturating_sub(1), order),
-                Statement { place, name, value },
-            ));
+            statements.push(((definition.after.saturating_sub(1), order), Statement { place, name, value }));
             returned.push(Output { name, value: Expression::Variable(name) });
         }
         returned

@@ -54,14 +54,14 @@ impl<'a> Value<'a> {
             Content::Mapping(entries) => entries.as_slice(),
             _ => &[],
         };
-        entries.iter().map(move |entry| (entry.key.as_str(), Value { file, node: &*entry.value }))
+        entries.iter().map(move |entry| (entry.key.as_str(), Value { file, node: &entry.value }))
     }
 
     /// The items of a list; `None` for anything else.
     pub fn items(&self) -> Option<impl ExactSizeIterator<Item = Value<'a>>> {
         let file = self.file;
         match &self.node.content {
-            Content::Sequence(items) => Some(items.iter().map(move |node| Value { file, node: &**node })),
+            Content::Sequence(items) => Some(items.iter().map(move |node| Value { file, node })),
             _ => None,
         }
     }

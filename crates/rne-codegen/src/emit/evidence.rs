@@ -7,7 +7,9 @@ use crate::program::{Program, Proof};
 #[must_use]
 pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     let form = match program.form {
-        Form::Rewritten => "Rewritten form: fewest operations, algebra without a recursion; torques are those of the seven steps.",
+        Form::Rewritten => {
+            "Rewritten form: fewest operations, algebra without a recursion; torques are those of the seven steps."
+        }
         _ => "Reduced form: fewest operations; only the torques keep a physical meaning.",
     };
     let mut lines = vec![

@@ -8,8 +8,8 @@ use rne_model::{JointKind, Robot};
 use super::expression::let_statement;
 use super::formula::{formulas, reduced_formulas};
 use super::table::angle;
-use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::function::Form;
+use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
 use crate::quantity::{Component, Name, Quantity, Step};
 
@@ -94,7 +94,8 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
 fn heading(text: &mut String, robot: &Robot, form: Form, joint: usize, step: Step) {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
-    let formulas = if form == Form::SevenSteps { formulas(step, kind, joint) } else { reduced_formulas(step, kind, joint) };
+    let formulas =
+        if form == Form::SevenSteps { formulas(step, kind, joint) } else { reduced_formulas(step, kind, joint) };
     for formula in formulas {
         let _ = writeln!(text, "    // {formula}");
     }

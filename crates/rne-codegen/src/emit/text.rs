@@ -64,7 +64,9 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     doc("");
     if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
         doc("```text");
-        evidence(program, proof).iter().for_each(|line| doc(line));
+        for line in evidence(program, proof) {
+            doc(&line);
+        }
         doc("```");
         doc("");
     }

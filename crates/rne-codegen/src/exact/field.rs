@@ -108,7 +108,7 @@ fn root(square: u64, field: usize) -> Option<u64> {
     }
     let twos = (p - 1).trailing_zeros();
     let odd = (p - 1) >> twos;
-    let non_residue = (2..).find(|&candidate| power(candidate, (p - 1) / 2) != 1)?;
+    let non_residue = (2..p).find(|&candidate| power(candidate, (p - 1) / 2) != 1)?;
     let (mut order, mut generator) = (twos, power(non_residue, odd));
     let (mut t, mut r) = (power(square, odd), power(square, odd.div_ceil(2)));
     while t != 1 {

@@ -195,12 +195,9 @@ fn plans(search: &mut Search, seed: u64, share: f64, clock: Clock<'_>) -> Result
         clock(progress).filter(|over| *over < end)
     };
     let half = share * 0.5;
-    let descended = search.descend(&mut |progress| until(half, clock, progress));
-    let start = match descended {
-        Ok(()) => clock(&search.progress("descent")).ok_or(Over)?,
-        // out of its own time, or out of all
-        Err(Over) => clock(&search.progress("descent")).ok_or(Over)?,
-    };
+    // it ends when it is done, or out of its own time, or out of all
+    let _ = search.descend(&mut |progress| until(half, clock, progress));
+    let start = clock(&search.progress("descent")).ok_or(Over)?;
     for round in 0..ROUNDS {
         let length = (share - start) / f64::from(ROUNDS);
         let begin = start + length * f64::from(round);

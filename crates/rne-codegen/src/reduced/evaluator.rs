@@ -2,13 +2,13 @@
 
 use rne_model::Robot;
 
+use super::inward::torques;
 use super::outward::{Arm, motions};
 use super::plan::Plan;
 use super::regroup::{Offers, Parameters, parameters};
 use super::rows::{Frames, Table};
 use super::sheet::{Cost, Dag, Identity, Ref, Sheet};
 use super::writer::{Angle, Writer};
-use super::inward::torques;
 use crate::function::Function;
 
 /// A table and what it offers.
@@ -29,9 +29,8 @@ pub(crate) struct Evaluator {
 
 /// The tables of a robot under every choice of frames that applies to it.
 pub(crate) fn frames(robot: &Robot) -> Vec<Frame> {
-    let choices = [false, true].into_iter().flat_map(|carried| {
-        [false, true].map(|turned_last| Frames { turned_last, carried })
-    });
+    let choices =
+        [false, true].into_iter().flat_map(|carried| [false, true].map(|turned_last| Frames { turned_last, carried }));
     choices
         .filter_map(|frames| {
             let table = Table::new(robot, frames)?;

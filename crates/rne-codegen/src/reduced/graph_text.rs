@@ -86,9 +86,9 @@ impl Constants<'_> {
 
 fn leaf_name(leaf: Leaf) -> String {
     let joint = |at: u8| usize::from(at) + 1;
-    let turn = |letter: &str, first: u8, last: u8| match first == last {
-        true => format!("{letter}{}", joint(first)),
-        false => format!("{letter}{}_{}", joint(first), joint(last)),
+    let turn = |letter: &str, first: u8, last: u8| {
+        let group = if first == last { String::new() } else { format!("_{}", joint(last)) };
+        format!("{letter}{}{group}", joint(first))
     };
     match leaf {
         Leaf::Position(at) => format!("q{}", joint(at)),

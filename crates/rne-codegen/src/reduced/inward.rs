@@ -6,7 +6,7 @@
 //! τ_i = z · n_i (revolute), z · f_i (prismatic)
 //! ```
 
-use rne_model::JointKind::Prismatic;
+use rne_model::JointKind::{Prismatic, Revolute};
 
 use super::outward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
 use super::plan::{JointPlan, Moment, Side};
@@ -75,7 +75,7 @@ pub(crate) fn torques<'s>(writer: &'s Writer, arm: &Arm<'_>, moved: &[Moved<'s>]
             let (own, unturned) = with_child(writer, arm, index, link, child, own, unturned);
             match rows[index].kind {
                 Prismatic => slide(writer, arm, index, link, own.plus(unturned)),
-                _ => turn(writer, arm, index, link, own, unturned),
+                Revolute => turn(writer, arm, index, link, own, unturned),
             }
         };
         writer.at(Quantity::Torque, index + 1);
@@ -132,12 +132,7 @@ fn length_inward(arm: &Arm<'_>) -> Number {
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
-fn own_wrench<'s>(
-    writer: &'s Writer,
-    arm: &Arm<'_>,
-    index: usize,
-    link: &Moved<'s>,
-) -> (Wrench<'s>, Wrench<'s>) {
+fn own_wrench<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, link: &Moved<'s>) -> (Wrench<'s>, Wrench<'s>) {
     let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
     let matter = &arm.parameters.links[index];
     let is_revolute = arm.rows()[index].kind != Prismatic;
@@ -176,17 +171,10 @@ fn first_moment<'s>(
 }
 
 /// antisym(U S) in one of three equal forms (section 3.3).
-fn second_moment<'s>(
-    writer: &'s Writer,
-    matter: &PseudoInertia,
-    motion: &Motion<'s>,
-    form: Moment,
-) -> Vector<'s> {
+fn second_moment<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
     let s = matter.s;
     match form {
-        Moment::Second => {
-            antisymmetric(&motion.gradient, &s.map(|row| row.map(|x| writer.number(x))))
-        }
+        Moment::Second => antisymmetric(&motion.gradient, &s.map(|row| row.map(|x| writer.number(x)))),
         Moment::Diagonal => {
             let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);
             let diagonal = |rate_dot: Symbol<'s>, product: Symbol<'s>, a: Number, b: Number| {
@@ -204,9 +192,8 @@ fn second_moment<'s>(
         Moment::Inertia => {
             // J = tr(S) 1 - S
             let trace = s[0][0] + s[1][1] + s[2][2];
-            let j = [0, 1, 2].map(|row| {
-                writer.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] }))
-            });
+            let j = [0, 1, 2]
+                .map(|row| writer.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] })));
             let apply = |v: Vector<'s>| Vector(j.map(|row| row.dot(v)));
             apply(motion.omega_dot) + motion.omega.cross(apply(motion.omega))
         }
@@ -255,8 +242,7 @@ fn with_child<'s>(
     let Some(child) = child else { return (own, unturned) };
     let p = writer.vector(child.arm);
     let Wrench { force, moment } = child.wrench;
-    let to_unturned =
-        arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
+    let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
     match (child.unturned, to_unturned) {
         (false, false) => (own.plus(child.wrench.about(p)), unturned),
         (false, true) => {
@@ -293,8 +279,7 @@ fn turn<'s>(
         return (torque, None);
     }
     let in_unturned = !unturned.is_zero() || (parallel && on.group_wrench);
-    let mut wrench =
-        if in_unturned { own.map(|v| link.group_turn.about_z(v)).plus(unturned) } else { own };
+    let mut wrench = if in_unturned { own.map(|v| link.group_turn.about_z(v)).plus(unturned) } else { own };
     let mut p = offset;
     if inward_offset == Side::Parent {
         p = plus(p, along_axis(row, d));

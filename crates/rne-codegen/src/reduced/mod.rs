@@ -20,6 +20,8 @@ mod rewrite;
 mod rows;
 mod search;
 mod sheet;
+#[cfg(test)]
+mod tests;
 mod transcript;
 mod trick;
 mod writer;

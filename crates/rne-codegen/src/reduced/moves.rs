@@ -146,7 +146,8 @@ impl Moves {
 
     /// All that a group of parallel axes can share, with its offsets as they are, innermost or outermost.
     fn of_group(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
-        let starts = index + 1 < self.rows.len() && !is_parallel(&self.rows, index) && is_parallel(&self.rows, index + 1);
+        let starts =
+            index + 1 < self.rows.len() && !is_parallel(&self.rows, index) && is_parallel(&self.rows, index + 1);
         if !starts {
             return;
         }
@@ -236,7 +237,11 @@ impl Moves {
             }
             34..46 => joint.slide = self.slides[index][rng.usize(..self.slides[index].len())],
             46..50 => {
-                let length = *[Scale::One, Scale::Default].iter().chain(&self.lengths).nth(rng.usize(..self.lengths.len() + 2)).unwrap_or(&Scale::One);
+                let length = *[Scale::One, Scale::Default]
+                    .iter()
+                    .chain(&self.lengths)
+                    .nth(rng.usize(..self.lengths.len() + 2))
+                    .unwrap_or(&Scale::One);
                 match rng.u32(..5) {
                     0 => (plan.length_scale, plan.force_scale) = (length, Scale::Default),
                     1 => plan.length_scale = length,

@@ -179,6 +179,25 @@ fn joint_point<'s>(
     }
 }
 
+/// A revolute joint while the motion of its link is written.
+struct Revolving<'s, 'a> {
+    writer: &'s Writer,
+    row: &'a Row,
+    /// Counted from 1.
+    joint: usize,
+    plan: &'a JointPlan,
+    /// Whether its axis is parallel to the one before, so that both share N.
+    parallel: bool,
+    twist: SymbolicTurn<'s>,
+    turn: SymbolicTurn<'s>,
+    group_turn: SymbolicTurn<'s>,
+    rate: Symbol<'s>,
+    rate_dot: Symbol<'s>,
+}
+
+/// ω, ω̇ and U in one frame.
+type Rates<'s> = (Vector<'s>, Vector<'s>, Gradient<'s>);
+
 fn revolute<'s>(
     writer: &'s Writer,
     arm: &Arm<'_>,
@@ -187,138 +206,180 @@ fn revolute<'s>(
     moved: &[Moved<'s>],
     group: &mut Option<Group<'s>>,
 ) -> Moved<'s> {
-    let (rows, joint) = (arm.rows(), index + 1);
-    let row = &rows[index];
-    let JointPlan { outward_offset, switches: on, .. } = arm.plan.joints[index];
-    let (offset, d) = arm.lengths(index, arm.parameters.lambda);
-    let has_d = !d.is_zero();
+    let rows = arm.rows();
     let parallel = is_parallel(rows, index);
-    let (qd, qdd) = (writer.rate(rows, index), writer.rate_dot(rows, index));
-    let twist = writer.constant_turn(row.alpha);
-
-    if arm.is_spin(index) {
-        // only ω and ω̇ of the link before matter, see the way back
-        let motion = Motion {
-            omega: twist.back_about_x(before.omega),
-            omega_dot: twist.back_about_x(before.omega_dot),
-            ..before
-        };
-        let turn = writer.turn(rows, index, index);
-        return Moved { own: motion, unturned: motion, twist, group_turn: turn, turn };
-    }
-
     let turn = writer.turn(rows, index, index);
-    let group_turn = if parallel { writer.turn(rows, group_start(rows, index), index) } else { turn };
-    let outward = |v: Vector<'s>| rotated_outward(writer, row, turn, on.scaled_twist_outward, v);
+    let link = Revolving {
+        writer,
+        row: &rows[index],
+        joint: index + 1,
+        plan: &arm.plan.joints[index],
+        parallel,
+        twist: writer.constant_turn(rows[index].alpha),
+        turn,
+        group_turn: if parallel { writer.turn(rows, group_start(rows, index), index) } else { turn },
+        rate: writer.rate(rows, index),
+        rate_dot: writer.rate_dot(rows, index),
+    };
+    if arm.is_spin(index) {
+        return link.spin(before);
+    }
+    let (offset, d) = arm.lengths(index, arm.parameters.lambda);
+    let to_parent = link.plan.outward_offset == Side::Parent;
+    let p = if to_parent { plus(offset, along_axis(link.row, d)) } else { offset };
 
-    writer.at(Quantity::OriginAcceleration, joint);
-    let p = if has_d && outward_offset == Side::Parent { plus(offset, along_axis(row, d)) } else { offset };
+    writer.at(Quantity::OriginAcceleration, link.joint);
     let (point, part, part_unturned) = joint_point(writer, arm, index, before, moved, p);
-    let mut acceleration_unturned = match moved.last() {
-        Some(link) if parallel => {
-            let part = if part_unturned { part } else { link.group_turn.about_z(part) };
-            link.unturned.acceleration + part
+    let point_unturned = match moved.last() {
+        Some(last) if parallel => {
+            last.unturned.acceleration + if part_unturned { part } else { last.group_turn.about_z(part) }
         }
-        _ => twist.back_about_x(point),
+        _ => link.twist.back_about_x(point),
     };
-
-    // frame N
-    writer.at(Quantity::OmegaUnturned, joint);
-    let shared = match *group {
-        Some(shared) if parallel => Group { rate: shared.rate + qd, rate_dot: shared.rate_dot + qdd, ..shared },
-        _ => {
-            let axis = writer.vector(along_axis(row, Number::ONE));
-            Group {
-                omega: twist.back_about_x(before.omega),
-                omega_dot: twist.back_about_x(before.omega_dot),
-                column: twist.back_about_x(before.gradient.of(axis)),
-                rate: qd,
-                rate_dot: qdd,
-            }
-        }
-    };
-    *group = Some(shared);
-    let omega_unturned = writer.name(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
-    let spun = |omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot: Vector<'s>| {
-        // ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z
-        let ([wx, wy, _], [x, y, z]) = (omega.0, omega_dot.0);
-        Vector([x + rate * wy, y - rate * wx, z + rate_dot])
-    };
-    let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
-
-    // 1   ω
-    writer.at(Quantity::Omega, joint);
-    let omega = if parallel && on.group_omega {
-        group_turn.back_about_z(omega_unturned)
-    } else {
-        outward(before.omega).plus_z(qd)
-    };
-    let omega = writer.name(Quantity::Omega, joint, omega);
-
-    // 2   ω̇ and U
-    writer.at(Quantity::OmegaDot, joint);
-    let omega_dot = if on.omega_dot_unturned {
-        group_turn.back_about_z(omega_dot_unturned)
-    } else if parallel && on.group_omega_dot {
-        spun(omega, shared.rate, shared.rate_dot, group_turn.back_about_z(shared.omega_dot))
-    } else {
-        spun(omega, qd, qdd, outward(before.omega_dot))
-    };
-    let (omega_dot, gradient, gradient_unturned) = if on.axis_column {
-        let column = group_turn.back_about_z(shared.column);
-        let ([x, y, z], [u13, u23, _]) = (omega.0, column.0);
-        let [_, _, dz] = omega_dot.0;
-        let omega_dot = Vector([y * z - u23, u13 - x * z, dz]);
-        writer.name(Quantity::OmegaDot, joint, omega_dot);
-        writer.at(Quantity::Gradient, joint);
-        (
-            omega_dot,
-            Gradient::with_axis_column(omega, dz, column),
-            Gradient::with_axis_column(omega_unturned, omega_dot_unturned.0[2], shared.column),
-        )
-    } else {
-        writer.name(Quantity::OmegaDot, joint, omega_dot);
-        writer.at(Quantity::Gradient, joint);
-        (omega_dot, Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
-    };
-    name_gradient(writer, Quantity::Gradient, joint, &gradient);
-    name_gradient(writer, Quantity::GradientUnturned, joint, &gradient_unturned);
-
-    // 4   a
-    writer.at(Quantity::OriginAcceleration, joint);
-    let at_joint = has_d && outward_offset == Side::Joint;
-    let lift = gradient_unturned.column_z().times(d);
-    if at_joint {
-        acceleration_unturned = acceleration_unturned + lift;
-    }
-    let mut acceleration = if parallel && !on.group_acceleration {
-        let turned = turn.back_about_z(point);
-        if at_joint { turned + group_turn.back_about_z(lift) } else { turned }
-    } else if parallel || at_joint {
-        group_turn.back_about_z(acceleration_unturned)
-    } else {
-        outward(point)
-    };
-    if has_d && outward_offset == Side::Link {
-        let lift = gradient.column_z().times(d);
-        acceleration = acceleration + lift;
-        acceleration_unturned = acceleration_unturned + group_turn.about_z(lift);
-    }
-    writer.name(Quantity::OriginAcceleration, joint, acceleration);
-    writer.name(Quantity::OriginAccelerationUnturned, joint, acceleration_unturned);
-
+    let shared = link.share(before, group);
+    let (own, unturned) = link.rates(before, &shared);
+    let d = if to_parent { Number::ZERO } else { d };
+    let (acceleration, acceleration_unturned) = link.acceleration(point, point_unturned, d, &own.2, &unturned.2);
+    let motion =
+        |(omega, omega_dot, gradient): Rates<'s>, acceleration| Motion { omega, omega_dot, acceleration, gradient };
     Moved {
-        own: Motion { omega, omega_dot, acceleration, gradient },
-        unturned: Motion {
-            omega: omega_unturned,
-            omega_dot: omega_dot_unturned,
-            acceleration: acceleration_unturned,
-            gradient: gradient_unturned,
-        },
-        twist,
-        group_turn,
+        own: motion(own, acceleration),
+        unturned: motion(unturned, acceleration_unturned),
+        twist: link.twist,
+        group_turn: link.group_turn,
         turn,
     }
+}
+
+impl<'s> Revolving<'s, '_> {
+    /// A last link that is only a spin: what it needs is ω and ω̇ of the link before, in N.
+    fn spin(&self, before: Motion<'s>) -> Moved<'s> {
+        let motion = Motion {
+            omega: self.twist.back_about_x(before.omega),
+            omega_dot: self.twist.back_about_x(before.omega_dot),
+            ..before
+        };
+        Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn }
+    }
+
+    /// What frame N takes over from before the group, and the rates of the group so far.
+    fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
+        self.writer.at(Quantity::OmegaUnturned, self.joint);
+        let shared = match *group {
+            Some(shared) if self.parallel => {
+                Group { rate: shared.rate + self.rate, rate_dot: shared.rate_dot + self.rate_dot, ..shared }
+            }
+            _ => {
+                let axis = self.writer.vector(along_axis(self.row, Number::ONE));
+                Group {
+                    omega: self.twist.back_about_x(before.omega),
+                    omega_dot: self.twist.back_about_x(before.omega_dot),
+                    column: self.twist.back_about_x(before.gradient.of(axis)),
+                    rate: self.rate,
+                    rate_dot: self.rate_dot,
+                }
+            }
+        };
+        *group = Some(shared);
+        shared
+    }
+
+    /// Rz(θ)ᵀ Rx(α)ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
+    fn outward(&self, v: Vector<'s>) -> Vector<'s> {
+        let Self { twist, turn, .. } = *self;
+        let (true, Some(scaled)) = (self.plan.switches.scaled_twist_outward, ScaledTwist::new(self.row)) else {
+            return turn.back_about_z(twist.back_about_x(v));
+        };
+        let ScaledTwist { ratio, larger, on_sine } = scaled;
+        let [x, y, z] = v.0;
+        let (s, c) = (turn.s.times(larger), turn.c.times(larger));
+        let u = if on_sine { z + y.times(ratio) } else { y + z.times(ratio) };
+        Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
+    }
+
+    /// ω, ω̇ and U in the link's frame and in N.
+    fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> (Rates<'s>, Rates<'s>) {
+        let (writer, joint, on) = (self.writer, self.joint, self.plan.switches);
+        let omega_unturned = writer.name(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
+        let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
+
+        // 1   ω
+        writer.at(Quantity::Omega, joint);
+        let omega = if self.parallel && on.group_omega {
+            self.group_turn.back_about_z(omega_unturned)
+        } else {
+            self.outward(before.omega).plus_z(self.rate)
+        };
+        let omega = writer.name(Quantity::Omega, joint, omega);
+
+        // 2   ω̇
+        writer.at(Quantity::OmegaDot, joint);
+        let mut omega_dot = if on.omega_dot_unturned {
+            self.group_turn.back_about_z(omega_dot_unturned)
+        } else if self.parallel && on.group_omega_dot {
+            spun(omega, shared.rate, shared.rate_dot, self.group_turn.back_about_z(shared.omega_dot))
+        } else {
+            spun(omega, self.rate, self.rate_dot, self.outward(before.omega_dot))
+        };
+        let column = self.group_turn.back_about_z(shared.column);
+        if on.axis_column {
+            let ([x, y, z], [u13, u23, _]) = (omega.0, column.0);
+            omega_dot = Vector([y * z - u23, u13 - x * z, omega_dot.0[2]]);
+        }
+        writer.name(Quantity::OmegaDot, joint, omega_dot);
+
+        // U
+        writer.at(Quantity::Gradient, joint);
+        let (gradient, gradient_unturned) = if on.axis_column {
+            (
+                Gradient::with_axis_column(omega, omega_dot.0[2], column),
+                Gradient::with_axis_column(omega_unturned, omega_dot_unturned.0[2], shared.column),
+            )
+        } else {
+            (Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
+        };
+        name_gradient(writer, Quantity::Gradient, joint, &gradient);
+        name_gradient(writer, Quantity::GradientUnturned, joint, &gradient_unturned);
+        ((omega, omega_dot, gradient), (omega_unturned, omega_dot_unturned, gradient_unturned))
+    }
+
+    /// a in the link's frame and in N, with the part of the offset `d` that acts on the axis or in the link.
+    fn acceleration(
+        &self,
+        point: Vector<'s>,
+        point_unturned: Vector<'s>,
+        d: Number,
+        gradient: &Gradient<'s>,
+        gradient_unturned: &Gradient<'s>,
+    ) -> (Vector<'s>, Vector<'s>) {
+        let (writer, joint, side) = (self.writer, self.joint, self.plan.outward_offset);
+        writer.at(Quantity::OriginAcceleration, joint);
+        let at_joint = !d.is_zero() && side == Side::Joint;
+        let lift = gradient_unturned.column_z().times(d);
+        let mut unturned = if at_joint { point_unturned + lift } else { point_unturned };
+        let mut own = if self.parallel && !self.plan.switches.group_acceleration {
+            let turned = self.turn.back_about_z(point);
+            if at_joint { turned + self.group_turn.back_about_z(lift) } else { turned }
+        } else if self.parallel || at_joint {
+            self.group_turn.back_about_z(unturned)
+        } else {
+            self.outward(point)
+        };
+        if !d.is_zero() && side == Side::Link {
+            let lift = gradient.column_z().times(d);
+            own = own + lift;
+            unturned = unturned + self.group_turn.about_z(lift);
+        }
+        writer.name(Quantity::OriginAcceleration, joint, own);
+        writer.name(Quantity::OriginAccelerationUnturned, joint, unturned);
+        (own, unturned)
+    }
+}
+
+/// ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z
+fn spun<'s>(omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot: Vector<'s>) -> Vector<'s> {
+    let ([wx, wy, _], [x, y, z]) = (omega.0, omega_dot.0);
+    Vector([x + rate * wy, y - rate * wx, z + rate_dot])
 }
 
 /// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
@@ -342,10 +403,8 @@ fn prismatic<'s>(
     let own = if row.carried {
         writer.at(Quantity::OriginAcceleration, joint);
         let arm_vector = writer.vector(offset) + u * q;
-        let acceleration = before.acceleration
-            + before.gradient.of(arm_vector)
-            + before.omega.cross(u * twice_rate)
-            + u * qdd;
+        let acceleration =
+            before.acceleration + before.gradient.of(arm_vector) + before.omega.cross(u * twice_rate) + u * qdd;
         Motion { acceleration, ..before }
     } else {
         writer.at(Quantity::OriginAcceleration, joint);
@@ -376,25 +435,6 @@ fn name_gradient(writer: &Writer, quantity: Quantity, joint: usize, gradient: &G
             }
         }
     }
-}
-
-/// Rz(θ)ᵀ Rx(α)ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
-fn rotated_outward<'s>(
-    writer: &'s Writer,
-    row: &Row,
-    turn: SymbolicTurn<'s>,
-    scaled: bool,
-    v: Vector<'s>,
-) -> Vector<'s> {
-    let twist = writer.constant_turn(row.alpha);
-    let (true, Some(twist_by)) = (scaled, ScaledTwist::new(row)) else {
-        return turn.back_about_z(twist.back_about_x(v));
-    };
-    let [x, y, z] = v.0;
-    let ScaledTwist { ratio, larger, on_sine } = twist_by;
-    let (s, c) = (turn.s.times(larger), turn.c.times(larger));
-    let u = if on_sine { z + y.times(ratio) } else { y + z.times(ratio) };
-    Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
 }
 
 /// The smaller of sin α and cos α as a multiple of the larger.

@@ -8,6 +8,7 @@ use super::rows::Frames;
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[allow(clippy::struct_excessive_bools)] // independent choices
 pub struct Plan {
     /// Matter on joint axes is given to the link before (section 4).
     pub regrouped: bool,
@@ -284,7 +285,9 @@ impl FromStr for Scale {
             },
         };
         scale.ok_or_else(|| {
-            format!("`{text}` is no scale; there are `default`, `one`, `a2`, `d2`, `h2_x` and `m2` for any joint number")
+            format!(
+                "`{text}` is no scale; there are `default`, `one`, `a2`, `d2`, `h2_x` and `m2` for any joint number"
+            )
         })
     }
 }

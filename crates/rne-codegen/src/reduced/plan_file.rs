@@ -83,7 +83,10 @@ impl PlanFile {
         if written != Some(fingerprint(robot)) {
             return Err(refreshable(
                 &fingerprint_value,
-                &format!("this plan is not of `{}` as it is now: the numbers of its robot file have changed", robot.name),
+                &format!(
+                    "this plan is not of `{}` as it is now: the numbers of its robot file have changed",
+                    robot.name
+                ),
             ));
         }
         let reduced = required(&root, "reduced")?;
@@ -93,7 +96,8 @@ impl PlanFile {
             Some(value) => {
                 known_keys(&value, &["operations", "accuracy", "plan", "graph"])?;
                 let graph = required(&value, "graph")?;
-                let text = graph.text().ok_or_else(|| graph.error("a graph is a text, one operation per line", None))?;
+                let text =
+                    graph.text().ok_or_else(|| graph.error("a graph is a text, one operation per line", None))?;
                 Some(Rewritten { plan: plan(&required(&value, "plan")?, robot)?, graph: text.to_owned() })
             }
         };

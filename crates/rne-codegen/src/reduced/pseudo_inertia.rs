@@ -74,9 +74,7 @@ impl PseudoInertia {
         Self {
             mass,
             h: [0, 1, 2].map(|i| mass * p[i] + first * u[i]),
-            s: square(|i, j| {
-                mass * p[i] * p[j] + first * (p[i] * u[j] + u[i] * p[j]) + second * u[i] * u[j]
-            }),
+            s: square(|i, j| mass * p[i] * p[j] + first * (p[i] * u[j] + u[i] * p[j]) + second * u[i] * u[j]),
         }
     }
 }

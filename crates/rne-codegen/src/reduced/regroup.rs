@@ -4,9 +4,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use super::plan::{Plan, Scale, Slide, Target};
-use super::pseudo_inertia::{
-    Entry, PseudoInertia, Square, Triple, about_x, about_z, compose, square,
-};
+use super::pseudo_inertia::{Entry, PseudoInertia, Square, Triple, about_x, about_z, compose, square};
 use super::rows::{Row, Table};
 use crate::exact::Number;
 
@@ -122,9 +120,8 @@ fn regrouped(
     offers: &Offers,
 ) -> Option<(Vec<PseudoInertia>, Option<Number>)> {
     let rows = &table.rows;
-    let slid = |(row, slide): (&Row, &Number)| match slide.is_zero() {
-        true => row.matter,
-        false => row.matter.moved([Number::ZERO, Number::ZERO, -*slide]),
+    let slid = |(row, slide): (&Row, &Number)| {
+        if slide.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*slide]) }
     };
     let mut links: Vec<PseudoInertia> = rows.iter().zip(slides).map(slid).collect();
     let mut sphere = None;
@@ -231,8 +228,9 @@ fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
         for other in (0..3).filter(|&other| other != column) {
             let factor = rows[other][column];
             if !factor.is_zero() {
-                for k in column..4 {
-                    rows[other][k] = rows[other][k] - factor * rows[column][k];
+                let pivot = rows[column];
+                for (x, p) in rows[other].iter_mut().zip(pivot).skip(column) {
+                    *x = *x - factor * p;
                 }
             }
         }

@@ -132,10 +132,14 @@ impl<C: Fn(&Dag, &mut Vec<bool>) -> Cost> Rewriting<C> {
     }
 }
 
+/// Two operands.
+type Pair = (Ref, Ref);
+
 /// How often another move is tried on the node at hand.
 const TRIES: usize = 6;
 
-fn operands(sheet: &Sheet, at: Ref) -> (Option<(Ref, Ref)>, Option<(Ref, Ref)>) {
+/// The operands of a sum, and those of a product.
+fn operands(sheet: &Sheet, at: Ref) -> (Option<Pair>, Option<Pair>) {
     match sheet.op(at) {
         Op::Sum(a, b) => (Some((a, b)), None),
         Op::Product(a, b) => (None, Some((a, b))),
@@ -199,12 +203,7 @@ fn rewritten_sum(sheet: &mut Sheet, a: Ref, b: Ref, rng: &mut fastrand::Rng) -> 
 }
 
 /// Two products with something in common.
-fn factored(
-    sheet: &mut Sheet,
-    (a, p): (Ref, (Ref, Ref)),
-    (b, q): (Ref, (Ref, Ref)),
-    rng: &mut fastrand::Rng,
-) -> Option<Ref> {
+fn factored(sheet: &mut Sheet, (a, p): (Ref, Pair), (b, q): (Ref, Pair), rng: &mut fastrand::Rng) -> Option<Ref> {
     let (sa, sb) = (a.is_negative(), b.is_negative());
     let (p, q) = (swapped(p, rng.bool()), swapped(q, rng.bool()));
     let pairs = |(x, y): (Ref, Ref)| [(x, y), (y, x)];
@@ -251,7 +250,7 @@ fn factored(
 }
 
 /// A product and something else.
-fn factored_one(sheet: &mut Sheet, (a, p): (Ref, (Ref, Ref)), b: Ref) -> Option<Ref> {
+fn factored_one(sheet: &mut Sheet, (a, p): (Ref, Pair), b: Ref) -> Option<Ref> {
     let sa = a.is_negative();
     for (x, y) in [p, (p.1, p.0)] {
         // u v + u = u (v + 1)

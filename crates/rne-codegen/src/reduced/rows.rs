@@ -7,9 +7,7 @@
 
 use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
-use super::pseudo_inertia::{
-    PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose,
-};
+use super::pseudo_inertia::{PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose};
 use crate::exact::{Number, Reading, Turn};
 
 /// One joint and the link that it moves.
@@ -134,7 +132,8 @@ impl Table {
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
     fn straighten(&mut self) {
-        let flip = [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i != j { Number::ZERO } else { minus_if(i > 0, Number::ONE) }));
+        let flip =
+            [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { minus_if(i > 0, Number::ONE) } else { Number::ZERO }));
         let mut reversed = false;
         for (index, row) in self.rows.iter_mut().enumerate() {
             if index > 0 && row.alpha.quarters() == Some(QuarterTurns::Two) {
@@ -203,7 +202,7 @@ impl Table {
         while index < self.rows.len() {
             let follows = |at: usize| self.rows.get(at).is_some_and(|row| row.kind == JointKind::Prismatic);
             if self.rows[index].kind == JointKind::Revolute && follows(index + 1) {
-                let end = (index + 1..).find(|&at| !follows(at)).unwrap_or(index + 1);
+                let end = (index + 1..=self.rows.len()).find(|&at| !follows(at)).unwrap_or(index + 1);
                 if !self.carry_behind(index, end) {
                     return false;
                 }

@@ -6,7 +6,7 @@ use rne_model::Robot;
 
 use super::evaluator::Evaluator;
 use super::moves::Moves;
-use super::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches};
+use super::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 use super::sheet::Cost;
 use super::trick::Trick;
 use crate::function::Function;
@@ -103,82 +103,12 @@ impl Search {
                     return;
                 }
                 let plan = self.best.1.clone();
-                let Some(other) = self.greedy_candidate(&plan, candidate, round) else { break };
+                let Some(other) = greedy_candidate(&plan, candidate, round) else { break };
                 if other != plan {
                     let _ = self.cost(&other);
                 }
             }
         }
-    }
-
-    /// The candidates of a greedy search, in their order; `None` behind the last.
-    fn greedy_candidate(&self, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
-        let dof = plan.joints.len();
-        let mut other = plan.clone();
-        let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
-            other.joints.iter_mut().for_each(change);
-        };
-        const GLOBAL: usize = 12;
-        match candidate {
-            0 => other.gyrostat = !other.gyrostat,
-            1 => other.carried_prismatics = !other.carried_prismatics,
-            2 => other.turned_last_frame = !other.turned_last_frame,
-            3 => all(&mut other, &|joint| joint.switches.axis_column = true),
-            4 => all(&mut other, &|joint| {
-                joint.switches.group_omega = true;
-                joint.switches.group_omega_dot = true;
-                joint.switches.group_acceleration = true;
-                joint.switches.group_wrench = true;
-            }),
-            5 | 6 => all(&mut other, &|joint| {
-                joint.slide = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
-                (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
-            }),
-            7 => all(&mut other, &|joint| (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent)),
-            8 => all(&mut other, &|joint| joint.outward_offset = Side::Joint),
-            9 => all(&mut other, &|joint| {
-                joint.switches.scaled_twist_outward = true;
-                joint.switches.scaled_twist_inward = true;
-            }),
-            10 => all(&mut other, &|joint| joint.slide = Slide::MinusD),
-            11 => all(&mut other, &|joint| joint.switches.origin_unturned = true),
-            _ => {
-                let (index, choice) = ((candidate - GLOBAL) % dof, (candidate - GLOBAL) / dof);
-                let joint = &mut other.joints[index];
-                match choice {
-                    0 => joint.switches.axis_column = !joint.switches.axis_column,
-                    1 => joint.outward_offset = Side::Parent,
-                    2 => joint.outward_offset = Side::Joint,
-                    3 => joint.outward_offset = Side::Link,
-                    4 => joint.inward_offset = if joint.inward_offset == Side::Link { Side::Parent } else { Side::Link },
-                    5 => joint.slide = Slide::MinusD,
-                    6 => joint.slide = Slide::AnnulS13,
-                    7 => joint.slide = Slide::AnnulS23,
-                    8 => joint.slide = Slide::GroupInward,
-                    9 => joint.slide = Slide::None,
-                    10 => other.length_scale = Scale::A(index + 1),
-                    11 => other.length_scale = Scale::D(index + 1),
-                    12 => other.force_scale = Scale::FirstMoment(index + 1, 0),
-                    13 => other.force_scale = Scale::FirstMoment(index + 1, 1),
-                    14 => joint.moment = Moment::Diagonal,
-                    15 => joint.moment = Moment::Inertia,
-                    16 => joint.switches.wrench_unturned = !joint.switches.wrench_unturned,
-                    17 => joint.switches.origin_unturned = !joint.switches.origin_unturned,
-                    18 => joint.switches.first_moment_unturned = !joint.switches.first_moment_unturned,
-                    19 => joint.switches.omega_dot_unturned = !joint.switches.omega_dot_unturned,
-                    20 => joint.switches.group_omega = !joint.switches.group_omega,
-                    21 => joint.switches.group_wrench = !joint.switches.group_wrench,
-                    22 if round > 0 => joint.slide = Slide::NextOffset,
-                    23 if round > 0 => joint.gauge[2] = super::plan::Target::Sxx,
-                    24 if round > 0 => joint.gauge[2] = super::plan::Target::Syy,
-                    25 if round > 0 => joint.gauge[1] = super::plan::Target::Hy,
-                    26 if round > 0 => joint.gauge[1] = super::plan::Target::Syz,
-                    27 if round > 0 => joint.slide = Slide::AnnulParentH,
-                    _ => return None,
-                }
-            }
-        }
-        Some(other)
     }
 
     /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that cost
@@ -316,6 +246,78 @@ impl Search {
     }
 }
 
+/// Candidates of a greedy search that concern all joints.
+const OF_THE_ARM: usize = 12;
+
+/// The candidates of a greedy search, in their order; `None` behind the last.
+fn greedy_candidate(plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
+    let dof = plan.joints.len();
+    let mut other = plan.clone();
+    let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
+        other.joints.iter_mut().for_each(change);
+    };
+    match candidate {
+        0 => other.gyrostat = !other.gyrostat,
+        1 => other.carried_prismatics = !other.carried_prismatics,
+        2 => other.turned_last_frame = !other.turned_last_frame,
+        3 => all(&mut other, &|joint| joint.switches.axis_column = true),
+        4 => all(&mut other, &|joint| {
+            joint.switches.group_omega = true;
+            joint.switches.group_omega_dot = true;
+            joint.switches.group_acceleration = true;
+            joint.switches.group_wrench = true;
+        }),
+        5 | 6 => all(&mut other, &|joint| {
+            joint.slide = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
+            (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
+        }),
+        7 => all(&mut other, &|joint| (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent)),
+        8 => all(&mut other, &|joint| joint.outward_offset = Side::Joint),
+        9 => all(&mut other, &|joint| {
+            joint.switches.scaled_twist_outward = true;
+            joint.switches.scaled_twist_inward = true;
+        }),
+        10 => all(&mut other, &|joint| joint.slide = Slide::MinusD),
+        11 => all(&mut other, &|joint| joint.switches.origin_unturned = true),
+        _ => {
+            let (index, choice) = ((candidate - OF_THE_ARM) % dof, (candidate - OF_THE_ARM) / dof);
+            let joint = &mut other.joints[index];
+            match choice {
+                0 => joint.switches.axis_column = !joint.switches.axis_column,
+                1 => joint.outward_offset = Side::Parent,
+                2 => joint.outward_offset = Side::Joint,
+                3 => joint.outward_offset = Side::Link,
+                4 => joint.inward_offset = if joint.inward_offset == Side::Link { Side::Parent } else { Side::Link },
+                5 => joint.slide = Slide::MinusD,
+                6 => joint.slide = Slide::AnnulS13,
+                7 => joint.slide = Slide::AnnulS23,
+                8 => joint.slide = Slide::GroupInward,
+                9 => joint.slide = Slide::None,
+                10 => other.length_scale = Scale::A(index + 1),
+                11 => other.length_scale = Scale::D(index + 1),
+                12 => other.force_scale = Scale::FirstMoment(index + 1, 0),
+                13 => other.force_scale = Scale::FirstMoment(index + 1, 1),
+                14 => joint.moment = Moment::Diagonal,
+                15 => joint.moment = Moment::Inertia,
+                16 => joint.switches.wrench_unturned = !joint.switches.wrench_unturned,
+                17 => joint.switches.origin_unturned = !joint.switches.origin_unturned,
+                18 => joint.switches.first_moment_unturned = !joint.switches.first_moment_unturned,
+                19 => joint.switches.omega_dot_unturned = !joint.switches.omega_dot_unturned,
+                20 => joint.switches.group_omega = !joint.switches.group_omega,
+                21 => joint.switches.group_wrench = !joint.switches.group_wrench,
+                22 if round > 0 => joint.slide = Slide::NextOffset,
+                23 if round > 0 => joint.gauge[2] = Target::Sxx,
+                24 if round > 0 => joint.gauge[2] = Target::Syy,
+                25 if round > 0 => joint.gauge[1] = Target::Hy,
+                26 if round > 0 => joint.gauge[1] = Target::Syz,
+                27 if round > 0 => joint.slide = Slide::AnnulParentH,
+                _ => return None,
+            }
+        }
+    }
+    Some(other)
+}
+
 /// The plan of a build that finds no plan file: a fixed number of plans is counted, on every machine the same.
 pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
     let mut search = Search::new(robot, without);
@@ -323,4 +325,3 @@ pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
     let plan = search.best.1.clone();
     search.tidied(&plan)
 }
-

@@ -197,7 +197,8 @@ impl Transcript<'_> {
         }
         if let Some(turn) = constant {
             let radians = turn.radians();
-            self.numbers.insert(radians.abs().to_bits(), (Number { value: radians.into(), image: Image::ZERO }, Some(turn)));
+            self.numbers
+                .insert(radians.abs().to_bits(), (Number { value: radians.into(), image: Image::ZERO }, Some(turn)));
             let theta = self.written.graph.constant(radians);
             self.define(Name::scalar(Quantity::Theta, last + 1), theta);
             angle = self.written.graph.sum(theta, angle).0;
@@ -221,55 +222,5 @@ fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> N
         Name::scalar(single, last + 1)
     } else {
         Name { part: first + 1, ..Name::scalar(group, last + 1) }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::reduced::evaluator::Evaluator;
-    use crate::reduced::moves::Moves;
-    use crate::reduced::trick::Trick;
-
-    fn robot(name: &str) -> Robot {
-        let path = format!("{}/../../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-        rne_model::check_bytes(name, &std::fs::read(path).unwrap()).unwrap().robot
-    }
-
-    /// Whatever a search may find is the function of the seven steps.
-    #[test]
-    fn random_plans_are_proved() {
-        for name in ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp"] {
-            let robot = robot(name);
-            let evaluator = Evaluator::new(&robot, Function::InverseDynamics);
-            let moves = Moves::new(evaluator.frames());
-            let mut rng = fastrand::Rng::with_seed(7);
-            let mut plan = Plan::new(robot.dof());
-            let mut tried = 0;
-            let ok = |plan: &Plan| -> Option<bool> {
-                let frame = evaluator.frames().iter().find(|frame| frame.is_of(plan))?;
-                let drawing = Drawing::new(frame, plan, Function::InverseDynamics)?;
-                let (program, exactly) = drawing.unproved(&robot, frame, Function::InverseDynamics, Form::Reduced).unwrap();
-                Some(proof::identical(&robot, &program, &exactly, frame.table.reading).is_ok())
-            };
-            for _ in 0..300 {
-                let other = moves.random(&plan, &mut rng);
-                match ok(&other) {
-                    None => continue,
-                    Some(true) => { tried += 1; plan = other; }
-                    Some(false) => {
-                        let mut least = other.clone();
-                        for trick in Trick::ALL {
-                            let left = trick.left_out_of(&least);
-                            if ok(&left) == Some(false) { least = left; }
-                        }
-                        for i in 0..least.joints.len() { let mut l = least.clone(); l.joints[i] = Default::default(); if ok(&l) == Some(false) { least = l; } }
-                        for i in 0..least.joints.len() { for s in 0..12 { let mut l = least.clone(); *l.joints[i].switches.at(s).unwrap() = false; if ok(&l) == Some(false) { least = l; } } }
-                        panic!("{name} {least:#?}");
-                    }
-                }
-            }
-            assert!(tried > 200, "{name}: {tried}");
-        }
     }
 }

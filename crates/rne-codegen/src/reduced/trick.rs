@@ -78,11 +78,15 @@ impl Trick {
     #[must_use]
     pub const fn formula(self) -> &'static str {
         match self {
-            Self::Regrouping => "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk uuᵀ (4.4)",
+            Self::Regrouping => {
+                "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk uuᵀ (4.4)"
+            }
             Self::Gauges => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
             Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈), the link before carries c·1 and the spin (5.6)",
             Self::LastFrame => "φ = atan2(h_y, h_x) turns the last frame, so that h_y = 0 (5.8)",
-            Self::CarriedPrismatics => "a prismatic joint turns nothing: a = a' + U (p + q u) + 2 q̇ ω × u + q̈ u in the axes before (5.9)",
+            Self::CarriedPrismatics => {
+                "a prismatic joint turns nothing: a = a' + U (p + q u) + 2 q̇ ω × u + q̈ u in the axes before (5.9)"
+            }
             Self::AxisColumns => "U_i z = U_{i-1} z gives ω̇_x = ω_y ω_z - U23, ω̇_y = U13 - ω_x ω_z (5.3)",
             Self::ParallelGroups => "parallel axes share a frame N: Q = Σ q̇, Θ = Σ θ (5.5)",
             Self::Offsets => "d acts in the frame before, on the axis or in the link's frame (5.2)",

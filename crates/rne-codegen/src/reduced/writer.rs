@@ -244,7 +244,7 @@ pub(crate) struct Symbol<'s> {
     pub(crate) at: Ref,
 }
 
-impl<'s> Symbol<'s> {
+impl Symbol<'_> {
     pub(crate) fn is_zero(self) -> bool {
         self.at == Sheet::zero()
     }
