@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
-use rne_codegen::{Function, Program, emit};
+use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -71,7 +71,8 @@ impl Target<'_> {
 
     fn method(&self, program: &Program) -> TokenStream {
         let krate = self.krate;
-        let body = emit::body(program, &quote!(#krate::Scalar));
+        let write = if program.form == Form::SevenSteps { emit::body } else { emit::fused_body };
+        let body = write(program, &quote!(#krate::Scalar));
         let wrench = (program.function == Function::InverseDynamicsWithWrench)
             .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let dof = Literal::usize_unsuffixed(program.dof);

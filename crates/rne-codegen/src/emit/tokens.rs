@@ -14,6 +14,63 @@ use crate::quantity::Name;
 /// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
 #[must_use]
 pub fn body(program: &Program, scalar: &TokenStream) -> TokenStream {
+    written(program, scalar, &|expression| expression.to_token_stream())
+}
+
+/// As [`body`], with the scalar's `mul_add` wherever a product is added: one instruction on a target that has it, product
+/// and sum on any other. Results differ in the last digits from target to target, so the seven steps are not written so.
+#[must_use]
+pub fn fused_body(program: &Program, scalar: &TokenStream) -> TokenStream {
+    written(program, scalar, &|expression| fused(expression, scalar))
+}
+
+/// An expression with fused products.
+fn fused(expression: &Expression, scalar: &TokenStream) -> TokenStream {
+    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+    let inner = |expression: &Expression| fused(expression, scalar);
+    let operand = |operand: &Expression, position| {
+        let tokens = inner(operand);
+        let is_call = matches!(operand, Sum(a, b) | Difference(a, b) if is_product(a) || is_product(b));
+        if !is_call && needs_parentheses(operand, position) { quote!((#tokens)) } else { tokens }
+    };
+    let mul_add = |x: TokenStream, y: &Expression, z: TokenStream| {
+        let y = inner(y);
+        quote!(#scalar::mul_add(#x, #y, #z))
+    };
+    let minus = |expression: &Expression| {
+        let tokens = operand(expression, Position::Negated);
+        quote!(-#tokens)
+    };
+    match expression {
+        Variable(_) | Zero => expression.to_token_stream(),
+        Negative(a) => minus(a),
+        Sum(a, b) => match (&**a, &**b) {
+            (a, Product(x, y)) | (Product(x, y), a) => mul_add(inner(x), y, inner(a)),
+            (a, b) => {
+                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
+                quote!(#a + #b)
+            }
+        },
+        Difference(a, b) => match (&**a, &**b) {
+            (a, Product(x, y)) => mul_add(minus(x), y, inner(a)),
+            (Product(x, y), b) => mul_add(inner(x), y, minus(b)),
+            (a, b) => {
+                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
+                quote!(#a - #b)
+            }
+        },
+        Product(a, b) => {
+            let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
+            quote!(#a * #b)
+        }
+    }
+}
+
+fn is_product(expression: &Expression) -> bool {
+    matches!(expression, Expression::Product(..))
+}
+
+fn written(program: &Program, scalar: &TokenStream, expression: &dyn Fn(&Expression) -> TokenStream) -> TokenStream {
     let arguments = arguments(program).into_iter().map(|ArgumentArray { name, elements }| {
         let array = ident(name);
         if elements.iter().all(Option::is_none) {
@@ -30,11 +87,14 @@ pub fn body(program: &Program, scalar: &TokenStream) -> TokenStream {
         let (name, value) = (constant.name, literal(constant.value));
         quote!(let #name: T = #scalar::from_f64(#value);)
     });
-    let statement = |Statement { name, value, .. }: &Statement| quote!(let #name = #value;);
+    let statement = |Statement { name, value, .. }: &Statement| {
+        let value = expression(value);
+        quote!(let #name = #value;)
+    };
     let angles = program.angles.iter().map(statement);
     let turns = turns(program, scalar);
     let statements = program.statements.iter().map(statement);
-    let outputs = program.outputs.iter().map(|output| &output.value);
+    let outputs = program.outputs.iter().map(|output| expression(&output.value));
     quote! {
         #(#arguments)*
         #zero

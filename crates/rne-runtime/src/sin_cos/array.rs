@@ -44,7 +44,6 @@ fn in_registers<V: Register, const FMA: bool, const N: usize>(
     const BLOCK: usize = 8;
     const REGISTERS: usize = 4;
 
-    let mut are_within_limit = true;
     let mut start = 0;
     while start < N {
         let count = (N - start).min(BLOCK).div_ceil(V::LANES);
@@ -52,16 +51,25 @@ fn in_registers<V: Register, const FMA: bool, const N: usize>(
         for (index, register) in block[..count].iter_mut().enumerate() {
             *register = V::padded(angles, start + index * V::LANES);
         }
-        are_within_limit &= V::are_within_limit(&block[..count]);
+        let are_within_limit = V::are_within_limit(&block[..count]);
         for (index, register) in block[..count].iter().enumerate() {
             let (sine, cosine) = kernel::<V, FMA>(*register);
             sine.write(sines, start + index * V::LANES);
             cosine.write(cosines, start + index * V::LANES);
         }
+        if !are_within_limit {
+            // From the registers, not from `angles`: an array that is lent to a call has to live in memory, here as well,
+            // and loading a register from numbers that have just been written one by one stalls the processor.
+            let mut copy = [V::Element::ZERO; BLOCK];
+            for (index, register) in block[..count].iter().enumerate() {
+                register.write(&mut copy, index * V::LANES);
+            }
+            let (exact_sines, exact_cosines) = beyond_limit::<V::Element, FMA, BLOCK>(copy);
+            for (index, at) in (start..N.min(start + BLOCK)).enumerate() {
+                (sines[at], cosines[at]) = (exact_sines[index], exact_cosines[index]);
+            }
+        }
         start += BLOCK;
-    }
-    if !are_within_limit {
-        (*sines, *cosines) = beyond_limit::<V::Element, FMA, N>(*angles);
     }
 }
 
