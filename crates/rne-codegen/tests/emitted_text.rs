@@ -14,8 +14,7 @@ fn functions(text: &str) -> Vec<syn::ItemFn> {
 
 #[test]
 fn text_parses_back_to_the_tokens() {
-    for robot in common::all() {
-        let programs = common::programs(&robot);
+    for (robot, programs) in common::compiled() {
         let functions = functions(&emit::rust_file(&robot, &programs));
         assert_eq!(functions.len(), programs.len());
         for (program, function) in programs.iter().zip(functions) {
@@ -37,6 +36,7 @@ struct Counter {
     add: usize,
     other: Vec<String>,
     calls: Vec<String>,
+    angles: usize,
 }
 
 impl<'ast> Visit<'ast> for Counter {
@@ -51,7 +51,12 @@ impl<'ast> Visit<'ast> for Counter {
 
     fn visit_expr_call(&mut self, node: &'ast syn::ExprCall) {
         let function = &node.func;
-        self.calls.push(quote!(#function).to_string());
+        let name = quote!(#function).to_string();
+        self.angles += match node.args.first() {
+            Some(syn::Expr::Array(angles)) if name == "Scalar :: sin_cos_array" => angles.elems.len(),
+            _ => usize::from(name == "Scalar :: sin_cos"),
+        };
+        self.calls.push(name);
         visit::visit_expr_call(self, node);
     }
 
@@ -75,8 +80,7 @@ impl<'ast> Visit<'ast> for Counter {
 
 #[test]
 fn operators_in_the_text_are_what_the_counts_say() {
-    for robot in common::all() {
-        let programs = common::programs(&robot);
+    for (robot, programs) in common::compiled() {
         for (program, function) in programs.iter().zip(functions(&emit::rust_file(&robot, &programs))) {
             let mut counter = Counter::default();
             counter.visit_block(&function.block);
@@ -90,10 +94,13 @@ fn operators_in_the_text_are_what_the_counts_say() {
             );
             assert_eq!(counted.div, 0);
             assert!(counter.other.is_empty(), "no branch, loop, index or method: {:?}", counter.other);
-            let sines = counter.calls.iter().filter(|call| *call == "Scalar :: sin_cos").count();
-            assert_eq!(sines, counted.sincos);
+            let called = |name: &str| counter.calls.iter().filter(|call| *call == name).count();
+            let (one, several) = (called("Scalar :: sin_cos"), called("Scalar :: sin_cos_array"));
+            // all angles in one call
+            assert_eq!((one, several), (usize::from(counted.sincos == 1), usize::from(counted.sincos > 1)));
+            assert_eq!(counter.angles, counted.sincos);
             let constants = counter.calls.iter().filter(|call| *call == "Scalar :: from_f64").count();
-            assert_eq!(sines + constants, counter.calls.len(), "nothing else is called: {:?}", counter.calls);
+            assert_eq!(one + several + constants, counter.calls.len(), "nothing else is called: {:?}", counter.calls);
             let statements = function.block.stmts.len();
             assert!(statements > counted.statements, "arguments, constants and the result come on top");
         }
@@ -118,15 +125,38 @@ fn rustfmt_has_nothing_to_change() {
     }
     for robot in common::shipped() {
         let text = emit::rust_file(&robot, &common::programs(&robot));
-        let mut rustfmt = Command::new("rustfmt")
-            .args(["--edition", "2024", "--check", "--config-path", "/dev/null"])
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("rustfmt starts");
-        rustfmt.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("rustfmt reads");
-        let output = rustfmt.wait_with_output().expect("rustfmt ends");
-        let difference: String = String::from_utf8_lossy(&output.stdout).chars().take(2000).collect();
-        assert!(difference.is_empty(), "{}:\n{difference}", robot.name);
+        let reduced = emit::rust_file(&robot, &common::reduced_programs(&robot)[..4]);
+        for text in [text, reduced] {
+            let mut rustfmt = Command::new("rustfmt")
+                .args(["--edition", "2024", "--check", "--config-path", "/dev/null"])
+                .stdin(Stdio::piped())
+                .stdout(Stdio::piped())
+                .spawn()
+                .expect("rustfmt starts");
+            rustfmt.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("rustfmt reads");
+            let output = rustfmt.wait_with_output().expect("rustfmt ends");
+            let difference: String = String::from_utf8_lossy(&output.stdout).chars().take(2000).collect();
+            assert!(difference.is_empty(), "{}:\n{difference}", robot.name);
+        }
+    }
+}
+
+#[test]
+fn every_reduced_form_tells_its_proof() {
+    for robot in common::shipped() {
+        let programs = common::reduced_programs(&robot);
+        for program in &programs {
+            let proof = program.proof.expect("a proof");
+            assert!(proof.rounding < 1e-13, "{} of {}: {}", program.function, robot.name, proof.rounding);
+            assert!(
+                proof.single <= 4.0 * proof.single_of_seven_steps.max(1e-7),
+                "{} of {}: {proof:?}",
+                program.function,
+                robot.name
+            );
+            assert_eq!(proof.points, 4);
+        }
+        let text = emit::rust_file(&robot, &programs);
+        assert!(text.contains("Proved identical to the seven steps"), "{text}");
     }
 }

@@ -53,7 +53,7 @@ fn counts_as_json() {
     let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
     let json: Value = serde_json::from_str(&json).expect("JSON");
     let entries = json.as_array().expect("a list");
-    assert_eq!(entries.len(), 8, "two robots, four functions, one form");
+    assert_eq!(entries.len(), 18, "two robots, four functions, two forms; inverse_dynamics rewritten as well");
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
         let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];

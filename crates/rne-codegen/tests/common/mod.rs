@@ -1,5 +1,6 @@
 //! The shipped robots, for the tests of the compiler.
 
+use rne_codegen::reduced::{Choice, PlanFile};
 use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 
@@ -26,6 +27,7 @@ pub(crate) fn all() -> Vec<Robot> {
         let entries = std::fs::read_dir(folder).expect("the folder of robots");
         let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
         paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+        paths.retain(|path| !path.to_string_lossy().ends_with(".plan.yaml"));
         paths.sort();
         let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
         robots.extend(paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))));
@@ -36,4 +38,33 @@ pub(crate) fn all() -> Vec<Robot> {
 /// All functions of a robot.
 pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
     Function::ALL.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
+}
+
+/// All functions of a shipped robot in the reduced form of its plan, and `inverse_dynamics` rewritten.
+#[allow(dead_code)] // not every test needs them
+pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
+    let path = format!("{}/../../robots/{}.plan.yaml", env!("CARGO_MANIFEST_DIR"), robot.name);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let plan = PlanFile::read(&path, &text, robot).unwrap_or_else(|report| panic!("{report}"));
+    let choice = Choice::from(plan);
+    let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
+    let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
+    programs.push(compiled(Function::InverseDynamics, Form::Rewritten));
+    programs
+}
+
+/// Every robot with its programs: the seven steps of all, and the reduced forms of those that are shipped.
+#[allow(dead_code)] // not every test needs them
+pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
+    let faithful = all().into_iter().map(|robot| {
+        let programs = programs(&robot);
+        (robot, programs)
+    });
+    let reduced = shipped().into_iter().flat_map(|robot| {
+        let programs = reduced_programs(&robot);
+        let (reduced, rewritten) = programs.split_at(4);
+        // functions of one name are in different files
+        [(robot.clone(), reduced.to_vec()), (robot, rewritten.to_vec())]
+    });
+    faithful.chain(reduced).collect()
 }
