@@ -3,7 +3,8 @@
 use fastrand::Rng;
 use rne::InverseDynamics;
 
-use crate::shipped::{Shipped, Visitor, visit_all};
+use crate::shipped::seven_steps::visit_all;
+use crate::shipped::{Shipped, Visitor};
 use crate::states::{self, State};
 
 /// States per robot.

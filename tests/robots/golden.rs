@@ -5,7 +5,8 @@ use rne_codegen::{Arguments, Form, Function, Interpreter, compile};
 use rne_model::Robot;
 use serde_json::Value;
 
-use crate::shipped::{Shipped, Visitor, visit_all};
+use crate::shipped::seven_steps::visit_all;
+use crate::shipped::{Shipped, Visitor};
 
 /// Largest error relative to the largest torque of the state.
 const TOLERANCE: f64 = 1e-12;
@@ -50,7 +51,8 @@ impl Visitor for Golden {
     }
 }
 
-fn call<const DOF: usize>(
+/// One of the functions of a robot.
+pub(crate) fn call<const DOF: usize>(
     robot: &impl InverseDynamics<DOF>,
     function: Function,
     q: &[f64; DOF],
@@ -82,11 +84,11 @@ fn interpret<const DOF: usize>(
     torques.expect("arrays of the right length").try_into().expect("one torque per joint")
 }
 
-fn numbers(value: &Value) -> Vec<f64> {
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
     value.as_array().expect("an array").iter().map(|number| number.as_f64().expect("a number")).collect()
 }
 
-fn relative_error(found: &[f64], expected: &[f64]) -> f64 {
+pub(crate) fn relative_error(found: &[f64], expected: &[f64]) -> f64 {
     // `f64::max` drops what is not a number
     assert!(found.iter().chain(expected).all(|torque| torque.is_finite()), "{found:?} {expected:?}");
     assert_eq!(found.len(), expected.len());

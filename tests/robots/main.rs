@@ -4,6 +4,7 @@ mod dense;
 mod equality;
 mod golden;
 mod operations;
+mod reduced;
 mod shipped;
 mod single_precision;
 mod states;

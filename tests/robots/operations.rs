@@ -1,5 +1,6 @@
 //! Operation counts against an independent count of a faithful unrolling.
 
+use rne_codegen::reduced::{Choice, PlanFile, Trick, savings};
 use rne_codegen::{Form, Function, compile};
 use rne_model::Robot;
 
@@ -34,5 +35,84 @@ fn counts_are_those_of_a_faithful_unrolling() {
         let difference = counted.total().abs_diff(independent);
         assert!(100 * difference <= 3 * independent, "{robot}: {} against {independent}", counted.total());
         assert_eq!(program.ledger.after(), (counted.mul, counted.add), "{robot}: the ledger's balance");
+    }
+}
+
+/// What independent experiments reached: the regrouped form without any search, the best found by a search over choices,
+/// and after algebraic rewriting. Products and sums together.
+const REACHED: [(&str, usize, usize, usize); 13] = [
+    ("robots/planar2", 27, 23, 23),
+    ("robots/planar3", 56, 52, 51),
+    ("robots/puma560", 338, 263, 254),
+    ("robots/puma560_mdh", 365, 265, 259),
+    ("robots/stanford", 227, 187, 184),
+    ("robots/scara_cobra600", 39, 36, 22),
+    ("robots/panda", 585, 520, 510),
+    ("robots/iiwa14", 414, 346, 345),
+    ("robots/ur5", 328, 232, 209),
+    ("robots/ur5e", 328, 232, 208),
+    ("robots/wam7", 586, 501, 493),
+    ("tests/dense/dense6_2p", 691, 642, 578),
+    ("tests/dense/dense7", 878, 788, 772),
+];
+
+fn read(robot: &str) -> (Robot, Choice) {
+    let path = |extension| format!("{}/{robot}.{extension}", env!("CARGO_MANIFEST_DIR"));
+    let model = Robot::from_yaml(&std::fs::read_to_string(path("yaml")).expect("a robot file"));
+    let model = model.unwrap_or_else(|report| panic!("{report}"));
+    let plan = std::fs::read_to_string(path("plan.yaml")).expect("a plan file");
+    let plan = PlanFile::read(robot, &plan, &model).unwrap_or_else(|report| panic!("{report}"));
+    (model, Choice::from(plan))
+}
+
+#[test]
+fn the_default_choices_come_close_to_the_best() {
+    println!("{:24} default  regrouped  best", "");
+    for (robot, regrouped, best, _) in REACHED {
+        let (model, _) = read(robot);
+        let program = Choice::default_of(&model).compile(&model, Function::InverseDynamics, Form::Reduced);
+        let total = program.expect("a proof").operations().total();
+        println!("{robot:24} {total:7}  {regrouped:9}  {best:4}");
+        assert!(total <= regrouped, "{robot}: {total}");
+        assert!(10 * total <= 11 * best, "{robot}: {total} is more than 10 % over {best}");
+    }
+}
+
+#[test]
+fn plans_are_as_good_as_the_best_known() {
+    println!("{:24} reduced  best known  rewritten  best known", "");
+    let mut rewritten_as_good = 0;
+    for (robot, _, best, best_rewritten) in REACHED {
+        let (model, choice) = read(robot);
+        let total = |form| {
+            let program = choice.compile(&model, Function::InverseDynamics, form);
+            program.unwrap_or_else(|error| panic!("{robot}: {error}")).operations().total()
+        };
+        let (reduced, rewritten) = (total(Form::Reduced), total(Form::Rewritten));
+        println!("{robot:24} {reduced:7}  {best:10}  {rewritten:9}  {best_rewritten:10}");
+        assert!(reduced <= best, "{robot}: {reduced}");
+        assert!(rewritten <= reduced, "{robot}: {rewritten}");
+        rewritten_as_good += usize::from(rewritten <= best_rewritten);
+        assert!(robot != "robots/puma560" || rewritten <= best_rewritten, "{robot}: {rewritten}");
+    }
+    println!("rewritten as good as the best known: {rewritten_as_good} of {}", REACHED.len());
+    assert!(2 * rewritten_as_good >= REACHED.len());
+}
+
+#[test]
+fn every_trick_saves_somewhere() {
+    let mut saved: Vec<(Trick, isize)> = Trick::ALL.map(|trick| (trick, 0)).into();
+    for (robot, ..) in REACHED {
+        let (model, choice) = read(robot);
+        let plans = [Some(&choice.plan), choice.rewritten.as_ref().map(|rewritten| &rewritten.plan)];
+        for (trick, operations) in plans.into_iter().flatten().flat_map(|plan| savings(&model, plan)) {
+            if let Some((_, sum)) = saved.iter_mut().find(|(other, _)| *other == trick) {
+                *sum += operations;
+            }
+        }
+    }
+    for (trick, operations) in saved {
+        println!("{trick:18} {operations:4} operations over all plans");
+        assert!(operations > 0, "{trick}");
     }
 }

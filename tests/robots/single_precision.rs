@@ -4,7 +4,8 @@ use std::fmt::Write;
 
 use fastrand::Rng;
 
-use crate::shipped::{Shipped, Visitor, visit_all};
+use crate::shipped::seven_steps::visit_all;
+use crate::shipped::{Shipped, Visitor};
 use crate::states::{self, State};
 
 /// Largest error relative to the largest torque of the state.

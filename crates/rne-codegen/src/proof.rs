@@ -42,7 +42,7 @@ pub(crate) fn prove(
     reading: Reading,
 ) -> Result<Proof, CompileError> {
     identical(robot, program, constants, reading)?;
-    let proof = rounding(robot, program)?;
+    let proof = rounding(robot, program, STATES)?;
     if proof.rounding <= LARGEST_ROUNDING {
         Ok(proof)
     } else {
@@ -226,23 +226,36 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
     Some(torques.into_iter().map(|torque| torque.number).collect())
 }
 
-/// Runs a program and the seven steps in floating point at random states: q ±3, q̇ ±2, q̈ ±4.
-fn rounding(robot: &Robot, program: &Program) -> Result<Proof, CompileError> {
+/// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
+/// where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+///
+/// # Errors
+/// When the seven steps of the robot cannot be compiled.
+pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
     let faithful = compile(robot, program.function, Form::SevenSteps)?;
     let steps = Interpreter::new(&faithful);
     let reduced = Interpreter::new(program);
     let mut rng = fastrand::Rng::with_seed(2024);
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
-        states: STATES,
+        states,
         rounding: 0.0,
         single: 0.0,
         single_of_seven_steps: 0.0,
         before: faithful.ledger.before(),
     };
-    for _ in 0..STATES {
-        let mut random = |range: f64| (0..robot.dof()).map(|_| range * (2.0 * rng.f64() - 1.0)).collect::<Vec<f64>>();
-        let (q, qd, qdd, wrench) = (random(3.0), random(2.0), random(4.0), [5.0, -3.0, 2.0]);
+    for _ in 0..states {
+        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        let q: Vec<f64> = robot
+            .joints
+            .iter()
+            .map(|joint| {
+                let (low, high) = joint.limits.position.unwrap_or((-3.0, 3.0));
+                between(low.max(-3.0), high.min(3.0))
+            })
+            .collect();
+        let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
+        let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
         let arguments = Arguments { q: &q, qd: &qd, qdd: &qdd, force: wrench, moment: wrench };
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());

@@ -215,6 +215,10 @@ pub enum Quantity {
     ReducedForce,
     /// n: moment on a link and all behind it, of regrouped matter.
     ReducedMoment,
+    /// f of the next joint in the axes of this link, or of its frame N.
+    TurnedForce,
+    /// n of the next joint there.
+    TurnedMoment,
     // Step 7.
     /// τ: torque of a revolute, force of a prismatic joint.
     Torque,
@@ -252,6 +256,8 @@ impl Quantity {
             | Self::InertiaMoment
             | Self::ReducedForce
             | Self::ReducedMoment
+            | Self::TurnedForce
+            | Self::TurnedMoment
             | Self::JointForce
             | Self::JointMoment => Some(Step::Wrenches),
             Self::Torque => Some(Step::Torque),
@@ -259,7 +265,8 @@ impl Quantity {
         }
     }
 
-    /// Whether the lecture gives it a letter of its own: then each of its components is a statement.
+    /// Whether the lecture gives it a letter of its own, or the reduced form does: then each of its components is a
+    /// statement.
     #[must_use]
     pub const fn is_of_the_lecture(self) -> bool {
         matches!(
@@ -273,6 +280,12 @@ impl Quantity {
                 | Self::InertiaMoment
                 | Self::JointForce
                 | Self::JointMoment
+                | Self::OriginAcceleration
+                | Self::OriginAccelerationUnturned
+                | Self::ReducedForce
+                | Self::ReducedMoment
+                | Self::TurnedForce
+                | Self::TurnedMoment
                 | Self::Torque
         )
     }
@@ -321,8 +334,8 @@ impl Quantity {
             Self::TwiceRate => "twice_qd",
             Self::Acceleration => "ddc",
             Self::Gravity => "g",
-            Self::ChildForce => "fc",
-            Self::ChildMoment => "nc",
+            Self::ChildForce | Self::TurnedForce => "fc",
+            Self::ChildMoment | Self::TurnedMoment => "nc",
             Self::InertiaForce | Self::JointForce | Self::ReducedForce => "f",
             Self::AngularMomentum | Self::FirstMoment => "h",
             Self::InertiaMoment | Self::JointMoment | Self::ReducedMoment => "n",
@@ -401,6 +414,8 @@ impl Quantity {
             Self::OriginAcceleration => "acceleration of the frame's origin, less gravity",
             Self::OriginAccelerationUnturned => "the same in frame N",
             Self::ReducedForce => "force on the link and all behind it, of regrouped matter",
+            Self::TurnedForce => "f of the next joint, in the axes of this link or of its frame N",
+            Self::TurnedMoment => "n of the next joint there",
             Self::ReducedMoment => "moment on the link and all behind it, of regrouped matter",
             Self::OmegaDot => "ω̇: angular acceleration",
             Self::OmegaCrossR => "ω × r",

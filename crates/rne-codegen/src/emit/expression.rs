@@ -103,6 +103,7 @@ fn broken(expression: &Expression, indent: &str, start: usize) -> String {
     let one_line = line(first);
     let breaks = matches!(first, Expression::Sum(..) | Expression::Difference(..));
     let first =
-        if breaks && start + one_line.chars().count() > WIDTH { broken(first, indent, start) } else { one_line };
+        // one column is for the semicolon, wherever it stands
+        if breaks && start + one_line.chars().count() >= WIDTH { broken(first, indent, start) } else { one_line };
     first + &summands.concat()
 }

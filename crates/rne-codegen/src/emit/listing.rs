@@ -93,7 +93,13 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
 
 fn heading(text: &mut String, robot: &Robot, form: Form, joint: usize, step: Step) {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    let _ = writeln!(text, "    // joint {joint}, step {}: {}", step.number(), step.title());
+    let title = match (form, step) {
+        (Form::SevenSteps, _) => step.title(),
+        (_, Step::Acceleration) => "acceleration of the frame's origin",
+        (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
+        _ => step.title(),
+    };
+    let _ = writeln!(text, "    // joint {joint}, step {}: {title}", step.number());
     let formulas =
         if form == Form::SevenSteps { formulas(step, kind, joint) } else { reduced_formulas(step, kind, joint) };
     for formula in formulas {

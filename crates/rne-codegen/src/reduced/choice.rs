@@ -14,6 +14,7 @@ use super::trick::Trick;
 use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::program::Program;
+use crate::proof;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +102,9 @@ pub fn savings(robot: &Robot, plan: &Plan) -> Vec<(Trick, isize)> {
     let Some(with) = evaluator.cost(plan) else { return Vec::new() };
     let used = Trick::ALL.into_iter().filter(|trick| trick.is_in(plan));
     let saving = |trick: Trick| {
-        let without = evaluator.cost(&trick.left_out_of(plan))?;
+        let without = trick.left_out_of(plan);
+        // a unit that is a regrouped moment goes with the regrouping
+        let without = evaluator.cost(&without).or_else(|| evaluator.cost(&Trick::Scales.left_out_of(&without)))?;
         Some((trick, without.total().cast_signed() - with.total().cast_signed()))
     };
     used.filter_map(saving).collect()
@@ -158,8 +161,8 @@ pub fn search(
     // the first part of the time goes to plans, the rest to rewriting
     let share = if wanted.rewrite { 0.45 } else { 1.0 };
     let _ = plans(&mut search, wanted.seed, share, clock);
-    let plan = search.best.1.clone();
-    let plan = search.tidied(&plan);
+    let plan = precise(robot, &mut search)?;
+    let reduced_cost = search.cost(&plan).unwrap_or_default();
     let mut best: Option<(Cost, Rewritten)> = None;
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
         let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
@@ -170,7 +173,6 @@ pub fn search(
     if wanted.rewrite {
         rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
     }
-    let reduced_cost = search.best.0;
     let file = PlanFile {
         robot: robot.name.clone(),
         fingerprint: fingerprint(robot),
@@ -186,6 +188,30 @@ pub fn search(
     let reduced = remark(Form::Reduced, reduced_cost)?;
     let rewritten = best.map(|(cost, _)| remark(Form::Rewritten, cost)).transpose()?;
     Ok(Found { file, reduced, rewritten })
+}
+
+/// How much less precise than the seven steps a plan may be in single precision, if there is another.
+const PRECISION: f64 = 2.5;
+
+/// The cheapest plan found that is about as precise as the seven steps.
+fn precise(robot: &Robot, search: &mut Search) -> Result<Plan, CompileError> {
+    let best = search.best.1.clone();
+    let others = search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != best);
+    let candidates: Vec<Plan> = std::iter::once(best.clone()).chain(others).collect();
+    for plan in candidates {
+        let plan = search.tidied(&plan);
+        if is_precise(robot, &Choice { plan: plan.clone(), rewritten: None }, Form::Reduced)? {
+            return Ok(plan);
+        }
+    }
+    Ok(search.tidied(&best))
+}
+
+fn is_precise(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
+    const STATES: usize = 400;
+    let program = choice.compile(robot, Function::InverseDynamics, form)?;
+    let proof = proof::rounding(robot, &program, STATES)?;
+    Ok(proof.single <= PRECISION * proof.single_of_seven_steps)
 }
 
 /// Descent, then annealing in rounds until `share` of the time is over.
@@ -270,7 +296,11 @@ fn rewritten(
     }
     for (cost, plan, dag, given, _) in graphs {
         if best.as_ref().is_none_or(|(least, _)| cost.weight() < least.weight()) {
-            *best = Some((cost, Rewritten { plan, graph: graph_text::written(&dag, given) }));
+            let rewritten = Rewritten { plan, graph: graph_text::written(&dag, given) };
+            let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
+            if best.is_none() || is_precise(robot, &choice, Form::Rewritten)? {
+                *best = Some((cost, rewritten));
+            }
         }
     }
     Ok(())

@@ -298,8 +298,8 @@ fn turn<'s>(
     } else {
         (wrench.map(|v| rotated_inward(row, link, on.scaled_twist_inward, v)), false)
     };
-    writer.name(Quantity::ChildForce, joint - 1, wrench.force);
-    writer.name(Quantity::ChildMoment, joint - 1, wrench.moment);
+    writer.name(Quantity::TurnedForce, joint - 1, wrench.force);
+    writer.name(Quantity::TurnedMoment, joint - 1, wrench.moment);
     (torque, Some(Child { wrench, unturned, arm: p }))
 }
 
@@ -325,8 +325,8 @@ fn slide<'s>(
         return (torque, Some(Child { wrench, unturned: false, arm: [Number::ZERO; 3] }));
     }
     let back = wrench.about(u * q).map(|v| link.twist.about_x(link.turn.about_z(v)));
-    writer.name(Quantity::ChildForce, joint - 1, back.force);
-    writer.name(Quantity::ChildMoment, joint - 1, back.moment);
+    writer.name(Quantity::TurnedForce, joint - 1, back.force);
+    writer.name(Quantity::TurnedMoment, joint - 1, back.moment);
     (torque, Some(Child { wrench: back, unturned: false, arm: offset }))
 }
 

@@ -34,6 +34,11 @@ impl Moves {
         }
     }
 
+    /// Whether a rule for a slide gives something of its own at a joint.
+    pub(crate) fn offers(&self, index: usize, rule: Slide) -> bool {
+        self.slides.get(index).is_some_and(|rules| rules.contains(&rule))
+    }
+
     /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group of
     /// parallel axes shares.
     pub(crate) fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
@@ -152,7 +157,6 @@ impl Moves {
             return;
         }
         let end = group_end(&self.rows, index);
-        let has = |at: usize, rule| self.slides[at].contains(&rule);
         for shared in 0..16_u32 {
             for offsets in 0..3 {
                 for frames in 0..4_u32 {
@@ -167,7 +171,7 @@ impl Moves {
                     if offsets > 0 {
                         for at in index..=end {
                             let rule = if offsets == 1 { Slide::GroupInward } else { Slide::GroupOutward };
-                            let rule = if has(at, rule) { rule } else { Slide::None };
+                            let rule = if self.offers(at, rule) { rule } else { Slide::None };
                             if at > 0 {
                                 other.joints[at].slide = rule;
                             }

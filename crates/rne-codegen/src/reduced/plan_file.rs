@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rne_model::{Convention, DataFile, JointKind, Report, Robot, Value};
 
-use super::plan::{JointPlan, Plan, Switches};
+use super::plan::{JointPlan, Plan, Side, Switches};
 use super::sheet::Cost;
 use crate::program::Proof;
 
@@ -237,7 +237,12 @@ fn joint_plan(value: &Value<'_>) -> Result<JointPlan, Report> {
             }
             "slide" => joint.slide = parsed(&value)?,
             "outward_offset" => joint.outward_offset = parsed(&value)?,
-            "inward_offset" => joint.inward_offset = parsed(&value)?,
+            "inward_offset" => {
+                joint.inward_offset = parsed(&value)?;
+                if joint.inward_offset == Side::Joint {
+                    return Err(value.error("on the way back an offset acts in `link` or `parent`", None));
+                }
+            }
             "moment" => joint.moment = parsed(&value)?,
             "on" => {
                 let items = value.items().ok_or_else(|| value.error("`on` is a list of choices", None))?;
@@ -281,7 +286,8 @@ fn parsed<T: std::str::FromStr<Err = String>>(value: &Value<'_>) -> Result<T, Re
     value.text().unwrap_or_default().parse().map_err(|message: String| value.error(message, None))
 }
 
-const REFRESH: &str = "`rne search ROBOT.yaml` writes the plan anew; without the file, a build chooses by itself";
+const REFRESH: &str =
+    "`rne search ROBOT.yaml --fresh` writes the plan anew; without the file, a build chooses by itself";
 
 fn refreshable(value: &Value<'_>, message: &str) -> Report {
     value.error(message, Some(REFRESH.to_owned()))

@@ -103,7 +103,7 @@ impl Search {
                     return;
                 }
                 let plan = self.best.1.clone();
-                let Some(other) = greedy_candidate(&plan, candidate, round) else { break };
+                let Some(other) = greedy_candidate(&self.moves, &plan, candidate, round) else { break };
                 if other != plan {
                     let _ = self.cost(&other);
                 }
@@ -250,7 +250,7 @@ impl Search {
 const OF_THE_ARM: usize = 12;
 
 /// The candidates of a greedy search, in their order; `None` behind the last.
-fn greedy_candidate(plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
+fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
     let dof = plan.joints.len();
     let mut other = plan.clone();
     let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
@@ -267,17 +267,28 @@ fn greedy_candidate(plan: &Plan, candidate: usize, round: usize) -> Option<Plan>
             joint.switches.group_acceleration = true;
             joint.switches.group_wrench = true;
         }),
-        5 | 6 => all(&mut other, &|joint| {
-            joint.slide = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
-            (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
-        }),
+        5 | 6 => {
+            let rule = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
+            for (index, joint) in other.joints.iter_mut().enumerate().filter(|(index, _)| moves.offers(*index, rule)) {
+                joint.slide = rule;
+                if index > 0 {
+                    (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
+                }
+            }
+        }
         7 => all(&mut other, &|joint| (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent)),
         8 => all(&mut other, &|joint| joint.outward_offset = Side::Joint),
         9 => all(&mut other, &|joint| {
             joint.switches.scaled_twist_outward = true;
             joint.switches.scaled_twist_inward = true;
         }),
-        10 => all(&mut other, &|joint| joint.slide = Slide::MinusD),
+        10 => {
+            for (index, joint) in other.joints.iter_mut().enumerate() {
+                if moves.offers(index, Slide::MinusD) {
+                    joint.slide = Slide::MinusD;
+                }
+            }
+        }
         11 => all(&mut other, &|joint| joint.switches.origin_unturned = true),
         _ => {
             let (index, choice) = ((candidate - OF_THE_ARM) % dof, (candidate - OF_THE_ARM) / dof);
