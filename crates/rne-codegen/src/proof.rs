@@ -245,7 +245,9 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
         before: faithful.ledger.before(),
     };
     for _ in 0..states {
-        let mut between = |low: f64, high: f64| low + (high - low) * rng.f64();
+        // numbers of single precision, so that both precisions are given the same state
+        #[allow(clippy::cast_possible_truncation)]
+        let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
         let q: Vec<f64> = robot
             .joints
             .iter()

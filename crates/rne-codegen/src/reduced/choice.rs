@@ -191,7 +191,7 @@ pub fn search(
 }
 
 /// How much less precise than the seven steps a plan may be in single precision, if there is another.
-const PRECISION: f64 = 2.5;
+const PRECISION: f64 = 3.0;
 
 /// The cheapest plan found that is about as precise as the seven steps.
 fn precise(robot: &Robot, search: &mut Search) -> Result<Plan, CompileError> {
@@ -208,7 +208,7 @@ fn precise(robot: &Robot, search: &mut Search) -> Result<Plan, CompileError> {
 }
 
 fn is_precise(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
-    const STATES: usize = 400;
+    const STATES: usize = 4000;
     let program = choice.compile(robot, Function::InverseDynamics, form)?;
     let proof = proof::rounding(robot, &program, STATES)?;
     Ok(proof.single <= PRECISION * proof.single_of_seven_steps)
