@@ -41,6 +41,10 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> Vec<f64> {
     match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
+        Function::InverseDynamicsSc => {
+            let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+            arm.inverse_dynamics_sc(&sin, &cos, q, qd, qdd)
+        }
         Function::GravityTorques => arm.gravity_torques(q),
         Function::BiasTorques => arm.bias_torques(q, qd),
     }

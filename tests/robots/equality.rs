@@ -1,7 +1,7 @@
 //! The heart of it: generated code computes what the generic runtime computes, bit for bit.
 
 use fastrand::Rng;
-use rne::InverseDynamics;
+use rne::{InverseDynamics, Scalar};
 
 use crate::shipped::seven_steps::visit_all;
 use crate::shipped::{Shipped, Visitor};
@@ -19,7 +19,13 @@ impl Visitor for Equality {
         let mut differing = 0;
         for index in 0..STATES {
             let State { q, qd, qdd, wrench } = states::any::<DOF, R>(&mut rng, index);
+            let turns = q.map(Scalar::sin_cos);
+            let (sin, cos) = (turns.map(|turn| turn.0), turns.map(|turn| turn.1));
             let equal = [
+                (
+                    robot.inverse_dynamics_sc(&sin, &cos, &q, &qd, &qdd),
+                    arm.inverse_dynamics_sc(&sin, &cos, &q, &qd, &qdd),
+                ),
                 (robot.inverse_dynamics(&q, &qd, &qdd), arm.inverse_dynamics(&q, &qd, &qdd)),
                 (
                     robot.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench),

@@ -115,7 +115,7 @@ fn torques(arm: &DynArm, state: &State) -> Result<Vec<f64>, rne::WrongLength> {
         (Function::GravityTorques, _) => arm.gravity_torques(q),
         (Function::BiasTorques, _) => arm.bias_torques(q, qd),
         (Function::InverseDynamicsWithWrench, Some(wrench)) => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
-        (Function::InverseDynamics | Function::InverseDynamicsWithWrench, _) => arm.inverse_dynamics(q, qd, qdd),
+        (_, _) => arm.inverse_dynamics(q, qd, qdd),
     }
 }
 
@@ -134,7 +134,7 @@ fn state(arguments: &Arguments, robot: &Robot) -> Result<State, Failure> {
     let (takes_qd, takes_qdd, takes_wrench) = match function {
         Function::GravityTorques => (false, false, false),
         Function::BiasTorques => (true, false, false),
-        Function::InverseDynamics => (true, true, false),
+        Function::InverseDynamics | Function::InverseDynamicsSc => (true, true, false),
         Function::InverseDynamicsWithWrench => (true, true, true),
     };
     let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();

@@ -19,6 +19,7 @@ pub(crate) fn torques<'s>(sheet: &'s Worksheet, robot: &Robot, function: Functio
             let argument = |quantity| sheet.argument(Name::scalar(quantity, joint));
             JointState {
                 q: argument(Quantity::Position),
+                turn: function.has_turns().then(|| (argument(Quantity::Sine), argument(Quantity::Cosine))),
                 qd: if function.has_rates() { argument(Quantity::Rate) } else { sheet.constant(0.0, Cause::AtRest) },
                 qdd: if function.has_accelerations() {
                     argument(Quantity::RateDot)

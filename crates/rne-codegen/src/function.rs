@@ -10,6 +10,8 @@ pub enum Function {
     InverseDynamics,
     /// τ(q, q̇, q̈) when the last link exerts a wrench on its environment.
     InverseDynamicsWithWrench,
+    /// τ(q, q̇, q̈) from the sines and cosines of the positions.
+    InverseDynamicsSc,
     /// τ(q, 0, 0).
     GravityTorques,
     /// τ(q, q̇, 0).
@@ -18,8 +20,13 @@ pub enum Function {
 
 impl Function {
     /// All functions, in the order of the traits.
-    pub const ALL: [Self; 4] =
-        [Self::InverseDynamics, Self::InverseDynamicsWithWrench, Self::GravityTorques, Self::BiasTorques];
+    pub const ALL: [Self; 5] = [
+        Self::InverseDynamics,
+        Self::InverseDynamicsWithWrench,
+        Self::InverseDynamicsSc,
+        Self::GravityTorques,
+        Self::BiasTorques,
+    ];
 
     /// The name of its trait method.
     #[must_use]
@@ -27,6 +34,7 @@ impl Function {
         match self {
             Self::InverseDynamics => "inverse_dynamics",
             Self::InverseDynamicsWithWrench => "inverse_dynamics_with_wrench",
+            Self::InverseDynamicsSc => "inverse_dynamics_sc",
             Self::GravityTorques => "gravity_torques",
             Self::BiasTorques => "bias_torques",
         }
@@ -42,6 +50,9 @@ impl Function {
             Self::InverseDynamicsWithWrench => {
                 "Torques when the last link exerts a force and a moment on its environment, at the tip, in tip axes."
             }
+            Self::InverseDynamicsSc => {
+                "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone."
+            }
             Self::GravityTorques => "Torques that hold the arm still against gravity, τ(q, 0, 0).",
             Self::BiasTorques => "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).",
         }
@@ -54,7 +65,12 @@ impl Function {
 
     /// Whether the joint accelerations are an argument.
     pub(crate) const fn has_accelerations(self) -> bool {
-        matches!(self, Self::InverseDynamics | Self::InverseDynamicsWithWrench)
+        matches!(self, Self::InverseDynamics | Self::InverseDynamicsWithWrench | Self::InverseDynamicsSc)
+    }
+
+    /// Whether sines and cosines are arguments.
+    pub(crate) const fn has_turns(self) -> bool {
+        matches!(self, Self::InverseDynamicsSc)
     }
 
     /// Whether the wrench at the tip is an argument.

@@ -96,6 +96,13 @@ impl Interpreter {
         let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
         for &instruction in &self.code {
             let value = match instruction {
+                // sines and cosines that are arguments are those of the positions
+                Instruction::Argument(name) if name.quantity == Quantity::Sine => {
+                    sin_cos(arguments.get(Name::scalar(Quantity::Position, name.joint))?).0
+                }
+                Instruction::Argument(name) if name.quantity == Quantity::Cosine => {
+                    sin_cos(arguments.get(Name::scalar(Quantity::Position, name.joint))?).1
+                }
                 Instruction::Argument(name) => arguments.get(name)?,
                 Instruction::Constant(name, value) => constant(name, value)?,
                 Instruction::SineCosine(angle) => {

@@ -196,6 +196,8 @@ fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
             Some(JointKind::Revolute) => Value { number: point.position(index), turn: point.turn(index) },
             _ => Value::number(point.position(index)),
         },
+        (Quantity::Sine, _) => Value::number(point.turn(index).0),
+        (Quantity::Cosine, _) => Value::number(point.turn(index).1),
         (Quantity::Rate, _) => Value::number(point.rate(index)),
         _ => Value::number(point.rate_dot(index)),
     }

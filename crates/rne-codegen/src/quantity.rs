@@ -152,6 +152,10 @@ pub enum Quantity {
     Sine,
     /// Cosine of the joint angle.
     Cosine,
+    /// Sine of θ + q, from the sine and cosine of q.
+    TurnedSine,
+    /// Its cosine.
+    TurnedCosine,
     /// The sum of the angles of parallel joints; the first of them is the name's part.
     GroupAngle,
     /// Sine of such a sum.
@@ -232,6 +236,8 @@ impl Quantity {
             Self::Angle
             | Self::Sine
             | Self::Cosine
+            | Self::TurnedSine
+            | Self::TurnedCosine
             | Self::GroupAngle
             | Self::GroupSine
             | Self::GroupCosine
@@ -323,6 +329,8 @@ impl Quantity {
             Self::Angle | Self::GroupAngle => "angle",
             Self::Sine | Self::GroupSine => "s",
             Self::Cosine | Self::GroupCosine => "c",
+            Self::TurnedSine => "st",
+            Self::TurnedCosine => "ct",
             Self::Term => "t",
             Self::Omega => "w",
             Self::OmegaDot => "dw",
@@ -371,6 +379,8 @@ impl Quantity {
             | Self::Angle
             | Self::Sine
             | Self::Cosine
+            | Self::TurnedSine
+            | Self::TurnedCosine
             | Self::TwiceRate
             | Self::Torque => format!("{prefix}i"),
             _ => format!("{prefix}i_x"),
@@ -400,6 +410,8 @@ impl Quantity {
             Self::Angle => "θ + q",
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
+            Self::TurnedSine => "sine of θ + q, from those of q",
+            Self::TurnedCosine => "its cosine",
             Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
             Self::GroupSine => "its sine",
             Self::GroupCosine => "its cosine",

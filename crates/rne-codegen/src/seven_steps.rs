@@ -19,6 +19,8 @@ pub(crate) struct JointState<'s> {
     pub(crate) q: Symbol<'s>,
     pub(crate) qd: Symbol<'s>,
     pub(crate) qdd: Symbol<'s>,
+    /// Sine and cosine of q, if they are arguments.
+    pub(crate) turn: Option<(Symbol<'s>, Symbol<'s>)>,
 }
 
 /// A force and a moment.
@@ -57,8 +59,8 @@ pub(crate) fn inverse_dynamics<'s>(
     let mut motions = Vec::with_capacity(arm.links.len());
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         let line = sheet.joint(index + 1);
-        let JointState { q, qd, qdd } = *state;
-        let rotation = rotation(line, sheet, index + 1, link, q);
+        let JointState { q, qd, qdd, turn } = *state;
+        let rotation = rotation(line, sheet, index + 1, link, q, turn);
         let back = rotation.transpose();
         let (omega_before, omega_dot_before) = (omega, omega_dot);
 
@@ -151,9 +153,10 @@ fn rotation<'s>(
     joint: usize,
     link: &Link<'s>,
     q: Symbol<'s>,
+    turn: Option<(Symbol<'s>, Symbol<'s>)>,
 ) -> Matrix<'s> {
     let (s, c) = match link.kind {
-        Revolute => joint_angle(line, sheet, joint, link, q),
+        Revolute => joint_angle(line, sheet, joint, link, q, turn),
         Prismatic => {
             let (s, c) = sheet.constant_turn(&link.theta, Cause::Arithmetic);
             (
@@ -174,7 +177,23 @@ fn joint_angle<'s>(
     joint: usize,
     link: &Link<'s>,
     q: Symbol<'s>,
+    turn: Option<(Symbol<'s>, Symbol<'s>)>,
 ) -> (Symbol<'s>, Symbol<'s>) {
+    if let Some(turn) = turn {
+        return match link.theta.right {
+            Some(turns) => by_quarters(turn, turns),
+            // the addition theorem
+            None => {
+                let ((s, c), (sin, cos)) = (turn, sheet.constant_turn(&link.theta, Cause::Arithmetic));
+                let sin = sheet.name(Name::scalar(Quantity::ThetaSine, joint), sin);
+                let cos = sheet.name(Name::scalar(Quantity::ThetaCosine, joint), cos);
+                (
+                    line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
+                    line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
+                )
+            }
+        };
+    }
     let angle = if link.theta.right.is_some() {
         q
     } else {
@@ -183,11 +202,16 @@ fn joint_angle<'s>(
     let (s, c) = sheet.sine_and_cosine(angle);
     let s = sheet.name(Name::scalar(Quantity::Sine, joint), s);
     let c = sheet.name(Name::scalar(Quantity::Cosine, joint), c);
-    match link.theta.right {
-        None | Some(QuarterTurns::Zero) => (s, c),
-        Some(QuarterTurns::One) => (c, -s),
-        Some(QuarterTurns::Two) => (-s, -c),
-        Some(QuarterTurns::Three) => (-c, s),
+    link.theta.right.map_or((s, c), |turns| by_quarters((s, c), turns))
+}
+
+/// Sine and cosine of an angle that is so many right angles larger.
+fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
+    match turns {
+        QuarterTurns::Zero => (s, c),
+        QuarterTurns::One => (c, -s),
+        QuarterTurns::Two => (-s, -c),
+        QuarterTurns::Three => (-c, s),
     }
 }
 

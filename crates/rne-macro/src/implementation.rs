@@ -89,11 +89,13 @@ impl Target<'_> {
         let arguments = match function {
             Function::InverseDynamics => quote!(#rates, #accelerations),
             Function::InverseDynamicsWithWrench => quote!(#rates, #accelerations, wrench: &#krate::Wrench<T>),
+            Function::InverseDynamicsSc => quote!(#rates, #accelerations),
             Function::GravityTorques => TokenStream::new(),
             Function::BiasTorques => rates,
         };
+        let turns = (function == Function::InverseDynamicsSc).then(|| quote!(sin: &[T; #dof], cos: &[T; #dof],));
         let method = quote! {
-            fn #name<T: #krate::Scalar>(&self, q: &[T; #dof], #arguments) -> [T; #dof] { #body }
+            fn #name<T: #krate::Scalar>(&self, #turns q: &[T; #dof], #arguments) -> [T; #dof] { #body }
         };
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
     }

@@ -86,7 +86,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     ) -> [T; DOF] {
         let mut motions = [LinkMotion::empty(); DOF];
         let mut loads = [LinkLoad::empty(); DOF];
-        seven_steps::forward(self.chain(), base, JointMotions { q, qd, qdd }, &mut motions);
+        seven_steps::forward(self.chain(), base, JointMotions::new(q, qd, qdd), &mut motions);
         seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
         loads.map(|load| load.tau)
     }
@@ -106,7 +106,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let mut motions = [LinkMotion::empty(); DOF];
         let mut loads = [LinkLoad::empty(); DOF];
         let mut links = [LinkTrace::empty(); DOF];
-        let joints = JointMotions { q, qd, qdd };
+        let joints = JointMotions::new(q, qd, qdd);
         seven_steps::forward(self.chain(), base, joints, &mut motions);
         seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
         trace::record(self.chain(), base, joints, &motions, &loads, &mut links);
@@ -131,6 +131,22 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         wrench: &Wrench<T>,
     ) -> [T; DOF] {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
+    }
+
+    fn inverse_dynamics_sc<T: Scalar>(
+        &self,
+        sin: &[T; DOF],
+        cos: &[T; DOF],
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+    ) -> [T; DOF] {
+        let joints = JointMotions { turns: Some((sin, cos)), ..JointMotions::new(q, qd, qdd) };
+        let mut motions = [LinkMotion::empty(); DOF];
+        let mut loads = [LinkLoad::empty(); DOF];
+        seven_steps::forward(self.chain(), &self.fixed_base(), joints, &mut motions);
+        seven_steps::backward(self.chain(), &motions, None, &mut loads);
+        loads.map(|load| load.tau)
     }
 
     fn gravity_torques<T: Scalar>(&self, q: &[T; DOF]) -> [T; DOF] {

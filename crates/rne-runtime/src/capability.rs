@@ -22,6 +22,19 @@ pub trait InverseDynamics<const DOF: usize> {
         wrench: &Wrench<T>,
     ) -> [T; DOF];
 
+    /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics pass:
+    /// `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle; those of a
+    /// prismatic joint are not used, as `q[i]` of a revolute joint is not.
+    #[must_use]
+    fn inverse_dynamics_sc<T: Scalar>(
+        &self,
+        sin: &[T; DOF],
+        cos: &[T; DOF],
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+    ) -> [T; DOF];
+
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
     #[must_use]
     fn gravity_torques<T: Scalar>(&self, q: &[T; DOF]) -> [T; DOF];

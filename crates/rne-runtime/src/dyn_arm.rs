@@ -116,6 +116,25 @@ impl<S: Constant> DynArm<S> {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
+    /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn inverse_dynamics_sc<T: Scalar>(
+        &self,
+        sin: &[T],
+        cos: &[T],
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+    ) -> Result<Vec<T>, WrongLength> {
+        self.has_length("sin", sin)?;
+        self.has_length("cos", cos)?;
+        let joints = JointMotions { turns: Some((sin, cos)), ..self.joints(q, qd, qdd)? };
+        let (_, loads) = self.passes(joints, &self.fixed_base(), None);
+        Ok(loads.into_iter().map(|load| load.tau).collect())
+    }
+
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
     ///
     /// # Errors
@@ -187,11 +206,16 @@ impl<S: Constant> DynArm<S> {
     /// The joint arguments, one element per joint each.
     fn joints<'a, T>(&self, q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Result<JointMotions<'a, T>, WrongLength> {
         for (argument, values) in [("q", q), ("qd", qd), ("qdd", qdd)] {
-            if values.len() != self.dof() {
-                return Err(WrongLength { argument, expected: self.dof(), found: values.len() });
-            }
+            self.has_length(argument, values)?;
         }
-        Ok(JointMotions { q, qd, qdd })
+        Ok(JointMotions::new(q, qd, qdd))
+    }
+
+    fn has_length<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
+        if values.len() == self.dof() {
+            return Ok(());
+        }
+        Err(WrongLength { argument, expected: self.dof(), found: values.len() })
     }
 
     fn chain(&self) -> Chain<'_, S> {

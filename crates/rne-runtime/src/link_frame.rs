@@ -119,6 +119,21 @@ impl<T: Scalar> LinkFrame<T> {
         self.twist * rotation_z(self.sin_cos(q))
     }
 
+    /// The same from the sine and cosine of q.
+    #[inline]
+    pub(crate) fn rotation_by(&self, turn: (T, T)) -> Matrix3<T> {
+        let (s, c) = match (self.kind, self.theta.right) {
+            (JointKind::Prismatic, _) => (self.theta.sin, self.theta.cos),
+            // the addition theorem
+            (JointKind::Revolute, None) => {
+                let ((s, c), Angle { sin, cos, .. }) = (turn, self.theta);
+                (s * cos + c * sin, c * cos - s * sin)
+            }
+            (JointKind::Revolute, Some(turns)) => by_quarters(turn, turns),
+        };
+        self.twist * rotation_z((s, c))
+    }
+
     /// d_i = J_i → C_i, m; a prismatic joint moves it along its z axis.
     #[inline]
     pub(crate) fn d(&self, q: T) -> Vector3<T> {
@@ -135,16 +150,18 @@ impl<T: Scalar> LinkFrame<T> {
         match (self.kind, self.theta.right) {
             (JointKind::Prismatic, _) => (self.theta.sin, self.theta.cos),
             (JointKind::Revolute, None) => (self.theta.radians + q).sin_cos(),
-            (JointKind::Revolute, Some(turns)) => {
-                let (sin, cos) = q.sin_cos();
-                match turns {
-                    QuarterTurns::Zero => (sin, cos),
-                    QuarterTurns::One => (cos, -sin),
-                    QuarterTurns::Two => (-sin, -cos),
-                    QuarterTurns::Three => (-cos, sin),
-                }
-            }
+            (JointKind::Revolute, Some(turns)) => by_quarters(q.sin_cos(), turns),
         }
+    }
+}
+
+/// Sine and cosine of an angle that is so many right angles larger.
+fn by_quarters<T: Scalar>((sin, cos): (T, T), turns: QuarterTurns) -> (T, T) {
+    match turns {
+        QuarterTurns::Zero => (sin, cos),
+        QuarterTurns::One => (cos, -sin),
+        QuarterTurns::Two => (-sin, -cos),
+        QuarterTurns::Three => (-cos, sin),
     }
 }
 

@@ -11,6 +11,14 @@ pub(crate) struct JointMotions<'a, T> {
     pub(crate) q: &'a [T],
     pub(crate) qd: &'a [T],
     pub(crate) qdd: &'a [T],
+    /// Sines and cosines of the positions, if they are known.
+    pub(crate) turns: Option<(&'a [T], &'a [T])>,
+}
+
+impl<'a, T> JointMotions<'a, T> {
+    pub(crate) const fn new(q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Self {
+        Self { q, qd, qdd, turns: None }
+    }
 }
 
 /// Link i with the motion of its joint.
@@ -23,6 +31,8 @@ pub(crate) struct Joint<T> {
     pub(crate) qd: T,
     /// θ̈_i or b̈_i.
     pub(crate) qdd: T,
+    /// Sine and cosine of `q`, if they are known.
+    pub(crate) turn: Option<(T, T)>,
 }
 
 /// What the forward pass finds for link i.
@@ -66,10 +76,13 @@ impl<'a, S: Constant> Chain<'a, S> {
     /// The links from base to tip, each with the motion of its joint.
     pub(crate) fn joints<T: Scalar>(
         self,
-        JointMotions { q, qd, qdd }: JointMotions<'a, T>,
+        JointMotions { q, qd, qdd, turns }: JointMotions<'a, T>,
     ) -> impl Iterator<Item = Joint<T>> + 'a {
         let motions = q.iter().zip(qd).zip(qdd);
-        self.links().zip(motions).map(|(link, ((&q, &qd), &qdd))| Joint { link, q, qd, qdd })
+        self.links().zip(motions).enumerate().map(move |(index, (link, ((&q, &qd), &qdd)))| {
+            let turn = turns.and_then(|(sin, cos)| Some((*sin.get(index)?, *cos.get(index)?)));
+            Joint { link, q, qd, qdd, turn }
+        })
     }
 }
 
@@ -87,8 +100,12 @@ impl<T: Scalar> LinkMotion<T> {
     }
 
     /// Link i where its joint has put it, its motion still unknown.
-    pub(crate) fn placed(Joint { link, q, .. }: &Joint<T>) -> Self {
-        Self { rotation: link.rotation(*q), d: link.d(*q), r: link.r, ..Self::empty() }
+    pub(crate) fn placed(Joint { link, q, turn, .. }: &Joint<T>) -> Self {
+        let rotation = match turn {
+            Some(turn) => link.rotation_by(*turn),
+            None => link.rotation(*q),
+        };
+        Self { rotation, d: link.d(*q), r: link.r, ..Self::empty() }
     }
 
     /// A place for a result.

@@ -21,7 +21,12 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
         elements: Axis::ALL.map(|axis| used(Name::vector(quantity, program.dof + 1, axis))).into(),
     };
     let function = program.function;
-    let mut arrays = vec![joints("q", Quantity::Position)];
+    let mut arrays = Vec::new();
+    if function.has_turns() {
+        arrays.push(joints("sin", Quantity::Sine));
+        arrays.push(joints("cos", Quantity::Cosine));
+    }
+    arrays.push(joints("q", Quantity::Position));
     if function.has_rates() {
         arrays.push(joints("qd", Quantity::Rate));
     }

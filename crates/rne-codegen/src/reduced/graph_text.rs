@@ -96,6 +96,8 @@ fn leaf_name(leaf: Leaf) -> String {
         Leaf::RateDot(at) => format!("qdd{}", joint(at)),
         Leaf::Force(axis) => format!("f{}", joint(axis)),
         Leaf::Moment(axis) => format!("n{}", joint(axis)),
+        Leaf::GivenSine(at) => turn("s", at, at),
+        Leaf::GivenCosine(at) => turn("c", at, at),
         Leaf::Sine(first, last) => turn("s", first, last),
         Leaf::Cosine(first, last) => turn("c", first, last),
     }

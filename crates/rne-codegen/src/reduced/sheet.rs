@@ -61,6 +61,9 @@ pub(crate) enum Leaf {
     RateDot(u8),
     Force(u8),
     Moment(u8),
+    /// Sine of the position of a joint, as an argument.
+    GivenSine(u8),
+    GivenCosine(u8),
     /// Sine of the summed angle of these joints, the first one counted positive.
     Sine(u8, u8),
     Cosine(u8, u8),

@@ -176,6 +176,8 @@ impl Transcript<'_> {
             Leaf::RateDot(at) => Name::scalar(Quantity::RateDot, joint(at)),
             Leaf::Force(along) => Name::vector(Quantity::JointForce, tip, axis(along)),
             Leaf::Moment(along) => Name::vector(Quantity::JointMoment, tip, axis(along)),
+            Leaf::GivenSine(at) => Name::scalar(Quantity::Sine, joint(at)),
+            Leaf::GivenCosine(at) => Name::scalar(Quantity::Cosine, joint(at)),
             Leaf::Sine(first, last) | Leaf::Cosine(first, last) => {
                 let is_sine = matches!(leaf, Leaf::Sine(..));
                 return self.of_angle(usize::from(first), usize::from(last), is_sine);

@@ -174,6 +174,9 @@ impl Writer {
 
     /// The turn by the summed angle of joints `first` to `last`.
     pub(crate) fn turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+        if self.function.has_turns() {
+            return self.given_turn(rows, first, last);
+        }
         let angle = Angle::of(rows, first, last);
         let (sine, cosine) = angle.image(rows, &self.point);
         let (from, to) = (byte(first), byte(last));
@@ -189,6 +192,17 @@ impl Writer {
             (s, c) = (c, -s);
         }
         SymbolicTurn { s, c }
+    }
+
+    /// The same from sines and cosines that are arguments, by the addition theorem.
+    fn given_turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+        let theta = rows[first..=last].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
+        (first..=last).fold(self.constant_turn(theta), |SymbolicTurn { s, c }, joint| {
+            let (sine, cosine) = self.point.turn(joint);
+            let sine = self.leaf(Leaf::GivenSine(byte(joint)), sine).signed(rows[joint].reversed);
+            let cosine = self.leaf(Leaf::GivenCosine(byte(joint)), cosine);
+            SymbolicTurn { s: s * cosine + c * sine, c: c * cosine - s * sine }
+        })
     }
 
     /// A turn by a constant angle.

@@ -62,7 +62,7 @@ pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
     });
     let reduced = shipped().into_iter().flat_map(|robot| {
         let programs = reduced_programs(&robot);
-        let (reduced, rewritten) = programs.split_at(4);
+        let (reduced, rewritten) = programs.split_at(5);
         // functions of one name are in different files
         [(robot.clone(), reduced.to_vec()), (robot, rewritten.to_vec())]
     });
