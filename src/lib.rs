@@ -73,7 +73,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]
-pub use rne_macro::InverseDynamics;
+pub use rne_macro::{BatchInverseDynamics, InverseDynamics};
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]

@@ -75,16 +75,16 @@ fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
 
 /// What became of a robot file.
 #[derive(Default)]
-struct Loaded {
+pub(crate) struct Loaded {
     /// The robot, if the file is valid.
-    robot: Option<Robot>,
+    pub(crate) robot: Option<Robot>,
     /// Makes the compiler watch the file.
     watched: TokenStream,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
 }
 
-fn load(source: &Source, errors: &mut Errors) -> Loaded {
+pub(crate) fn load(source: &Source, errors: &mut Errors) -> Loaded {
     let (name, bytes, watched) = match source {
         Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new()),
         Source::Path(path) => match location::read(path) {

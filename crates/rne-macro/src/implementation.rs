@@ -95,6 +95,11 @@ impl Target<'_> {
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
     }
 
+    /// A name for a method's scalar.
+    pub(crate) fn number(&self) -> Ident {
+        if self.is_taken("T") { format_ident!("{}", self.free_name()) } else { format_ident!("T") }
+    }
+
     /// Whether the user's type has a parameter of that name.
     fn is_taken(&self, name: &str) -> bool {
         self.item.generics.params.iter().any(|parameter| match parameter {

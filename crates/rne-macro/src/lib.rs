@@ -3,6 +3,7 @@
 //! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`.
 
 mod attribute;
+mod batch;
 mod description;
 mod error;
 mod expand;
@@ -143,4 +144,19 @@ use proc_macro::TokenStream;
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
 pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
     expand::inverse_dynamics(input.into()).into()
+}
+
+/// Implements the trait `BatchInverseDynamics` for a struct that also derives `InverseDynamics`, from the same attribute
+/// `#[robot(…)]`.
+///
+/// ```ignore
+/// use rne::{BatchInverseDynamics, InverseDynamics};
+///
+/// #[derive(InverseDynamics, BatchInverseDynamics)]
+/// #[robot(path = "../robots/puma560.yaml")]
+/// pub struct Puma560;
+/// ```
+#[proc_macro_derive(BatchInverseDynamics, attributes(robot))]
+pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
+    batch::batch_inverse_dynamics(input.into()).into()
 }
