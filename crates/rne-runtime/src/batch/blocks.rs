@@ -6,44 +6,67 @@ use super::Torques;
 use super::scalar::{BatchScalar, Lane};
 use super::unit::Task;
 
-/// States of a block: one register of `f32` in AVX-512, two of `f64`.
-pub(super) const BLOCK: usize = 16;
+/// Bytes of a block: the widest register there is.
+const BYTES: usize = 64;
 
 /// One number per state of a block, for each joint.
-type Block<T, const DOF: usize> = [[T; BLOCK]; DOF];
+type Block<T, const DOF: usize, const STATES: usize> = [[T; STATES]; DOF];
 
 /// States whose torques are to be computed: arrays of one length.
-pub(super) struct States<'a, K, T, const DOF: usize> {
-    pub(super) robot: &'a K,
+pub(super) struct States<'a, R, T, const DOF: usize> {
+    pub(super) robot: &'a R,
     pub(super) states: usize,
     /// Positions, velocities, accelerations.
     pub(super) inputs: [[&'a [T]; DOF]; 3],
     pub(super) tau: [&'a mut [T]; DOF],
 }
 
-impl<K: Torques<DOF>, T: BatchScalar, const DOF: usize> Task for States<'_, K, T, DOF> {
+impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> Task for States<'_, R, T, DOF> {
     #[inline(always)]
-    fn run<const FUSED: bool>(mut self) {
-        let mut start = 0;
-        while start < self.states {
-            let end = self.states.min(start + BLOCK);
-            let mut inputs = [[[T::zero(); BLOCK]; DOF]; 3];
-            for (block, arrays) in inputs.as_flattened_mut().iter_mut().zip(self.inputs.as_flattened()) {
-                read(block, &arrays[start..end]);
-            }
-            let (tau, is_nan) = torques::<K, T, FUSED, DOF>(self.robot, &inputs);
-            let tau = if is_nan { repaired(self.robot, &inputs, tau) } else { tau };
-            for (block, array) in tau.iter().zip(&mut self.tau) {
-                write(block, &mut array[start..end]);
-            }
-            start = end;
+    fn run<const FUSED: bool>(self) {
+        // A number cannot be a type's constant and the length of an array, yet.
+        if size_of::<T>() == size_of::<f32>() {
+            self.in_blocks::<FUSED, { BYTES / size_of::<f32>() }>();
+        } else {
+            self.in_blocks::<FUSED, { BYTES / size_of::<f64>() }>();
         }
     }
 }
 
-/// Fills a block, the last one up with zeros: a state like any other.
+impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
+    #[inline(always)]
+    fn in_blocks<const FUSED: bool, const STATES: usize>(mut self) {
+        let mut start = 0;
+        while start < self.states {
+            let end = self.states.min(start + STATES);
+            let mut inputs = [[[T::zero(); STATES]; DOF]; 3];
+            for (block, numbers) in inputs.as_flattened_mut().iter_mut().zip(self.inputs.as_flattened()) {
+                read(block, &numbers[start..end]);
+            }
+            let (tau, is_nan) = torques::<R, T, FUSED, DOF, STATES>(self.robot, &inputs);
+            let tau = if is_nan { repaired(self.robot, &inputs, tau) } else { tau };
+            for (block, numbers) in tau.iter().zip(&mut self.tau) {
+                write(block, &mut numbers[start..end]);
+            }
+            start = end;
+        }
+    }
+
+    /// The torques of each state by itself.
+    pub(super) fn one_by_one(self) {
+        let Self { robot, states, inputs, mut tau } = self;
+        for state in 0..states {
+            let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
+            for (numbers, torque) in tau.iter_mut().zip(robot.torques(&q, &qd, &qdd)) {
+                numbers[state] = torque;
+            }
+        }
+    }
+}
+
+/// Fills a block. The last one may be filled up: with zeros, a state like any other.
 #[inline(always)]
-fn read<T: Copy>(block: &mut [T; BLOCK], numbers: &[T]) {
+fn read<T: Copy, const STATES: usize>(block: &mut [T; STATES], numbers: &[T]) {
     match numbers.first_chunk() {
         Some(chunk) => *block = *chunk,
         None => block[..numbers.len()].copy_from_slice(numbers),
@@ -51,7 +74,7 @@ fn read<T: Copy>(block: &mut [T; BLOCK], numbers: &[T]) {
 }
 
 #[inline(always)]
-fn write<T: Copy>(block: &[T; BLOCK], numbers: &mut [T]) {
+fn write<T: Copy, const STATES: usize>(block: &[T; STATES], numbers: &mut [T]) {
     match numbers.first_chunk_mut() {
         Some(chunk) => *chunk = *block,
         None => numbers.copy_from_slice(&block[..numbers.len()]),
@@ -60,20 +83,19 @@ fn write<T: Copy>(block: &[T; BLOCK], numbers: &mut [T]) {
 
 /// The torques of a block and whether one of them is NaN.
 ///
-/// The loop's body is straight-line code, and what it reads and writes are local arrays: LLVM vectorises it without a
-/// condition. The tests show the same bits for every unit; `cargo run --release --example batch_speed` shows whether it
-/// still does.
+/// The body of the loop has neither a branch nor a call, and reads and writes local arrays alone: nothing keeps LLVM from
+/// making it one over registers. Whether it still does shows in the times of
+/// `cargo run --release --example batch_speed`.
 #[inline(always)]
-fn torques<K: Torques<DOF>, T: BatchScalar, const FUSED: bool, const DOF: usize>(
-    robot: &K,
-    inputs: &[Block<T, DOF>; 3],
-) -> (Block<T, DOF>, bool) {
-    let mut tau = [[T::zero(); BLOCK]; DOF];
-    for state in 0..BLOCK {
+fn torques<R: Torques<DOF>, T: BatchScalar, const FUSED: bool, const DOF: usize, const STATES: usize>(
+    robot: &R,
+    inputs: &[Block<T, DOF, STATES>; 3],
+) -> (Block<T, DOF, STATES>, bool) {
+    let mut tau = [[T::zero(); STATES]; DOF];
+    for state in 0..STATES {
         let [q, qd, qdd]: [[Lane<T, FUSED>; DOF]; 3] =
             from_fn(|input| from_fn(|joint| Lane(inputs[input][joint][state])));
-        let torques = robot.torques(&q, &qd, &qdd);
-        for (joint, torque) in torques.into_iter().enumerate() {
+        for (joint, torque) in robot.torques(&q, &qd, &qdd).into_iter().enumerate() {
             tau[joint][state] = torque.0;
         }
     }
@@ -81,19 +103,18 @@ fn torques<K: Torques<DOF>, T: BatchScalar, const FUSED: bool, const DOF: usize>
     (tau, is_nan)
 }
 
-/// The same with the states that have a NaN computed again, one by one, as numbers.
+/// The same with the torques of states that have a NaN computed again, as those of one state are.
 #[cold]
 #[inline(never)]
-fn repaired<K: Torques<DOF>, T: BatchScalar, const DOF: usize>(
-    robot: &K,
-    inputs: &[Block<T, DOF>; 3],
-    mut tau: Block<T, DOF>,
-) -> Block<T, DOF> {
-    for state in 0..BLOCK {
+fn repaired<R: Torques<DOF>, T: BatchScalar, const DOF: usize, const STATES: usize>(
+    robot: &R,
+    inputs: &[Block<T, DOF, STATES>; 3],
+    mut tau: Block<T, DOF, STATES>,
+) -> Block<T, DOF, STATES> {
+    for state in 0..STATES {
         if tau.iter().any(|torques| torques[state].is_nan()) {
             let [q, qd, qdd] = from_fn(|input| from_fn(|joint| inputs[input][joint][state]));
-            let torques = robot.torques(&q, &qd, &qdd);
-            for (joint, torque) in torques.into_iter().enumerate() {
+            for (joint, torque) in robot.torques(&q, &qd, &qdd).into_iter().enumerate() {
                 tau[joint][state] = torque;
             }
         }

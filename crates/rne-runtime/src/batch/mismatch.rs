@@ -28,16 +28,18 @@ impl fmt::Display for LengthMismatch {
 
 impl Error for LengthMismatch {}
 
-/// The length of all arrays. The torques have been counted by the caller: theirs cannot be borrowed twice.
+/// The length of all arrays: of the inputs, and those of the torques.
 pub(super) fn common_length<T, const DOF: usize>(
-    inputs: [(&'static str, &[&[T]; DOF]); 3],
-    torques: [usize; DOF],
+    [q, qd, qdd]: [&[&[T]; DOF]; 3],
+    tau: [usize; DOF],
 ) -> Result<usize, LengthMismatch> {
-    let states = inputs[0].1.first().map_or(0, |first| first.len());
-    let inputs = inputs.into_iter().map(|(argument, arrays)| (argument, arrays.map(<[T]>::len)));
-    for (argument, lengths) in inputs.chain([("tau", torques)]) {
-        if let Some(joint) = lengths.iter().position(|length| *length != states) {
-            return Err(LengthMismatch { argument, joint, length: lengths[joint], states });
+    let states = q.first().map_or(0, |first| first.len());
+    let inputs = [("q", q), ("qd", qd), ("qdd", qdd)].map(|(argument, arrays)| (argument, arrays.map(<[T]>::len)));
+    for (argument, lengths) in inputs.into_iter().chain([("tau", tau)]) {
+        for (joint, length) in lengths.into_iter().enumerate() {
+            if length != states {
+                return Err(LengthMismatch { argument, joint, length, states });
+            }
         }
     }
     Ok(states)

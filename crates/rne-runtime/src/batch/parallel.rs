@@ -2,35 +2,33 @@
 
 use core::array::from_fn;
 
-use super::Torques;
-use super::blocks::{BLOCK, States};
-use super::scalar::BatchScalar;
-use super::unit::VectorUnit;
+use super::blocks::States;
 
-/// States that are worth a task of their own: some ten microseconds of work, against one to hand it over.
+/// States that are worth a task of their own: tens of microseconds of work, against about one to hand it to a thread.
+/// A multiple of every block, so that threads divide states where blocks end.
 const TASK: usize = 4096;
 
-/// Halves the states until they are few, at the edge of a block: each state is computed as it would be without threads.
-pub(super) fn run<K: Torques<DOF>, T: BatchScalar, const DOF: usize>(unit: VectorUnit, states: States<'_, K, T, DOF>) {
-    if states.states < 2 * TASK {
-        return unit.run(states);
+/// Runs tasks of some thousand states each, on rayon's threads; few states on the thread that called.
+pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
+    all: States<'_, R, T, DOF>,
+    run: &(impl Fn(States<'_, R, T, DOF>) + Sync),
+) {
+    if all.states < 2 * TASK {
+        return run(all);
     }
-    let (first, second) = halves(states);
-    rayon::join(|| run(unit, first), || run(unit, second));
+    let (first, second) = halves(all);
+    rayon::join(|| for_each_part(first, run), || for_each_part(second, run));
 }
 
-fn halves<K, T, const DOF: usize>(all: States<'_, K, T, DOF>) -> (States<'_, K, T, DOF>, States<'_, K, T, DOF>) {
-    let middle = (all.states / 2).next_multiple_of(BLOCK);
-    let inputs = all.inputs.map(|arrays| arrays.map(|array| array.split_at(middle)));
-    let mut rest = all.tau;
+fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {
+    let States { robot, states, inputs, tau: mut rest } = all;
+    let middle = (states / 2).next_multiple_of(TASK);
+    let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at(middle)));
     let tau = from_fn(|joint| rest[joint].split_off_mut(..middle).unwrap_or_default());
-    let first =
-        States { robot: all.robot, states: middle, inputs: inputs.map(|arrays| arrays.map(|halves| halves.0)), tau };
-    let second = States {
-        robot: all.robot,
-        states: all.states - middle,
-        inputs: inputs.map(|arrays| arrays.map(|halves| halves.1)),
-        tau: rest,
-    };
-    (first, second)
+    let [first, second] =
+        [inputs.map(|arrays| arrays.map(|halves| halves.0)), inputs.map(|arrays| arrays.map(|halves| halves.1))];
+    (
+        States { robot, states: middle, inputs: first, tau },
+        States { robot, states: states - middle, inputs: second, tau: rest },
+    )
 }
