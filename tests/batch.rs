@@ -5,7 +5,7 @@ use std::array::from_fn;
 use std::fmt::Debug;
 
 use fastrand::Rng;
-use rne::{Arm, BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
+use rne::{BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
 
 macro_rules! robots {
     ($($Robot:ident: $file:literal;)*) => {$(
@@ -198,13 +198,14 @@ fn arrays_of_different_lengths_are_named() {
 fn a_struct_may_have_parameters_and_fields() {
     let states = States::<f64, 6>::random(100);
     let tooled = Tooled(std::cell::RefCell::new(&1));
+    assert_eq!(**tooled.0.borrow(), 1);
     assert_eq!(states.batch(&tooled, VectorUnit::widest()), states.batch(&Puma560, VectorUnit::widest()));
 }
 
 #[cfg(feature = "std")]
 #[test]
 fn a_robot_at_run_time_computes_batches_too() {
-    let arm = Arm::<6>::from_file("robots/puma560.yaml").expect("a robot file");
+    let arm = rne::Arm::<6>::from_file("robots/puma560.yaml").expect("a robot file");
     let states = States::<f64, 6>::random(20_011);
     assert_eq!(states.batch(&arm, VectorUnit::widest()), states.one_by_one(&Puma560));
 }

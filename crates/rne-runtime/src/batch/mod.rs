@@ -9,19 +9,24 @@
 //! | threads | as many as rayon has, for more than some thousand states (feature `rayon`) |
 //!
 //! ```
+//! # #[cfg(feature = "std")] {
 //! use rne_runtime::{Arm, BatchInverseDynamics};
-//! # use rne_runtime::LoadError;
-//! # let text = "{format: 1, name: rod, source: lecture 38, convention: standard, gravity: [0, -9.81, 0], joints: [
-//! #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
-//! # let robot: Arm<1> = Arm::from_yaml(text)?;
 //!
-//! // A robot with one joint; `#[derive(BatchInverseDynamics)]` makes one that is fast.
-//! let q = [0.0, 0.1, 0.2]; // rad
+//! // One joint that is loaded here; `#[derive(BatchInverseDynamics)]` makes a robot that is fast.
+//! let robot = Arm::<1>::from_yaml(
+//!     "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+//!         {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}",
+//! )?;
+//! let q = [0.0, 0.1, 0.2]; // rad, three states
 //! let (qd, qdd) = ([0.5; 3], [0.0; 3]); // rad/s, rad/s²
 //! let mut tau = [0.0; 3]; // N m
-//! robot.inverse_dynamics_batch([&q], [&qd], [&qdd], [&mut tau]).expect("three states each");
+//! robot.inverse_dynamics_batch([&q], [&qd], [&qdd], [&mut tau])?;
 //! assert!((tau[0] - 2.5 * 9.81 * 0.4).abs() < 1e-12);
-//! # Ok::<(), LoadError>(())
+//!
+//! let error = robot.inverse_dynamics_batch([&q], [&qd[1..]], [&qdd], [&mut tau]).unwrap_err();
+//! assert_eq!(error.to_string(), "`qd[0]` has length 2 and `q[0]` 3: each holds one number per state");
+//! # }
+//! # Ok::<(), Box<dyn core::error::Error>>(())
 //! ```
 //!
 //! # Results
@@ -33,8 +38,8 @@
 //!
 //! # Method
 //!
-//! The derived code is written once more, to be inlined into a loop over the states of a [block](blocks), for a scalar that
-//! has no branch and no call; LLVM makes that a loop over [registers](unit), once for each vector unit. Angles that need a
+//! The derived code is written once more, to be inlined into a loop over the states of a block, for a scalar that
+//! has no branch and no call; LLVM makes that a loop over registers, once for each vector unit. Angles that need a
 //! branch (beyond 10⁵ rad) become NaN there, and states with a NaN are computed again without registers.
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
