@@ -1,10 +1,12 @@
 //! Nanoseconds per state of a batch, on every vector unit of this processor.
 //!
 //! `cargo run --release --example batch_speed`
+#![allow(clippy::cast_precision_loss)] // a few hundred states
 
 use std::hint::black_box;
 use std::time::Instant;
 
+use fastrand::Rng;
 use rne::{BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
@@ -27,13 +29,10 @@ fn main() {
 }
 
 fn table<T: BatchScalar, const DOF: usize>(robot_name: &str, number: &str, robot: &impl BatchInverseDynamics<DOF>) {
-    let numbers = |salt: usize| {
-        let number = |index: usize| T::from_f64(((index * 7919 + salt * 104_729) % 6283) as f64 / 1000.0 - 3.1415);
-        (0..STATES).map(number).collect::<Vec<T>>()
-    };
-    let input: [[Vec<T>; DOF]; 3] = [0, 1, 2].map(|input| std::array::from_fn(|joint| numbers(input * 100 + joint)));
-    let [q, qd, qdd] = input.each_ref().map(|input| input.each_ref().map(Vec::as_slice));
-    let mut tau: [Vec<T>; DOF] = std::array::from_fn(|_| vec![T::zero(); STATES]);
+    let mut rng = Rng::with_seed(1);
+    let inputs = [(); 3].map(|()| [(); DOF].map(|()| [(); STATES].map(|()| T::from_f64(6.0 * rng.f64() - 3.0))));
+    let [q, qd, qdd] = inputs.each_ref().map(|arrays| arrays.each_ref().map(|numbers| &numbers[..]));
+    let mut tau = [[T::zero(); STATES]; DOF];
 
     let one_by_one = fastest(|| {
         for state in 0..STATES {
@@ -46,7 +45,7 @@ fn table<T: BatchScalar, const DOF: usize>(robot_name: &str, number: &str, robot
     println!("{robot_name:<10} {number:<6} {:<8} {one_by_one:>9.2}", "single");
     for unit in VectorUnit::all() {
         let time = fastest(|| {
-            let tau = tau.each_mut().map(Vec::as_mut_slice);
+            let tau = tau.each_mut().map(|torques| &mut torques[..]);
             black_box(robot.inverse_dynamics_batch_on(unit, q, qd, qdd, tau)).expect("equal lengths");
         });
         println!("{robot_name:<10} {number:<6} {unit:<8} {time:>9.2}");
@@ -58,7 +57,7 @@ fn fastest(mut run: impl FnMut()) -> f64 {
     let times = (0..2000).map(|_| {
         let start = Instant::now();
         run();
-        start.elapsed()
+        start.elapsed().as_secs_f64()
     });
-    times.min().unwrap_or_default().as_secs_f64() * 1e9 / STATES as f64
+    times.fold(f64::INFINITY, f64::min) * 1e9 / STATES as f64
 }

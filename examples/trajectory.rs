@@ -1,6 +1,7 @@
 //! Torques of a trajectory of any length: CSV in, CSV out, and how fast that went.
 //!
 //! `cargo run --release --example trajectory -- --help`
+#![allow(clippy::cast_precision_loss)] // fewer than 2⁵² states
 
 use std::error::Error;
 use std::fmt::Write;

@@ -15,7 +15,7 @@ type Block<T, const DOF: usize, const STATES: usize> = [[T; STATES]; DOF];
 /// States whose torques are to be computed: arrays of one length.
 pub(super) struct States<'a, R, T, const DOF: usize> {
     pub(super) robot: &'a R,
-    pub(super) states: usize,
+    pub(super) count: usize,
     /// Positions, velocities, accelerations.
     pub(super) inputs: [[&'a [T]; DOF]; 3],
     pub(super) tau: [&'a mut [T]; DOF],
@@ -37,8 +37,8 @@ impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
     #[inline(always)]
     fn in_blocks<const FUSED: bool, const STATES: usize>(mut self) {
         let mut start = 0;
-        while start < self.states {
-            let end = self.states.min(start + STATES);
+        while start < self.count {
+            let end = self.count.min(start + STATES);
             let mut inputs = [[[T::zero(); STATES]; DOF]; 3];
             for (block, numbers) in inputs.as_flattened_mut().iter_mut().zip(self.inputs.as_flattened()) {
                 read(block, &numbers[start..end]);
@@ -51,15 +51,15 @@ impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
             start = end;
         }
     }
+}
 
-    /// The torques of each state by itself.
-    pub(super) fn one_by_one(self) {
-        let Self { robot, states, inputs, mut tau } = self;
-        for state in 0..states {
-            let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
-            for (numbers, torque) in tau.iter_mut().zip(robot.torques(&q, &qd, &qdd)) {
-                numbers[state] = torque;
-            }
+/// The torques of each state by itself.
+pub(super) fn one_by_one<R: Torques<DOF>, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, DOF>) {
+    let States { robot, count, inputs, mut tau } = all;
+    for state in 0..count {
+        let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
+        for (numbers, torque) in tau.iter_mut().zip(robot.torques(&q, &qd, &qdd)) {
+            numbers[state] = torque;
         }
     }
 }

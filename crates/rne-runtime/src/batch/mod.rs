@@ -19,7 +19,7 @@
 //! )?;
 //! let q = [0.0, 0.1, 0.2]; // rad, three states
 //! let (qd, qdd) = ([0.5; 3], [0.0; 3]); // rad/s, rad/s²
-//! let mut tau = [0.0; 3]; // N m
+//! let mut tau = [0.0_f64; 3]; // N m
 //! robot.inverse_dynamics_batch([&q], [&qd], [&qdd], [&mut tau])?;
 //! assert!((tau[0] - 2.5 * 9.81 * 0.4).abs() < 1e-12);
 //!
@@ -60,7 +60,7 @@ pub use unit::VectorUnit;
 use core::array::from_fn;
 
 use crate::{Arm, Constant, InverseDynamics, Scalar};
-use blocks::States;
+use blocks::{States, one_by_one};
 
 /// Torques from motion for many states at once.
 ///
@@ -108,7 +108,7 @@ impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF
         qdd: [&[T]; DOF],
         tau: [&mut [T]; DOF],
     ) -> Result<(), LengthMismatch> {
-        for_each_part(self, [q, qd, qdd], tau, |states| states.one_by_one())
+        for_each_part(self, [q, qd, qdd], tau, one_by_one)
     }
 }
 
@@ -144,8 +144,8 @@ fn for_each_part<R: Sync, T: BatchScalar, const DOF: usize>(
     tau: [&mut [T]; DOF],
     run: impl Fn(States<'_, R, T, DOF>) + Sync,
 ) -> Result<(), LengthMismatch> {
-    let states = mismatch::common_length(inputs.each_ref(), from_fn(|joint| tau[joint].len()))?;
-    let states = States { robot, states, inputs, tau };
+    let count = mismatch::common_length(inputs.each_ref(), from_fn(|joint| tau[joint].len()))?;
+    let states = States { robot, count, inputs, tau };
     #[cfg(feature = "rayon")]
     parallel::for_each_part(states, &run);
     #[cfg(not(feature = "rayon"))]

@@ -13,7 +13,7 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
     all: States<'_, R, T, DOF>,
     run: &(impl Fn(States<'_, R, T, DOF>) + Sync),
 ) {
-    if all.states < 2 * TASK {
+    if all.count < 2 * TASK {
         return run(all);
     }
     let (first, second) = halves(all);
@@ -21,14 +21,14 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
 }
 
 fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {
-    let States { robot, states, inputs, tau: mut rest } = all;
-    let middle = (states / 2).next_multiple_of(TASK);
+    let States { robot, count, inputs, tau: mut rest } = all;
+    let middle = (count / 2).next_multiple_of(TASK);
     let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at(middle)));
     let tau = from_fn(|joint| rest[joint].split_off_mut(..middle).unwrap_or_default());
     let [first, second] =
         [inputs.map(|arrays| arrays.map(|halves| halves.0)), inputs.map(|arrays| arrays.map(|halves| halves.1))];
     (
-        States { robot, states: middle, inputs: first, tau },
-        States { robot, states: states - middle, inputs: second, tau: rest },
+        States { robot, count: middle, inputs: first, tau },
+        States { robot, count: count - middle, inputs: second, tau: rest },
     )
 }
