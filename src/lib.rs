@@ -26,6 +26,7 @@
 //! | trait | methods |
 //! |---|---|
 //! | [`InverseDynamics`] | torques from motion, with or without a [`Wrench`] at the tip; gravity torques; bias torques |
+//! | [`BatchInverseDynamics`] | torques of many states at once, `f32` or `f64`, on the widest vector unit of the processor ([`batch`]) |
 //!
 //! # A robot at run time
 //!
@@ -51,6 +52,33 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! # A million states
+//!
+//! ```
+//! use rne::{BatchInverseDynamics, InverseDynamics};
+//!
+//! #[derive(InverseDynamics, BatchInverseDynamics)]
+//! #[robot(path = "../robots/puma560.yaml")]
+//! pub struct Puma560;
+//!
+//! let states = 1003; // any number
+//! let zeros = vec![0.0; states];
+//! let mut tau = [(); 6].map(|()| vec![0.0; states]);
+//! Puma560.inverse_dynamics_batch([&zeros; 6], [&zeros; 6], [&zeros; 6], tau.each_mut().map(Vec::as_mut_slice))?;
+//! # Ok::<(), rne::LengthMismatch>(())
+//! ```
+//!
+//! AVX-512, AVX2, SSE2 or NEON: what the processor has is found when the program runs, without `-C target-cpu`. With the
+//! feature `rayon`, on all cores.
+//!
+//! # Features
+//!
+//! | feature | |
+//! |---|---|
+//! | `std` (default) | robot files at run time |
+//! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
+//! | `rayon` | batches on all cores |
+//!
 //! # Without `std`
 //!
 //! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and `Arm::new` need neither `std` nor
@@ -73,7 +101,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]
-pub use rne_macro::InverseDynamics;
+pub use rne_macro::{BatchInverseDynamics, InverseDynamics};
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]

@@ -29,17 +29,8 @@ pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
     let loaded = attribute.source.as_ref().map(|source| load(source, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
-        let choice = match (&loaded.plan, attribute.form) {
-            (_, Form::SevenSteps) | (None, _) => None,
-            (Some(file), _) => match PlanFile::read(&file.shown, &String::from_utf8_lossy(&file.bytes), &robot) {
-                Ok(plan) => Some(Choice::from(plan)),
-                Err(report) => {
-                    errors.at_span(span, describe(report));
-                    return None;
-                }
-            },
-        };
-        let programs = programs(&robot, attribute.form, choice, span, &mut errors)?;
+        let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
+        let programs = programs(&robot, attribute.form, &choice, span, &mut errors)?;
         Some((robot, programs))
     });
     let target = Target { item: &item, krate: &attribute.krate };
@@ -88,18 +79,18 @@ fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
 
 /// What became of a robot file.
 #[derive(Default)]
-struct Loaded {
+pub(crate) struct Loaded {
     /// The robot, if the file is valid.
-    robot: Option<Robot>,
+    pub(crate) robot: Option<Robot>,
     /// Makes the compiler watch the file.
     watched: TokenStream,
     /// The plan file beside it.
-    plan: Option<RobotFile>,
+    pub(crate) plan: Option<RobotFile>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
 }
 
-fn load(source: &Source, errors: &mut Errors) -> Loaded {
+pub(crate) fn load(source: &Source, errors: &mut Errors) -> Loaded {
     let (name, bytes, watched, plan) = match source {
         Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None),
         Source::Path(path) => match location::read(path) {
@@ -137,18 +128,26 @@ fn watch(file: &Path) -> TokenStream {
     )
 }
 
-fn programs(
+/// The choices of the form: those of the plan file, or those that a build makes by itself.
+pub(crate) fn choice(
     robot: &Robot,
     form: Form,
-    choice: Option<Choice>,
+    plan: Option<&RobotFile>,
     span: Span,
     errors: &mut Errors,
-) -> Option<Vec<Program>> {
-    let choice = choice.unwrap_or_else(|| match form {
+) -> Option<Choice> {
+    match (form, plan) {
         // whatever the choices, the seven steps make none
-        Form::SevenSteps => Choice::none(robot),
-        Form::Reduced | Form::Rewritten => Choice::default_of(robot),
-    });
+        (Form::SevenSteps, _) => Some(Choice::none(robot)),
+        (Form::Reduced | Form::Rewritten, None) => Some(Choice::default_of(robot)),
+        (Form::Reduced | Form::Rewritten, Some(file)) => {
+            let plan = PlanFile::read(&file.shown, &String::from_utf8_lossy(&file.bytes), robot);
+            plan.map(Choice::from).map_err(|report| errors.at_span(span, describe(report))).ok()
+        }
+    }
+}
+
+fn programs(robot: &Robot, form: Form, choice: &Choice, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
     let programs: Result<Vec<_>, _> =
         Function::ALL.into_iter().map(|function| choice.compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()

@@ -69,10 +69,16 @@ impl Target<'_> {
         }
     }
 
+    /// What computes a program. The seven steps compute the bits of the runtime, so that nothing is fused there.
+    pub(crate) fn body(&self, program: &Program) -> TokenStream {
+        let write = if program.form == Form::SevenSteps { emit::body } else { emit::fused_body };
+        let krate = self.krate;
+        write(program, &quote!(#krate::Scalar))
+    }
+
     fn method(&self, program: &Program) -> TokenStream {
         let krate = self.krate;
-        let write = if program.form == Form::SevenSteps { emit::body } else { emit::fused_body };
-        let body = write(program, &quote!(#krate::Scalar));
+        let body = self.body(program);
         let wrench = (program.function == Function::InverseDynamicsWithWrench)
             .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let dof = Literal::usize_unsuffixed(program.dof);
@@ -98,6 +104,11 @@ impl Target<'_> {
             fn #name<T: #krate::Scalar>(&self, #turns q: &[T; #dof], #arguments) -> [T; #dof] { #body }
         };
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
+    }
+
+    /// A name for a method's scalar.
+    pub(crate) fn number(&self) -> Ident {
+        if self.is_taken("T") { format_ident!("{}", self.free_name()) } else { format_ident!("T") }
     }
 
     /// Whether the user's type has a parameter of that name.

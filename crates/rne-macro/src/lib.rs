@@ -3,6 +3,7 @@
 //! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`.
 
 mod attribute;
+mod batch;
 mod description;
 mod error;
 mod expand;
@@ -143,4 +144,36 @@ use proc_macro::TokenStream;
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
 pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
     expand::inverse_dynamics(input.into()).into()
+}
+
+/// Implements the trait `BatchInverseDynamics` for a struct that derives `InverseDynamics` too: torques of many states at
+/// once.
+///
+/// ```
+/// use rne::{BatchInverseDynamics, InverseDynamics};
+///
+/// #[derive(InverseDynamics, BatchInverseDynamics)]
+/// #[robot(yaml = "
+///     format: 1
+///     name: rod
+///     source: own numbers
+///     convention: standard
+///     gravity: [9.81, 0, 0]
+///     joints:
+///       - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}
+/// ")]
+/// struct Rod;
+///
+/// let q = [0.1, 0.2, 0.3, 0.4, 0.5]; // one slice per joint, one number per state
+/// let mut tau = [0.0; 5];
+/// Rod.inverse_dynamics_batch([&q], [&[0.0; 5]], [&[0.0; 5]], [&mut tau])?;
+/// assert!((tau[4] - 2.5 * 9.81 * 0.4 * 0.5_f64.sin()).abs() < 1e-14);
+/// # Ok::<(), rne::LengthMismatch>(())
+/// ```
+///
+/// Both derives read the same attribute, which [`InverseDynamics`](macro@InverseDynamics) explains and whose mistakes it
+/// reports. `max_ops` has been checked there; no constants are added.
+#[proc_macro_derive(BatchInverseDynamics, attributes(robot))]
+pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
+    batch::batch_inverse_dynamics(input.into()).into()
 }

@@ -5,6 +5,7 @@
 
 mod arm;
 mod base_motion;
+pub mod batch;
 mod capability;
 #[cfg(feature = "std")]
 mod dyn_arm;
@@ -23,6 +24,7 @@ mod wrench;
 
 pub use arm::Arm;
 pub use base_motion::BaseMotion;
+pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::InverseDynamics;
 #[cfg(feature = "std")]
 pub use dyn_arm::{DynArm, DynTrace};

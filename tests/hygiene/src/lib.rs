@@ -8,16 +8,16 @@
 #![deny(clippy::shadow_reuse, clippy::shadow_same, clippy::absolute_paths, clippy::min_ident_chars)]
 #![deny(clippy::std_instead_of_core, clippy::alloc_instead_of_core, clippy::infinite_loop, clippy::exit)]
 
-use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option};
-use ::dynamics::InverseDynamics;
+use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
+use ::dynamics::{BatchInverseDynamics, InverseDynamics, LengthMismatch};
 
 /// Seven joints, with limits.
-#[derive(InverseDynamics, Clone, Copy, Debug)]
+#[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug)]
 #[robot(path = "../../../robots/panda.yaml", crate = ::dynamics)]
 pub struct Panda;
 
 /// Standard rows, with a tool of the user's own.
-#[derive(InverseDynamics, Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug, PartialEq, Eq)]
 #[robot(path = "../../../robots/puma560.yaml", crate = "::dynamics")]
 pub struct Puma560<T, const TOOLS: usize>
 where
@@ -28,7 +28,7 @@ where
 }
 
 /// Numbers that look like π and e.
-#[derive(InverseDynamics, Clone, Copy, Debug)]
+#[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug)]
 #[robot(crate = ::dynamics, yaml = "
     format: 1
     name: slides
@@ -46,7 +46,7 @@ where
 ")]
 pub struct Slides;
 
-#[derive(InverseDynamics)]
+#[derive(InverseDynamics, BatchInverseDynamics)]
 #[robot(path = "../../../robots/planar1.yaml", crate = ::dynamics)]
 struct Private;
 
@@ -54,4 +54,13 @@ struct Private;
 #[must_use]
 pub fn torques(angle: f32) -> ([f32; 1], [f64; Panda::DOF]) {
     (Private.gravity_torques(&[angle]), Panda.gravity_torques(&[0.0; Panda::DOF]))
+}
+
+/// A batch, without `std`.
+///
+/// # Errors
+///
+/// When the arrays differ in length.
+pub fn batch(angles: &[f32], rates: &[f32], torques: &mut [f32]) -> Result<(), LengthMismatch> {
+    Private.inverse_dynamics_batch([angles], [rates], [rates], [torques])
 }

@@ -47,6 +47,8 @@ pub(crate) const FUSED: bool = cfg!(all(
 pub(crate) trait Float: Lanes<Element = Self> + 'static {
     #[cfg(feature = "std")]
     const ZERO: Self;
+    #[cfg(feature = "std")]
+    const NAN: Self;
     const HALF: Self;
     const ONE: Self;
     const P: &'static [Self];
@@ -75,6 +77,8 @@ macro_rules! float {
         impl Float for $type {
             #[cfg(feature = "std")]
             const ZERO: Self = 0.0;
+            #[cfg(feature = "std")]
+            const NAN: Self = $type::NAN;
             const HALF: Self = 0.5;
             const ONE: Self = 1.0;
             const P: &'static [Self] = &polynomial::$P;
@@ -107,6 +111,16 @@ macro_rules! float {
 }
 float!(f64, double, P_F64, Q_F64, [f64x8, f64x4, f64x2]);
 float!(f32, single, P_F32, Q_F32, [f32x8, f32x8, f32x4]);
+
+/// Sine and cosine without a branch for a loop over states, with fused multiply-add if `FMA`; NaN for angles beyond the
+/// limit, unless there is no `std` to compute them otherwise.
+#[inline(always)]
+pub(crate) fn sin_cos_or_nan<T: Float, const FMA: bool>(angle: T) -> (T, T) {
+    let (sine, cosine) = kernel::<T, FMA>(angle);
+    #[cfg(feature = "std")]
+    let (sine, cosine) = if angle.is_within_limit() { (sine, cosine) } else { (T::NAN, T::NAN) };
+    (sine, cosine)
+}
 
 /// Sine and cosine, correct up to the limit: no branch.
 #[inline(always)]

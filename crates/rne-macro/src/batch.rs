@@ -1,0 +1,85 @@
+//! `#[derive(BatchInverseDynamics)]`.
+
+use proc_macro2::{Literal, Span, TokenStream};
+use quote::quote;
+use rne_codegen::Function;
+use syn::DeriveInput;
+
+use crate::attribute::Attribute;
+use crate::error::Errors;
+use crate::expand::{choice, load};
+use crate::implementation::Target;
+
+/// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
+/// `InverseDynamics`, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
+///
+/// The torques are written once more, for they must be inlined into code of each vector unit, and must not into every
+/// place where a user calls the first derive's methods.
+pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
+    let item: DeriveInput = match syn::parse2(input) {
+        Ok(item) => item,
+        Err(error) => return error.to_compile_error(),
+    };
+    let mut said = Errors::default();
+    let attribute = Attribute::parse(&item, &mut said);
+    let loaded = attribute.source.as_ref().map(|source| load(source, &mut said)).unwrap_or_default();
+    let program = loaded.robot.and_then(|robot| {
+        let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), Span::call_site(), &mut said)?;
+        choice.compile(&robot, Function::InverseDynamics, attribute.form).ok()
+    });
+    let target = Target { item: &item, krate: &attribute.krate };
+    let (ident, krate) = (&item.ident, &attribute.krate);
+    let (impl_generics, type_generics, where_clause) = item.generics.split_for_impl();
+    let number = target.number();
+    let method = |dof: &TokenStream, body: &TokenStream| {
+        quote! {
+            fn inverse_dynamics_batch_on<#number: #krate::BatchScalar>(
+                &self,
+                unit: #krate::VectorUnit,
+                q: [&[#number]; #dof],
+                qd: [&[#number]; #dof],
+                qdd: [&[#number]; #dof],
+                tau: [&mut [#number]; #dof],
+            ) -> ::core::result::Result<(), #krate::LengthMismatch> {
+                #body
+            }
+        }
+    };
+    let Some(program) = program else {
+        let mut generics = item.generics.clone();
+        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        let (impl_generics, ..) = generics.split_for_impl();
+        let dof = quote!(__JOINTS);
+        let method = method(&dof, &quote!(::core::result::Result::Ok(())));
+        return quote! {
+            #[automatically_derived]
+            #[allow(unused_variables)]
+            impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {
+                #method
+            }
+        };
+    };
+    let dof = Literal::usize_unsuffixed(program.dof);
+    let torques = target.body(&program);
+    let method = method(
+        &quote!(#dof),
+        &quote! {
+            struct Torques;
+            impl #krate::batch::Torques<#dof> for Torques {
+                #[inline(always)]
+                fn torques<T: #krate::Scalar>(&self, q: &[T; #dof], qd: &[T; #dof], qdd: &[T; #dof]) -> [T; #dof] {
+                    #torques
+                }
+            }
+            #krate::batch::run(&Torques, unit, q, qd, qdd, tau)
+        },
+    );
+    quote! {
+        #[automatically_derived]
+        #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
+        #[allow(clippy::inline_always)] // into the code of each vector unit
+        impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {
+            #method
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! The states divided among threads.
+
+use core::array::from_fn;
+
+use super::blocks::States;
+
+/// States that are worth a task of their own: tens of microseconds of work, against about one to hand it to a thread.
+/// A multiple of every block, so that threads divide states where blocks end.
+const TASK: usize = 4096;
+
+/// Runs tasks of some thousand states each, on rayon's threads; few states on the thread that called.
+pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
+    all: States<'_, R, T, DOF>,
+    run: &(impl Fn(States<'_, R, T, DOF>) + Sync),
+) {
+    if all.count < 2 * TASK {
+        return run(all);
+    }
+    let (first, second) = halves(all);
+    rayon::join(|| for_each_part(first, run), || for_each_part(second, run));
+}
+
+fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {
+    let States { robot, count, inputs, tau: mut rest } = all;
+    let middle = (count / 2).next_multiple_of(TASK);
+    let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at(middle)));
+    let tau = from_fn(|joint| rest[joint].split_off_mut(..middle).unwrap_or_default());
+    let [first, second] =
+        [inputs.map(|arrays| arrays.map(|halves| halves.0)), inputs.map(|arrays| arrays.map(|halves| halves.1))];
+    (
+        States { robot, count: middle, inputs: first, tau },
+        States { robot, count: count - middle, inputs: second, tau: rest },
+    )
+}

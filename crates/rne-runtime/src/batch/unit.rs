@@ -1,0 +1,79 @@
+//! The vector unit: what the processor has, found at run time.
+
+use core::fmt;
+
+use super::detected::Detected;
+use crate::sin_cos::FUSED;
+
+/// A vector unit of the processor this runs on. To have one is to have looked: every value can be computed with.
+///
+/// ```
+/// use rne_runtime::VectorUnit;
+///
+/// for unit in VectorUnit::all() {
+///     println!("{unit}"); // SSE2, AVX2, AVX-512
+/// }
+/// ```
+#[derive(Clone, Copy)]
+pub struct VectorUnit(Unit);
+
+#[derive(Clone, Copy)]
+enum Unit {
+    /// What every processor has that the program is compiled for: SSE2 on x86-64, NEON on AArch64, more with
+    /// `-C target-cpu`.
+    Target,
+    /// What this one has beyond that.
+    Detected(Detected),
+}
+
+impl VectorUnit {
+    /// The widest one. The processor is asked once; afterwards this costs a nanosecond.
+    #[must_use]
+    pub fn widest() -> Self {
+        Self(Detected::widest().map_or(Unit::Target, Unit::Detected))
+    }
+
+    /// All of them, the widest last. The first is that of the compiled target, without the feature `batch` the only one.
+    pub fn all() -> impl Iterator<Item = Self> {
+        core::iter::once(Unit::Target).chain(Detected::all().map(Unit::Detected)).map(Self)
+    }
+
+    /// Its name: `AVX-512`, say.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self.0 {
+            Unit::Target if cfg!(target_arch = "aarch64") => "NEON",
+            Unit::Target if cfg!(target_feature = "avx512f") => "AVX-512 (compiled)",
+            Unit::Target if cfg!(target_feature = "avx") => "AVX (compiled)",
+            Unit::Target if cfg!(target_feature = "sse2") => "SSE2",
+            Unit::Target => "compiled target",
+            Unit::Detected(unit) => unit.name(),
+        }
+    }
+
+    /// Runs a task that has been compiled for this unit.
+    pub(super) fn run(self, task: impl Task) {
+        match self.0 {
+            Unit::Target => task.run::<FUSED>(),
+            Unit::Detected(unit) => unit.run(task),
+        }
+    }
+}
+
+impl fmt::Display for VectorUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.name())
+    }
+}
+
+impl fmt::Debug for VectorUnit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "VectorUnit({})", self.name())
+    }
+}
+
+/// What is compiled once for each unit: its method is `#[inline(always)]`, and so is all that it calls.
+pub(super) trait Task {
+    /// `FUSED` where the unit has fused multiply-add.
+    fn run<const FUSED: bool>(self);
+}
