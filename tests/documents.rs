@@ -6,7 +6,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use rne_codegen::emit::{self, Listing, listing};
-use rne_codegen::{Form, Function, Program, Step, compile};
+use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Form, Function, Operations, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
 /// The documents with blocks.
@@ -59,11 +60,22 @@ fn block(name: &str) -> String {
     }
 }
 
+/// The counts of a form by the plan beside the robot file.
+fn planned(path: &Path, robot: &Robot, form: Form) -> Operations {
+    let plan = path.with_extension("plan.yaml");
+    let plan = PlanFile::read("plan", &read(&plan), robot).unwrap_or_else(|report| panic!("{report}"));
+    let program = Choice::from(plan).compile(robot, Function::InverseDynamics, form);
+    program.unwrap_or_else(|error| panic!("{}: {error}", robot.name)).operations()
+}
+
 fn robots() -> String {
-    let mut text = String::from("| robot | joints | products | sums | both | angles |\n|---|---|---|---|---|---|\n");
+    let mut text = String::from(
+        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n|---|---|---|---|---|---|---|---|\n",
+    );
     for path in robot_files() {
         let robot = robot(&path);
         let counts = inverse_dynamics(&robot).operations();
+        let [reduced, rewritten] = [Form::Reduced, Form::Rewritten].map(|form| planned(&path, &robot, form));
         let joints: String = robot
             .rows()
             .map(|row| match row.kind {
@@ -75,11 +87,14 @@ fn robots() -> String {
         let file = &robot.name;
         let _ = writeln!(
             text,
-            "| [{title}](robots/{file}.yaml) | {joints} | {} | {} | {} | {} |",
+            "| [{title}](robots/{file}.yaml) | {joints} | {} | {} | {} | {} | {} | {} → {} |",
             counts.mul,
             counts.add,
             counts.total(),
-            counts.sincos
+            reduced.total(),
+            rewritten.total(),
+            counts.sincos,
+            reduced.sincos
         );
     }
     text

@@ -70,8 +70,38 @@ use proc_macro::TokenStream;
 ///
 /// # `form = "seven_steps"`
 ///
-/// How the torques are computed. `seven_steps`, the default: every intermediate value is one of the textbook's ω, ω̇, ċ,
-/// c̈, g, f, n of a link.
+/// How the torques are computed.
+///
+/// | form | |
+/// |---|---|
+/// | `seven_steps` | the default: every intermediate value is one of the textbook's ω, ω̇, ċ, c̈, g, f, n of a link; the bits are those of `rne::Arm` |
+/// | `reduced` | half the operations or fewer: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning |
+/// | `rewritten` | `inverse_dynamics` after algebraic rewriting as well, a few percent less; what `rne search --rewrite` left in the plan file |
+///
+/// A form that is not the seven steps is proved identical to them while it is compiled, in exact arithmetic; its documentation
+/// says so, with its rounding error. The choices come from `NAME.plan.yaml` beside the robot file, which `rne search` writes;
+/// a plan that does not belong to the robot any more is an error of the build. Without a plan, a fixed number of plans is
+/// tried, the same on every machine.
+///
+/// Products that are added become `Scalar::mul_add` in these two forms: one instruction where the target has it.
+///
+/// ```
+/// # use rne::InverseDynamics;
+/// #[derive(InverseDynamics)]
+/// #[robot(form = "reduced", yaml = "
+///     format: 1
+///     name: slide
+///     source: own numbers
+///     convention: standard
+///     gravity: [0, 0, -9.81]
+///     joints:
+///       - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 2}}
+///       - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}}
+/// ")]
+/// struct Slides;
+///
+/// assert!((Slides.inverse_dynamics(&[0.0; 2], &[0.0; 2], &[1.0, 0.5])[0] - (3.0 * (1.0 + 9.81) + 0.5)).abs() < 1e-13);
+/// ```
 ///
 /// # `max_ops = N`
 ///
