@@ -173,7 +173,7 @@ pub enum Quantity {
     // Step 2.
     /// ω̇: angular acceleration.
     OmegaDot,
-    /// U = [ω̇]× + [ω]×[ω]×: accelerations of the points of a link.
+    /// U = ω̇× + ω× ω×: accelerations of the points of a link.
     Gradient,
     /// U in frame N.
     GradientUnturned,
@@ -329,8 +329,8 @@ impl Quantity {
             Self::Angle | Self::GroupAngle => "angle",
             Self::Sine | Self::GroupSine => "s",
             Self::Cosine | Self::GroupCosine => "c",
-            Self::TurnedSine => "st",
-            Self::TurnedCosine => "ct",
+            Self::TurnedSine => "sj",
+            Self::TurnedCosine => "cj",
             Self::Term => "t",
             Self::Omega => "w",
             Self::OmegaDot => "dw",
@@ -411,10 +411,9 @@ impl Quantity {
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
             Self::TurnedSine => "sine of θ + q, from those of q",
-            Self::TurnedCosine => "its cosine",
             Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
             Self::GroupSine => "its sine",
-            Self::GroupCosine => "its cosine",
+            Self::TurnedCosine | Self::GroupCosine => "its cosine",
             Self::Term => "a term that has no meaning of its own",
             Self::Rotation => "R: frame i → frame i-1",
             Self::FirstMoment => "first moment of regrouped matter about the frame's origin",

@@ -180,19 +180,17 @@ fn joint_angle<'s>(
     turn: Option<(Symbol<'s>, Symbol<'s>)>,
 ) -> (Symbol<'s>, Symbol<'s>) {
     if let Some(turn) = turn {
-        return match link.theta.right {
-            Some(turns) => by_quarters(turn, turns),
-            // the addition theorem
-            None => {
-                let ((s, c), (sin, cos)) = (turn, sheet.constant_turn(&link.theta, Cause::Arithmetic));
-                let sin = sheet.name(Name::scalar(Quantity::ThetaSine, joint), sin);
-                let cos = sheet.name(Name::scalar(Quantity::ThetaCosine, joint), cos);
-                (
-                    line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
-                    line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
-                )
-            }
-        };
+        if let Some(turns) = link.theta.right {
+            return by_quarters(turn, turns);
+        }
+        // the addition theorem
+        let ((s, c), (sin, cos)) = (turn, sheet.constant_turn(&link.theta, Cause::Arithmetic));
+        let sin = sheet.name(Name::scalar(Quantity::ThetaSine, joint), sin);
+        let cos = sheet.name(Name::scalar(Quantity::ThetaCosine, joint), cos);
+        return (
+            line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
+            line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
+        );
     }
     let angle = if link.theta.right.is_some() {
         q

@@ -3,8 +3,8 @@
 //! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration of
 //! the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
-//! From the robot file to code: [`rows`] and [`regroup`] prepare the numbers, [`outward`] and [`inward`] write the recursion
-//! on a [`sheet`], [`transcript`] turns the sheet into a program, which the gate of `proof.rs` lets pass or not.
+//! From the robot file to code: `rows` and `regroup` prepare the numbers, `outward` and `inward` write the recursion
+//! on a `sheet`, `transcript` turns the sheet into a program, which the gate of `proof.rs` lets pass or not.
 
 mod choice;
 mod evaluator;
