@@ -152,11 +152,19 @@ pub enum Quantity {
     Sine,
     /// Cosine of the joint angle.
     Cosine,
+<<<<<<< HEAD
     /// Sine of θ + q, from the sine and cosine of q.
     TurnedSine,
     /// Its cosine.
     TurnedCosine,
     /// The sum of the angles of parallel joints; the first of them is the name's part.
+=======
+    /// The sum of the positions of parallel joints; the first of them is the name's part.
+    GroupPosition,
+    /// Constant part of the sum of their angles.
+    GroupTheta,
+    /// The sum of the angles of parallel joints.
+>>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
     GroupAngle,
     /// Sine of such a sum.
     GroupSine,
@@ -236,8 +244,12 @@ impl Quantity {
             Self::Angle
             | Self::Sine
             | Self::Cosine
+<<<<<<< HEAD
             | Self::TurnedSine
             | Self::TurnedCosine
+=======
+            | Self::GroupPosition
+>>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
             | Self::GroupAngle
             | Self::GroupSine
             | Self::GroupCosine
@@ -296,20 +308,20 @@ impl Quantity {
         )
     }
 
-    /// Whether it is the sine or cosine of an angle, or the angle.
+    /// Whether it is an angle, or a sum that becomes one.
     #[must_use]
     pub const fn is_of_an_angle(self) -> bool {
-        matches!(self, Self::Angle | Self::GroupAngle)
+        matches!(self, Self::Angle | Self::GroupAngle | Self::GroupPosition)
     }
 
     const fn prefix(self) -> &'static str {
         match self {
-            Self::Position => "q",
+            Self::Position | Self::GroupPosition => "q",
             Self::Rate => "qd",
             Self::RateDot => "qdd",
             Self::Constant => "k",
             Self::Two => "two",
-            Self::Theta => "theta",
+            Self::Theta | Self::GroupTheta => "theta",
             Self::TwistSine => "sa",
             Self::TwistCosine => "ca",
             Self::ThetaSine => "st",
@@ -358,7 +370,9 @@ impl Quantity {
         match self {
             Self::Two => prefix.to_owned(),
             Self::Constant | Self::Term => format!("{prefix}_1"),
-            Self::GroupAngle | Self::GroupSine | Self::GroupCosine => format!("{prefix}h_i"),
+            Self::GroupPosition | Self::GroupTheta | Self::GroupAngle | Self::GroupSine | Self::GroupCosine => {
+                format!("{prefix}h_i")
+            }
             Self::JointForce | Self::JointMoment => format!("{prefix}h_i_x"),
             Self::Inertia
             | Self::Rotation
@@ -410,7 +424,12 @@ impl Quantity {
             Self::Angle => "θ + q",
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
+<<<<<<< HEAD
             Self::TurnedSine => "sine of θ + q, from those of q",
+=======
+            Self::GroupPosition => "sum of the positions of joints h to i, whose axes are parallel",
+            Self::GroupTheta => "constant part of the sum of their angles",
+>>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
             Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
             Self::GroupSine => "its sine",
             Self::TurnedCosine | Self::GroupCosine => "its cosine",
@@ -487,7 +506,11 @@ impl fmt::Display for Name {
         f.write_str(self.quantity.prefix())?;
         match self.quantity {
             Quantity::Two | Quantity::Constant | Quantity::Term => {}
-            Quantity::GroupAngle | Quantity::GroupSine | Quantity::GroupCosine => {
+            Quantity::GroupPosition
+            | Quantity::GroupTheta
+            | Quantity::GroupAngle
+            | Quantity::GroupSine
+            | Quantity::GroupCosine => {
                 return write!(f, "{}_{}", self.part, self.joint);
             }
             // f_{i-1,i}: both links, as in the lecture

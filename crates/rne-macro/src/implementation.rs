@@ -93,9 +93,8 @@ impl Target<'_> {
         let rates = quote!(qd: &[T; #dof]);
         let accelerations = quote!(qdd: &[T; #dof]);
         let arguments = match function {
-            Function::InverseDynamics => quote!(#rates, #accelerations),
+            Function::InverseDynamics | Function::InverseDynamicsSc => quote!(#rates, #accelerations),
             Function::InverseDynamicsWithWrench => quote!(#rates, #accelerations, wrench: &#krate::Wrench<T>),
-            Function::InverseDynamicsSc => quote!(#rates, #accelerations),
             Function::GravityTorques => TokenStream::new(),
             Function::BiasTorques => rates,
         };

@@ -257,7 +257,7 @@ fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
         // the axes are parallel, so all turning is about one
         return Some([Turn::NONE, Turn { sin: Number::ZERO, cos: zz }, Turn { sin: yx * zz, cos: xx }]);
     }
-    let sine = root(xz * xz + yz * yz, reading)?;
+    let sine = hypotenuse(xz, yz, reading)?;
     let scale = sine.inverse()?;
     Some([
         Turn { sin: xz * scale, cos: -(yz * scale) },
@@ -268,8 +268,18 @@ fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
 
 /// The turn whose tangent is y/x.
 fn direction(y: Number, x: Number, reading: Reading) -> Option<Turn> {
-    let scale = root(x * x + y * y, reading)?.inverse()?;
+    let scale = hypotenuse(x, y, reading)?.inverse()?;
     Some(Turn { sin: y * scale, cos: x * scale })
+}
+
+/// √(x² + y²)
+fn hypotenuse(x: Number, y: Number, reading: Reading) -> Option<Number> {
+    // a rational number, of which the fields might take roots of different signs
+    match (x.is_zero(), y.is_zero()) {
+        (true, _) => Some(y.abs()),
+        (_, true) => Some(x.abs()),
+        _ => root(x * x + y * y, reading),
+    }
 }
 
 /// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the rationals, of

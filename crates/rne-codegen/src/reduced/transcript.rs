@@ -98,7 +98,7 @@ impl Drawing {
         for constant in &program.constants {
             let known = numbers.get(&constant.value.abs().to_bits());
             if let Some(&(number, turn)) = known {
-                let negative = number.is_negative() != (constant.value < 0.0);
+                let negative = constant.value < 0.0;
                 let signed = if negative { (-number, turn.map(Turn::back)) } else { (number, turn) };
                 exactly.insert(constant.name, signed);
             }
@@ -121,7 +121,7 @@ fn mapped(terms: &[Option<Term>], at: Ref) -> Term {
 struct Transcript<'a> {
     frame: &'a Frame,
     written: Written,
-    /// By the bits of the rounded magnitude.
+    /// What magnitudes are, by the bits of their rounded values: a length and an angle may be the same constant.
     numbers: HashMap<u64, (Number, Option<Turn>)>,
 }
 
@@ -137,7 +137,7 @@ impl Transcript<'_> {
             let term = match node.op {
                 Op::Constant(place) => {
                     let (number, _) = dag.sheet.numbers.get(place);
-                    self.constant(number, None)
+                    self.constant(number)
                 }
                 Op::Leaf(leaf) => self.leaf(leaf),
                 Op::Sum(a, b) => graph.sum(mapped(&terms, a), mapped(&terms, b)).0,
@@ -155,9 +155,9 @@ impl Transcript<'_> {
         terms
     }
 
-    fn constant(&mut self, number: Number, turn: Option<Turn>) -> Term {
+    fn constant(&mut self, number: Number) -> Term {
         let value = number.to_f64();
-        self.numbers.insert(value.abs().to_bits(), (number, turn));
+        self.numbers.entry(value.abs().to_bits()).or_default().0 = number.abs();
         self.written.graph.constant(value)
     }
 
@@ -195,14 +195,17 @@ impl Transcript<'_> {
             let q = self.written.graph.argument(Name::scalar(Quantity::Position, at + 1));
             let q = if rows[at].reversed == rows[first].reversed { q } else { -q };
             angle = self.written.graph.sum(angle, q).0;
-            self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, at), angle);
+            // without the constant part, if that has one
+            let is_angle = Angle::of(rows, first, at).constant.is_none();
+            let group = if is_angle { Quantity::GroupAngle } else { Quantity::GroupPosition };
+            self.define(group_name(group, Quantity::Angle, first, at), angle);
         }
         if let Some(turn) = constant {
             let radians = turn.radians();
-            self.numbers
-                .insert(radians.abs().to_bits(), (Number { value: radians.into(), image: Image::ZERO }, Some(turn)));
+            let magnitude = if radians < 0.0 { turn.back() } else { turn };
+            self.numbers.entry(radians.abs().to_bits()).or_default().1 = Some(magnitude);
             let theta = self.written.graph.constant(radians);
-            self.define(Name::scalar(Quantity::Theta, last + 1), theta);
+            self.define(group_name(Quantity::GroupTheta, Quantity::Theta, first, last), theta);
             angle = self.written.graph.sum(theta, angle).0;
             self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, last), angle);
         }
