@@ -152,19 +152,15 @@ pub enum Quantity {
     Sine,
     /// Cosine of the joint angle.
     Cosine,
-<<<<<<< HEAD
     /// Sine of θ + q, from the sine and cosine of q.
     TurnedSine,
     /// Its cosine.
     TurnedCosine,
-    /// The sum of the angles of parallel joints; the first of them is the name's part.
-=======
     /// The sum of the positions of parallel joints; the first of them is the name's part.
     GroupPosition,
     /// Constant part of the sum of their angles.
     GroupTheta,
     /// The sum of the angles of parallel joints.
->>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
     GroupAngle,
     /// Sine of such a sum.
     GroupSine,
@@ -244,12 +240,9 @@ impl Quantity {
             Self::Angle
             | Self::Sine
             | Self::Cosine
-<<<<<<< HEAD
             | Self::TurnedSine
             | Self::TurnedCosine
-=======
             | Self::GroupPosition
->>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
             | Self::GroupAngle
             | Self::GroupSine
             | Self::GroupCosine
@@ -424,12 +417,9 @@ impl Quantity {
             Self::Angle => "θ + q",
             Self::Sine => "sine of the joint angle",
             Self::Cosine => "cosine of the joint angle",
-<<<<<<< HEAD
             Self::TurnedSine => "sine of θ + q, from those of q",
-=======
             Self::GroupPosition => "sum of the positions of joints h to i, whose axes are parallel",
             Self::GroupTheta => "constant part of the sum of their angles",
->>>>>>> adf511bf7e452f67a3e9fb697b8f8ede3bf57ea4
             Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
             Self::GroupSine => "its sine",
             Self::TurnedCosine | Self::GroupCosine => "its cosine",
