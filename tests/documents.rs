@@ -1,17 +1,18 @@
 //! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
 //!
-//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew.
+//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`) stays as it
+//! is: `scripts/performance` writes it.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use rne_codegen::emit::{self, Listing, listing};
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::reduced::{self, Choice, PlanFile};
 use rne_codegen::{Form, Function, Operations, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
 /// The documents with blocks.
-const DOCUMENTS: &[&str] = &["README.md"];
+const DOCUMENTS: &[&str] = &["README.md", "docs/performance.md"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -56,6 +57,8 @@ fn block(name: &str) -> String {
             format!("```rust\n{code}```\n")
         }
         "robots" => robots(),
+        "operations" => operations(),
+        "tricks" => tricks(),
         name => panic!("no block is called `{name}`"),
     }
 }
@@ -100,6 +103,62 @@ fn robots() -> String {
     text
 }
 
+/// The choices of the plan file of a robot, or those that a build makes by itself, and whether there is a plan.
+fn choice(file: &Path, robot: &Robot) -> (Choice, bool) {
+    let plan = file.with_extension("plan.yaml");
+    if !plan.exists() {
+        return (Choice::default_of(robot), false);
+    }
+    let plan = PlanFile::read(&plan.display().to_string(), &read(&plan), robot);
+    (Choice::from(plan.unwrap_or_else(|report| panic!("{report}"))), true)
+}
+
+/// The operations of every robot, the forms side by side.
+fn operations() -> String {
+    let cell = |counts: Operations| format!("{} + {} = {}, {}", counts.mul, counts.add, counts.total(), counts.sincos);
+    let mut text = String::from(
+        "| robot | plan | before folding | seven_steps | reduced | rewritten |\n|---|---|---:|---:|---:|---:|\n",
+    );
+    for path in robot_files() {
+        let robot = robot(&path);
+        let (choice, has_plan) = choice(&path, &robot);
+        let compiled = |form| choice.compile(&robot, Function::InverseDynamics, form).expect("finite constants");
+        let seven_steps = inverse_dynamics(&robot);
+        let (products, sums) = seven_steps.before();
+        let rewritten = choice.rewritten.is_some().then(|| cell(compiled(Form::Rewritten).operations()));
+        let _ = writeln!(
+            text,
+            "| {} | {} | {products} + {sums} = {} | {} | {} | {} |",
+            robot.name,
+            if has_plan { "file" } else { "of the build" },
+            products + sums,
+            cell(seven_steps.operations()),
+            cell(compiled(Form::Reduced).operations()),
+            rewritten.unwrap_or_default(),
+        );
+    }
+    text
+}
+
+/// What the tricks save that the plans of two robots make use of.
+fn tricks() -> String {
+    let robots = ["puma560", "panda"];
+    let savings = robots.map(|name| {
+        let path = root().join("robots").join(name).with_extension("yaml");
+        let robot = robot(&path);
+        reduced::savings(&robot, &choice(&path, &robot).0.plan)
+    });
+    let mut text = format!("| trick | {} | what it is |\n|---|---:|---:|---|\n", robots.join(" | "));
+    for trick in reduced::Trick::ALL {
+        let saved = |robot: usize| savings[robot].iter().find(|(used, _)| *used == trick).map(|(_, saved)| *saved);
+        let cell = |saved: Option<isize>| saved.map_or_else(String::new, |saved| saved.to_string());
+        if saved(0).is_some() || saved(1).is_some() {
+            let _ = writeln!(text, "| {trick} | {} | {} | {} |", cell(saved(0)), cell(saved(1)), trick.formula());
+        }
+    }
+    text
+}
+
 /// A document with every block as it should be.
 fn renewed(document: &str) -> String {
     let mut text = String::new();
@@ -109,10 +168,15 @@ fn renewed(document: &str) -> String {
         text.push('\n');
         if let Some(heading) = line.strip_prefix("<!-- begin: ") {
             let name = heading.split([',', ' ']).next().unwrap_or_default();
-            text.push_str(&block(name));
-            let end = lines.by_ref().find(|line| *line == "<!-- end -->").expect("every block ends");
-            text.push_str(end);
-            text.push('\n');
+            let written: Vec<&str> = lines.by_ref().take_while(|line| *line != "<!-- end -->").collect();
+            match name {
+                "measured" => written.iter().for_each(|line| {
+                    text.push_str(line);
+                    text.push('\n');
+                }),
+                name => text.push_str(&block(name)),
+            }
+            text.push_str("<!-- end -->\n");
         }
     }
     text

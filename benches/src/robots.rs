@@ -1,0 +1,25 @@
+//! The derived robots. A plan file beside the robot file is replayed; a robot whose plan has no rewritten graph has no
+//! struct of that form.
+
+use rne::InverseDynamics;
+
+/// Structs with documentation, each derived from a robot file in one form.
+macro_rules! robots {
+    ($($name:ident: $path:literal in $form:literal;)*) => {$(
+        #[doc = concat!("`", $path, "` in the form `", $form, "`.")]
+        #[derive(InverseDynamics)]
+        #[robot(path = $path, form = $form)]
+        pub struct $name;
+    )*};
+}
+
+robots! {
+    Puma560SevenSteps: "../../robots/puma560.yaml" in "seven_steps";
+    Puma560Reduced: "../../robots/puma560.yaml" in "reduced";
+    Puma560Rewritten: "../../robots/puma560.yaml" in "rewritten";
+    PandaSevenSteps: "../../robots/panda.yaml" in "seven_steps";
+    PandaReduced: "../../robots/panda.yaml" in "reduced";
+    PandaRewritten: "../../robots/panda.yaml" in "rewritten";
+    Ur5SevenSteps: "../../robots/ur5.yaml" in "seven_steps";
+    Ur5Reduced: "../../robots/ur5.yaml" in "reduced";
+}

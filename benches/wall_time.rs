@@ -1,0 +1,181 @@
+//! Wall time of a call: `cargo bench --manifest-path benches/Cargo.toml --bench wall_time`, with a filter such as
+//! `puma560::independent` behind `--`.
+//!
+//! - `independent`: one state after the other; the processor may overlap a call with the next.
+//! - `chained`: every `q` depends on the torques of the call before (times 1e-30, below rounding), so latency counts.
+//!
+//! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops; `dynibo` is the other Rust
+//! crate. It reads URDF, which [`rne_benches::urdf`] writes from the table, has double precision only, and its gravity is
+//! 9.80665 m/s² along -z. Before it is timed its torques are compared with those of `Arm` under that gravity.
+
+use std::hint::black_box;
+use std::path::Path;
+
+use divan::Bencher;
+use rne::{Arm, InverseDynamics, Scalar};
+use rne_benches::{
+    GRAVITY, PandaReduced, PandaRewritten, PandaSevenSteps, Puma560Reduced, Puma560Rewritten, Puma560SevenSteps,
+    states, urdf,
+};
+
+fn main() {
+    // 200 samples of 1000 calls; the machine's clock is too coarse for one call.
+    divan::Divan::default().sample_count(200).sample_size(1000).config_with_args().main();
+}
+
+fn independent<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl InverseDynamics<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        arm.inverse_dynamics(&state.q, &state.qd, &state.qdd)
+    });
+}
+
+fn gravity<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl InverseDynamics<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        arm.gravity_torques(&black_box(&states[index]).q)
+    });
+}
+
+/// `q` of a state, and nearly nothing of the torques before.
+fn behind<const DOF: usize, T: Scalar>(q: [T; DOF], torques: &[T; DOF]) -> [T; DOF] {
+    let nearly_nothing = T::from_f64(1e-30);
+    std::array::from_fn(|joint| q[joint] + torques[joint] * nearly_nothing)
+}
+
+fn chained<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl InverseDynamics<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    let mut torques = [T::zero(); DOF];
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        torques = arm.inverse_dynamics(&behind(state.q, &torques), &state.qd, &state.qdd);
+    });
+    black_box(torques);
+}
+
+fn robot_file(name: &str) -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../robots").join(name).with_extension("yaml")
+}
+
+fn arm<const DOF: usize>(name: &str) -> Arm<DOF> {
+    Arm::from_file(robot_file(name)).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// The arm of a robot file for `dynibo`, after a comparison of torques.
+fn dynibo<const DOF: usize>(name: &str) -> dynibo::Robot {
+    let text = std::fs::read_to_string(robot_file(name)).expect("a robot file");
+    let mut robot = rne::model::Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name).with_extension("urdf");
+    std::fs::write(&file, urdf(&robot)).expect("a writable folder");
+    let mut other = dynibo::Robot::from_urdf(&file).unwrap_or_else(|error| panic!("{error}"));
+
+    robot.gravity = [0.0, 0.0, -GRAVITY];
+    let own = Arm::<DOF>::from_robot(&robot).expect("the right number of joints");
+    for state in states::<DOF, f64>() {
+        let expected = own.inverse_dynamics(&state.q, &state.qd, &state.qdd);
+        let mut found = [0.0; DOF];
+        other.inverse_dynamics(&state.q, &state.qd, &state.qdd, &[], &mut found).expect("torques");
+        let largest = expected.iter().fold(0.0, |largest, torque: &f64| torque.abs().max(largest));
+        for (expected, found) in expected.iter().zip(found) {
+            assert!((expected - found).abs() <= 1e-12 * largest, "{name}: {expected} is not {found}");
+        }
+    }
+    other
+}
+
+fn dynibo_independent<const DOF: usize>(bencher: Bencher, name: &str) {
+    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        let mut torques = [0.0; DOF];
+        robot.inverse_dynamics(&state.q, &state.qd, &state.qdd, &[], &mut torques).expect("torques");
+        torques
+    });
+}
+
+fn dynibo_chained<const DOF: usize>(bencher: Bencher, name: &str) {
+    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
+    let mut index = 0;
+    let mut torques = [0.0; DOF];
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        let q = behind(state.q, &torques);
+        robot.inverse_dynamics(&q, &state.qd, &state.qdd, &[], &mut torques).expect("torques");
+    });
+    black_box(torques);
+}
+
+fn dynibo_gravity<const DOF: usize>(bencher: Bencher, name: &str) {
+    let (mut robot, states) = (dynibo::<DOF>(name), states::<DOF, f64>());
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let mut torques = [0.0; DOF];
+        robot.gravity(&black_box(&states[index]).q, &[], &mut torques).expect("torques");
+        torques
+    });
+}
+
+/// The benchmarks of one robot: a module per measurement, a function per competitor and scalar. The rewritten form is another
+/// one in `inverse_dynamics` alone.
+macro_rules! robot {
+    ($name:ident, $dof:literal, $seven_steps:ident, $reduced:ident, $rewritten:ident) => {
+        mod $name {
+            robot!(@measurement independent, dynibo_independent, $name, $dof, $seven_steps, $reduced, $rewritten);
+            robot!(@measurement chained, dynibo_chained, $name, $dof, $seven_steps, $reduced, $rewritten);
+            robot!(@measurement gravity, dynibo_gravity, $name, $dof, $seven_steps, $reduced);
+        }
+    };
+    (
+        @measurement $measurement:ident, $dynibo:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident
+        $(, $rewritten:ident)?
+    ) => {
+        mod $measurement {
+            use divan::{Bencher, bench};
+
+            robot!(@form $measurement, $dof, seven_steps, seven_steps_f32, $seven_steps);
+            robot!(@form $measurement, $dof, reduced, reduced_f32, $reduced);
+            $(robot!(@form $measurement, $dof, rewritten, rewritten_f32, $rewritten);)?
+
+            #[bench]
+            fn arm(bencher: Bencher) {
+                crate::$measurement::<$dof, f64>(bencher, &crate::arm::<$dof>(stringify!($name)));
+            }
+
+            #[bench]
+            fn arm_f32(bencher: Bencher) {
+                let arm = rne::Arm::new(crate::arm::<$dof>(stringify!($name)).model().to_f32());
+                crate::$measurement::<$dof, f32>(bencher, &arm);
+            }
+
+            #[bench]
+            fn dynibo(bencher: Bencher) {
+                crate::$dynibo::<$dof>(bencher, stringify!($name));
+            }
+        }
+    };
+    (@form $measurement:ident, $dof:literal, $double:ident, $single:ident, $robot:ident) => {
+        #[bench]
+        fn $double(bencher: Bencher) {
+            crate::$measurement::<$dof, f64>(bencher, &crate::$robot);
+        }
+
+        #[bench]
+        fn $single(bencher: Bencher) {
+            crate::$measurement::<$dof, f32>(bencher, &crate::$robot);
+        }
+    };
+}
+
+robot!(puma560, 6, Puma560SevenSteps, Puma560Reduced, Puma560Rewritten);
+robot!(panda, 7, PandaSevenSteps, PandaReduced, PandaRewritten);

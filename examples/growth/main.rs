@@ -1,0 +1,162 @@
+//! What grows with the number of joints: operations, expansion, compile time, code size.
+//!
+//! ```sh
+//! cargo run --example growth               # 1, 2, 5, 10, 20, 30, 40 and 50 joints; some minutes
+//! cargo run --example growth -- 1 5 10     # these only
+//! ```
+//!
+//! Random chains in which nothing folds: no number is zero, no angle right. For each form a table, with the increment per
+//! joint beside each column: where it stays the same, the growth is linear.
+//!
+//! - operations: products and sums of `inverse_dynamics`
+//! - expansion: from the text of the robot file to the four programs and their text, in this example's profile. Cargo
+//!   compiles macros without optimization in all profiles, so `cargo run` without `--release` measures what a build does.
+//! - dev, release: `cargo build` of a crate that derives the chain and calls `inverse_dynamics`, after a change, expansion
+//!   included; its dependencies are built already
+//! - code: bytes of instructions in the object file of that crate, release profile
+//!
+//! Times are processor time where the system is Linux, since a machine may be shared, else time of the clock. `fails`: the
+//! compiler gave up.
+
+#[path = "chain.rs"]
+mod chain;
+#[path = "user.rs"]
+mod user;
+
+use std::time::Instant;
+
+use rne_codegen::reduced::Choice;
+use rne_codegen::{Form, Function, emit};
+use rne_model::Robot;
+
+const JOINTS: [usize; 8] = [1, 2, 5, 10, 20, 30, 40, 50];
+/// The fastest of so many tries counts: the machine may be shared.
+const TRIES: usize = 2;
+
+/// One chain in one form.
+struct Sample {
+    joints: usize,
+    /// Operations, milliseconds of the expansion, seconds of the two builds, bytes of code.
+    values: [f64; COLUMNS.len()],
+}
+
+/// Titles and decimals.
+const COLUMNS: [(&str, usize); 5] =
+    [("operations", 0), ("expansion, ms", 1), ("dev, s", 2), ("release, s", 2), ("code, bytes", 0)];
+
+fn main() {
+    let given: Vec<usize> = std::env::args().skip(1).map(|word| word.parse().expect("numbers of joints")).collect();
+    let joints = if given.is_empty() { JOINTS.to_vec() } else { given };
+    for form in [Form::SevenSteps, Form::Reduced] {
+        println!("{}", header(form));
+        let mut samples: Vec<Sample> = Vec::new();
+        for &joints in &joints {
+            let sample = Sample { joints, values: measure(joints, form) };
+            println!("{}", row(&sample, samples.last()));
+            samples.push(sample);
+        }
+        println!("\n{}\n", fit(&samples));
+    }
+}
+
+#[allow(clippy::cast_precision_loss)] // counts are small
+fn measure(joints: usize, form: Form) -> [f64; COLUMNS.len()] {
+    let yaml = chain::yaml(joints);
+    let expansion = fastest(|| {
+        operations(&yaml, form);
+    });
+    let user = user::Crate::new(&yaml, joints, form);
+    let [dev, release] = ["dev", "release"].map(|profile| {
+        let mut is_built = true;
+        let seconds = fastest(|| is_built &= user.build(profile));
+        if is_built { seconds } else { f64::NAN }
+    });
+    let code = if release.is_nan() { f64::NAN } else { user.code_size() as f64 };
+    [operations(&yaml, form) as f64, expansion * 1e3, dev, release, code]
+}
+
+/// What the derive does; the operations of `inverse_dynamics`.
+fn operations(yaml: &str, form: Form) -> usize {
+    let robot = Robot::from_yaml(yaml).unwrap_or_else(|report| panic!("{report}"));
+    let choice = match form {
+        Form::SevenSteps => Choice::none(&robot),
+        Form::Reduced | Form::Rewritten => Choice::default_of(&robot),
+    };
+    let programs =
+        Function::ALL.map(|function| choice.compile(&robot, function, form).unwrap_or_else(|error| panic!("{error}")));
+    std::hint::black_box(emit::rust_file(&robot, &programs));
+    programs[0].operations().total()
+}
+
+/// Seconds.
+fn fastest(mut work: impl FnMut()) -> f64 {
+    let start = Instant::now();
+    let mut best = f64::INFINITY;
+    for _ in 0..TRIES {
+        let before = seconds(start);
+        work();
+        best = best.min(seconds(start) - before);
+    }
+    best
+}
+
+/// Processor time of this process and of those it has waited for; without Linux, time since `start`.
+fn seconds(start: Instant) -> f64 {
+    processor_seconds().unwrap_or_else(|| start.elapsed().as_secs_f64())
+}
+
+fn processor_seconds() -> Option<f64> {
+    const TICKS_PER_SECOND: f64 = 100.0;
+    let number = |word: Option<&str>| word.and_then(|word| word.parse::<f64>().ok());
+    let schedule = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
+    let own = number(schedule.split_whitespace().next())?; // in ns
+    let status = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let (_, words) = status.rsplit_once(')')?;
+    let mut of_children = words.split_whitespace().skip(13);
+    Some(own * 1e-9 + (number(of_children.next())? + number(of_children.next())?) / TICKS_PER_SECOND)
+}
+
+fn header(form: Form) -> String {
+    let titles: String = COLUMNS.iter().map(|(title, _)| format!(" {title} | per joint |")).collect();
+    format!("| {form}: joints |{titles}\n|---:|{}", "---:|---:|".repeat(COLUMNS.len()))
+}
+
+#[allow(clippy::cast_precision_loss)]
+fn row(sample: &Sample, before: Option<&Sample>) -> String {
+    let mut text = format!("| {} |", sample.joints);
+    for (column, (_, decimals)) in COLUMNS.iter().enumerate() {
+        let value = sample.values[column];
+        let increment = before.map_or_else(String::new, |before| {
+            let increment = (value - before.values[column]) / (sample.joints as f64 - before.joints as f64);
+            number(increment, if *decimals > 0 { decimals + 1 } else { 1 })
+        });
+        text += &format!(" {} | {increment} |", number(value, *decimals));
+    }
+    text
+}
+
+fn number(value: f64, decimals: usize) -> String {
+    if value.is_nan() { String::from("fails") } else { format!("{value:.decimals$}") }
+}
+
+/// The straight line through the samples from five joints on, by least squares, and how far they are from it.
+#[allow(clippy::cast_precision_loss)]
+fn fit(samples: &[Sample]) -> String {
+    let long: Vec<&Sample> = samples.iter().filter(|sample| sample.joints >= 5).collect();
+    if long.len() < 3 {
+        return String::from("A line needs three chains of five joints or more.");
+    }
+    let lines = COLUMNS.iter().enumerate().map(|(column, (title, _))| {
+        let points = long.iter().map(|sample| (sample.joints as f64, sample.values[column]));
+        let points: Vec<(f64, f64)> = points.filter(|point| !point.1.is_nan()).collect();
+        let count = points.len() as f64;
+        let (x, y) = points.iter().fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
+        let covariance: f64 = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum();
+        let slope = covariance / points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>();
+        let constant = y - slope * x;
+        let off = points.iter().map(|point| ((constant + slope * point.0) / point.1 - 1.0).abs()).fold(0.0, f64::max);
+        let sign = if constant < 0.0 { '-' } else { '+' };
+        format!("- {title}: {slope:.3} n {sign} {:.2}, at most {:.1} % off", constant.abs(), off * 100.0)
+    });
+    lines.collect::<Vec<_>>().join("\n")
+}
