@@ -13,7 +13,7 @@ use crate::layout::{Align, columns};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
-use crate::{arguments, robot_file};
+use crate::{arguments, plan_file, robot_file};
 
 /// Count the operations of every function, before folding and in the generated code
 #[derive(Args)]
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut counted = Vec::new();
     let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
-    for path in &arguments.files {
+    for path in plan_file::robots(&arguments.files) {
         let outcome = robot_file::robot(path).and_then(|robot| {
             let compiler = Compiler::new(path, &robot);
             if arguments.tricks {

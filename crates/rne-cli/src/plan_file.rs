@@ -19,6 +19,18 @@ pub(crate) fn path(robot_file: &Path) -> PathBuf {
     robot_file.with_extension("plan.yaml")
 }
 
+/// `NAME.yaml` of `NAME.plan.yaml`; `None` when a path is not that of a plan.
+pub(crate) fn robot_of(path: &Path) -> Option<PathBuf> {
+    let name = path.file_name()?.to_str()?.strip_suffix(".plan.yaml")?;
+    Some(path.with_file_name(format!("{name}.yaml")))
+}
+
+/// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
+pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
+    let all_are_plans = paths.iter().all(|path| robot_of(path).is_some());
+    paths.iter().filter(move |path| all_are_plans || robot_of(path).is_none())
+}
+
 /// The plan file of a robot file, if there is one.
 pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
     if robot_file == Path::new("-") {

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use rne_model::{Checked, Robot, check_bytes, read_limited};
 
 use crate::outcome::Failure;
+use crate::plan_file;
 use crate::terminal::TYPED;
 
 /// So many files of a folder are named where one is missing.
@@ -15,6 +16,13 @@ const NAMED: usize = 16;
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
+    if let Some(robot) = plan_file::robot_of(path) {
+        return Err(Failure::usage(format_args!(
+            "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
+            path.display(),
+            robot.display()
+        )));
+    }
     let (name, bytes) = if path == Path::new("-") {
         ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
     } else {

@@ -134,7 +134,7 @@ fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Writte
     }
     let state = match (written, known) {
         (Written::Unchanged, _) => "is as good as it was",
-        (Written::Anew, Some(_)) => "is better than it was",
+        (Written::Anew, Some(_)) => "is written anew",
         (Written::Anew, None) => "is written",
     };
     let _ = writeln!(text, "{GOOD}ok{GOOD:#} {TYPED}{}{TYPED:#} {state}", path.display());
