@@ -73,6 +73,19 @@ impl Listing {
 /// A program whose statements do not keep to joints and steps, in the order in which they are computed.
 fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
     let mut text = String::new();
+    if what.explain && what.joint.is_none() && what.step.is_none() {
+        // numbers that stand in no table
+        for constant in &program.constants {
+            let _ = writeln!(text, "    let {} = {:?};", constant.name, constant.value);
+        }
+        for statement in &program.angles {
+            let _ = writeln!(text, "{}", statement_line(statement));
+        }
+        for turn in &program.turns {
+            let _ = writeln!(text, "    // {}", turn_line(turn));
+        }
+        text.push('\n');
+    }
     let mut section = None;
     for statement in &program.statements {
         let Place { joint, step, .. } = statement.place;
