@@ -10,7 +10,7 @@ use rne_model::Robot;
 use super::robots;
 
 /// A state at which to compare: joint arrays and a wrench.
-struct State {
+pub(crate) struct State {
     q: Vec<f64>,
     qd: Vec<f64>,
     qdd: Vec<f64>,
@@ -18,7 +18,7 @@ struct State {
 }
 
 impl State {
-    fn random(rng: &mut Rng, dof: usize) -> Self {
+    pub(crate) fn random(rng: &mut Rng, dof: usize) -> Self {
         let mut array = |scale: f64| (0..dof).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect();
         let (q, qd, qdd) = (array(3.0), array(2.0), array(5.0));
         let mut triple = || [(); 3].map(|()| (2.0 * rng.f64() - 1.0) * 10.0);
@@ -31,12 +31,12 @@ impl State {
     }
 }
 
-fn interpreted(program: &Program, state: &State) -> Vec<f64> {
+pub(crate) fn interpreted(program: &Program, state: &State) -> Vec<f64> {
     let values = Interpreter::new(program).run(&state.arguments(), f64::from_f64, Scalar::sin_cos);
     values.expect("arrays of the right length")
 }
 
-fn runtime(arm: &DynArm, function: Function, state: &State) -> Vec<f64> {
+pub(crate) fn runtime(arm: &DynArm, function: Function, state: &State) -> Vec<f64> {
     let State { q, qd, qdd, wrench } = state;
     match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),

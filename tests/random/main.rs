@@ -2,4 +2,5 @@
 
 mod compiled;
 mod interpreted;
+mod reduced;
 mod robots;

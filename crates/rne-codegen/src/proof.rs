@@ -31,6 +31,9 @@ const LARGEST_ROUNDING: f64 = 1e-11;
 /// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
 pub(crate) type Exactly = HashMap<Name, (Number, Option<Turn>)>;
 
+/// Gravity and bias torques may vanish but for rounding: they count as this part of the torques of motion at least.
+const LEAST_SCALE: f64 = 1e-2;
+
 /// Compares a program with the seven steps.
 ///
 /// # Errors
@@ -236,6 +239,12 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
 pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
     let faithful = compile(robot, program.function, Form::SevenSteps)?;
     let steps = Interpreter::new(&faithful);
+    let motion = match program.function {
+        Function::GravityTorques | Function::BiasTorques => {
+            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
+        }
+        Function::InverseDynamics | Function::InverseDynamicsWithWrench => None,
+    };
     let reduced = Interpreter::new(program);
     let mut rng = fastrand::Rng::with_seed(2024);
     let mut proof = Proof {
@@ -263,7 +272,9 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
         let arguments = Arguments { q: &q, qd: &qd, qdd: &qdd, force: wrench, moment: wrench };
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
-        let scale = expected.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        let torques = motion.as_ref().and_then(|motion| motion.run(&arguments, |x| x, f64::sin_cos));
+        let scale = largest(&expected).max(LEAST_SCALE * torques.map_or(0.0, |torques| largest(&torques)));
         if scale == 0.0 {
             continue;
         }

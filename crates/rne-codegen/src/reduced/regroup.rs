@@ -201,7 +201,9 @@ fn share_rods(
         }
     }
     let rods = solved(equations)?;
-    if rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
+    // what a link has of its own it can always give, in an arm without mass too
+    let is_plain = targets == [Target::Own; 3];
+    if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
         return None;
     }
     let link = &mut links[index];

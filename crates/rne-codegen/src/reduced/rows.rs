@@ -80,8 +80,9 @@ impl Table {
         if frames.carried && !table.carry_prismatics() {
             return None;
         }
-        table.normalise_last();
-        if frames.turned_last && !table.turn_last() {
+        if !frames.turned_last {
+            table.normalise_last();
+        } else if !table.turn_last() {
             return None;
         }
         Some(table)
@@ -182,8 +183,12 @@ impl Table {
         let reading = self.reading;
         let Some(last) = self.rows.last_mut() else { return false };
         let [x, y, _] = last.matter.h;
-        if last.kind != JointKind::Revolute || y.is_zero() {
+        if last.kind != JointKind::Revolute {
             return false;
+        }
+        if y.is_zero() {
+            // the angle of the file serves
+            return last.theta.quarters() != Some(QuarterTurns::Zero);
         }
         let Some(phi) = direction(y, x, reading) else { return false };
         let back = about_z(phi.back());

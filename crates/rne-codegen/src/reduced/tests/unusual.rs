@@ -5,32 +5,6 @@ use std::cell::{Cell, RefCell};
 use super::*;
 use crate::reduced::sheet::Dag;
 
-/// Anti-parallel axes, oblique twists, constant angles, a tool, tilted gravity, an axisymmetric last link.
-const SPINDLE: &str = "
-format: 1
-name: spindle
-source: made for this test
-convention: modified
-gravity: [1.25, -3.5, -8.75]
-tool: {xyz: [0.05, -0.07, 0.11], rpy: [0.4, -0.7, 1.1]}
-joints:
-  - type: revolute
-    dh: {theta: 0.3, d: 0.4, a: 0.1, alpha: 0.2}
-    link: {mass: 3, com: [0.1, 0.2, -0.05], inertia: {xx: 0.5, yy: 0.6, zz: 0.4, xy: 0.01, xz: -0.02, yz: 0.03}}
-  - type: revolute
-    dh: {theta: pi/2, d: 0.15, a: 0.25, alpha: pi/2}
-    link: {mass: 4, com: [0.1, -0.02, 0.05], inertia: {xx: 0.15, yy: 0.3, zz: 0.25, xy: 0.02, xz: 0.01, yz: -0.03}}
-  - type: revolute
-    dh: {theta: 0.7, d: -0.12, a: 0.35, alpha: pi}
-    link: {mass: 2, com: [0.07, 0.03, 0.02], inertia: {xx: 0.12, yy: 0.2, zz: 0.17, xy: 0.01, xz: 0.02, yz: 0.015}}
-  - type: revolute
-    dh: {theta: -0.2, d: 0.08, a: 0.21, alpha: 0}
-    link: {mass: 1, com: [0.04, 0.01, 0.03], inertia: {xx: 0.05, yy: 0.06, zz: 0.04, xy: 0.002, xz: 0.001, yz: 0.003}}
-  - type: revolute
-    dh: {theta: 0.9, d: 0.3, a: 0.09, alpha: 1.2}
-    link: {mass: 0.5, com: [0, 0, 0.06], inertia: {xx: 0.03, yy: 0.03, zz: 0.02}}
-";
-
 /// Some rounds of random changes, every plan that applies proved for a function in turn.
 fn wander(robot: &Robot, rounds: usize, seed: u64) {
     let moves = Moves::new(Evaluator::new(robot, Function::InverseDynamics).frames());
@@ -51,7 +25,7 @@ fn wander(robot: &Robot, rounds: usize, seed: u64) {
 
 #[test]
 fn unusual_robots_are_the_seven_steps() {
-    let spindle = check_bytes("spindle", SPINDLE.as_bytes()).unwrap().robot;
+    let spindle = robot("spindle");
     wander(&spindle, 90, 1);
     let turned = Plan { turned_last_frame: true, ..Plan::new(6) };
     let dense = robot("dense6_2p");
@@ -66,7 +40,7 @@ fn unusual_robots_are_the_seven_steps() {
 /// Anneals hot, so that every move is made, and proves the first graph that is worth something else, and some others.
 #[test]
 fn rewritten_graphs_are_the_seven_steps() {
-    let spindle = check_bytes("spindle", SPINDLE.as_bytes()).unwrap().robot;
+    let spindle = robot("spindle");
     for robot in [robot("planar3"), robot("scara_cobra600"), robot("stanford"), spindle] {
         let function = Function::InverseDynamics;
         let mut plan = Plan::new(robot.dof());
