@@ -23,6 +23,7 @@ mod chain;
 #[path = "user.rs"]
 mod user;
 
+use std::fmt::Write;
 use std::time::Instant;
 
 use rne_codegen::reduced::Choice;
@@ -117,8 +118,8 @@ fn processor_seconds() -> Option<f64> {
 }
 
 fn header(form: Form) -> String {
-    let titles: String = COLUMNS.iter().map(|(title, _)| format!(" {title} | per joint |")).collect();
-    format!("| {form}: joints |{titles}\n|---:|{}", "---:|---:|".repeat(COLUMNS.len()))
+    let titles = COLUMNS.map(|(title, _)| title).join(" | per joint | ");
+    format!("| {form}: joints | {titles} | per joint |\n|---:|{}", "---:|---:|".repeat(COLUMNS.len()))
 }
 
 #[allow(clippy::cast_precision_loss)]
@@ -130,7 +131,7 @@ fn row(sample: &Sample, before: Option<&Sample>) -> String {
             let increment = (value - before.values[column]) / (sample.joints as f64 - before.joints as f64);
             number(increment, if *decimals > 0 { decimals + 1 } else { 1 })
         });
-        text += &format!(" {} | {increment} |", number(value, *decimals));
+        let _ = write!(text, " {} | {increment} |", number(value, *decimals));
     }
     text
 }
