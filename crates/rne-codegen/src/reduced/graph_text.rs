@@ -11,7 +11,8 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use super::evaluator::Frame;
-use super::sheet::{Dag, Identity, Leaf, Numbers, Op, Ref, Sheet, Source, mark_live};
+use super::numbers::{Numbers, Source};
+use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
 use super::writer::{Angle, Point};
 use crate::exact::Number;
 

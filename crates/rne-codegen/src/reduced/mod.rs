@@ -11,6 +11,7 @@ mod evaluator;
 mod graph_text;
 mod inward;
 mod moves;
+mod numbers;
 mod outward;
 mod plan;
 mod plan_file;
