@@ -243,7 +243,7 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
         Function::GravityTorques | Function::BiasTorques => {
             Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
         }
-        Function::InverseDynamics | Function::InverseDynamicsWithWrench => None,
+        Function::InverseDynamics | Function::InverseDynamicsWithWrench | Function::InverseDynamicsSc => None,
     };
     let reduced = Interpreter::new(program);
     let mut rng = fastrand::Rng::with_seed(2024);
