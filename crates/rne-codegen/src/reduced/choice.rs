@@ -167,7 +167,11 @@ pub fn search(
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
         let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
         if let Ok(dag) = graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers) {
-            best = Some((evaluator::cost(&dag, &frame, &mut Vec::new()), rewritten.clone()));
+            // one that has lost too much precision may be replaced by a dearer one
+            let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
+            if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
+                best = Some((evaluator::cost(&dag, &frame, &mut Vec::new()), rewritten.clone()));
+            }
         }
     }
     if wanted.rewrite {
@@ -294,14 +298,22 @@ fn rewritten(
             }
         }
     }
+    graphs.sort_by_key(|(cost, ..)| cost.weight());
+    let mut cheapest = None;
     for (cost, plan, dag, given, _) in graphs {
-        if best.as_ref().is_none_or(|(least, _)| cost.weight() < least.weight()) {
-            let rewritten = Rewritten { plan, graph: graph_text::written(&dag, given) };
-            let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
-            if best.is_none() || is_precise(robot, &choice, Form::Rewritten)? {
-                *best = Some((cost, rewritten));
-            }
+        if best.as_ref().is_some_and(|(least, _)| cost.weight() >= least.weight()) {
+            break;
         }
+        let rewritten = Rewritten { plan, graph: graph_text::written(&dag, given) };
+        let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
+        if is_precise(robot, &choice, Form::Rewritten)? {
+            *best = Some((cost, rewritten));
+            break;
+        }
+        cheapest.get_or_insert((cost, rewritten));
+    }
+    if best.is_none() {
+        *best = cheapest;
     }
     Ok(())
 }
