@@ -100,7 +100,9 @@ use proc_macro::TokenStream;
 /// ")]
 /// struct Slides;
 ///
-/// assert!((Slides.inverse_dynamics(&[0.0; 2], &[0.0; 2], &[1.0, 0.5])[0] - (3.0 * (1.0 + 9.81) + 0.5)).abs() < 1e-13);
+/// let [below, above]: [f64; 2] = Slides.inverse_dynamics(&[0.0; 2], &[0.0; 2], &[1.0, 0.5]);
+/// assert!((above - (1.0 + 0.5 + 9.81)).abs() < 1e-13);
+/// assert!((below - above - 2.0 * (1.0 + 9.81)).abs() < 1e-13);
 /// ```
 ///
 /// # `max_ops = N`
