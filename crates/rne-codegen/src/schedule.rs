@@ -203,9 +203,10 @@ impl<'w> Schedule<'w> {
 
     fn constants(&self) -> Result<Vec<Constant>, CompileError> {
         let mut constants = Vec::new();
+        let users = self.users_of_constants();
         for (id, node) in self.written.graph.nodes() {
             let Node::Constant(magnitude) = node else { continue };
-            for given in self.constant_names(id) {
+            for given in self.constant_names(id, users.get(&id).map_or(&[], Vec::as_slice)) {
                 let value = if given.negative { -magnitude } else { magnitude };
                 if !value.is_finite() {
                     return Err(CompileError::NotFinite { name: given.name });
@@ -218,8 +219,27 @@ impl<'w> Schedule<'w> {
         Ok(constants)
     }
 
-    /// The names under which the live statements use a constant.
-    fn constant_names(&self, id: NodeId) -> Vec<Given> {
+    /// The live nodes that use each constant, in order.
+    fn users_of_constants(&self) -> HashMap<NodeId, Vec<NodeId>> {
+        let mut users: HashMap<NodeId, Vec<NodeId>> = HashMap::new();
+        for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
+            let operands = match node {
+                Node::Sum(a, b) => [Some(a.node), Some(b.node)],
+                Node::Product(a, b) => [Some(a), Some(b)],
+                Node::Sine(angle) | Node::Cosine(angle) => [Some(angle.node), None],
+                Node::Constant(_) | Node::Argument(_) => [None, None],
+            };
+            for operand in operands.into_iter().flatten() {
+                if matches!(self.written.graph.node(operand), Node::Constant(_)) {
+                    users.entry(operand).or_default().push(user);
+                }
+            }
+        }
+        users
+    }
+
+    /// The names under which `users`, live statements, use a constant.
+    fn constant_names(&self, id: NodeId, users: &[NodeId]) -> Vec<Given> {
         let mut names: Vec<Given> = Vec::new();
         let mut put = |given: Option<Given>| {
             if let Some(given) = given
@@ -231,16 +251,8 @@ impl<'w> Schedule<'w> {
         if self.uses[id.index()] == 0 || self.written.graph.node(id) == Node::Constant(0.0) {
             return names;
         }
-        for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
-            let uses = match node {
-                Node::Sum(a, b) => a.node == id || b.node == id,
-                Node::Product(a, b) => a == id || b == id,
-                Node::Sine(angle) | Node::Cosine(angle) => angle.node == id,
-                Node::Constant(_) | Node::Argument(_) => false,
-            };
-            if uses {
-                put(self.constant_name(user, id));
-            }
+        for &user in users {
+            put(self.constant_name(user, id));
         }
         if self.is_output[id.index()] {
             put(self.names[id.index()]);
