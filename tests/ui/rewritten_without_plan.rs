@@ -1,0 +1,10 @@
+use rne::InverseDynamics;
+
+#[derive(InverseDynamics)]
+#[robot(path = "robots/rod.yaml", form = "rewritten")]
+struct Rod;
+
+fn main() {
+    let tau: [f64; 1] = Rod.inverse_dynamics(&[0.6], &[1.3], &[-0.7]);
+    println!("{} {tau:?} {:?}", Rod::NAME, Rod.gravity_torques(&[0.1_f32; Rod::DOF]));
+}
