@@ -10,11 +10,11 @@ use fastrand::Rng;
 use rne::{BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
-#[robot(path = "../robots/puma560.yaml")]
+#[robot(path = "../robots/puma560.yaml", form = "reduced")]
 struct Puma560;
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
-#[robot(path = "../robots/panda.yaml")]
+#[robot(path = "../robots/panda.yaml", form = "reduced")]
 struct Panda;
 
 /// States of a batch: what the first-level cache of most processors holds.

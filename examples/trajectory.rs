@@ -14,7 +14,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use rne::{BatchInverseDynamics, InverseDynamics, VectorUnit};
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
-#[robot(path = "../robots/puma560.yaml")]
+#[robot(path = "../robots/puma560.yaml", form = "reduced")]
 struct Puma560;
 
 const HELP: &str = "\
