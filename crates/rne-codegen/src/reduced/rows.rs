@@ -5,7 +5,7 @@
 //! put right here: the base is turned into the first joint's frame, the last joint's constant angle into its link,
 //! anti-parallel axes are made parallel.
 
-use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
+use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, Transform};
 
 use super::pseudo_inertia::{PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose};
 use crate::exact::{Number, Reading, Turn};
@@ -262,7 +262,14 @@ fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
         // the axes are parallel, so all turning is about one
         return Some([Turn::NONE, Turn { sin: Number::ZERO, cos: zz }, Turn { sin: yx * zz, cos: xx }]);
     }
-    let sine = hypotenuse(xz, yz, reading)?;
+    let square = xz * xz + yz * yz;
+    // an angle of the file, or one that no angle of the file is
+    let known = reading.turn(&Angle::new(square.value.sqrt().to_f64().atan2(zz.to_f64()))).sin;
+    let sine = if known.image * known.image == square.image {
+        Number { value: square.value.sqrt(), ..known }
+    } else {
+        hypotenuse(xz, yz, reading)?
+    };
     let scale = sine.inverse()?;
     Some([
         Turn { sin: xz * scale, cos: -(yz * scale) },

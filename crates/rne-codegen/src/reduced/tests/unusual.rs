@@ -13,6 +13,13 @@ fn wander(robot: &Robot, rounds: usize, seed: u64) {
     for function in Function::ALL {
         must_be_identical(robot, &plan, &unproved(robot, &plan, function).unwrap());
     }
+    for frames in 1..4 {
+        let framed =
+            Plan { turned_last_frame: frames & 1 != 0, carried_prismatics: frames & 2 != 0, ..Plan::new(robot.dof()) };
+        if let Some(program) = unproved(robot, &framed, Function::InverseDynamicsWithWrench) {
+            must_be_identical(robot, &framed, &program);
+        }
+    }
     for round in 0..rounds {
         let other = moves.random(&plan, &mut rng);
         let function = Function::ALL[round % Function::ALL.len()];
@@ -27,11 +34,7 @@ fn wander(robot: &Robot, rounds: usize, seed: u64) {
 fn unusual_robots_are_the_seven_steps() {
     let spindle = robot("spindle");
     wander(&spindle, 90, 1);
-    let turned = Plan { turned_last_frame: true, ..Plan::new(6) };
-    let dense = robot("dense6_2p");
-    must_be_identical(&dense, &turned, &unproved(&dense, &turned, Function::InverseDynamicsWithWrench).unwrap());
-    let carried = Plan { carried_prismatics: true, ..turned };
-    must_be_identical(&dense, &carried, &unproved(&dense, &carried, Function::InverseDynamicsWithWrench).unwrap());
+    wander(&robot("dense6_2p"), 0, 0);
     for name in (0..40).map(|seed| seed.to_string()) {
         wander(&robot(&name), 8, 2);
     }
@@ -40,8 +43,10 @@ fn unusual_robots_are_the_seven_steps() {
 /// Anneals hot, so that every move is made, and proves the first graph that is worth something else, and some others.
 #[test]
 fn rewritten_graphs_are_the_seven_steps() {
-    let spindle = robot("spindle");
-    for robot in [robot("planar3"), robot("scara_cobra600"), robot("stanford"), spindle] {
+    for (robot, most) in
+        [("planar3", 30), ("spherical_rrp", 150), ("scara_cobra600", 30), ("stanford", 6), ("spindle", 6)]
+    {
+        let robot = self::robot(robot);
         let function = Function::InverseDynamics;
         let mut plan = Plan::new(robot.dof());
         for joint in &mut plan.joints {
@@ -56,7 +61,7 @@ fn rewritten_graphs_are_the_seven_steps() {
             seen.set(seen.get() + 1);
             let is_wrong = !found.get() && images(dag) != expected;
             found.set(found.get() || is_wrong);
-            if is_wrong || seen.get() % 400 == 0 {
+            if is_wrong || seen.get() % 1000 == 0 {
                 graphs.borrow_mut().push(dag.clone());
             }
             evaluator::cost(dag, &frame, live)
@@ -65,12 +70,12 @@ fn rewritten_graphs_are_the_seven_steps() {
         let mut ticks = 0;
         let mut clock = |_: &Progress| {
             ticks += 1;
-            (ticks < 12 && !found.get()).then_some(0.0)
+            (ticks < most && !found.get()).then_some(0.0)
         };
         let progress = |best| Progress { plans: 0, best, phase: "rewriting" };
-        assert!(rewriting.anneal(0.6, progress, &mut clock).is_err(), "the clock ended it");
+        assert!(rewriting.anneal(2.0, progress, &mut clock).is_err(), "the clock ended it");
         let graphs = graphs.take();
-        assert!(found.get() || graphs.len() > 2, "{} graphs", graphs.len());
+        assert!(!graphs.is_empty());
         // the last one first: that is the one whose value has changed
         for dag in graphs.into_iter().rev() {
             drawing.dag = dag;
