@@ -1,13 +1,12 @@
 //! The reduced and the rewritten form of every robot, compiled: independent torques, and single precision.
 
-use fastrand::Rng;
 use rne::Wrench;
 use rne_codegen::Function;
 use serde_json::Value;
 
 use crate::golden::{call, numbers, relative_error};
 use crate::shipped::{Shipped, Visitor, reduced, rewritten, seven_steps};
-use crate::states;
+use crate::single_precision::SinglePrecision;
 
 /// Largest error relative to the largest torque of the state.
 const TOLERANCE: f64 = 1e-11;
@@ -53,29 +52,6 @@ fn reduced_torques_are_the_independent_ones() {
 #[test]
 fn rewritten_torques_are_the_independent_ones() {
     rewritten::visit_all(&mut Golden);
-}
-
-/// The worst error of single precision of each robot.
-#[derive(Default)]
-struct SinglePrecision {
-    worst: Vec<(&'static str, f64)>,
-}
-
-impl Visitor for SinglePrecision {
-    #[allow(clippy::cast_possible_truncation)] // rounding to f32 is what is measured
-    fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, robot: &R) {
-        let mut rng = Rng::with_seed(32);
-        let mut worst = 0.0_f64;
-        for _ in 0..10_000 {
-            let states::State { q, qd, qdd, .. } = states::moderate::<DOF, R>(&mut rng);
-            let [q, qd, qdd] = [q, qd, qdd].map(|array| array.map(|value| value as f32));
-            let single = robot.inverse_dynamics(&q, &qd, &qdd).map(f64::from);
-            let (q, qd, qdd) = (q.map(f64::from), qd.map(f64::from), qdd.map(f64::from));
-            let double = robot.inverse_dynamics(&q, &qd, &qdd);
-            worst = worst.max(relative_error(&single, &double));
-        }
-        self.worst.push((R::NAME, worst));
-    }
 }
 
 #[test]

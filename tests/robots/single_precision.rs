@@ -16,8 +16,8 @@ const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
 
 /// (robot, worst error relative to the largest torque of the state).
 #[derive(Default)]
-struct SinglePrecision {
-    worst: Vec<(&'static str, f64)>,
+pub(crate) struct SinglePrecision {
+    pub(crate) worst: Vec<(&'static str, f64)>,
 }
 
 impl Visitor for SinglePrecision {

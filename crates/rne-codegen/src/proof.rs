@@ -231,22 +231,12 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
     Some(torques.into_iter().map(|torque| torque.number).collect())
 }
 
-/// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
-/// where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+/// Measures a program and the seven steps in floating point.
 ///
 /// # Errors
 /// When the seven steps of the robot cannot be compiled.
-pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
+fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
     let faithful = compile(robot, program.function, Form::SevenSteps)?;
-    let steps = Interpreter::new(&faithful);
-    let motion = match program.function {
-        Function::GravityTorques | Function::BiasTorques => {
-            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
-        }
-        Function::InverseDynamics | Function::InverseDynamicsWithWrench | Function::InverseDynamicsSc => None,
-    };
-    let reduced = Interpreter::new(program);
-    let mut rng = fastrand::Rng::with_seed(2024);
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
         states,
@@ -255,6 +245,47 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
         single_of_seven_steps: 0.0,
         before: faithful.ledger.before(),
     };
+    for errors in errors(robot, program, &faithful, states)? {
+        proof.rounding = larger(proof.rounding, errors.double);
+        proof.single = larger(proof.single, errors.single);
+        proof.single_of_seven_steps = larger(proof.single_of_seven_steps, errors.single_of_seven_steps);
+    }
+    Ok(proof)
+}
+
+/// How much larger the error of a program in single precision is than that of the seven steps, on the average: the largest
+/// error depends on which rare states one meets.
+///
+/// # Errors
+/// When the seven steps of the robot cannot be compiled.
+pub(crate) fn loss_of_precision(robot: &Robot, program: &Program, states: usize) -> Result<f64, CompileError> {
+    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+    let errors = errors(robot, program, &faithful, states)?;
+    let sum = |error: fn(&Errors) -> f64| errors.iter().map(error).sum::<f64>();
+    let (found, expected) = (sum(|errors| errors.single), sum(|errors| errors.single_of_seven_steps));
+    Ok(if found == 0.0 { 0.0 } else { found / expected })
+}
+
+/// Differences from the seven steps in double precision at one state, relative to the largest torque.
+struct Errors {
+    double: f64,
+    single: f64,
+    single_of_seven_steps: f64,
+}
+
+/// Runs a program and the seven steps, `faithful`, in floating point at random states: positions within the limits of the
+/// joints, ±3 where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Vec<Errors>, CompileError> {
+    let mut all = Vec::with_capacity(states);
+    let steps = Interpreter::new(faithful);
+    let motion = match program.function {
+        Function::GravityTorques | Function::BiasTorques => {
+            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
+        }
+        Function::InverseDynamics | Function::InverseDynamicsWithWrench | Function::InverseDynamicsSc => None,
+    };
+    let reduced = Interpreter::new(program);
+    let mut rng = fastrand::Rng::with_seed(2024);
     for _ in 0..states {
         // numbers of single precision, so that both precisions are given the same state
         #[allow(clippy::cast_possible_truncation)]
@@ -282,7 +313,6 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
             let difference = |(a, b): (&f64, &f64)| (a - b).abs() / scale;
             torques.iter().zip(&expected).map(difference).fold(0.0, larger)
         };
-        proof.rounding = larger(proof.rounding, error(&found));
         let single = |code: &Interpreter| {
             #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
             let round = |values: &[f64]| values.iter().map(|&x| x as f32).collect::<Vec<f32>>();
@@ -294,10 +324,13 @@ pub(crate) fn rounding(robot: &Robot, program: &Program, states: usize) -> Resul
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
         };
-        proof.single = larger(proof.single, error(&single(&reduced)));
-        proof.single_of_seven_steps = larger(proof.single_of_seven_steps, error(&single(&steps)));
+        all.push(Errors {
+            double: error(&found),
+            single: error(&single(&reduced)),
+            single_of_seven_steps: error(&single(&steps)),
+        });
     }
-    Ok(proof)
+    Ok(all)
 }
 
 /// The larger of two; what is no number is larger than any.

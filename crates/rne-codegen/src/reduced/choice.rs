@@ -138,7 +138,8 @@ impl Found {
     }
 }
 
-/// Looks for a cheaper plan, from the one at hand onwards; what was found is never worse.
+/// Looks for a cheaper plan, from the one at hand onwards; what was found is never worse, and never much less precise in
+/// single precision than the seven steps.
 ///
 /// `clock` is asked now and then how much of the time is over.
 ///
@@ -151,6 +152,11 @@ pub fn search(
     clock: Clock<'_>,
 ) -> Result<Found, CompileError> {
     let mut search = Search::new(robot, &[]);
+    let model = robot.clone();
+    search.refuse(move |plan| {
+        let choice = Choice { plan: plan.clone(), rewritten: None };
+        !is_precise(&model, &choice, Form::Reduced).unwrap_or(false)
+    });
     search.greedy(usize::MAX);
     if let Some(known) = known {
         search.start_from(&known.plan);
@@ -161,7 +167,8 @@ pub fn search(
     // the first part of the time goes to plans, the rest to rewriting
     let share = if wanted.rewrite { 0.45 } else { 1.0 };
     let _ = plans(&mut search, wanted.seed, share, clock);
-    let plan = precise(robot, &mut search)?;
+    let plan = search.best.1.clone();
+    let plan = search.tidied(&plan);
     let reduced_cost = search.cost(&plan).unwrap_or_default();
     let mut best: Option<(Cost, Rewritten)> = None;
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
@@ -194,28 +201,28 @@ pub fn search(
     Ok(Found { file, reduced, rewritten })
 }
 
-/// How much less precise than the seven steps a plan may be in single precision, if there is another.
+/// How much less precise than the seven steps a form may be in single precision, on the average.
 const PRECISION: f64 = 3.0;
 
-/// The cheapest plan found that is about as precise as the seven steps.
-fn precise(robot: &Robot, search: &mut Search) -> Result<Plan, CompileError> {
-    let best = search.best.1.clone();
-    let others = search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != best);
-    let candidates: Vec<Plan> = std::iter::once(best.clone()).chain(others).collect();
-    for plan in candidates {
-        let plan = search.tidied(&plan);
-        if is_precise(robot, &Choice { plan: plan.clone(), rewritten: None }, Form::Reduced)? {
-            return Ok(plan);
-        }
-    }
-    Ok(search.tidied(&best))
-}
+/// States over which the average is taken.
+const STATES: usize = 200;
 
 fn is_precise(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
-    const STATES: usize = 4000;
-    let program = choice.compile(robot, Function::InverseDynamics, form)?;
-    let proof = proof::rounding(robot, &program, STATES)?;
-    Ok(proof.single <= PRECISION * proof.single_of_seven_steps)
+    let function = Function::InverseDynamics;
+    let plan =
+        if let (Form::Rewritten, Some(rewritten)) = (form, &choice.rewritten) { &rewritten.plan } else { &choice.plan };
+    let (frame, drawing) = drawn(robot, plan, function)?;
+    let drawing = match (form, &choice.rewritten) {
+        (Form::Rewritten, Some(rewritten)) => {
+            match graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers) {
+                Ok(dag) => drawing.with(dag),
+                Err(_) => return Ok(false),
+            }
+        }
+        _ => drawing,
+    };
+    let (program, _) = drawing.unproved(robot, &frame, function, form)?;
+    Ok(proof::loss_of_precision(robot, &program, STATES)? <= PRECISION)
 }
 
 /// Descent, then annealing in rounds until `share` of the time is over.

@@ -33,6 +33,8 @@ pub(crate) struct Search {
     pub(crate) evaluator: Evaluator,
     moves: Moves,
     without: Vec<Trick>,
+    /// Refuses plans that would be the best but for something else that is wrong with them.
+    veto: Option<Box<dyn Fn(&Plan) -> bool>>,
     known: HashMap<Plan, Option<Cost>>,
     pub(crate) plans: usize,
     pub(crate) best: (Cost, Plan),
@@ -52,6 +54,7 @@ impl Search {
             evaluator,
             moves,
             without: without.to_vec(),
+            veto: None,
             known: HashMap::new(),
             plans: 0,
             best: (Cost::default(), plan.clone()),
@@ -63,6 +66,11 @@ impl Search {
         search
     }
 
+    /// From now on no plan becomes the best that `veto` is true of.
+    pub(crate) fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'static) {
+        self.veto = Some(Box::new(veto));
+    }
+
     /// What a plan costs, all tricks in it being allowed.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
         if self.without.iter().any(|trick| trick.is_in(plan)) {
@@ -72,7 +80,9 @@ impl Search {
             return *known;
         }
         self.plans += 1;
+        let would_be_best = |cost: &Cost| cost.weight() < self.best.0.weight();
         let cost = self.evaluator.cost(plan);
+        let cost = cost.filter(|cost| !would_be_best(cost) || !self.veto.as_ref().is_some_and(|veto| veto(plan)));
         if self.known.len() > 400_000 {
             self.known.clear();
         }
