@@ -12,11 +12,9 @@ fn path(folder: &std::path::Path, name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
 }
 
-#[test]
-fn the_file_compiles_by_itself_and_computes_the_same() {
-    let folder = folder("compiles");
-    let (source, program) = (path(&folder, "main.rs"), path(&folder, "main"));
-    let code = fine(&["emit", ROBOT, "--lang", "rust"]);
+/// The torques that a file computes once `rustc` has compiled it.
+fn compiled(folder: &std::path::Path, code: &str) -> Vec<f64> {
+    let (source, program) = (path(folder, "main.rs"), path(folder, "main"));
     let main = "
 impl Scalar for f64 {
     fn from_f64(value: f64) -> Self { value }
@@ -28,15 +26,54 @@ fn main() {
     }
 }
 ";
-    fs::write(&source, code + main).expect("written");
+    fs::write(&source, code.to_owned() + main).expect("written");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let compiled = Command::new(rustc).args(["--edition", "2024", "-A", "dead_code", "-o", &program, &source]).output();
     let compiled = compiled.expect("rustc starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let computed = Command::new(&program).output().expect("it starts");
-    let eval = fine(&["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1"]);
-    for torque in String::from_utf8_lossy(&computed.stdout).lines() {
-        assert!(eval.contains(torque), "{torque} in {eval}");
+    String::from_utf8_lossy(&computed.stdout).lines().map(|line| line.parse().expect("a number")).collect()
+}
+
+#[test]
+fn the_file_compiles_by_itself_and_computes_the_same() {
+    let folder = folder("compiles");
+    let eval = ["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&fine(&eval)).expect("JSON");
+    let expected: Vec<f64> =
+        json["result"].as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect();
+    assert_eq!(compiled(&folder, &fine(&["emit", ROBOT, "--lang", "rust"])), expected, "in every bit");
+    for form in ["reduced", "rewritten"] {
+        let code = fine(&["emit", ROBOT, "--form", form]);
+        assert!(code.contains("Proved identical to the seven steps"), "{code}");
+        let found = compiled(&folder, &code);
+        assert_eq!(found.len(), expected.len());
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a - b).abs() <= 1e-11 * b.abs(), "{form}: {found:?} is not {expected:?}");
+        }
+    }
+}
+
+/// Parallel axes with angles that are no right ones: sums of angles have names of their own.
+#[test]
+fn sums_of_oblique_angles_compile() {
+    let folder = folder("oblique");
+    let robot = path(&folder, "oblique.yaml");
+    let text = fs::read_to_string(format!("{}/{ROBOT}", crate::call::ROOT)).expect("a robot");
+    fs::write(&robot, text.replacen("theta: 0,", "theta: 0.2,", 2)).expect("written");
+    fs::write(
+        path(&folder, "oblique.plan.yaml"),
+        fs::read_to_string(format!("{}/{}", crate::call::ROOT, ROBOT.replace(".yaml", ".plan.yaml"))).expect("a plan"),
+    )
+    .expect("written");
+    fails(1, &["emit", &robot, "--form", "reduced"], &["oblique.plan.yaml:5:14", "have changed"]);
+    fs::remove_file(path(&folder, "oblique.plan.yaml")).expect("it was there");
+    let eval = ["eval", &robot, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&fine(&eval)).expect("JSON");
+    let found = compiled(&folder, &fine(&["emit", &robot, "--form", "reduced"]));
+    for (a, b) in found.iter().zip(json["result"].as_array().expect("a list")) {
+        let b = b.as_f64().expect("a number");
+        assert!((a - b).abs() <= 1e-11 * b.abs(), "{found:?} is not {json}");
     }
 }
 
