@@ -31,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(value_name = "FILE")]
     file: PathBuf,
     /// How long to search
-    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds)]
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
     /// Rewrite the graphs of the best plans too, for `form = "rewritten"`
     #[arg(long)]

@@ -12,32 +12,77 @@ fn path(folder: &std::path::Path, name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
 }
 
-#[test]
-fn the_file_compiles_by_itself_and_computes_the_same() {
-    let folder = folder("compiles");
-    let (source, program) = (path(&folder, "main.rs"), path(&folder, "main"));
-    let code = fine(&["emit", ROBOT, "--lang", "rust"]);
-    let main = "
+/// The torques that a file computes once `rustc` has compiled it.
+fn compiled(folder: &std::path::Path, code: &str, state: &str) -> Vec<f64> {
+    let (source, program) = (path(folder, "main.rs"), path(folder, "main"));
+    let main = r#"
 impl Scalar for f64 {
     fn from_f64(value: f64) -> Self { value }
     fn sin_cos(self) -> (Self, Self) { f64::sin_cos(self) }
 }
 fn main() {
-    for torque in inverse_dynamics(&[0.6_f64, -1.1], &[1.3, -0.4], &[-0.7, 2.1]) {
-        println!(\"{torque}\");
+    for torque in inverse_dynamics(&STATE) {
+        println!("{torque}");
     }
 }
-";
-    fs::write(&source, code + main).expect("written");
+"#;
+    fs::write(&source, code.to_owned() + &main.replace("STATE", state)).expect("written");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let compiled = Command::new(rustc).args(["--edition", "2024", "-A", "dead_code", "-o", &program, &source]).output();
     let compiled = compiled.expect("rustc starts");
     assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
     let computed = Command::new(&program).output().expect("it starts");
-    let eval = fine(&["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1"]);
-    for torque in String::from_utf8_lossy(&computed.stdout).lines() {
-        assert!(eval.contains(torque), "{torque} in {eval}");
+    String::from_utf8_lossy(&computed.stdout).lines().map(|line| line.parse().expect("a number")).collect()
+}
+
+/// The torques of `rne eval --json`.
+fn evaluated(arguments: &[&str]) -> Vec<f64> {
+    let json: serde_json::Value = serde_json::from_str(&fine(arguments)).expect("JSON");
+    json["result"].as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()
+}
+
+fn close(found: &[f64], expected: &[f64]) {
+    assert_eq!(found.len(), expected.len());
+    for (a, b) in found.iter().zip(expected) {
+        assert!((a - b).abs() <= 1e-11 * b.abs(), "{found:?} is not {expected:?}");
     }
+}
+
+#[test]
+fn the_file_compiles_by_itself_and_computes_the_same() {
+    let folder = folder("compiles");
+    let state = "[0.6_f64, -1.1], &[1.3, -0.4], &[-0.7, 2.1]";
+    let expected = evaluated(&["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1", "--json"]);
+    let code = fine(&["emit", ROBOT, "--lang", "rust"]);
+    assert_eq!(compiled(&folder, &code, state), expected, "in every bit");
+    for form in ["reduced", "rewritten"] {
+        let code = fine(&["emit", ROBOT, "--form", form]);
+        assert!(code.contains("Proved identical to the seven steps"), "{code}");
+        close(&compiled(&folder, &code, state), &expected);
+    }
+}
+
+/// Parallel axes with angles that are no right ones: sums of positions, of constants and of angles have names of their own.
+#[test]
+fn sums_of_oblique_angles_compile() {
+    let folder = folder("oblique");
+    let (robot, plan) = (path(&folder, "oblique.yaml"), path(&folder, "oblique.plan.yaml"));
+    let text = fs::read_to_string(format!("{}/robots/planar3.yaml", crate::call::ROOT)).expect("a robot");
+    let oblique = text.replace("theta: 0,", "theta: 0.2,");
+    assert_eq!(oblique.matches("theta: 0.2,").count(), 3);
+    fs::write(&robot, oblique).expect("written");
+    fine(&["search", &robot, "--seconds", "0"]);
+    let text = fs::read_to_string(&plan).expect("a plan");
+    let (before, _) = text.split_once("    joints:\n").expect("its joints");
+    let joint = "      - {on: [group_acceleration, group_wrench]}\n";
+    fs::write(&plan, format!("{before}    joints:\n{}", joint.repeat(3))).expect("written");
+    let code = fine(&["emit", &robot, "--form", "reduced"]);
+    for name in ["q1_2 = q1 + q2", "theta1_2: T", "angle1_2 = ", "theta1_3: T", "angle1_3 = "] {
+        assert!(code.contains(name), "no `{name}` in {code}");
+    }
+    let eval = ["eval", &robot, "--q", "0.6,-1.1,0.4", "--qd", "1.3,-0.4,0.2", "--qdd", "-0.7,2.1,0.9", "--json"];
+    let expected = evaluated(&eval);
+    close(&compiled(&folder, &code, "[0.6_f64, -1.1, 0.4], &[1.3, -0.4, 0.2], &[-0.7, 2.1, 0.9]"), &expected);
 }
 
 #[test]

@@ -4,5 +4,6 @@ mod call;
 mod check;
 mod emit;
 mod eval;
+mod search;
 mod show;
 mod terminal;

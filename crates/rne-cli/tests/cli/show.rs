@@ -41,6 +41,33 @@ fn joints_and_steps_that_are_not_there() {
 }
 
 #[test]
+fn the_reduced_form_says_its_choices_and_its_proof() {
+    let robot = "robots/puma560.yaml";
+    let shown = fine(&["show", robot, "--form", "reduced"]);
+    for part in [
+        "form reduced",
+        "only the torques keep a physical meaning",
+        "Proved identical to the seven steps",
+        "Choices:\n",
+        "the last link is a spinning sphere without mass",
+        "let tau6 = ",
+    ] {
+        assert!(shown.contains(part), "no `{part}` in {shown}");
+    }
+    let joint = fine(&["show", robot, "--form", "reduced", "--joint", "3"]);
+    assert!(joint.contains("Choices:\n") && joint.contains("// joint 3, "), "{joint}");
+    assert!(!joint.contains("// joint 2, "), "only joint 3: {joint}");
+    let rewritten = fine(&["show", robot, "--form", "rewritten"]);
+    assert!(rewritten.contains("form rewritten") && rewritten.contains("Proved identical"), "{rewritten}");
+    for arguments in [&["--keep", "velocity"][..], &["--step", "3"], &["--keep", "joint_force,omega"]] {
+        for form in ["reduced", "rewritten"] {
+            let call: Vec<&str> = ["show", robot, "--form", form].iter().chain(arguments).copied().collect();
+            fails(2, &call, &["only the seven steps have", "keeps torques alone"]);
+        }
+    }
+}
+
+#[test]
 fn the_base_is_written_as_the_table_is() {
     let text = std::fs::read_to_string(format!("{ROOT}/robots/planar1.yaml")).expect("a robot");
     let turned = text.replace("\njoints:", "\nbase: {rpy: [0, pi/2, -0.5]}\njoints:");
@@ -76,4 +103,38 @@ fn counts_as_a_table() {
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
     assert_eq!(widths.len(), 10);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
+}
+
+#[test]
+fn tricks_and_what_they_save() {
+    let robot = "robots/puma560.yaml";
+    let tricks = fine(&["ops", robot, "--tricks"]);
+    assert!(tricks.starts_with("puma560\ntrick"), "{tricks}");
+    for (trick, formula) in [("regrouping", "(4.4)"), ("gyrostat", "τ_n = c (ω̇'_z + q̈)"), ("axis-columns", "(5.3)")]
+    {
+        let line = tricks.lines().find(|line| line.trim_start().starts_with(trick));
+        let line = line.unwrap_or_else(|| panic!("no `{trick}` in {tricks}"));
+        let saved: i64 = line.split_whitespace().nth(1).and_then(|word| word.parse().ok()).expect("a number");
+        assert!(saved > 0 && line.contains(formula), "{line}");
+    }
+    assert!(!tricks.contains("last-frame"), "only those of its plan: {tricks}");
+
+    let total = |more: &[&str]| {
+        let arguments: Vec<&str> = ["ops", robot, "--json"].iter().chain(more).copied().collect();
+        let json: Value = serde_json::from_str(&fine(&arguments)).expect("JSON");
+        let entries = json.as_array().expect("a list");
+        let entry = entries.iter().find(|entry| entry["function"] == "inverse_dynamics" && entry["form"] == "reduced");
+        let entry = entry.expect("the reduced form");
+        entry["mul"].as_u64().expect("products") + entry["add"].as_u64().expect("sums")
+    };
+    let (all, without) = (total(&[]), total(&["--without", "gyrostat"]));
+    let line = tricks.lines().find(|line| line.trim_start().starts_with("gyrostat")).expect("the gyrostat");
+    assert_eq!(line.split_whitespace().nth(1), Some((without - all).to_string().as_str()), "{line}");
+    assert!(total(&["--without", "gyrostat,gauges"]) > without);
+
+    let names = ["regrouping", "gauges", "gyrostat", "last-frame", "carried-prismatics", "axis-columns"];
+    fails(2, &["ops", robot, "--without", "gyro"], &names);
+    let names = ["parallel-groups", "offsets", "slides", "scales", "moment-forms", "scaled-twists", "unturned-frames"];
+    fails(2, &["ops", robot, "--without", "gyro"], &names);
+    fails(2, &["ops", robot, "--tricks", "--without", "gyrostat"], &["--tricks", "--without"]);
 }

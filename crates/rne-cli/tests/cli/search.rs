@@ -1,0 +1,122 @@
+//! `rne search`: what it writes, what it goes on from, and what it refuses.
+
+use std::fs;
+
+use crate::call::{ROOT, fails, fine, folder, rne, rne_reading};
+
+/// A copy of a small robot in a folder of its own: the robot file and its plan file.
+fn arm(name: &str) -> (String, String) {
+    let folder = folder(name);
+    let path = |file: &str| folder.join(file).to_str().expect("UTF-8").to_owned();
+    fs::copy(format!("{ROOT}/robots/scara_cobra600.yaml"), path("arm.yaml")).expect("a copy");
+    (path("arm.yaml"), path("arm.plan.yaml"))
+}
+
+/// Products and sums of each form that a search says it has found.
+fn totals(out: &str) -> Vec<u64> {
+    let counts = out.lines().filter_map(|line| line.split_once("sums = ")?.1.split(',').next());
+    counts.map(|count| count.parse().unwrap_or_else(|_| panic!("{out}"))).collect()
+}
+
+#[test]
+fn a_plan_is_written_replayed_and_never_becomes_worse() {
+    let (robot, plan) = arm("search");
+    let first = fine(&["search", &robot, "--seconds", "1", "--rewrite"]);
+    assert!(first.ends_with("arm.plan.yaml is written\n"), "{first}");
+    let written = fs::read_to_string(&plan).expect("a plan");
+    for part in ["format: 1\n", "fingerprint: ", "\nreduced:\n", "\nrewritten:\n", "  graph: |\n"] {
+        assert!(written.contains(part), "no `{part}` in {written}");
+    }
+    let found = totals(&first);
+    assert_eq!(found.len(), 2, "{first}");
+    assert!(found[1] <= found[0], "rewriting only helps: {first}");
+
+    // what was found is what is built
+    let ops = fine(&["ops", &robot]);
+    for (form, total) in [("reduced", found[0]), ("rewritten", found[1])] {
+        let line = ops.lines().find(|line| line.contains("inverse_dynamics ") && line.contains(form)).expect(form);
+        let generated = line.split_once('→').expect("an arrow").1;
+        assert_eq!(generated.split_whitespace().nth(2), Some(total.to_string().as_str()), "{line}");
+    }
+
+    let again = fine(&["search", &robot, "--seconds", "1", "--rewrite", "--seed", "2"]);
+    let better = totals(&again);
+    assert!(better[0] <= found[0] && better[1] <= found[1], "{first}{again}");
+    let state = if better == found { "is as good as it was" } else { "is better than it was" };
+    assert!(again.contains(state), "{first}{again}");
+    let before = fs::read_to_string(&plan).expect("a plan");
+    let idle = fine(&["search", &robot, "--seconds", "0"]);
+    assert!(idle.contains("is as good as it was") && totals(&idle) == better, "{idle}");
+    assert_eq!(fs::read_to_string(&plan).expect("a plan"), before, "a rewritten graph is kept");
+
+    let fresh = fine(&["search", &robot, "--seconds", "0", "--fresh"]);
+    assert!(fresh.contains("is written"), "{fresh}");
+    assert!(totals(&fresh)[0] >= better[0], "no time, and nothing to go on from: {fresh}");
+    let names: Vec<_> =
+        fs::read_dir(folder_of(&robot)).expect("a folder").map(|entry| entry.expect("an entry").file_name()).collect();
+    assert_eq!(names.len(), 2, "no temporary file is left: {names:?}");
+}
+
+fn folder_of(file: &str) -> &std::path::Path {
+    std::path::Path::new(file).parent().expect("a folder")
+}
+
+#[test]
+fn a_stale_plan_is_refused_and_stays_as_it_is() {
+    let (robot, plan) = arm("search_stale");
+    fine(&["search", &robot, "--seconds", "0"]);
+    let written = fs::read_to_string(&plan).expect("a plan");
+    let text = fs::read_to_string(&robot).expect("a robot");
+    let heavier = text.replacen("mass: ", "mass: 1+", 1);
+    assert_ne!(text, heavier);
+    fs::write(&robot, &heavier).expect("written");
+
+    let parts = ["arm.plan.yaml:5:14", "the numbers of its robot file have changed", "--fresh"];
+    for call in [
+        &["search", &robot, "--seconds", "0"][..],
+        &["show", &robot, "--form", "reduced"],
+        &["emit", &robot, "--form", "reduced"],
+        &["ops", &robot],
+    ] {
+        fails(1, call, &parts);
+    }
+    assert_eq!(fs::read_to_string(&plan).expect("a plan"), written, "nothing is overwritten");
+    assert!(!fine(&["show", &robot]).is_empty(), "the seven steps need no plan");
+    assert!(!fine(&["emit", &robot]).is_empty());
+
+    assert!(fine(&["search", &robot, "--seconds", "0", "--fresh"]).contains("is written"));
+    assert_ne!(fs::read_to_string(&plan).expect("a plan"), written);
+    fine(&["show", &robot, "--form", "reduced"]);
+
+    // names and comments are no numbers
+    fs::write(&robot, format!("# a comment\n{heavier}")).expect("written");
+    fine(&["show", &robot, "--form", "reduced"]);
+
+    fs::write(&plan, "format: 1\nrobot: arm\n").expect("written");
+    fails(1, &["search", &robot, "--seconds", "0"], &["arm.plan.yaml:", "fingerprint"]);
+    fails(1, &["show", &robot, "--form", "rewritten"], &["arm.plan.yaml:", "fingerprint"]);
+}
+
+#[test]
+fn a_rewritten_form_needs_its_graph() {
+    let (robot, _) = arm("search_rewritten");
+    fails(1, &["show", &robot, "--form", "rewritten"], &["has no rewritten graph", "rne search", "--rewrite"]);
+    fine(&["search", &robot, "--seconds", "0"]);
+    fails(1, &["emit", &robot, "--form", "rewritten"], &["has no rewritten graph", "rne search", "--rewrite"]);
+}
+
+#[test]
+fn arguments_of_a_search() {
+    let (robot, plan) = arm("search_arguments");
+    let text = fs::read_to_string(&robot).expect("a robot");
+    let called = rne_reading(&["search", "-"], &text);
+    assert_eq!((called.status, called.out.as_str()), (2, ""));
+    assert!(called.err.contains("beside the robot file, so it needs a file"), "{}", called.err);
+    for seconds in ["-1", "nan", "1e9", "soon"] {
+        fails(2, &["search", &robot, "--seconds", seconds], &["--seconds", "a number of seconds, 0 to 1000000"]);
+    }
+    fails(2, &["search", &robot, "--seed", "x"], &["--seed"]);
+    assert_eq!(rne(&["search"]).status, 2);
+    fails(1, &["search", "nowhere.yaml"], &["no robot file nowhere.yaml"]);
+    assert!(!fs::exists(&plan).expect("a folder"), "nothing was written");
+}
