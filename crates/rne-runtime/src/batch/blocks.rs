@@ -36,11 +36,15 @@ impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> Task for States<'_, R, T
 impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
     #[inline(always)]
     fn in_blocks<const FUSED: bool, const STATES: usize>(mut self) {
+        let count = self.count;
+        // All of one length, so that one comparison serves all of them.
+        let arrays = self.inputs.map(|arrays| arrays.map(|numbers| &numbers[..count]));
+        // The last block may not be full: zeros, or what the block before has left, are states like any other.
+        let mut inputs = [[[T::zero(); STATES]; DOF]; 3];
         let mut start = 0;
-        while start < self.count {
-            let end = self.count.min(start + STATES);
-            let mut inputs = [[[T::zero(); STATES]; DOF]; 3];
-            for (block, numbers) in inputs.as_flattened_mut().iter_mut().zip(self.inputs.as_flattened()) {
+        while start < count {
+            let end = count.min(start + STATES);
+            for (block, numbers) in inputs.as_flattened_mut().iter_mut().zip(arrays.as_flattened()) {
                 read(block, &numbers[start..end]);
             }
             let (tau, is_nan) = torques::<R, T, FUSED, DOF, STATES>(self.robot, &inputs);
@@ -64,7 +68,7 @@ pub(super) fn one_by_one<R: Torques<DOF>, T: BatchScalar, const DOF: usize>(all:
     }
 }
 
-/// Fills a block. The last one may be filled up: with zeros, a state like any other.
+/// Reads as many numbers into a block as there are.
 #[inline(always)]
 fn read<T: Copy, const STATES: usize>(block: &mut [T; STATES], numbers: &[T]) {
     match numbers.first_chunk() {
