@@ -24,7 +24,7 @@ usage: trajectory [TRAJECTORY.csv [TORQUES.csv]]
 
 TRAJECTORY.csv  columns q1 .. q6 (rad), qd1 .. qd6 (rad/s), qdd1 .. qdd6 (rad/s²) in any order, one state per line;
                 without it, a million states are written to a temporary file and read from there
-TORQUES.csv     columns tau1 .. tau6 (N m); without it, torques.csv in the folder of temporary files";
+TORQUES.csv     columns tau1 .. tau6 (N m); without it, a new file in the folder of temporary files";
 
 /// Numbers of one joint, one per state.
 type Column = Vec<f64>;
@@ -35,11 +35,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("{HELP}");
         return if matches!(arguments[0].as_str(), "--help" | "-h") { Ok(()) } else { Err("no such arguments".into()) };
     }
-    let temporary = |name| env::temp_dir().join(name);
+    // of this process alone: nothing of anyone's is overwritten
+    let temporary = |name: &str| env::temp_dir().join(format!("rne-{}-{name}", std::process::id()));
     let (given, output) = (arguments.first().map(PathBuf::from), arguments.get(1).map(PathBuf::from));
     let input = given.clone().unwrap_or_else(|| temporary("trajectory.csv"));
     let output = output.unwrap_or_else(|| temporary("torques.csv"));
 
+    if given.is_some() && input.canonicalize().ok() == output.canonicalize().ok() {
+        return Err("the torques need a file of their own".into());
+    }
     if given.is_none() {
         generate(&input, 1_000_000)?;
     }

@@ -205,6 +205,20 @@ fn the_robot_file_of_the_readme_is_valid() {
     assert!(checked.lints.is_empty(), "{}", checked.lints);
 }
 
+/// The plan that docs/reduced-form.md explains is the one that is shipped.
+#[test]
+fn the_explained_plan_is_the_shipped_one() {
+    let page = read(&root().join("docs/reduced-form.md"));
+    let plan = read(&root().join("robots/puma560.plan.yaml"));
+    let (reduced, _) = plan.split_once("rewritten:").expect("two forms");
+    for line in reduced.lines().map(|line| line.split('#').next().unwrap_or_default().trim()) {
+        assert!(
+            page.contains(line),
+            "docs/reduced-form.md explains another plan than robots/puma560.plan.yaml: {line}"
+        );
+    }
+}
+
 /// The script finds what it breaks, and the page has a line for each mutation that some test noticed.
 #[test]
 fn the_page_of_mutations_is_the_script_s() {

@@ -56,6 +56,10 @@ const REACHED: [(&str, usize, usize, usize); 13] = [
     ("tests/dense/dense7", 878, 788, 772),
 ];
 
+/// The best plan known of this arm loses a digit in single precision; the one that is shipped does not, and takes one
+/// operation more.
+const PRECISE: (&str, usize) = ("tests/dense/dense7", 789);
+
 fn read(robot: &str) -> (Robot, Choice) {
     let path = |extension| format!("{}/{robot}.{extension}", env!("CARGO_MANIFEST_DIR"));
     let model = Robot::from_yaml(&std::fs::read_to_string(path("yaml")).expect("a robot file"));
@@ -90,6 +94,7 @@ fn plans_are_as_good_as_the_best_known() {
         };
         let (reduced, rewritten) = (total(Form::Reduced), total(Form::Rewritten));
         println!("{robot:24} {reduced:7}  {best:10}  {rewritten:9}  {best_rewritten:10}");
+        let best = if robot == PRECISE.0 { PRECISE.1 } else { best };
         assert!(reduced <= best, "{robot}: {reduced}");
         assert!(rewritten <= reduced, "{robot}: {rewritten}");
         rewritten_as_good += usize::from(rewritten <= best_rewritten);

@@ -51,6 +51,11 @@ pub(crate) fn run(arguments: &Arguments) -> Outcome {
                 if !lints.is_empty() {
                     let _ = writeln!(text, "\n{}\n", lints.render(true));
                 }
+                // its plan goes with it
+                if let Err(failure) = plan_file::read(path, &robot) {
+                    bad += 1;
+                    let _ = writeln!(text, "\n{}\n", failure.text);
+                }
             }
             Err(failure) => {
                 bad += 1;

@@ -10,6 +10,7 @@ use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 
 use crate::outcome::Failure;
+use crate::output_file::{self, Existing};
 
 /// Far more than the largest plan.
 const LONGEST: u64 = 16 << 20;
@@ -44,6 +45,39 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>,
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
     }
+}
+
+/// The plan that a fresh search starts from: one that fits, or none where it is stale or broken. What is no plan at all stays.
+pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
+    let path = path(robot_file);
+    match output_file::existing(&path) {
+        Existing::Nothing => Ok(None),
+        Existing::Text(text) if text.contains("\nfingerprint: ") || text.trim().is_empty() => {
+            let plan = PlanFile::read(&path.display().to_string(), &text, robot).ok();
+            // a plan whose form cannot be proved is as good as none
+            Ok(plan.filter(|plan| {
+                let choice = Choice::from(plan.clone());
+                let forms = [Some(Form::Reduced), choice.rewritten.as_ref().map(|_| Form::Rewritten)];
+                forms.into_iter().flatten().all(|form| choice.compile(robot, Function::InverseDynamics, form).is_ok())
+            }))
+        }
+        _ => Err(Failure::usage(format_args!(
+            "{} is no plan that rne has written, and stays as it is; move it out of the way",
+            path.display()
+        ))),
+    }
+}
+
+/// Whether a plan can be written there: better known before a search than after it.
+pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let probe = folder.join(format!(".{}.rne-search.tmp", std::process::id()));
+    let failure = |error| Failure::input(format_args!("{} cannot be written: {error}", path.display()));
+    if path.is_dir() {
+        return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
+    }
+    File::create(&probe).map_err(failure)?;
+    std::fs::remove_file(&probe).map_err(failure)
 }
 
 /// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are needed.

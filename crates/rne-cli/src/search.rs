@@ -39,7 +39,7 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Start from nothing, and write even over a plan that does not belong to the robot
+    /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is better
     #[arg(long)]
     fresh: bool,
 }
@@ -60,7 +60,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let robot = robot_file::robot(&arguments.file)?;
     let path = plan_file::path(&arguments.file);
-    let known = if arguments.fresh { None } else { plan_file::read(&arguments.file, &robot)? };
+    let known = if arguments.fresh {
+        plan_file::to_replace(&arguments.file, &robot)?
+    } else {
+        plan_file::read(&arguments.file, &robot)?
+    };
+    plan_file::is_writable(&path)?;
     // the first Ctrl-C ends the search, the second one the program, if a handler can be had at all
     let _ = ctrlc::set_handler(|| {
         if INTERRUPTED.swap(true, Ordering::Relaxed) {

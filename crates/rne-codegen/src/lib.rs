@@ -116,12 +116,13 @@ impl fmt::Display for CompileError {
             ),
             Self::NotIdentical { function, joint } => write!(
                 f,
-                "the reduced form of `{function}` is not the seven steps: the torque of joint {joint} differs. No code is \
-                 written; please report this robot file"
+                "this form of `{function}` is not the seven steps: the torque of joint {joint} differs. No code is written. A \
+                 graph in a plan file that has been edited does that; `rne search --fresh` writes it anew. Without a plan file, \
+                 please report this robot"
             ),
             Self::Imprecise { function, rounding } => write!(
                 f,
-                "the reduced form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
+                "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
                  torque. `rne search` finds another plan, `form = \"seven_steps\"` needs none"
             ),
             Self::Plan(why) => f.write_str(why),

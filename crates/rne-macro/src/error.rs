@@ -37,9 +37,10 @@ impl Errors {
     }
 }
 
-/// What is wrong with a robot file, for the message of a compiler: without the lints, which stop no build.
+/// What is wrong with a robot file or a plan, for the message of a compiler: without the lints, which stop no build.
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
     // An empty line keeps the second `error:` apart from the compiler's own.
-    format!("`{}` is no valid robot file\n\n{}\n", report.name, report.render(false))
+    let what = if report.name.ends_with(".plan.yaml") { "plan of this robot" } else { "robot file" };
+    format!("`{}` is no valid {what}\n\n{}\n", report.name, report.render(false))
 }

@@ -96,6 +96,7 @@ pub(crate) fn load(source: &Source, errors: &mut Errors) -> Loaded {
         Source::Path(path) => match location::read(path) {
             Ok(file) => {
                 let plan = location::plan_beside(&file);
+                let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
                 (file.shown, file.bytes, watch(&file.absolute), plan)
             }
             Err(missing) => {
@@ -141,7 +142,11 @@ pub(crate) fn choice(
         (Form::SevenSteps, _) => Some(Choice::none(robot)),
         (Form::Reduced | Form::Rewritten, None) => Some(Choice::default_of(robot)),
         (Form::Reduced | Form::Rewritten, Some(file)) => {
-            let plan = PlanFile::read(&file.shown, &String::from_utf8_lossy(&file.bytes), robot);
+            let Ok(text) = std::str::from_utf8(&file.bytes) else {
+                errors.at_span(span, format!("`{}` is no text in UTF-8", file.shown));
+                return None;
+            };
+            let plan = PlanFile::read(&file.shown, text, robot);
             plan.map(Choice::from).map_err(|report| errors.at_span(span, describe(report))).ok()
         }
     }

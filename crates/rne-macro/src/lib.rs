@@ -75,12 +75,13 @@ use proc_macro::TokenStream;
 /// | form | |
 /// |---|---|
 /// | `seven_steps` | the default: every intermediate value is one of the textbook's ω, ω̇, ċ, c̈, g, f, n of a link; the bits are those of `rne::Arm` |
-/// | `reduced` | half the operations or fewer: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning |
+/// | `reduced` | about half the operations: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning |
 /// | `rewritten` | `inverse_dynamics` after algebraic rewriting as well, a few percent less; what `rne search --rewrite` left in the plan file |
 ///
 /// A form that is not the seven steps is proved identical to them while it is compiled, in exact arithmetic; its documentation
 /// says so, with its rounding error. The choices come from `NAME.plan.yaml` beside the robot file, which `rne search` writes;
-/// a plan that does not belong to the robot any more is an error of the build. Without a plan, a fixed number of plans is
+/// a plan that does not belong to the robot any more is an error of the build. Cargo watches a plan
+/// that a build has read; one that appears later, other than by `rne search`, is seen when the robot file is touched. Without a plan, a fixed number of plans is
 /// tried, the same on every machine.
 ///
 /// Products that are added become `Scalar::mul_add` in these two forms: one instruction where the target has it.

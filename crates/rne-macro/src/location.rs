@@ -86,13 +86,16 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     Err(Missing::NotFound { tried: tried.collect(), meant: meant.map(|path| path.display().to_string()), written })
 }
 
-/// The plan file beside a robot file, if there is one that can be read.
-pub(crate) fn plan_beside(file: &RobotFile) -> Option<RobotFile> {
+/// The plan file beside a robot file, if there is one.
+pub(crate) fn plan_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
     const EXTENSION: &str = "plan.yaml";
     let absolute = file.absolute.with_extension(EXTENSION);
-    let bytes = File::open(&absolute).and_then(read_limited).ok()?;
     let shown = Path::new(&file.shown).with_extension(EXTENSION).display().to_string();
-    Some(RobotFile { absolute, shown, bytes })
+    match File::open(&absolute).and_then(read_limited) {
+        Ok(bytes) => Ok(Some(RobotFile { absolute, shown, bytes })),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Missing::Unreadable { shown, error }),
+    }
 }
 
 /// The file in which the literal stands. The compiler knows it; some editors do not.

@@ -332,7 +332,7 @@ fn syntax_error(at: usize, info: &str) -> Diagnostic {
     if info.contains("recursion limit") {
         return too_deep(at..at + 1);
     }
-    let help = if info.contains("tab") {
+    let help = if info.contains(" tab") {
         Some("indent with spaces; YAML does not allow tabs there")
     } else if info.contains("':'") || info.contains("mapping values") {
         Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")

@@ -37,7 +37,8 @@ pub(crate) fn rne_reading(arguments: &[&str], text: &str) -> Called {
     let mut command = command(arguments);
     let mut child =
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("rne starts");
-    child.stdin.take().expect("a pipe").write_all(text.as_bytes()).expect("it reads");
+    // a call that refuses its arguments need not read
+    let _ = child.stdin.take().expect("a pipe").write_all(text.as_bytes());
     called(child.wait_with_output().expect("rne ends"))
 }
 

@@ -63,15 +63,15 @@ impl Choice {
     fn compile_rewritten(&self, robot: &Robot) -> Result<Program, CompileError> {
         let Some(Rewritten { plan, graph }) = &self.rewritten else {
             return Err(CompileError::Plan(format!(
-                "`{0}` has no rewritten graph; `rne search {0}.yaml --rewrite` writes one into its plan file",
+                "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot file, which \
+                 `path = \"…\"` finds",
                 robot.name
             )));
         };
         let function = Function::InverseDynamics;
         let (frame, drawing) = drawn(robot, plan, function)?;
-        let dag = graph_text::read(graph, &frame, &drawing.dag.sheet.numbers).map_err(|(line, message)| {
-            CompileError::Plan(format!("line {line} of the rewritten graph of `{}`: {message}", robot.name))
-        })?;
+        let dag = graph_text::read(graph, &frame, &drawing.dag.sheet.numbers)
+            .map_err(|(line, message)| misread(robot, line, &message))?;
         drawing.with(dag).program(robot, &frame, function, Form::Rewritten)
     }
 }
@@ -82,8 +82,22 @@ impl From<PlanFile> for Choice {
     }
 }
 
+/// A graph that cannot be read stands in a plan file; a fresh search replaces it.
+fn misread(robot: &Robot, line: usize, message: &str) -> CompileError {
+    CompileError::Plan(format!(
+        "line {line} of the rewritten graph in the plan of `{}`: {message}; `rne search --rewrite --fresh` writes the plan \
+         anew",
+        robot.name
+    ))
+}
+
 fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawing), CompileError> {
-    let misfit = || CompileError::Plan(format!("the plan does not fit `{}`", robot.name));
+    let misfit = || {
+        CompileError::Plan(format!(
+            "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` writes it anew",
+            robot.name
+        ))
+    };
     let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
     let drawing = Drawing::new(&frame, plan, function).ok_or_else(misfit)?;
     Ok((frame, drawing))
@@ -173,7 +187,9 @@ pub fn search(
     let mut best: Option<(Cost, Rewritten)> = None;
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
         let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
-        if let Ok(dag) = graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers) {
+        let read = graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers);
+        let dag = read.map_err(|(line, message)| misread(robot, line, &message))?;
+        {
             // one that has lost too much precision may be replaced by a dearer one
             let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
             if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
