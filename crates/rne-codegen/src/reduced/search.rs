@@ -28,13 +28,16 @@ pub struct Progress {
 /// Asked now and then how much of the time is over, 0 to 1; `None` ends the search with what it has.
 pub type Clock<'a> = &'a mut dyn FnMut(&Progress) -> Option<f64>;
 
+/// Something that is wrong with a plan, whatever it costs.
+type Veto = Box<dyn Fn(&Plan) -> bool>;
+
 /// A search over the plans of one robot.
 pub(crate) struct Search {
     pub(crate) evaluator: Evaluator,
     moves: Moves,
     without: Vec<Trick>,
     /// Refuses plans that would be the best but for something else that is wrong with them.
-    veto: Option<Box<dyn Fn(&Plan) -> bool>>,
+    veto: Option<Veto>,
     known: HashMap<Plan, Option<Cost>>,
     pub(crate) plans: usize,
     pub(crate) best: (Cost, Plan),
