@@ -24,8 +24,9 @@ Examples:
   rne search robots/puma560.yaml --seconds 300 --rewrite  and rewrite the graph that they give
 
 Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs no search. A search goes on from the
-plan that is there, and what it writes is never worse. Ctrl-C ends it and keeps the best. Every form that is found
-is proved identical to the seven steps before it is written.")]
+plan that is there, and what it writes is never worse, but that a plan that has lost much precision in f32 may give
+way to a dearer one. Ctrl-C ends it and keeps the best; a second one ends it at once, with status 130. Every form
+that is found is proved identical to the seven steps before it is written.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]

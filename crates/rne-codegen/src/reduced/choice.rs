@@ -152,8 +152,8 @@ impl Found {
     }
 }
 
-/// Looks for a cheaper plan, from the one at hand onwards; what was found is never worse, and never much less precise in
-/// single precision than the seven steps.
+/// Looks for a cheaper plan, from the one at hand onwards. What it finds is not much less precise in single precision than
+/// the seven steps, and never worse than a plan at hand of which that is true.
 ///
 /// `clock` is asked now and then how much of the time is over.
 ///

@@ -1,4 +1,4 @@
-//! The kernel for an array of angles, and the one test of their range.
+//! The kernel for an array of angles, and the one test of their range, for eight at a time.
 
 #[cfg(feature = "std")]
 use super::registers::Register;
@@ -14,8 +14,7 @@ pub(crate) fn sin_cos<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T;
     sin_cos_lanes::<T, FUSED, N>(angles, sines, cosines);
 }
 
-/// The same one by one. A caller that has enabled SIMD instructions asks for `FMA` if it has enabled that too, and for an
-/// array of 8 or 16 angles, and leaves it to the compiler to fill its registers.
+/// The same one by one, for a single angle and where there are no registers.
 #[inline(always)]
 pub(crate) fn sin_cos_lanes<T: Float, const FMA: bool, const N: usize>(
     angles: &[T; N],
