@@ -2,7 +2,7 @@
 //!
 //! [`compile`] writes a function of the robot as a graph of sums and products (the seven steps stand once, in
 //! `seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns a [`Program`] of named
-//! statements. Everything else renders that program: [`emit::body`] as tokens for the macro, [`emit::rust_file`] as text for people, an
+//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as text for people, an
 //! [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! Data in, data out: nothing here opens a file or prints.
@@ -13,6 +13,7 @@ mod derivation;
 pub mod emit;
 mod exact;
 mod function;
+pub mod fusion;
 mod graph;
 mod interpret;
 mod ledger;

@@ -20,7 +20,7 @@ fn text_parses_back_to_the_tokens() {
         for (program, function) in programs.iter().zip(functions) {
             assert_eq!(function.sig.ident, program.function.name());
             let statements = &function.block.stmts;
-            let tokens = emit::body(program, &quote!(Scalar));
+            let tokens = emit::Body::new(program, &quote!(Scalar)).whole();
             let (text, tokens) = (quote!(#(#statements)*).to_string(), tokens.to_string());
             let differs = text.split(';').zip(tokens.split(';')).find(|(text, tokens)| text != tokens);
             assert_eq!(differs, None, "{} of {}", program.function, robot.name);

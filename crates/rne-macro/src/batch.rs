@@ -59,15 +59,30 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
             }
         };
     };
-    let dof = Literal::usize_unsuffixed(program.dof);
-    let torques = target.body(&program);
+    let [dof, angle_count] = [program.dof, program.turns.len()].map(Literal::usize_unsuffixed);
+    let scalar = quote!(#krate::Scalar);
+    let program = if program.form == rne_codegen::Form::SevenSteps { program } else { rne_codegen::fusion::fused(&program) };
+    let body = target.body(&program, &scalar);
+    let (angles, torques) = (body.angles(), body.beyond_angles());
     let method = method(
         &quote!(#dof),
         &quote! {
             struct Torques;
-            impl #krate::batch::Torques<#dof> for Torques {
+            #[allow(unused_variables)] // each part uses only some arguments and constants
+            impl #krate::batch::Torques<#dof, #angle_count> for Torques {
                 #[inline(always)]
-                fn torques<T: #krate::Scalar>(&self, q: &[T; #dof], qd: &[T; #dof], qdd: &[T; #dof]) -> [T; #dof] {
+                fn angles<T: #scalar>(&self, q: &[T; #dof]) -> [T; #angle_count] {
+                    #angles
+                }
+                #[inline(always)]
+                fn torques<T: #scalar>(
+                    &self,
+                    sin: &[T; #angle_count],
+                    cos: &[T; #angle_count],
+                    q: &[T; #dof],
+                    qd: &[T; #dof],
+                    qdd: &[T; #dof],
+                ) -> [T; #dof] {
                     #torques
                 }
             }

@@ -70,15 +70,14 @@ impl Target<'_> {
     }
 
     /// What computes a program. The seven steps compute the bits of the runtime, so that nothing is fused there.
-    pub(crate) fn body(&self, program: &Program) -> TokenStream {
-        let write = if program.form == Form::SevenSteps { emit::body } else { emit::fused_body };
-        let krate = self.krate;
-        write(program, &quote!(#krate::Scalar))
+    pub(crate) fn body<'p>(&self, program: &'p Program, scalar: &'p TokenStream) -> emit::Body<'p> {
+        let body = emit::Body::new(program, scalar);
+        if program.form == Form::SevenSteps { body } else { body.fused() }
     }
 
     fn method(&self, program: &Program) -> TokenStream {
         let krate = self.krate;
-        let body = self.body(program);
+        let body = self.body(program, &quote!(#krate::Scalar)).whole();
         let wrench = (program.function == Function::InverseDynamicsWithWrench)
             .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let dof = Literal::usize_unsuffixed(program.dof);

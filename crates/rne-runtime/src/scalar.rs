@@ -7,7 +7,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 use num_traits::{One, Zero};
 use simba::simd::SimdRealField;
 
-use crate::sin_cos::{FUSED, Lanes, sin_cos};
+use crate::sin_cos::{Lanes, sin_cos};
 
 /// A real number, or a bundle of them: `f32`, `f64`, simba's SIMD lanes, dual numbers, fixed point.
 ///
@@ -117,8 +117,8 @@ impl<T: SimdRealField + Copy> Scalar for T {
     #[inline]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         let terms = [addend, self, factor];
-        let double = same(terms).and_then(|[c, a, b]: [f64; 3]| same(c.plus_product::<FUSED>(a, b)));
-        let single = || same(terms).and_then(|[c, a, b]: [f32; 3]| same(c.plus_product::<FUSED>(a, b)));
+        let double = same(terms).and_then(|[c, a, b]: [f64; 3]| same(c.plus_product(a, b)));
+        let single = || same(terms).and_then(|[c, a, b]: [f32; 3]| same(c.plus_product(a, b)));
         double.or_else(single).unwrap_or_else(|| self * factor + addend)
     }
 }

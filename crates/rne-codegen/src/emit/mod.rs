@@ -13,4 +13,4 @@ pub use evidence::evidence;
 pub use listing::{Listing, listing};
 pub use table::{angle, convention, dh_table};
 pub use text::rust_file;
-pub use tokens::{body, fused_body};
+pub use tokens::Body;

@@ -1,16 +1,18 @@
-//! The loop over states, in blocks that the compiler turns into vector registers.
+//! The loop over states: a register of them at a time.
 
 use core::array::from_fn;
 
-use super::Torques;
-use super::scalar::{BatchScalar, Lane};
-use super::unit::Task;
+use super::scalar::Register;
+use super::vector::Vector;
+use super::{BatchScalar, Torques};
+use crate::sin_cos::{Float, kernel};
 
-/// Bytes of a block: the widest register there is.
-const BYTES: usize = 64;
+/// Registers in a block. Sines and cosines come first for all of a block, then torques: each of the two loops is small enough
+/// for the processor to work on two registers' states at once, and what they share stays in the first-level cache.
+const BLOCK: usize = 8;
 
-/// One number per state of a block, for each joint.
-type Block<T, const DOF: usize, const STATES: usize> = [[T; STATES]; DOF];
+/// The most numbers that a register has.
+const WIDEST: usize = 16;
 
 /// States whose torques are to be computed: arrays of one length.
 pub(super) struct States<'a, R, T, const DOF: usize> {
@@ -21,107 +23,105 @@ pub(super) struct States<'a, R, T, const DOF: usize> {
     pub(super) tau: [&'a mut [T]; DOF],
 }
 
-impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> Task for States<'_, R, T, DOF> {
+impl<R, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
+    /// Writes the torques, computed in registers `V`.
     #[inline(always)]
-    fn run<const FUSED: bool>(self) {
-        // A number cannot be a type's constant and the length of an array, yet.
-        if size_of::<T>() == size_of::<f32>() {
-            self.in_blocks::<FUSED, { BYTES / size_of::<f32>() }>();
-        } else {
-            self.in_blocks::<FUSED, { BYTES / size_of::<f64>() }>();
+    pub(super) fn run<V: Vector<Element = T>, const ANGLES: usize>(self, unit: V::Unit)
+    where
+        R: Torques<DOF, ANGLES>,
+    {
+        let Self { robot, count, inputs, tau } = self;
+        let lanes = size_of::<V::Numbers>() / size_of::<T>();
+        let (full, last) = (count / lanes, count % lanes);
+        // The last register is filled up with zeros, which are states like any other.
+        let mut padded = [[[T::ZERO; WIDEST]; DOF]; 3];
+        for (padded, numbers) in padded.as_flattened_mut().iter_mut().zip(inputs.as_flattened()) {
+            padded[..last].copy_from_slice(&numbers[count - last..count]);
+        }
+        let mut padded_tau = [[T::ZERO; WIDEST]; DOF];
+        let mut tau = tau.map(|numbers| numbers[..count].split_at_mut(count - last));
+        // One loop for both, so that its code is there once.
+        let parts = [
+            (full, inputs, tau.each_mut().map(|(numbers, _)| &mut **numbers)),
+            (
+                usize::from(last > 0),
+                padded.each_ref().map(|arrays| arrays.each_ref().map(|numbers| &numbers[..])),
+                padded_tau.each_mut().map(|numbers| &mut numbers[..]),
+            ),
+        ];
+        for (registers, inputs, tau) in parts {
+            let inputs = inputs.map(|arrays| arrays.map(|numbers| &V::split(numbers).0[..registers]));
+            let tau = tau.map(|numbers| &mut V::split_mut(numbers).0[..registers]);
+            torques::<R, V, DOF, ANGLES>(robot, unit, registers, inputs, tau);
+        }
+        for ((_, tau), padded) in tau.into_iter().zip(padded_tau) {
+            tau.copy_from_slice(&padded[..last]);
         }
     }
 }
 
-impl<R: Torques<DOF>, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
-    #[inline(always)]
-    fn in_blocks<const FUSED: bool, const STATES: usize>(mut self) {
-        let count = self.count;
-        // All of one length, so that one comparison serves all of them.
-        let arrays = self.inputs.map(|arrays| arrays.map(|numbers| &numbers[..count]));
-        // The last block may not be full: zeros, or what the block before has left, are states like any other.
-        let mut inputs = [[[T::zero(); STATES]; DOF]; 3];
-        let mut start = 0;
-        while start < count {
-            let end = count.min(start + STATES);
-            for (block, numbers) in inputs.as_flattened_mut().iter_mut().zip(arrays.as_flattened()) {
-                read(block, &numbers[start..end]);
+/// The torques of full registers.
+#[inline(always)]
+fn torques<R: Torques<DOF, ANGLES>, V: Vector, const DOF: usize, const ANGLES: usize>(
+    robot: &R,
+    unit: V::Unit,
+    count: usize,
+    inputs: [[&[V::Numbers]; DOF]; 3],
+    tau: [&mut [V::Numbers]; DOF],
+) {
+    let [q, qd, qdd] = inputs;
+    let zero = V::splat(V::Element::ZERO).store();
+    let mut turns = [[[zero; ANGLES]; 2]; BLOCK];
+    let mut start = 0;
+    while start < count {
+        let end = count.min(start + BLOCK);
+        for (at, [sines, cosines]) in (start..end).zip(&mut turns) {
+            let angles = robot.angles(&loaded::<V, DOF>(unit, &q, at));
+            for index in 0..ANGLES {
+                sines[index] = angles[index].0.store();
             }
-            let (tau, is_nan) = torques::<R, T, FUSED, DOF, STATES>(self.robot, &inputs);
-            let tau = if is_nan { repaired(self.robot, &inputs, tau) } else { tau };
-            for (block, numbers) in tau.iter().zip(&mut self.tau) {
-                write(block, &mut numbers[start..end]);
+            for index in 0..ANGLES {
+                let (sine, cosine) = kernel(V::load(unit, &sines[index]));
+                (sines[index], cosines[index]) = (sine.store(), cosine.store());
             }
-            start = end;
         }
+        for (at, [sines, cosines]) in (start..end).zip(&turns) {
+            let (sines, cosines) = (registers::<V, ANGLES>(unit, sines), registers::<V, ANGLES>(unit, cosines));
+            let torques = robot.torques(
+                &sines,
+                &cosines,
+                &loaded(unit, &q, at),
+                &loaded(unit, &qd, at),
+                &loaded(unit, &qdd, at),
+            );
+            for joint in 0..DOF {
+                tau[joint][at] = torques[joint].0.store();
+            }
+        }
+        start = end;
     }
+}
+
+#[inline(always)]
+fn loaded<V: Vector, const N: usize>(unit: V::Unit, numbers: &[&[V::Numbers]; N], at: usize) -> [Register<V>; N] {
+    from_fn(|index| Register(V::load(unit, &numbers[index][at])))
+}
+
+#[inline(always)]
+fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[V::Numbers; N]) -> [Register<V>; N] {
+    from_fn(|index| Register(V::load(unit, &numbers[index])))
 }
 
 /// The torques of each state by itself.
-pub(super) fn one_by_one<R: Torques<DOF>, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, DOF>) {
+pub(super) fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, DOF>)
+where
+    R: crate::InverseDynamics<DOF>,
+{
     let States { robot, count, inputs, mut tau } = all;
     for state in 0..count {
         let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| numbers[state]));
-        for (numbers, torque) in tau.iter_mut().zip(robot.torques(&q, &qd, &qdd)) {
+        for (numbers, torque) in tau.iter_mut().zip(robot.inverse_dynamics(&q, &qd, &qdd)) {
             numbers[state] = torque;
         }
     }
-}
-
-/// Reads as many numbers into a block as there are.
-#[inline(always)]
-fn read<T: Copy, const STATES: usize>(block: &mut [T; STATES], numbers: &[T]) {
-    match numbers.first_chunk() {
-        Some(chunk) => *block = *chunk,
-        None => block[..numbers.len()].copy_from_slice(numbers),
-    }
-}
-
-#[inline(always)]
-fn write<T: Copy, const STATES: usize>(block: &[T; STATES], numbers: &mut [T]) {
-    match numbers.first_chunk_mut() {
-        Some(chunk) => *chunk = *block,
-        None => numbers.copy_from_slice(&block[..numbers.len()]),
-    }
-}
-
-/// The torques of a block and whether one of them is NaN.
-///
-/// The body of the loop has neither a branch nor a call, and reads and writes local arrays alone: nothing keeps LLVM from
-/// making it one over registers. Whether it still does shows in the times of
-/// `cargo run --release --example batch_speed`.
-#[inline(always)]
-fn torques<R: Torques<DOF>, T: BatchScalar, const FUSED: bool, const DOF: usize, const STATES: usize>(
-    robot: &R,
-    inputs: &[Block<T, DOF, STATES>; 3],
-) -> (Block<T, DOF, STATES>, bool) {
-    let mut tau = [[T::zero(); STATES]; DOF];
-    for state in 0..STATES {
-        let [q, qd, qdd]: [[Lane<T, FUSED>; DOF]; 3] =
-            from_fn(|input| from_fn(|joint| Lane(inputs[input][joint][state])));
-        for (joint, torque) in robot.torques(&q, &qd, &qdd).into_iter().enumerate() {
-            tau[joint][state] = torque.0;
-        }
-    }
-    let is_nan = tau.as_flattened().iter().fold(false, |any, torque| any | torque.is_nan());
-    (tau, is_nan)
-}
-
-/// The same with the torques of states that have a NaN computed again, as those of one state are.
-#[cold]
-#[inline(never)]
-fn repaired<R: Torques<DOF>, T: BatchScalar, const DOF: usize, const STATES: usize>(
-    robot: &R,
-    inputs: &[Block<T, DOF, STATES>; 3],
-    mut tau: Block<T, DOF, STATES>,
-) -> Block<T, DOF, STATES> {
-    for state in 0..STATES {
-        if tau.iter().any(|torques| torques[state].is_nan()) {
-            let [q, qd, qdd] = from_fn(|input| from_fn(|joint| inputs[input][joint][state]));
-            for (joint, torque) in robot.torques(&q, &qd, &qdd).into_iter().enumerate() {
-                tau[joint][state] = torque;
-            }
-        }
-    }
-    tau
 }

@@ -44,6 +44,7 @@
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
 mod blocks;
+mod compiled;
 #[cfg_attr(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")), path = "x86.rs")]
 #[cfg_attr(not(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64"))), path = "undetected.rs")]
 mod detected;
@@ -52,6 +53,9 @@ mod mismatch;
 mod parallel;
 mod scalar;
 mod unit;
+mod vector;
+#[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
+mod x86_register;
 
 pub use mismatch::LengthMismatch;
 pub use scalar::BatchScalar;
@@ -112,21 +116,24 @@ impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF
     }
 }
 
-impl<const DOF: usize, S: Constant + Sync> Torques<DOF> for Arm<DOF, S> {
-    fn torques<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF] {
-        self.inverse_dynamics(q, qd, qdd)
-    }
-}
-
-/// What the derive writes: [`InverseDynamics::inverse_dynamics`] once more, `#[inline(always)]` for [`run`].
+/// What the derive writes: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for [`run`].
 #[doc(hidden)]
-pub trait Torques<const DOF: usize>: Sync {
-    fn torques<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF];
+pub trait Torques<const DOF: usize, const ANGLES: usize>: Sync {
+    /// The angles whose sines and cosines the torques depend on.
+    fn angles<T: Scalar>(&self, q: &[T; DOF]) -> [T; ANGLES];
+    fn torques<T: Scalar>(
+        &self,
+        sin: &[T; ANGLES],
+        cos: &[T; ANGLES],
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+    ) -> [T; DOF];
 }
 
 /// What the derived method calls.
 #[doc(hidden)]
-pub fn run<R: Torques<DOF>, T: BatchScalar, const DOF: usize>(
+pub fn run<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGLES: usize>(
     robot: &R,
     unit: VectorUnit,
     q: [&[T]; DOF],

@@ -1,6 +1,7 @@
 //! Where no vector unit is looked for: there is none beyond the compiled target.
 
-use super::unit::Task;
+use super::blocks::States;
+use super::{BatchScalar, Torques};
 
 /// None.
 #[derive(Clone, Copy)]
@@ -19,7 +20,11 @@ impl Detected {
         match self {}
     }
 
-    pub(super) fn run(self, _: impl Task) {
+    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, _: States<'_, R, T, DOF>)
+    where
+        R: Torques<DOF, ANGLES>,
+        T: BatchScalar,
+    {
         match self {}
     }
 }

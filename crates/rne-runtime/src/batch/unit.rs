@@ -2,8 +2,9 @@
 
 use core::fmt;
 
+use super::blocks::States;
 use super::detected::Detected;
-use crate::sin_cos::FUSED;
+use super::{BatchScalar, Torques};
 
 /// A vector unit of the processor this runs on. To have one is to have looked: every value can be computed with.
 ///
@@ -51,11 +52,15 @@ impl VectorUnit {
         }
     }
 
-    /// Runs a task that has been compiled for this unit.
-    pub(super) fn run(self, task: impl Task) {
+    /// Computes the states with this unit.
+    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, states: States<'_, R, T, DOF>)
+    where
+        R: Torques<DOF, ANGLES>,
+        T: BatchScalar,
+    {
         match self.0 {
-            Unit::Target => task.run::<FUSED>(),
-            Unit::Detected(unit) => unit.run(task),
+            Unit::Target => states.run::<T::Compiled, ANGLES>(()),
+            Unit::Detected(unit) => unit.run(states),
         }
     }
 }
@@ -70,10 +75,4 @@ impl fmt::Debug for VectorUnit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "VectorUnit({})", self.name())
     }
-}
-
-/// What is compiled once for each unit: its method is `#[inline(always)]`, and so is all that it calls.
-pub(super) trait Task {
-    /// `FUSED` where the unit has fused multiply-add.
-    fn run<const FUSED: bool>(self);
 }

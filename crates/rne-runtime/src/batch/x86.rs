@@ -1,9 +1,10 @@
 //! The vector units that an x86 processor may have beyond the compiled target.
 
-use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
+use pulp::{Simd, WithSimd};
 
-use super::unit::Task;
+use super::blocks::States;
+use super::{BatchScalar, Torques};
 
 /// A unit and, in pulp's token, the proof that the processor has it.
 #[derive(Clone, Copy)]
@@ -30,22 +31,28 @@ impl Detected {
         }
     }
 
-    pub(super) fn run(self, task: impl Task) {
+    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, states: States<'_, R, T, DOF>)
+    where
+        R: Torques<DOF, ANGLES>,
+        T: BatchScalar,
+    {
         match self {
-            Self::Avx2(unit) => unit.vectorize(Call(task)),
-            Self::Avx512(unit) => unit.vectorize(Call(task)),
+            Self::Avx2(unit) => Simd::vectorize(unit, Call::<_, ANGLES>(states)),
+            Self::Avx512(unit) => Simd::vectorize(unit, Call::<_, ANGLES>(states)),
         }
     }
 }
 
-/// A task as what pulp calls. Not a closure: this can be inlined always.
-struct Call<T>(T);
+/// States as what pulp calls. Not a closure: this can be inlined always.
+struct Call<S, const ANGLES: usize>(S);
 
-impl<T: Task> NullaryFnOnce for Call<T> {
+impl<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGLES: usize> WithSimd
+    for Call<States<'_, R, T, DOF>, ANGLES>
+{
     type Output = ();
 
     #[inline(always)]
-    fn call(self) {
-        self.0.run::<true>();
+    fn with_simd<S: Simd>(self, unit: S) {
+        self.0.run::<T::Detected<S>, ANGLES>(unit);
     }
 }

@@ -1,21 +1,26 @@
 //! One number or a register of them: what the kernel computes with.
 
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Float;
+use super::{FUSED, Float};
 
 /// `f64`, `f32` and, with `std`, the SIMD registers of them.
-pub(crate) trait Lanes: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
+pub trait Lanes:
+    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
     type Element: Float;
+
+    /// Whether [`plus_product`](Self::plus_product) and [`minus_product`](Self::minus_product) round once.
+    const FUSED: bool;
 
     /// The same number in every lane.
     fn splat(element: Self::Element) -> Self;
 
-    /// `self + a * b`, rounded once if `FMA` (and `std` is there), else twice.
-    fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+    /// `self + a * b`
+    fn plus_product(self, a: Self, b: Self) -> Self;
 
-    /// `self - a * b`, rounded once if `FMA` (and `std` is there), else twice.
-    fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self;
+    /// `self - a * b`
+    fn minus_product(self, a: Self, b: Self) -> Self;
 
     /// Sine and cosine of x from those of x - n π/2; n modulo 4 stands in the two lowest bits of `rounded`.
     ///
@@ -36,24 +41,26 @@ macro_rules! number {
         impl Lanes for $type {
             type Element = $type;
 
+            const FUSED: bool = FUSED;
+
             #[inline(always)]
             fn splat(element: $type) -> Self {
                 element
             }
 
             #[inline(always)]
-            fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+            fn plus_product(self, a: Self, b: Self) -> Self {
                 #[cfg(feature = "std")]
-                if FMA {
+                if FUSED {
                     return a.mul_add(b, self);
                 }
                 self + a * b
             }
 
             #[inline(always)]
-            fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
+            fn minus_product(self, a: Self, b: Self) -> Self {
                 #[cfg(feature = "std")]
-                if FMA {
+                if FUSED {
                     return (-a).mul_add(b, self);
                 }
                 self - a * b

@@ -34,6 +34,8 @@ mod registers;
 pub(crate) use array::sin_cos;
 pub(crate) use lanes::Lanes;
 
+use core::fmt::Debug;
+
 use reduction::Reduced;
 
 /// Whether the target this is compiled for multiplies and adds in one instruction, and `std` is there to ask for it: `core`
@@ -44,11 +46,9 @@ pub(crate) const FUSED: bool = cfg!(all(
 ));
 
 /// `f32` and `f64`: constants and the step that differs.
-pub(crate) trait Float: Lanes<Element = Self> + 'static {
-    #[cfg(feature = "std")]
+pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
     const ZERO: Self;
-    #[cfg(feature = "std")]
-    const NAN: Self;
+    const MINUS_TWO: Self;
     const HALF: Self;
     const ONE: Self;
     const P: &'static [Self];
@@ -57,8 +57,11 @@ pub(crate) trait Float: Lanes<Element = Self> + 'static {
     #[cfg(feature = "std")]
     type Register: registers::Register<Element = Self>;
 
+    /// The nearest number of this type.
+    fn rounded(value: f64) -> Self;
+
     /// The first of the three steps.
-    fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V>;
+    fn reduced<V: Lanes<Element = Self>>(angle: V) -> Reduced<V>;
 
     /// Whether the kernel is correct for this angle; false for NaN.
     #[cfg(feature = "std")]
@@ -75,10 +78,8 @@ const LIMIT: f32 = 1e5;
 macro_rules! float {
     ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx512:ident, $avx:ident, $other:ident]) => {
         impl Float for $type {
-            #[cfg(feature = "std")]
             const ZERO: Self = 0.0;
-            #[cfg(feature = "std")]
-            const NAN: Self = $type::NAN;
+            const MINUS_TWO: Self = -2.0;
             const HALF: Self = 0.5;
             const ONE: Self = 1.0;
             const P: &'static [Self] = &polynomial::$P;
@@ -92,8 +93,14 @@ macro_rules! float {
             type Register = wide::$other;
 
             #[inline(always)]
-            fn reduced<V: Lanes<Element = Self>, const FMA: bool>(angle: V) -> Reduced<V> {
-                reduction::$reduction::<V, FMA>(angle)
+            #[allow(clippy::cast_possible_truncation, trivial_numeric_casts)]
+            fn rounded(value: f64) -> Self {
+                value as $type
+            }
+
+            #[inline(always)]
+            fn reduced<V: Lanes<Element = Self>>(angle: V) -> Reduced<V> {
+                reduction::$reduction(angle)
             }
 
             #[cfg(feature = "std")]
@@ -112,20 +119,10 @@ macro_rules! float {
 float!(f64, double, P_F64, Q_F64, [f64x8, f64x4, f64x2]);
 float!(f32, single, P_F32, Q_F32, [f32x8, f32x8, f32x4]);
 
-/// Sine and cosine without a branch for a loop over states, with fused multiply-add if `FMA`; NaN for angles beyond the
-/// limit, unless there is no `std` to compute them otherwise.
-#[inline(always)]
-pub(crate) fn sin_cos_or_nan<T: Float, const FMA: bool>(angle: T) -> (T, T) {
-    let (sine, cosine) = kernel::<T, FMA>(angle);
-    #[cfg(feature = "std")]
-    let (sine, cosine) = if angle.is_within_limit() { (sine, cosine) } else { (T::NAN, T::NAN) };
-    (sine, cosine)
-}
-
 /// Sine and cosine, correct up to the limit: no branch.
 #[inline(always)]
-fn kernel<V: Lanes, const FMA: bool>(angle: V) -> (V, V) {
-    let Reduced { rounded, head, excess } = V::Element::reduced::<V, FMA>(angle);
-    let (sine, cosine) = polynomial::sine_and_cosine::<V, FMA>(head, excess);
+pub(crate) fn kernel<V: Lanes>(angle: V) -> (V, V) {
+    let Reduced { rounded, head, excess } = V::Element::reduced(angle);
+    let (sine, cosine) = polynomial::sine_and_cosine(head, excess);
     V::in_quadrant(rounded, sine, cosine)
 }

@@ -1,12 +1,13 @@
 //! Sine and cosine of a reduced angle `y - e`, abs(y) ≤ π/4 and e small.
 //!
-//! With z = y² and the polynomials P and Q, to first order in e:
+//! With z = y² - 2 y e, which is (y - e)² to first order, and the polynomials P and Q:
 //!
-//! - sin(y - e) = y - (e (1 - z/2) - y z P(z)),
-//! - cos(y - e) = 1 - z/2 + (z² Q(z) + y e), where w = 1 - z/2 is rounded and (1 - w) - z/2 is what that leaves.
+//! - sin(y - e) = y - (e - y z P(z)),
+//! - cos(y - e) = 1 + z (z Q(z) - 1/2). Without fused multiply-add the product is rounded, too coarsely: there it is
+//!   w + (((1 - w) - z/2) + z² Q(z)), where w = 1 - z/2 is rounded and (1 - w) - z/2 is what that leaves.
 //!
 //! The last addition alone costs half a unit in the last place; all that is added there is so small that its own errors are
-//! a fraction of that.
+//! a fraction of that. (The sine's e should be e (1 - z/2): a sixth of a unit at most.)
 
 use super::{Float, Lanes};
 
@@ -34,32 +35,37 @@ pub(super) const Q_F32: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7
 
 /// Sine and cosine of `y - e`.
 #[inline(always)]
-pub(super) fn sine_and_cosine<V: Lanes, const FMA: bool>(y: V, e: V) -> (V, V) {
-    let one = V::splat(V::Element::ONE);
-    let z = y * y;
+pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
+    let (half, one) = (V::splat(V::Element::HALF), V::splat(V::Element::ONE));
+    let z = (e * V::splat(V::Element::MINUS_TWO) * y).plus_product(y, y);
     let square = z * z;
-    let half = V::splat(V::Element::HALF) * z;
-    let w = one - half;
 
     // In this order and with these signs the sine of a negative zero is one.
-    let sine = y - (e * w).minus_product::<FMA>(z * y, polynomial::<V, FMA>(V::Element::P, z, square));
+    let sine = y - e.minus_product(z * y, polynomial(V::Element::P, z, square));
 
-    let correction = (y * e).plus_product::<FMA>(square, polynomial::<V, FMA>(V::Element::Q, z, square));
-    let cosine = w + (((one - w) - half) + correction);
+    let q = polynomial(V::Element::Q, z, square);
+    let cosine = if V::FUSED {
+        one.plus_product(z, (-half).plus_product(z, q))
+    } else {
+        let half = half * z;
+        let w = one - half;
+        w + (((one - w) - half) + square * q)
+    };
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations, and c_0, by
-/// far the largest term, last, for its rounding is felt.
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations.
 #[inline(always)]
-fn polynomial<V: Lanes, const FMA: bool>(coefficients: &'static [V::Element], z: V, square: V) -> V {
-    let [first, second, others @ ..] = coefficients else { return z };
-    let pair = |pair: &[V::Element]| match *pair {
-        [even, odd] => V::splat(even).plus_product::<FMA>(z, V::splat(odd)),
-        [even, ..] => V::splat(even),
-        [] => z,
-    };
-    let rest = others.chunks(2).rev().map(pair).reduce(|sum, pair| pair.plus_product::<FMA>(square, sum));
-    let linear = V::splat(*second) * z;
-    V::splat(*first) + rest.map_or(linear, |rest| linear.plus_product::<FMA>(square, rest))
+fn polynomial<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
+    let mut sum = None;
+    // No closure: it would be compiled without the vector unit of its caller.
+    for pair in coefficients.chunks(2).rev() {
+        let pair = match *pair {
+            [even, odd] => V::splat(even).plus_product(z, V::splat(odd)),
+            [even, ..] => V::splat(even),
+            [] => z,
+        };
+        sum = Some(if let Some(sum) = sum { pair.plus_product(square, sum) } else { pair });
+    }
+    sum.unwrap_or(z)
 }

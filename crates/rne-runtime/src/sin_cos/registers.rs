@@ -4,7 +4,7 @@
 
 use bytemuck::cast;
 
-use super::Lanes;
+use super::{FUSED, Lanes};
 
 /// Lanes that are filled from an array and written to one.
 pub(crate) trait Register: Lanes {
@@ -25,19 +25,21 @@ macro_rules! register {
         impl Lanes for wide::$Register {
             type Element = $element;
 
+            const FUSED: bool = FUSED;
+
             #[inline(always)]
             fn splat(element: $element) -> Self {
                 Self::splat(element)
             }
 
             #[inline(always)]
-            fn plus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
-                if FMA { a.mul_add(b, self) } else { self + a * b }
+            fn plus_product(self, a: Self, b: Self) -> Self {
+                if FUSED { a.mul_add(b, self) } else { self + a * b }
             }
 
             #[inline(always)]
-            fn minus_product<const FMA: bool>(self, a: Self, b: Self) -> Self {
-                if FMA { a.mul_neg_add(b, self) } else { self - a * b }
+            fn minus_product(self, a: Self, b: Self) -> Self {
+                if FUSED { a.mul_neg_add(b, self) } else { self - a * b }
             }
 
             #[inline(always)]

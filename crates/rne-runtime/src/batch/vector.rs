@@ -1,0 +1,27 @@
+//! A vector register: one number for each of several states.
+
+use core::fmt::Debug;
+
+use crate::sin_cos::Lanes;
+
+/// The registers of a vector unit that hold numbers of one type.
+///
+/// Everything is `#[inline(always)]`, here and in what uses it: a function that is not part of the code for a vector unit is
+/// compiled without its instructions.
+pub trait Vector: Lanes + Debug + PartialEq + 'static {
+    /// Shows that the processor has the unit.
+    type Unit: Copy;
+
+    /// As many numbers as a register has.
+    type Numbers: Copy;
+
+    /// A slice as full registers and what is left.
+    fn split(numbers: &[Self::Element]) -> (&[Self::Numbers], &[Self::Element]);
+
+    /// A slice as full registers and what is left.
+    fn split_mut(numbers: &mut [Self::Element]) -> (&mut [Self::Numbers], &mut [Self::Element]);
+
+    fn load(unit: Self::Unit, numbers: &Self::Numbers) -> Self;
+
+    fn store(self) -> Self::Numbers;
+}
