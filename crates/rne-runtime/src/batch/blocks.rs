@@ -1,10 +1,12 @@
 //! The loop over states: a register of them at a time.
 
 use core::array::from_fn;
+use core::ops::Range;
 
 use super::scalar::Register;
 use super::vector::Vector;
 use super::{BatchScalar, Torques};
+use crate::Scalar;
 use crate::sin_cos::{Float, kernel};
 
 /// Registers in a block. Sines and cosines come first for all of a block, then torques: each of the two loops is small enough
@@ -13,6 +15,11 @@ const BLOCK: usize = 8;
 
 /// The most numbers that a register has.
 const WIDEST: usize = 16;
+
+/// Registers in memory, none across two lines of the cache.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+struct Aligned<T>(T);
 
 /// States whose torques are to be computed: arrays of one length.
 pub(super) struct States<'a, R, T, const DOF: usize> {
@@ -62,27 +69,30 @@ impl<R, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
 
 /// The torques of full registers.
 #[inline(always)]
-fn torques<R: Torques<DOF, ANGLES>, V: Vector, const DOF: usize, const ANGLES: usize>(
+fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: usize, const ANGLES: usize>(
     robot: &R,
     unit: V::Unit,
     count: usize,
     inputs: [[&[V::Numbers]; DOF]; 3],
-    tau: [&mut [V::Numbers]; DOF],
+    mut tau: [&mut [V::Numbers]; DOF],
 ) {
     let [q, qd, qdd] = inputs;
-    let zero = V::splat(V::Element::ZERO).store();
-    let mut turns = [[[zero; ANGLES]; 2]; BLOCK];
+    let zero = V::splat(V::Element::ZERO);
+    let mut turns = [[[Aligned(zero.store()); ANGLES]; 2]; BLOCK];
     let mut start = 0;
     while start < count {
         let end = count.min(start + BLOCK);
+        let mut squares = zero;
         for (at, [sines, cosines]) in (start..end).zip(&mut turns) {
             let angles = robot.angles(&loaded::<V, DOF>(unit, &q, at));
             for index in 0..ANGLES {
-                sines[index] = angles[index].0.store();
+                sines[index].0 = angles[index].0.store();
             }
             for index in 0..ANGLES {
-                let (sine, cosine) = kernel(V::load(unit, &sines[index]));
-                (sines[index], cosines[index]) = (sine.store(), cosine.store());
+                let angle = V::load(unit, &sines[index].0);
+                squares = squares.plus_product(angle, angle);
+                let (sine, cosine) = kernel(angle);
+                (sines[index].0, cosines[index].0) = (sine.store(), cosine.store());
             }
         }
         for (at, [sines, cosines]) in (start..end).zip(&turns) {
@@ -98,7 +108,38 @@ fn torques<R: Torques<DOF, ANGLES>, V: Vector, const DOF: usize, const ANGLES: u
                 tau[joint][at] = torques[joint].0.store();
             }
         }
+        // Not so for NaN and infinities either.
+        let squares = squares.store();
+        let are_small = V::each(&squares).iter().fold(true, |all, sum| all & sum.is_square_within_limit());
+        if cfg!(feature = "std") && !are_small {
+            repair::<R, V, DOF, ANGLES>(robot, start..end, &inputs, &mut tau);
+        }
         start = end;
+    }
+}
+
+/// Writes the torques of states that have an angle beyond the limit of the kernel of sine and cosine once more: those of one
+/// state by itself.
+#[cold]
+#[inline(never)]
+fn repair<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: usize, const ANGLES: usize>(
+    robot: &R,
+    block: Range<usize>,
+    inputs: &[[&[V::Numbers]; DOF]; 3],
+    tau: &mut [&mut [V::Numbers]; DOF],
+) {
+    for at in block {
+        for lane in 0..size_of::<V::Numbers>() / size_of::<V::Element>() {
+            let [q, qd, qdd] = inputs.map(|arrays| arrays.map(|numbers| V::each(&numbers[at])[lane]));
+            let angles = robot.angles(&q);
+            if angles.iter().all(|angle| angle.is_within_limit()) {
+                continue;
+            }
+            let (sines, cosines) = V::Element::sin_cos_array(angles);
+            for (numbers, torque) in tau.iter_mut().zip(robot.torques(&sines, &cosines, &q, &qd, &qdd)) {
+                V::each_mut(&mut numbers[at])[lane] = torque;
+            }
+        }
     }
 }
 
@@ -108,8 +149,8 @@ fn loaded<V: Vector, const N: usize>(unit: V::Unit, numbers: &[&[V::Numbers]; N]
 }
 
 #[inline(always)]
-fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[V::Numbers; N]) -> [Register<V>; N] {
-    from_fn(|index| Register(V::load(unit, &numbers[index])))
+fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[Aligned<V::Numbers>; N]) -> [Register<V>; N] {
+    from_fn(|index| Register(V::load(unit, &numbers[index].0)))
 }
 
 /// The torques of each state by itself.

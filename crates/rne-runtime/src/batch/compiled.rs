@@ -19,6 +19,16 @@ macro_rules! vector {
             }
 
             #[inline(always)]
+            fn each(numbers: &Self::Numbers) -> &[$element] {
+                numbers
+            }
+
+            #[inline(always)]
+            fn each_mut(numbers: &mut Self::Numbers) -> &mut [$element] {
+                numbers
+            }
+
+            #[inline(always)]
             fn load((): (), numbers: &Self::Numbers) -> Self {
                 $load(*numbers)
             }

@@ -101,7 +101,7 @@ mod sealed {
         type Compiled: Vector<Element = Self, Unit = ()>;
         /// Those of a unit that was looked for.
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-        type Detected<S: pulp::Simd>: Vector<Element = Self, Unit = S>;
+        type Detected<S: super::super::x86_register::Shift>: Vector<Element = Self, Unit = S>;
     }
 
     macro_rules! machine {
@@ -112,7 +112,7 @@ mod sealed {
                 #[cfg(not(feature = "std"))]
                 type Compiled = $type;
                 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-                type Detected<S: pulp::Simd> = super::super::x86_register::$Register<S>;
+                type Detected<S: super::super::x86_register::Shift> = super::super::x86_register::$Register<S>;
             }
         };
     }

@@ -21,6 +21,10 @@ pub trait Vector: Lanes + Debug + PartialEq + 'static {
     /// A slice as full registers and what is left.
     fn split_mut(numbers: &mut [Self::Element]) -> (&mut [Self::Numbers], &mut [Self::Element]);
 
+    fn each(numbers: &Self::Numbers) -> &[Self::Element];
+
+    fn each_mut(numbers: &mut Self::Numbers) -> &mut [Self::Element];
+
     fn load(unit: Self::Unit, numbers: &Self::Numbers) -> Self;
 
     fn store(self) -> Self::Numbers;

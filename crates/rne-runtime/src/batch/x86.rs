@@ -1,9 +1,10 @@
 //! The vector units that an x86 processor may have beyond the compiled target.
 
+use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
-use pulp::{Simd, WithSimd};
 
 use super::blocks::States;
+use super::x86_register::Shift;
 use super::{BatchScalar, Torques};
 
 /// A unit and, in pulp's token, the proof that the processor has it.
@@ -37,22 +38,28 @@ impl Detected {
         T: BatchScalar,
     {
         match self {
-            Self::Avx2(unit) => Simd::vectorize(unit, Call::<_, ANGLES>(states)),
-            Self::Avx512(unit) => Simd::vectorize(unit, Call::<_, ANGLES>(states)),
+            Self::Avx2(unit) => unit.vectorize(Call::<_, _, ANGLES> { states, unit }),
+            Self::Avx512(unit) => unit.vectorize(Call::<_, _, ANGLES> { states, unit }),
         }
     }
 }
 
-/// States as what pulp calls. Not a closure: this can be inlined always.
-struct Call<S, const ANGLES: usize>(S);
+/// States and a unit as what pulp calls. Not a closure: this can be inlined always.
+struct Call<States, Unit, const ANGLES: usize> {
+    states: States,
+    unit: Unit,
+}
 
-impl<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGLES: usize> WithSimd
-    for Call<States<'_, R, T, DOF>, ANGLES>
+impl<R, T, S, const DOF: usize, const ANGLES: usize> NullaryFnOnce for Call<States<'_, R, T, DOF>, S, ANGLES>
+where
+    R: Torques<DOF, ANGLES>,
+    T: BatchScalar,
+    S: Shift,
 {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, unit: S) {
-        self.0.run::<T::Detected<S>, ANGLES>(unit);
+    fn call(self) {
+        self.states.run::<T::Detected<S>, ANGLES>(self.unit);
     }
 }

@@ -18,6 +18,7 @@ use core::slice;
 
 use bytemuck::{Zeroable, cast, cast_slice, cast_slice_mut};
 use pulp::Simd;
+use pulp::x86::{V3, V4};
 
 use super::vector::Vector;
 use crate::sin_cos::Lanes;
@@ -34,21 +35,49 @@ unsafe fn proven<S: Simd>() -> S {
     unsafe { NonNull::dangling().read() }
 }
 
+/// What pulp has for each unit but not for all.
+pub trait Shift: Simd {
+    /// The second lowest bit moves to the highest.
+    fn shift_u64s(self, bits: Self::u64s) -> Self::u64s;
+    fn shift_u32s(self, bits: Self::u32s) -> Self::u32s;
+}
+
+macro_rules! shift {
+    ($($Unit:ident, $shift_u64s:ident, $shift_u32s:ident;)*) => {$(
+        impl Shift for $Unit {
+            #[inline(always)]
+            fn shift_u64s(self, bits: Self::u64s) -> Self::u64s {
+                self.$shift_u64s::<62>(bits)
+            }
+
+            #[inline(always)]
+            fn shift_u32s(self, bits: Self::u32s) -> Self::u32s {
+                self.$shift_u32s::<30>(bits)
+            }
+        }
+    )*};
+}
+shift! {
+    V3, shl_const_u64x4, shl_const_u32x8;
+    V4, shl_const_u64x8, shl_const_u32x16;
+}
+
 macro_rules! register {
     (
         $Register:ident, $element:ident, $lanes:ident, $bits:ident,
         $splat_bits:ident, $equal_bits:ident, $and_bits:ident, $xor_bits:ident, $select_bits:ident,
+        $add_bits:ident, $shift:ident,
         $add:ident, $sub:ident, $mul:ident, $div:ident, $mul_add:ident, $negate_mul_add:ident,
         $split:ident, $split_mut:ident
     ) => {
         /// A register of numbers.
         #[derive(Clone, Copy)]
-        pub struct $Register<S: Simd> {
+        pub struct $Register<S: Shift> {
             lanes: S::$lanes,
             unit: PhantomData<S>,
         }
 
-        impl<S: Simd> $Register<S> {
+        impl<S: Shift> $Register<S> {
             #[inline(always)]
             fn of(lanes: S::$lanes) -> Self {
                 Self { lanes, unit: PhantomData }
@@ -66,14 +95,11 @@ macro_rules! register {
                 unit.$xor_bits(bits, unit.$splat_bits($element::to_bits(-0.0)))
             }
 
-            fn numbers(&self) -> &[$element] {
-                cast_slice(slice::from_ref(&self.lanes))
-            }
         }
 
         register!(operators $Register, Add::add, $add, Sub::sub, $sub, Mul::mul, $mul, Div::div, $div);
 
-        impl<S: Simd> Neg for $Register<S> {
+        impl<S: Shift> Neg for $Register<S> {
             type Output = Self;
 
             #[inline(always)]
@@ -82,29 +108,30 @@ macro_rules! register {
             }
         }
 
-        impl<S: Simd> PartialEq for $Register<S> {
+        impl<S: Shift> PartialEq for $Register<S> {
             fn eq(&self, other: &Self) -> bool {
-                self.numbers() == other.numbers()
+                Self::each(&self.lanes) == Self::each(&other.lanes)
             }
         }
 
-        impl<S: Simd> fmt::Debug for $Register<S> {
+        impl<S: Shift> fmt::Debug for $Register<S> {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                self.numbers().fmt(f)
+                Self::each(&self.lanes).fmt(f)
             }
         }
 
-        impl<S: Simd> Lanes for $Register<S> {
+        impl<S: Shift> Lanes for $Register<S> {
             type Element = $element;
 
             /// The units that are looked for all have it.
             const FUSED: bool = true;
 
+            const MANY: bool = true;
+
             #[inline(always)]
             fn splat(element: $element) -> Self {
                 let mut lanes = S::$lanes::zeroed();
-                let numbers: &mut [$element] = cast_slice_mut(slice::from_mut(&mut lanes));
-                numbers.fill(element);
+                Self::each_mut(&mut lanes).fill(element);
                 Self::of(lanes)
             }
 
@@ -122,21 +149,21 @@ macro_rules! register {
             fn in_quadrant(rounded: Self, sine: Self, cosine: Self) -> (Self, Self) {
                 let unit = Self::unit();
                 let [n, sine, cosine]: [S::$bits; 3] = [cast(rounded.lanes), cast(sine.lanes), cast(cosine.lanes)];
-                let (one, two) = (unit.$splat_bits(1), unit.$splat_bits(2));
+                let (one, sign) = (unit.$splat_bits(1), unit.$splat_bits($element::to_bits(-0.0)));
                 let is_odd = unit.$equal_bits(unit.$and_bits(n, one), one);
-                let is_opposite = unit.$equal_bits(unit.$and_bits(n, two), two);
-                let minus_sine = Self::opposite(sine);
                 let (sine, cosine) =
-                    (unit.$select_bits(is_odd, cosine, sine), unit.$select_bits(is_odd, minus_sine, cosine));
-                let (minus_sine, minus_cosine) = (Self::opposite(sine), Self::opposite(cosine));
+                    (unit.$select_bits(is_odd, cosine, sine), unit.$select_bits(is_odd, sine, cosine));
+                // the second lowest bit as the sign
+                let sign_of_sine = unit.$and_bits(unit.$shift(n), sign);
+                let sign_of_cosine = unit.$and_bits(unit.$shift(unit.$add_bits(n, one)), sign);
                 (
-                    Self::of(cast(unit.$select_bits(is_opposite, minus_sine, sine))),
-                    Self::of(cast(unit.$select_bits(is_opposite, minus_cosine, cosine))),
+                    Self::of(cast(unit.$xor_bits(sine, sign_of_sine))),
+                    Self::of(cast(unit.$xor_bits(cosine, sign_of_cosine))),
                 )
             }
         }
 
-        impl<S: Simd> Vector for $Register<S> {
+        impl<S: Shift> Vector for $Register<S> {
             type Unit = S;
             type Numbers = S::$lanes;
 
@@ -151,6 +178,16 @@ macro_rules! register {
             }
 
             #[inline(always)]
+            fn each(numbers: &Self::Numbers) -> &[$element] {
+                cast_slice(slice::from_ref(numbers))
+            }
+
+            #[inline(always)]
+            fn each_mut(numbers: &mut Self::Numbers) -> &mut [$element] {
+                cast_slice_mut(slice::from_mut(numbers))
+            }
+
+            #[inline(always)]
             fn load(_: S, numbers: &Self::Numbers) -> Self {
                 Self::of(*numbers)
             }
@@ -162,7 +199,7 @@ macro_rules! register {
         }
     };
     (operators $Register:ident, $($Operator:ident :: $operator:ident, $function:ident),*) => {$(
-        impl<S: Simd> $Operator for $Register<S> {
+        impl<S: Shift> $Operator for $Register<S> {
             type Output = Self;
 
             #[inline(always)]
@@ -173,10 +210,10 @@ macro_rules! register {
     )*};
 }
 register!(
-    Doubles, f64, f64s, u64s, splat_u64s, equal_u64s, and_u64s, xor_u64s, select_u64s,
+    Doubles, f64, f64s, u64s, splat_u64s, equal_u64s, and_u64s, xor_u64s, select_u64s, add_u64s, shift_u64s,
     add_f64s, sub_f64s, mul_f64s, div_f64s, mul_add_f64s, negate_mul_add_f64s, as_simd_f64s, as_mut_simd_f64s
 );
 register!(
-    Singles, f32, f32s, u32s, splat_u32s, equal_u32s, and_u32s, xor_u32s, select_u32s,
+    Singles, f32, f32s, u32s, splat_u32s, equal_u32s, and_u32s, xor_u32s, select_u32s, add_u32s, shift_u32s,
     add_f32s, sub_f32s, mul_f32s, div_f32s, mul_add_f32s, negate_mul_add_f32s, as_simd_f32s, as_mut_simd_f32s
 );

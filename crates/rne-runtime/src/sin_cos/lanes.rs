@@ -13,6 +13,9 @@ pub trait Lanes:
     /// Whether [`plus_product`](Self::plus_product) and [`minus_product`](Self::minus_product) round once.
     const FUSED: bool;
 
+    /// Whether many are computed one after the other, so that the number of operations counts, not the length of their chain.
+    const MANY: bool = false;
+
     /// The same number in every lane.
     fn splat(element: Self::Element) -> Self;
 

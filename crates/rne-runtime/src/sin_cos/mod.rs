@@ -64,15 +64,16 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
     fn reduced<V: Lanes<Element = Self>>(angle: V) -> Reduced<V>;
 
     /// Whether the kernel is correct for this angle; false for NaN.
-    #[cfg(feature = "std")]
     fn is_within_limit(self) -> bool;
+    /// Whether the kernel is correct for all angles of which this is the sum of the squares; false for NaN. It may be false
+    /// where it need not be.
+    fn is_square_within_limit(self) -> bool;
     /// Correct everywhere.
     #[cfg(feature = "std")]
     fn std_sin_cos(self) -> (Self, Self);
 }
 
 /// Angles up to this, in rad, are reduced exactly enough.
-#[cfg(feature = "std")]
 const LIMIT: f32 = 1e5;
 
 macro_rules! float {
@@ -103,10 +104,14 @@ macro_rules! float {
                 reduction::$reduction(angle)
             }
 
-            #[cfg(feature = "std")]
             #[inline(always)]
             fn is_within_limit(self) -> bool {
                 self.abs() <= LIMIT.into()
+            }
+
+            #[inline(always)]
+            fn is_square_within_limit(self) -> bool {
+                self <= (0.99 * LIMIT * LIMIT).into()
             }
 
             #[cfg(feature = "std")]

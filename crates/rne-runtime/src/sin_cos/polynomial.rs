@@ -54,18 +54,19 @@ pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations.
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations, or one at a
+/// time for fewer operations.
 #[inline(always)]
 fn polynomial<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
     let mut sum = None;
     // No closure: it would be compiled without the vector unit of its caller.
-    for pair in coefficients.chunks(2).rev() {
-        let pair = match *pair {
-            [even, odd] => V::splat(even).plus_product(z, V::splat(odd)),
-            [even, ..] => V::splat(even),
-            [] => z,
+    for terms in coefficients.chunks(if V::MANY { 1 } else { 2 }).rev() {
+        let (terms, power) = match *terms {
+            [even, odd] => (V::splat(even).plus_product(z, V::splat(odd)), square),
+            [even, ..] => (V::splat(even), if V::MANY { z } else { square }),
+            [] => (z, z),
         };
-        sum = Some(if let Some(sum) = sum { pair.plus_product(square, sum) } else { pair });
+        sum = Some(if let Some(sum) = sum { terms.plus_product(power, sum) } else { terms });
     }
     sum.unwrap_or(z)
 }
