@@ -1,6 +1,5 @@
 //! The loop over states: a register of them at a time.
 
-use core::array::from_fn;
 use core::ops::Range;
 
 use super::scalar::Register;
@@ -143,14 +142,24 @@ fn repair<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: u
     }
 }
 
+// Loops, for what `array::from_fn` writes stays in memory.
+
 #[inline(always)]
 fn loaded<V: Vector, const N: usize>(unit: V::Unit, numbers: &[&[V::Numbers]; N], at: usize) -> [Register<V>; N] {
-    from_fn(|index| Register(V::load(unit, &numbers[index][at])))
+    let mut registers = [Register(V::splat(V::Element::ZERO)); N];
+    for index in 0..N {
+        registers[index] = Register(V::load(unit, &numbers[index][at]));
+    }
+    registers
 }
 
 #[inline(always)]
 fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[Aligned<V::Numbers>; N]) -> [Register<V>; N] {
-    from_fn(|index| Register(V::load(unit, &numbers[index].0)))
+    let mut registers = [Register(V::splat(V::Element::ZERO)); N];
+    for index in 0..N {
+        registers[index] = Register(V::load(unit, &numbers[index].0));
+    }
+    registers
 }
 
 /// The torques of each state by itself.
