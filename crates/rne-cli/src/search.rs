@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::reduced::{self, Cost, Found, Objective, PlanFile, Progress, Wanted};
+use rne_codegen::reduced::{self, Cost, Found, PlanFile, Progress, Wanted};
 
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
@@ -40,28 +40,9 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// What is to be few: operations, or the instructions of a processor with fused multiply-add, which batches are
-    #[arg(long, value_name = "WHAT", default_value = "operations")]
-    fewest: Fewest,
     /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is better
     #[arg(long)]
     fresh: bool,
-}
-
-/// What a search makes small.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Fewest {
-    Operations,
-    Instructions,
-}
-
-impl From<Fewest> for Objective {
-    fn from(fewest: Fewest) -> Self {
-        match fewest {
-            Fewest::Operations => Self::Operations,
-            Fewest::Instructions => Self::Instructions,
-        }
-    }
 }
 
 fn seconds(text: &str) -> Result<f64, String> {
@@ -92,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             std::process::exit(130);
         }
     });
-    let wanted = Wanted { rewrite: arguments.rewrite, seed: arguments.seed, objective: arguments.fewest.into() };
+    let wanted = Wanted { rewrite: arguments.rewrite, seed: arguments.seed };
     let found = watched(&robot, known.as_ref(), wanted, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let written = output_file::replace(&path, &found.to_yaml())
@@ -130,10 +111,7 @@ fn watched(
             // 0 to 1000
             bar.set_position((over.min(1.0) * STEPS as f64) as u64);
             bar.set_prefix(progress.phase);
-            bar.set_message(match progress.best.instructions {
-                Some(instructions) => format!("{instructions} instructions, {} plans", progress.plans),
-                None => format!("{} operations, {} plans", progress.best.total(), progress.plans),
-            });
+            bar.set_message(format!("{} operations, {} plans", progress.best.total(), progress.plans));
         }
         (over < 1.0).then_some(over)
     });
@@ -143,13 +121,7 @@ fn watched(
 
 fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
     let mut text = String::new();
-    let count = |cost: &Cost| {
-        let operations = format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
-        match cost.instructions {
-            Some(instructions) => format!("{operations}, {instructions} fused instructions"),
-            None => operations,
-        }
-    };
+    let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
     let mut line = |form: &str, remark: &reduced::Remark| {
         let _ = writeln!(
             text,

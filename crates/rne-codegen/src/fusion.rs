@@ -192,12 +192,18 @@ impl Graph {
     fn choose_products(&mut self) {
         // uses as terms of sums; a product with other uses has to be computed
         let mut in_sums = vec![0; self.nodes.len()];
-        let sums: Vec<_> = self.nodes.iter().filter_map(|node| if let Kind::Sum(terms) = &node.kind { Some(terms) } else { None }).collect();
+        let sums: Vec<_> = self
+            .nodes
+            .iter()
+            .filter_map(|node| if let Kind::Sum(terms) = &node.kind { Some(terms) } else { None })
+            .collect();
         for term in sums.iter().copied().flatten() {
             in_sums[term.node] += 1;
         }
         let mut is_computed: Vec<_> = (0..self.nodes.len())
-            .map(|node| self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node)))
+            .map(|node| {
+                self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
+            })
             .collect();
         let mut unstarted: Vec<_> = sums.into_iter().filter(|terms| !terms.is_empty()).collect();
         loop {

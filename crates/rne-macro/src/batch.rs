@@ -8,7 +8,7 @@ use syn::DeriveInput;
 use crate::attribute::Attribute;
 use crate::error::Errors;
 use crate::expand::{choice, load};
-use crate::implementation::Target;
+use crate::implementation::{Target, body};
 
 /// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
 /// `InverseDynamics`, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
@@ -61,8 +61,9 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     };
     let [dof, angle_count] = [program.dof, program.turns.len()].map(Literal::usize_unsuffixed);
     let scalar = quote!(#krate::Scalar);
-    let program = if program.form == rne_codegen::Form::SevenSteps { program } else { rne_codegen::fusion::fused(&program) };
-    let body = target.body(&program, &scalar);
+    let program =
+        if program.form == rne_codegen::Form::SevenSteps { program } else { rne_codegen::fusion::fused(&program) };
+    let body = body(&program, &scalar);
     let (angles, torques) = (body.angles(), body.beyond_angles());
     let method = method(
         &quote!(#dof),

@@ -69,15 +69,9 @@ impl Target<'_> {
         }
     }
 
-    /// What computes a program. The seven steps compute the bits of the runtime, so that nothing is fused there.
-    pub(crate) fn body<'p>(&self, program: &'p Program, scalar: &'p TokenStream) -> emit::Body<'p> {
-        let body = emit::Body::new(program, scalar);
-        if program.form == Form::SevenSteps { body } else { body.fused() }
-    }
-
     fn method(&self, program: &Program) -> TokenStream {
         let krate = self.krate;
-        let body = self.body(program, &quote!(#krate::Scalar)).whole();
+        let body = body(program, &quote!(#krate::Scalar)).whole();
         let wrench = (program.function == Function::InverseDynamicsWithWrench)
             .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let dof = Literal::usize_unsuffixed(program.dof);
@@ -221,6 +215,12 @@ impl Constants {
             operations: rne_codegen::Operations::default(),
         }
     }
+}
+
+/// What computes a program. The seven steps compute the bits of the runtime, so that nothing is fused there.
+pub(crate) fn body<'p>(program: &'p Program, scalar: &'p TokenStream) -> emit::Body<'p> {
+    let body = emit::Body::new(program, scalar);
+    if program.form == Form::SevenSteps { body } else { body.fused() }
 }
 
 /// A number that reads back as the same bits, or infinity.

@@ -8,7 +8,7 @@ use super::plan::Plan;
 use super::plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 use super::rewrite::Rewriting;
 use super::search::{Clock, Over, Progress, Search, default_plan};
-use super::sheet::{Cost, Dag, Objective};
+use super::sheet::{Cost, Dag};
 use super::transcript::Drawing;
 use super::trick::Trick;
 use crate::CompileError;
@@ -106,13 +106,13 @@ fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawi
 /// What a plan costs for a function; `None` when it does not fit the robot.
 #[must_use]
 pub fn cost(robot: &Robot, plan: &Plan) -> Option<Cost> {
-    evaluator::Evaluator::new(robot, Function::InverseDynamics, Objective::Operations).cost(plan)
+    evaluator::Evaluator::new(robot, Function::InverseDynamics).cost(plan)
 }
 
 /// What each trick of a plan saves: by how many operations the code is longer when it is left out.
 #[must_use]
 pub fn savings(robot: &Robot, plan: &Plan) -> Vec<(Trick, isize)> {
-    let mut evaluator = evaluator::Evaluator::new(robot, Function::InverseDynamics, Objective::Operations);
+    let mut evaluator = evaluator::Evaluator::new(robot, Function::InverseDynamics);
     let Some(with) = evaluator.cost(plan) else { return Vec::new() };
     let used = Trick::ALL.into_iter().filter(|trick| trick.is_in(plan));
     let saving = |trick: Trick| {
@@ -131,8 +131,6 @@ pub struct Wanted {
     pub rewrite: bool,
     /// Seed of the random numbers.
     pub seed: u64,
-    /// What is made small.
-    pub objective: Objective,
 }
 
 /// What a search found.
@@ -167,7 +165,7 @@ pub fn search(
     wanted: Wanted,
     clock: Clock<'_>,
 ) -> Result<Found, CompileError> {
-    let mut search = Search::new(robot, &[], wanted.objective);
+    let mut search = Search::new(robot, &[]);
     let model = robot.clone();
     search.refuse(move |plan| {
         let choice = Choice { plan: plan.clone(), rewritten: None };
@@ -195,12 +193,12 @@ pub fn search(
             // one that has lost too much precision may be replaced by a dearer one
             let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
             if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
-                best = Some((evaluator::cost(&dag, &frame, wanted.objective, &mut Vec::new()), rewritten.clone()));
+                best = Some((evaluator::cost(&dag, &frame, &mut Vec::new()), rewritten.clone()));
             }
         }
     }
     if wanted.rewrite {
-        rewritten(robot, &mut search, &mut best, share, wanted, clock)?;
+        rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
     }
     let file = PlanFile {
         robot: robot.name.clone(),
@@ -271,7 +269,7 @@ fn rewritten(
     search: &mut Search,
     best: &mut Option<(Cost, Rewritten)>,
     from: f64,
-    wanted: Wanted,
+    seed: u64,
     clock: Clock<'_>,
 ) -> Result<(), CompileError> {
     let mut candidates: Vec<Plan> = vec![search.best.1.clone()];
@@ -293,7 +291,7 @@ fn rewritten(
     }
     for plan in candidates {
         let Ok((frame, drawing)) = drawn(robot, &plan, Function::InverseDynamics) else { continue };
-        let cost = evaluator::cost(&drawing.dag, &frame, wanted.objective, &mut Vec::new());
+        let cost = evaluator::cost(&drawing.dag, &frame, &mut Vec::new());
         let given = drawing.dag.sheet.numbers.len();
         graphs.push((cost, plan, drawing.dag, given, frame));
     }
@@ -306,8 +304,8 @@ fn rewritten(
         for (index, (cost, _, dag, _, frame)) in graphs.iter_mut().enumerate() {
             #[allow(clippy::cast_precision_loss)]
             let start = begin + length * index as f64;
-            let seed = wanted.seed.wrapping_add(stage * 100 + index as u64);
-            let mut rewriting = Rewriting::new(dag.clone(), seed, |dag, live| evaluator::cost(dag, frame, wanted.objective, live));
+            let seed = seed.wrapping_add(stage * 100 + index as u64);
+            let mut rewriting = Rewriting::new(dag.clone(), seed, |dag, live| evaluator::cost(dag, frame, live));
             let mut local = |progress: &Progress| clock(progress).map(|over| ((over - start) / length).clamp(0.0, 1.0));
             let plans = search.plans;
             let least = best.as_ref().map(|(cost, _)| *cost);

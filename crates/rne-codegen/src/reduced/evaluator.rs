@@ -7,7 +7,7 @@ use super::outward::{Arm, motions};
 use super::plan::Plan;
 use super::regroup::{Offers, Parameters, parameters};
 use super::rows::{Frames, Table};
-use super::sheet::{Cost, Dag, Identity, Objective, Ref, Sheet};
+use super::sheet::{Cost, Dag, Identity, Ref, Sheet};
 use super::writer::{Angle, Writer};
 use crate::function::Function;
 
@@ -25,7 +25,6 @@ pub(crate) struct Evaluator {
     writer: Writer,
     dag: Dag,
     live: Vec<bool>,
-    objective: Objective,
 }
 
 /// The tables of a robot under every choice of frames that applies to it.
@@ -75,7 +74,7 @@ pub(crate) fn write(writer: &Writer, frame: &Frame, plan: &Plan, parameters: &Pa
 }
 
 impl Evaluator {
-    pub(crate) fn new(robot: &Robot, function: Function, objective: Objective) -> Self {
+    pub(crate) fn new(robot: &Robot, function: Function) -> Self {
         let frames = frames(robot);
         let reading = frames.first().map(|frame| frame.table.reading).unwrap_or_default();
         Self {
@@ -83,7 +82,6 @@ impl Evaluator {
             writer: Writer::new(function, reading, false),
             dag: Dag { sheet: Sheet::new(Identity::Value), outputs: Vec::new() },
             live: Vec::new(),
-            objective,
         }
     }
 
@@ -98,12 +96,12 @@ impl Evaluator {
         self.writer.restart(frame.table.reading);
         let outputs = write(&self.writer, frame, plan, &parameters);
         self.dag.rewrite_from(&self.writer.sheet.borrow(), &outputs, &mut self.live);
-        Some(cost(&self.dag, frame, self.objective, &mut self.live))
+        Some(cost(&self.dag, frame, &mut self.live))
     }
 }
 
-/// What a graph costs.
-pub(crate) fn cost(dag: &Dag, frame: &Frame, objective: Objective, live: &mut Vec<bool>) -> Cost {
+/// Operations of a graph.
+pub(crate) fn cost(dag: &Dag, frame: &Frame, live: &mut Vec<bool>) -> Cost {
     let rows = &frame.table.rows;
-    dag.cost(objective, live, |first, last| Angle::of(rows, first.into(), last.into()).constant.is_some())
+    dag.cost(live, |first, last| Angle::of(rows, first.into(), last.into()).constant.is_some())
 }

@@ -9,7 +9,6 @@
 mod choice;
 mod evaluator;
 mod graph_text;
-mod instructions;
 mod inward;
 mod moves;
 mod numbers;
@@ -32,6 +31,6 @@ pub use choice::{Choice, Found, Wanted, cost, savings, search};
 pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 pub use search::{Clock, Progress};
-pub use sheet::{Cost, Objective};
+pub use sheet::Cost;
 pub use trick::Trick;
 pub(crate) use writer::Point;

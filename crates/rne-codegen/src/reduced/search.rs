@@ -7,7 +7,7 @@ use rne_model::Robot;
 use super::evaluator::Evaluator;
 use super::moves::Moves;
 use super::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
-use super::sheet::{Cost, Objective};
+use super::sheet::Cost;
 use super::trick::Trick;
 use crate::function::Function;
 
@@ -49,8 +49,8 @@ pub(crate) struct Search {
 pub(crate) struct Over;
 
 impl Search {
-    pub(crate) fn new(robot: &Robot, without: &[Trick], objective: Objective) -> Self {
-        let evaluator = Evaluator::new(robot, Function::InverseDynamics, objective);
+    pub(crate) fn new(robot: &Robot, without: &[Trick]) -> Self {
+        let evaluator = Evaluator::new(robot, Function::InverseDynamics);
         let moves = Moves::new(evaluator.frames());
         let plan = without.iter().fold(Plan::new(robot.dof()), |plan, trick| trick.left_out_of(&plan));
         let mut search = Self {
@@ -344,7 +344,7 @@ fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) 
 
 /// The plan of a build that finds no plan file: a fixed number of plans is counted, on every machine the same.
 pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
-    let mut search = Search::new(robot, without, Objective::Operations);
+    let mut search = Search::new(robot, without);
     search.greedy(DEFAULT_EVALUATIONS);
     let plan = search.best.1.clone();
     search.tidied(&plan)

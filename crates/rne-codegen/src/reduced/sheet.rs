@@ -403,26 +403,11 @@ pub struct Cost {
     pub add: usize,
     /// Angles whose sine or cosine is needed.
     pub sincos: usize,
-    /// Instructions with fused multiply-add, without those of sines and cosines, where they are what is made small.
-    pub instructions: Option<usize>,
-}
-
-/// What a search makes small.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Objective {
-    /// Products and sums.
-    #[default]
-    Operations,
-    /// Instructions of a processor that has fused multiply-add: a product that is added is none.
-    Instructions,
 }
 
 impl Cost {
     /// An angle weighs as much as this many operations.
     const ANGLE: usize = 15;
-
-    /// And as this many instructions.
-    const ANGLE_INSTRUCTIONS: usize = 32;
 
     /// Products and sums.
     #[must_use]
@@ -433,10 +418,7 @@ impl Cost {
     /// What a search makes small.
     #[must_use]
     pub const fn weight(&self) -> usize {
-        match self.instructions {
-            Some(instructions) => instructions + Self::ANGLE_INSTRUCTIONS * self.sincos,
-            None => self.total() + Self::ANGLE * self.sincos,
-        }
+        self.total() + Self::ANGLE * self.sincos
     }
 }
 
@@ -464,12 +446,7 @@ impl Dag {
     }
 
     /// Operations of what is live. `has_constant` tells whether the angle of these joints has a constant part.
-    pub(crate) fn cost(
-        &self,
-        objective: Objective,
-        live: &mut Vec<bool>,
-        has_constant: impl Fn(u8, u8) -> bool,
-    ) -> Cost {
+    pub(crate) fn cost(&self, live: &mut Vec<bool>, has_constant: impl Fn(u8, u8) -> bool) -> Cost {
         mark_live(&self.sheet.nodes, &self.outputs, live);
         let mut cost = Cost::default();
         let mut angles: Vec<(u8, u8)> = Vec::new();
@@ -484,7 +461,6 @@ impl Dag {
             }
         }
         cost.sincos = angles.len();
-        let sums = cost.add;
         for &(first, last) in &angles {
             cost.add += usize::from(has_constant(first, last));
             // the sums of a group share their beginnings
@@ -492,9 +468,6 @@ impl Dag {
             if longest == Some(last) {
                 cost.add += usize::from(last - first);
             }
-        }
-        if objective == Objective::Instructions {
-            cost.instructions = Some(self.instructions(live) + cost.add - sums);
         }
         cost
     }

@@ -53,7 +53,7 @@ fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, frame): &(Pr
 fn random_plans_are_the_seven_steps() {
     for name in SEVERAL {
         let robot = robot(name);
-        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics, Objective::Operations).frames());
+        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
         let mut rng = fastrand::Rng::with_seed(7);
         let mut plan = Plan::new(robot.dof());
         let mut tried = 0;
@@ -73,7 +73,7 @@ fn random_plans_are_the_seven_steps() {
 fn every_single_choice_is_the_seven_steps() {
     for name in ["ur5", "dense6_2p"] {
         let robot = robot(name);
-        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics, Objective::Operations).frames());
+        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
         let plan = default_plan(&robot, &[]);
         for other in moves.neighbours(&plan).iter().step_by(9) {
             if let Some(program) = unproved(&robot, other, Function::InverseDynamics) {
@@ -88,7 +88,7 @@ fn the_default_plan_is_the_same_every_time() {
     for name in ["puma560", "dense6_2p"] {
         let robot = robot(name);
         assert_eq!(default_plan(&robot, &[]), default_plan(&robot, &[]));
-        let mut search = Search::new(&robot, &[], Objective::Operations);
+        let mut search = Search::new(&robot, &[]);
         search.greedy(50);
         assert!(search.plans <= 51, "a bounded number of evaluations");
     }
@@ -110,8 +110,8 @@ fn rewritten_graphs_survive_as_text() {
     let plan = default_plan(&robot, &[]);
     let (frame, drawing) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
     let given = drawing.dag.sheet.numbers.len();
-    let before = evaluator::cost(&drawing.dag, &frame, Objective::Operations, &mut Vec::new());
-    let mut rewriting = Rewriting::new(drawing.dag.clone(), 3, |dag, live| evaluator::cost(dag, &frame, Objective::Operations, live));
+    let before = evaluator::cost(&drawing.dag, &frame, &mut Vec::new());
+    let mut rewriting = Rewriting::new(drawing.dag.clone(), 3, |dag, live| evaluator::cost(dag, &frame, live));
     let mut ticks = 0;
     let mut clock = |_: &Progress| {
         ticks += 1;
@@ -123,9 +123,9 @@ fn rewritten_graphs_survive_as_text() {
     assert!(cost.weight() < before.weight(), "{cost:?} from {before:?}");
     let text = graph_text::written(&dag, given);
     let read = graph_text::read(&text, &frame, &drawing.dag.sheet.numbers).unwrap();
-    assert_eq!(evaluator::cost(&read, &frame, Objective::Operations, &mut Vec::new()), cost);
+    assert_eq!(evaluator::cost(&read, &frame, &mut Vec::new()), cost);
     let on = graph_text::on_numbers_of(&read, &drawing.dag);
-    assert_eq!(evaluator::cost(&on, &frame, Objective::Operations, &mut Vec::new()), cost);
+    assert_eq!(evaluator::cost(&on, &frame, &mut Vec::new()), cost);
     // in another order of summands and factors, perhaps
     let again = graph_text::written(&on, given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");

@@ -84,11 +84,20 @@ fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: 
         let mut squares = zero;
         for (at, [sines, cosines]) in (start..end).zip(&mut turns) {
             let angles = robot.angles(&loaded::<V, DOF>(unit, &q, at));
-            for index in 0..ANGLES {
-                sines[index].0 = angles[index].0.store();
+            // Not a loop: what one indexes is written to memory first, perhaps in parts, and waited for.
+            macro_rules! each {
+                ($($index:literal)*) => {
+                    $(if $index < ANGLES {
+                        let angle = angles[$index].0;
+                        squares = squares.plus_product(angle, angle);
+                        let (sine, cosine) = kernel(angle);
+                        (sines[$index].0, cosines[$index].0) = (sine.store(), cosine.store());
+                    })*
+                };
             }
-            for index in 0..ANGLES {
-                let angle = V::load(unit, &sines[index].0);
+            each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+            for index in 16..ANGLES {
+                let angle = angles[index].0;
                 squares = squares.plus_product(angle, angle);
                 let (sine, cosine) = kernel(angle);
                 (sines[index].0, cosines[index].0) = (sine.store(), cosine.store());
@@ -96,13 +105,8 @@ fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: 
         }
         for (at, [sines, cosines]) in (start..end).zip(&turns) {
             let (sines, cosines) = (registers::<V, ANGLES>(unit, sines), registers::<V, ANGLES>(unit, cosines));
-            let torques = robot.torques(
-                &sines,
-                &cosines,
-                &loaded(unit, &q, at),
-                &loaded(unit, &qd, at),
-                &loaded(unit, &qdd, at),
-            );
+            let torques =
+                robot.torques(&sines, &cosines, &loaded(unit, &q, at), &loaded(unit, &qd, at), &loaded(unit, &qdd, at));
             for joint in 0..DOF {
                 tau[joint][at] = torques[joint].0.store();
             }

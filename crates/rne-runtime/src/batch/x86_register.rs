@@ -210,10 +210,44 @@ macro_rules! register {
     )*};
 }
 register!(
-    Doubles, f64, f64s, u64s, splat_u64s, equal_u64s, and_u64s, xor_u64s, select_u64s, add_u64s, shift_u64s,
-    add_f64s, sub_f64s, mul_f64s, div_f64s, mul_add_f64s, negate_mul_add_f64s, as_simd_f64s, as_mut_simd_f64s
+    Doubles,
+    f64,
+    f64s,
+    u64s,
+    splat_u64s,
+    equal_u64s,
+    and_u64s,
+    xor_u64s,
+    select_u64s,
+    add_u64s,
+    shift_u64s,
+    add_f64s,
+    sub_f64s,
+    mul_f64s,
+    div_f64s,
+    mul_add_f64s,
+    negate_mul_add_f64s,
+    as_simd_f64s,
+    as_mut_simd_f64s
 );
 register!(
-    Singles, f32, f32s, u32s, splat_u32s, equal_u32s, and_u32s, xor_u32s, select_u32s, add_u32s, shift_u32s,
-    add_f32s, sub_f32s, mul_f32s, div_f32s, mul_add_f32s, negate_mul_add_f32s, as_simd_f32s, as_mut_simd_f32s
+    Singles,
+    f32,
+    f32s,
+    u32s,
+    splat_u32s,
+    equal_u32s,
+    and_u32s,
+    xor_u32s,
+    select_u32s,
+    add_u32s,
+    shift_u32s,
+    add_f32s,
+    sub_f32s,
+    mul_f32s,
+    div_f32s,
+    mul_add_f32s,
+    negate_mul_add_f32s,
+    as_simd_f32s,
+    as_mut_simd_f32s
 );

@@ -16,11 +16,7 @@ pub(crate) fn sin_cos<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T;
 
 /// The same one by one, for a single angle and where there are no registers.
 #[inline(always)]
-pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(
-    angles: &[T; N],
-    sines: &mut [T; N],
-    cosines: &mut [T; N],
-) {
+pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T; N], cosines: &mut [T; N]) {
     #[cfg(feature = "std")]
     if !angles.iter().fold(true, |all, angle| all & angle.is_within_limit()) {
         (*sines, *cosines) = beyond_limit(*angles);

@@ -2,12 +2,12 @@
 //!
 //! With z = y² - 2 y e, which is (y - e)² to first order, and the polynomials P and Q:
 //!
-//! - sin(y - e) = y - (e - y z P(z)),
-//! - cos(y - e) = 1 + z (z Q(z) - 1/2). Without fused multiply-add the product is rounded, too coarsely: there it is
-//!   w + (((1 - w) - z/2) + z² Q(z)), where w = 1 - z/2 is rounded and (1 - w) - z/2 is what that leaves.
+//! - sin(y - e) = y - (e - y z P(z)), but for e z/6, a twentieth of a unit in the last place;
+//! - cos(y - e) = 1 + z (z Q(z) - 1/2).
 //!
-//! The last addition alone costs half a unit in the last place; all that is added there is so small that its own errors are
-//! a fraction of that. (The sine's e should be e (1 - z/2): a sixth of a unit at most.)
+//! The last addition costs half a unit in the last place; what is added there is so small that its own errors are a fraction of
+//! that. Without fused multiply-add the cosine's product would be rounded too coarsely: there it is
+//! w + (((1 - w) - z/2) + z² Q(z)), where w = 1 - z/2 is rounded and (1 - w) - z/2 is what that leaves.
 
 use super::{Float, Lanes};
 
@@ -54,19 +54,28 @@ pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z²: two coefficients at a time for a shorter chain of operations, or one at a
-/// time for fewer operations.
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z².
+///
+/// One coefficient at a time is the fewest operations; two at a time are a shorter chain. Without fused multiply-add c_0, by
+/// far the largest term, comes last, for its rounding is felt.
 #[inline(always)]
 fn polynomial<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
-    let mut sum = None;
-    // No closure: it would be compiled without the vector unit of its caller.
-    for terms in coefficients.chunks(if V::MANY { 1 } else { 2 }).rev() {
-        let (terms, power) = match *terms {
-            [even, odd] => (V::splat(even).plus_product(z, V::splat(odd)), square),
-            [even, ..] => (V::splat(even), if V::MANY { z } else { square }),
-            [] => (z, z),
-        };
-        sum = Some(if let Some(sum) = sum { terms.plus_product(power, sum) } else { terms });
+    let pair = |even, odd| V::splat(even).plus_product(z, V::splat(odd));
+    if V::MANY {
+        let mut sum = None;
+        for coefficient in coefficients.iter().rev() {
+            let term = V::splat(*coefficient);
+            sum = Some(if let Some(sum) = sum { term.plus_product(z, sum) } else { term });
+        }
+        return sum.unwrap_or(z);
     }
-    sum.unwrap_or(z)
+    match *coefficients {
+        [c0, c1, c2] if V::FUSED => pair(c0, c1).plus_product(square, V::splat(c2)),
+        [c0, c1, c2] => V::splat(c0) + (V::splat(c1) * z + square * V::splat(c2)),
+        [c0, c1, c2, c3, c4, c5] if V::FUSED => {
+            pair(c0, c1).plus_product(square, pair(c2, c3).plus_product(square, pair(c4, c5)))
+        }
+        [c0, c1, c2, c3, c4, c5] => V::splat(c0) + (V::splat(c1) * z + square * (pair(c2, c3) + square * pair(c4, c5))),
+        _ => z,
+    }
 }

@@ -7,7 +7,7 @@ use bytemuck::cast;
 use super::{FUSED, Lanes};
 
 /// Lanes that are filled from an array and written to one.
-pub(crate) trait Register: Lanes {
+pub trait Register: Lanes {
     const LANES: usize;
 
     /// The numbers from `start` on; zeros beyond the last.

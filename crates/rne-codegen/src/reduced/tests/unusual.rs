@@ -7,7 +7,7 @@ use crate::reduced::sheet::Dag;
 
 /// Some rounds of random changes, every plan that applies proved for a function in turn.
 fn wander(robot: &Robot, rounds: usize, seed: u64) {
-    let moves = Moves::new(Evaluator::new(robot, Function::InverseDynamics, Objective::Operations).frames());
+    let moves = Moves::new(Evaluator::new(robot, Function::InverseDynamics).frames());
     let mut rng = fastrand::Rng::with_seed(seed);
     let mut plan = Plan::new(robot.dof());
     for function in Function::ALL {
@@ -64,7 +64,7 @@ fn rewritten_graphs_are_the_seven_steps() {
             if is_wrong || seen.get() % 1000 == 0 {
                 graphs.borrow_mut().push(dag.clone());
             }
-            evaluator::cost(dag, &frame, Objective::Operations, live)
+            evaluator::cost(dag, &frame, live)
         };
         let mut rewriting = Rewriting::new(drawing.dag.clone(), 5, cost);
         let mut ticks = 0;
