@@ -25,7 +25,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     let loaded = attribute.source.as_ref().map(|source| load(source, &mut said)).unwrap_or_default();
     let program = loaded.robot.and_then(|robot| {
         let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), Span::call_site(), &mut said)?;
-        choice.compile(&robot, Function::InverseDynamics, attribute.form).ok()
+        choice.compile_fused(&robot, Function::InverseDynamics, attribute.form).ok()
     });
     let target = Target { item: &item, krate: &attribute.krate };
     let (ident, krate) = (&item.ident, &attribute.krate);
@@ -61,8 +61,6 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     };
     let [dof, angle_count] = [program.dof, program.turns.len()].map(Literal::usize_unsuffixed);
     let scalar = quote!(#krate::Scalar);
-    let program =
-        if program.form == rne_codegen::Form::SevenSteps { program } else { rne_codegen::fusion::fused(&program) };
     let body = body(&program, &scalar);
     let (angles, torques) = (body.angles(), body.beyond_angles());
     let method = method(

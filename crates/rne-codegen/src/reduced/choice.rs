@@ -13,6 +13,7 @@ use super::transcript::Drawing;
 use super::trick::Trick;
 use crate::CompileError;
 use crate::function::{Form, Function};
+use crate::fusion;
 use crate::program::Program;
 use crate::proof;
 
@@ -49,18 +50,37 @@ impl Choice {
     /// # Errors
     /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
     pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
+        self.compile_arranged(robot, function, form, |program| program)
+    }
+
+    /// The same for the fewest instructions, as [`fusion::fused`] arranges it, and proved so. The seven steps are left as they
+    /// are, for they have the bits of the runtime.
+    ///
+    /// # Errors
+    /// As [`Choice::compile`].
+    pub fn compile_fused(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
+        self.compile_arranged(robot, function, form, |program| fusion::fused(&program))
+    }
+
+    fn compile_arranged(
+        &self,
+        robot: &Robot,
+        function: Function,
+        form: Form,
+        arranged: fn(Program) -> Program,
+    ) -> Result<Program, CompileError> {
         if form == Form::SevenSteps {
             return crate::compile(robot, function, form);
         }
         if form == Form::Rewritten && function == Function::InverseDynamics {
-            return self.compile_rewritten(robot);
+            return self.compile_rewritten(robot, arranged);
         }
         let (frame, drawing) = drawn(robot, &self.plan, function)?;
-        let program = drawing.program(robot, &frame, function, form)?;
+        let program = drawing.program(robot, &frame, function, form, arranged)?;
         Ok(Program { choices: self.plan.choices(), ..program })
     }
 
-    fn compile_rewritten(&self, robot: &Robot) -> Result<Program, CompileError> {
+    fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
         let Some(Rewritten { plan, graph }) = &self.rewritten else {
             return Err(CompileError::Plan(format!(
                 "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot file, which \
@@ -72,7 +92,7 @@ impl Choice {
         let (frame, drawing) = drawn(robot, plan, function)?;
         let dag = graph_text::read(graph, &frame, &drawing.dag.sheet.numbers)
             .map_err(|(line, message)| misread(robot, line, &message))?;
-        drawing.with(dag).program(robot, &frame, function, Form::Rewritten)
+        drawing.with(dag).program(robot, &frame, function, Form::Rewritten, arranged)
     }
 }
 

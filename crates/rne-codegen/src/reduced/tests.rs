@@ -129,7 +129,10 @@ fn rewritten_graphs_survive_as_text() {
     // in another order of summands and factors, perhaps
     let again = graph_text::written(&on, given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
-    let program = drawing.with(read).program(&robot, &frame, Function::InverseDynamics, Form::Rewritten).unwrap();
+    let program = drawing
+        .with(read)
+        .program(&robot, &frame, Function::InverseDynamics, Form::Rewritten, |program| program)
+        .unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 

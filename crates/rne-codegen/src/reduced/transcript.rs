@@ -54,15 +54,17 @@ impl Drawing {
         Self { dag, ..self }
     }
 
-    /// The program, proved to be that of the seven steps.
+    /// The program, `arranged` and proved to be that of the seven steps.
     pub(crate) fn program(
         &self,
         robot: &Robot,
         frame: &Frame,
         function: Function,
         form: Form,
+        arranged: fn(Program) -> Program,
     ) -> Result<Program, CompileError> {
-        let (mut program, exactly) = self.unproved(robot, frame, function, form)?;
+        let (program, exactly) = self.unproved(robot, frame, function, form)?;
+        let mut program = arranged(program);
         program.proof = Some(proof::prove(robot, &program, &exactly, frame.table.reading)?);
         Ok(program)
     }

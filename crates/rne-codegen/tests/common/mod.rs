@@ -40,13 +40,19 @@ pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
     Function::ALL.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
 }
 
-/// All functions of a shipped robot in the reduced form of its plan, and `inverse_dynamics` rewritten.
-#[allow(dead_code)] // not every test needs them
-pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
+/// The plan file of a shipped robot.
+#[allow(dead_code)] // not every test needs it
+pub(crate) fn choice(robot: &Robot) -> Choice {
     let path = format!("{}/../../robots/{}.plan.yaml", env!("CARGO_MANIFEST_DIR"), robot.name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let plan = PlanFile::read(&path, &text, robot).unwrap_or_else(|report| panic!("{report}"));
-    let choice = Choice::from(plan);
+    Choice::from(plan)
+}
+
+/// All functions of a shipped robot in the reduced form of its plan, and `inverse_dynamics` rewritten.
+#[allow(dead_code)] // not every test needs them
+pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
+    let choice = choice(robot);
     let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
     let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
     programs.push(compiled(Function::InverseDynamics, Form::Rewritten));

@@ -77,7 +77,7 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
 const LIMIT: f32 = 1e5;
 
 macro_rules! float {
-    ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx512:ident, $avx:ident, $other:ident]) => {
+    ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx:ident, $other:ident]) => {
         impl Float for $type {
             const ZERO: Self = 0.0;
             const MINUS_TWO: Self = -2.0;
@@ -86,9 +86,7 @@ macro_rules! float {
             const P: &'static [Self] = &polynomial::$P;
             const Q: &'static [Self] = &polynomial::$Q;
 
-            #[cfg(all(feature = "std", target_feature = "avx512f"))]
-            type Register = wide::$avx512;
-            #[cfg(all(feature = "std", target_feature = "avx", not(target_feature = "avx512f")))]
+            #[cfg(all(feature = "std", target_feature = "avx"))]
             type Register = wide::$avx;
             #[cfg(all(feature = "std", not(target_feature = "avx")))]
             type Register = wide::$other;
@@ -121,8 +119,8 @@ macro_rules! float {
         }
     };
 }
-float!(f64, double, P_F64, Q_F64, [f64x8, f64x4, f64x2]);
-float!(f32, single, P_F32, Q_F32, [f32x8, f32x8, f32x4]);
+float!(f64, double, P_F64, Q_F64, [f64x4, f64x2]);
+float!(f32, single, P_F32, Q_F32, [f32x8, f32x4]);
 
 /// Sine and cosine, correct up to the limit: no branch.
 #[inline(always)]

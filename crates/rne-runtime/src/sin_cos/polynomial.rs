@@ -1,13 +1,17 @@
 //! Sine and cosine of a reduced angle `y - e`, abs(y) ≤ π/4 and e small.
 //!
-//! With z = y² - 2 y e, which is (y - e)² to first order, and the polynomials P and Q:
+//! With the polynomials P and Q, to first order in e, there are two ways:
 //!
-//! - sin(y - e) = y - (e - y z P(z)), but for e z/6, a twentieth of a unit in the last place;
-//! - cos(y - e) = 1 + z (z Q(z) - 1/2).
+//! | | z | sin(y - e) | cos(y - e) |
+//! |---|---|---|---|
+//! | [`soon`], for a shorter chain of operations | y² | y - (e (1 - z/2) - y z P(z)) | 1 - z/2 + (z² Q(z) + y e) |
+//! | [`short`], for fewer operations | y² - 2 y e | y - (e - y z P(z)) | 1 + z (z Q(z) - 1/2) |
+//!
+//! The first does not wait for e, which comes late. The second needs fused multiply-add, or the cosine's product is rounded too
+//! coarsely; it leaves out e z/6, a twentieth of a unit in the last place of the sine.
 //!
 //! The last addition costs half a unit in the last place; what is added there is so small that its own errors are a fraction of
-//! that. Without fused multiply-add the cosine's product would be rounded too coarsely: there it is
-//! w + (((1 - w) - z/2) + z² Q(z)), where w = 1 - z/2 is rounded and (1 - w) - z/2 is what that leaves.
+//! that.
 
 use super::{Float, Lanes};
 
@@ -36,46 +40,55 @@ pub(super) const Q_F32: [f32; 3] = [4.166_664_6e-2, -1.388_731_6e-3, 2.443_315_7
 /// Sine and cosine of `y - e`.
 #[inline(always)]
 pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
-    let (half, one) = (V::splat(V::Element::HALF), V::splat(V::Element::ONE));
-    let z = (e * V::splat(V::Element::MINUS_TWO) * y).plus_product(y, y);
+    if V::MANY { short(y, e) } else { soon(y, e) }
+}
+
+// In this order and with these signs the sine of a negative zero is one, both ways.
+
+#[inline(always)]
+fn soon<V: Lanes>(y: V, e: V) -> (V, V) {
+    let one = V::splat(V::Element::ONE);
+    let z = y * y;
     let square = z * z;
-
-    // In this order and with these signs the sine of a negative zero is one.
-    let sine = y - e.minus_product(z * y, polynomial(V::Element::P, z, square));
-
-    let q = polynomial(V::Element::Q, z, square);
-    let cosine = if V::FUSED {
-        one.plus_product(z, (-half).plus_product(z, q))
-    } else {
-        let half = half * z;
-        let w = one - half;
-        w + (((one - w) - half) + square * q)
-    };
+    let half = V::splat(V::Element::HALF) * z;
+    // rounded; (1 - w) - z/2 is what that leaves
+    let w = one - half;
+    let sine = y - (e * w).minus_product(z * y, two_by_two(V::Element::P, z, square));
+    let correction = (y * e).plus_product(square, two_by_two(V::Element::Q, z, square));
+    let cosine = w + (((one - w) - half) + correction);
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z².
-///
-/// One coefficient at a time is the fewest operations; two at a time are a shorter chain. Without fused multiply-add c_0, by
-/// far the largest term, comes last, for its rounding is felt.
 #[inline(always)]
-fn polynomial<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
+fn short<V: Lanes>(y: V, e: V) -> (V, V) {
+    let z = (e * V::splat(V::Element::MINUS_TWO) * y).plus_product(y, y);
+    let sine = y - e.minus_product(z * y, one_by_one(V::Element::P, z));
+    let less = V::splat(-V::Element::HALF).plus_product(z, one_by_one(V::Element::Q, z));
+    let cosine = V::splat(V::Element::ONE).plus_product(z, less);
+    (sine, cosine)
+}
+
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z², two coefficients at a time for a shorter chain of operations, and c_0, by
+/// far the largest term, last, for its rounding is felt.
+#[inline(always)]
+fn two_by_two<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
     let pair = |even, odd| V::splat(even).plus_product(z, V::splat(odd));
-    if V::MANY {
-        let mut sum = None;
-        for coefficient in coefficients.iter().rev() {
-            let term = V::splat(*coefficient);
-            sum = Some(if let Some(sum) = sum { term.plus_product(z, sum) } else { term });
-        }
-        return sum.unwrap_or(z);
-    }
+    let first = |first, second, others: V| V::splat(first) + (V::splat(second) * z).plus_product(square, others);
     match *coefficients {
-        [c0, c1, c2] if V::FUSED => pair(c0, c1).plus_product(square, V::splat(c2)),
-        [c0, c1, c2] => V::splat(c0) + (V::splat(c1) * z + square * V::splat(c2)),
-        [c0, c1, c2, c3, c4, c5] if V::FUSED => {
-            pair(c0, c1).plus_product(square, pair(c2, c3).plus_product(square, pair(c4, c5)))
-        }
-        [c0, c1, c2, c3, c4, c5] => V::splat(c0) + (V::splat(c1) * z + square * (pair(c2, c3) + square * pair(c4, c5))),
+        [c0, c1, c2] => first(c0, c1, V::splat(c2)),
+        [c0, c1, c2, c3, c4, c5] => first(c0, c1, pair(c2, c3).plus_product(square, pair(c4, c5))),
         _ => z,
     }
+}
+
+/// The same, one coefficient at a time for fewer operations.
+#[inline(always)]
+fn one_by_one<V: Lanes>(coefficients: &'static [V::Element], z: V) -> V {
+    let mut sum = None;
+    // No closure: it would be compiled without the vector unit of its caller.
+    for coefficient in coefficients.iter().rev() {
+        let term = V::splat(*coefficient);
+        sum = Some(if let Some(sum) = sum { term.plus_product(z, sum) } else { term });
+    }
+    sum.unwrap_or(z)
 }

@@ -1,0 +1,72 @@
+//! Fused multiply-adds: fewer instructions, the same operations but for their order, proved to be the same function.
+
+mod common;
+
+use common::{choice, compiled, shipped};
+use rne_codegen::{Expression, Form, Function, Name, Program, fusion};
+use std::collections::BTreeSet;
+
+fn names(expression: &Expression, found: &mut BTreeSet<Name>) {
+    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+    match expression {
+        Variable(name) => {
+            found.insert(*name);
+        }
+        Zero => {}
+        Negative(a) => names(a, found),
+        Sum(a, b) | Difference(a, b) | Product(a, b) => {
+            names(a, found);
+            names(b, found);
+        }
+    }
+}
+
+/// What is defined, in order, is what is used, later.
+fn check_definitions(program: &Program) {
+    let mut known: BTreeSet<Name> = program.arguments.iter().copied().collect();
+    known.extend(program.constants.iter().map(|constant| constant.name));
+    known.extend(program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
+    let mut used = BTreeSet::new();
+    for statement in &program.statements {
+        let mut operands = BTreeSet::new();
+        names(&statement.value, &mut operands);
+        assert!(operands.is_subset(&known), "{} of {}", statement.name, program.robot);
+        used.extend(operands);
+        assert!(known.insert(statement.name), "{} of {} twice", statement.name, program.robot);
+    }
+    for output in &program.outputs {
+        names(&output.value, &mut used);
+    }
+    let idle = program.statements.iter().find(|statement| !used.contains(&statement.name));
+    assert_eq!(idle.map(|statement| statement.name), None, "of {}", program.robot);
+}
+
+#[test]
+fn every_program_takes_fewer_instructions_and_no_more_sums() {
+    for (_, programs) in compiled() {
+        for program in programs {
+            let fused = fusion::fused(&program);
+            check_definitions(&fused);
+            let (before, after) = (program.operations(), fused.operations());
+            assert!(fusion::instructions(&fused) <= fusion::instructions(&program), "{}", program.robot);
+            assert_eq!(after.add, before.add, "{} of {}", program.function, program.robot);
+            // a product that is fused with several sums is computed with each of them
+            assert!(after.mul >= before.mul, "{} of {}", program.function, program.robot);
+        }
+    }
+}
+
+/// The proof runs in two prime fields; a program that it refuses is an error here.
+#[test]
+fn every_reduced_program_is_proved_as_it_is_fused() {
+    for robot in shipped() {
+        let choice = choice(&robot);
+        let program = choice.compile_fused(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let proof = program.proof.expect("a proof");
+        assert!(proof.rounding < 1e-13, "{}: {:e}", robot.name, proof.rounding);
+        let plain = choice.compile(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let [before, after] = [&plain, &program].map(fusion::instructions);
+        println!("{:<20} {before} instructions as written, {after} fused", robot.name);
+        assert!(after <= before, "{}", robot.name);
+    }
+}
