@@ -16,6 +16,7 @@ mod function;
 pub mod fusion;
 mod graph;
 mod interpret;
+mod latency;
 mod ledger;
 mod links;
 mod program;

@@ -2,13 +2,13 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::quote;
-use rne_codegen::Function;
+use rne_codegen::{Form, Function, emit};
 use syn::DeriveInput;
 
 use crate::attribute::Attribute;
 use crate::error::Errors;
 use crate::expand::{choice, load};
-use crate::implementation::{Target, body};
+use crate::implementation::Target;
 
 /// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
 /// `InverseDynamics`, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
@@ -61,7 +61,8 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     };
     let [dof, angle_count] = [program.dof, program.turns.len()].map(Literal::usize_unsuffixed);
     let scalar = quote!(#krate::Scalar);
-    let body = body(&program, &scalar);
+    let body = emit::Body::new(&program, &scalar);
+    let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };
     let (angles, torques) = (body.angles(), body.beyond_angles());
     let method = method(
         &quote!(#dof),

@@ -71,7 +71,10 @@ impl Target<'_> {
 
     fn method(&self, program: &Program) -> TokenStream {
         let krate = self.krate;
-        let body = body(program, &quote!(#krate::Scalar)).whole();
+        let scalar = quote!(#krate::Scalar);
+        let body = emit::Body::new(program, &scalar);
+        // The seven steps compute the bits of the runtime, so that nothing is fused there.
+        let body = if program.form == Form::SevenSteps { body } else { body.fused() }.whole();
         let wrench = (program.function == Function::InverseDynamicsWithWrench)
             .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let dof = Literal::usize_unsuffixed(program.dof);
@@ -215,12 +218,6 @@ impl Constants {
             operations: rne_codegen::Operations::default(),
         }
     }
-}
-
-/// What computes a program. The seven steps compute the bits of the runtime, so that nothing is fused there.
-pub(crate) fn body<'p>(program: &'p Program, scalar: &'p TokenStream) -> emit::Body<'p> {
-    let body = emit::Body::new(program, scalar);
-    if program.form == Form::SevenSteps { body } else { body.fused() }
 }
 
 /// A number that reads back as the same bits, or infinity.

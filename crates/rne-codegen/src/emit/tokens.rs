@@ -5,6 +5,7 @@ use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
+use crate::latency::{self, Latency};
 use crate::program::{Expression, Program, Statement};
 use crate::quantity::Name;
 
@@ -12,30 +13,45 @@ use crate::quantity::Name;
 ///
 /// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
 /// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
-#[derive(Clone, Copy)]
 pub struct Body<'a> {
     program: &'a Program,
     scalar: &'a TokenStream,
-    is_fused: bool,
+    fusing: Fusing,
+}
+
+/// Which products are added by the scalar's `mul_add`.
+enum Fusing {
+    None,
+    /// Those that are not waited for, or sooner there so.
+    Soonest(Box<Latency>),
+    All,
 }
 
 impl<'a> Body<'a> {
     /// The body of a program, its products and sums rounded one by one.
     #[must_use]
     pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
-        Self { program, scalar, is_fused: false }
+        Self { program, scalar, fusing: Fusing::None }
     }
 
-    /// The same with the scalar's `mul_add` wherever a product is added: one instruction on a target that has it, product
-    /// and sum on any other. Results differ in the last digits from target to target, so the seven steps are not written so.
+    /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product and sum
+    /// on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
+    ///
+    /// Results differ in the last digits from target to target, so the seven steps are not written so.
     #[must_use]
     pub fn fused(self) -> Self {
-        Self { is_fused: true, ..self }
+        Self { fusing: Fusing::Soonest(Box::new(Latency::new(self.program))), ..self }
+    }
+
+    /// The same with `mul_add` wherever a product is added: the fewest instructions.
+    #[must_use]
+    pub fn all_fused(self) -> Self {
+        Self { fusing: Fusing::All, ..self }
     }
 
     /// All of it.
     #[must_use]
-    pub fn whole(self) -> TokenStream {
+    pub fn whole(&self) -> TokenStream {
         let arguments = self.arguments(|_| true);
         let angles = self.statements(&self.program.angles);
         let turns = self.turns();
@@ -45,7 +61,7 @@ impl<'a> Body<'a> {
 
     /// Its first part, for a loop of its own: the angles of [`Program::turns`] as an array, from the argument `q`.
     #[must_use]
-    pub fn angles(self) -> TokenStream {
+    pub fn angles(&self) -> TokenStream {
         let arguments = self.arguments(|name| name == "q");
         let statements = self.statements(&self.program.angles);
         let angles = self.program.turns.iter().map(|turn| &turn.angle);
@@ -55,14 +71,14 @@ impl<'a> Body<'a> {
 
     /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its angles.
     #[must_use]
-    pub fn beyond_angles(self) -> TokenStream {
+    pub fn beyond_angles(&self) -> TokenStream {
         let arguments = self.arguments(|_| true);
         let [sines, cosines] = self.turn_names();
         let (constants, rest) = (self.constants(), self.beyond_turns());
         quote!(#arguments let #sines = *sin; let #cosines = *cos; #constants #rest)
     }
 
-    fn arguments(self, is_asked: impl Fn(&str) -> bool) -> TokenStream {
+    fn arguments(&self, is_asked: impl Fn(&str) -> bool) -> TokenStream {
         let arrays = arguments(self.program).into_iter().filter(|array| is_asked(array.name));
         arrays
             .map(|ArgumentArray { name, elements }| {
@@ -76,7 +92,7 @@ impl<'a> Body<'a> {
             .collect()
     }
 
-    fn constants(self) -> TokenStream {
+    fn constants(&self) -> TokenStream {
         let scalar = self.scalar;
         let zero = self.program.returns_zero().then(|| {
             let zero = literal(0.0);
@@ -89,23 +105,23 @@ impl<'a> Body<'a> {
         quote!(#zero #(#constants)*)
     }
 
-    fn statements(self, statements: &[Statement]) -> TokenStream {
+    fn statements(&self, statements: &[Statement]) -> TokenStream {
         let lines = statements.iter().map(|Statement { name, value, .. }| {
-            let value = self.expression(value);
+            let value = self.expression(value, Some(*name));
             quote!(let #name = #value;)
         });
         lines.collect()
     }
 
     /// The names of the sines and of the cosines, as patterns of arrays.
-    fn turn_names(self) -> [TokenStream; 2] {
+    fn turn_names(&self) -> [TokenStream; 2] {
         let sines = self.program.turns.iter().map(|turn| name_or_underscore(turn.sine));
         let cosines = self.program.turns.iter().map(|turn| name_or_underscore(turn.cosine));
         [quote!([#(#sines),*]), quote!([#(#cosines),*])]
     }
 
     /// The sines and cosines, all at once.
-    fn turns(self) -> TokenStream {
+    fn turns(&self) -> TokenStream {
         let scalar = self.scalar;
         let [sines, cosines] = self.turn_names();
         let angles = self.program.turns.iter().map(|turn| &turn.angle);
@@ -120,14 +136,23 @@ impl<'a> Body<'a> {
     }
 
     /// The statements and what is returned.
-    fn beyond_turns(self) -> TokenStream {
+    fn beyond_turns(&self) -> TokenStream {
         let statements = self.statements(&self.program.statements);
-        let outputs = self.program.outputs.iter().map(|output| self.expression(&output.value));
+        let outputs = self.program.outputs.iter().map(|output| self.expression(&output.value, None));
         quote!(#statements [#(#outputs),*])
     }
 
-    fn expression(self, expression: &Expression) -> TokenStream {
-        if self.is_fused { fused(expression, self.scalar) } else { expression.to_token_stream() }
+    /// The value of a statement or, without a name, what is returned.
+    fn expression(&self, expression: &Expression, name: Option<Name>) -> TokenStream {
+        let scalar = self.scalar;
+        match &self.fusing {
+            Fusing::None => expression.to_token_stream(),
+            Fusing::All => Fused { scalar, latency: None }.expression(expression, 0),
+            Fusing::Soonest(latency) => {
+                let rest = name.map_or(0, |name| latency.rest(name));
+                Fused { scalar, latency: Some(latency) }.expression(expression, rest)
+            }
+        }
     }
 }
 
@@ -135,50 +160,76 @@ fn name_or_underscore(name: Option<Name>) -> TokenStream {
     name.map_or_else(|| quote!(_), |name| name.to_token_stream())
 }
 
-/// An expression with fused products.
-fn fused(expression: &Expression, scalar: &TokenStream) -> TokenStream {
-    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
-    let inner = |expression: &Expression| fused(expression, scalar);
-    let operand = |operand: &Expression, position| {
-        let tokens = inner(operand);
-        let is_call = matches!(operand, Sum(a, b) | Difference(a, b) if is_product(a) || is_product(b));
-        if !is_call && needs_parentheses(operand, position) { quote!((#tokens)) } else { tokens }
-    };
-    let mul_add = |x: TokenStream, y: &Expression, z: TokenStream| {
-        let y = inner(y);
-        quote!(#scalar::mul_add(#x, #y, #z))
-    };
-    let minus = |expression: &Expression| {
-        let tokens = operand(expression, Position::Negated);
-        quote!(-#tokens)
-    };
-    match expression {
-        Variable(_) | Zero => expression.to_token_stream(),
-        Negative(a) => minus(a),
-        Sum(a, b) => match (&**a, &**b) {
-            (a, Product(x, y)) | (Product(x, y), a) => mul_add(inner(x), y, inner(a)),
-            (a, b) => {
+/// Writes expressions with fused products.
+struct Fused<'a> {
+    scalar: &'a TokenStream,
+    /// `None`: all of them.
+    latency: Option<&'a Latency>,
+}
+
+impl Fused<'_> {
+    /// An expression that `rest` follows.
+    fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
+        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        let rest_of_operand = rest + latency::PRODUCT;
+        let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
+        let operand = |operand: &Expression, position| {
+            let tokens = inner(operand);
+            let is_call = self.fused(operand, rest_of_operand).is_some();
+            if !is_call && needs_parentheses(operand, position) { quote!((#tokens)) } else { tokens }
+        };
+        let minus = |expression: &Expression| {
+            let tokens = operand(expression, Position::Negated);
+            quote!(-#tokens)
+        };
+        if let Some((x, y, addend, negative)) = self.fused(expression, rest) {
+            let (scalar, y) = (self.scalar, inner(y));
+            let x = if negative == Some(Negated::Factor) { minus(x) } else { inner(x) };
+            let addend = if negative == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
+            return quote!(#scalar::mul_add(#x, #y, #addend));
+        }
+        match expression {
+            Variable(_) | Zero => expression.to_token_stream(),
+            Negative(a) => minus(a),
+            Sum(a, b) => {
                 let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
                 quote!(#a + #b)
             }
-        },
-        Difference(a, b) => match (&**a, &**b) {
-            (a, Product(x, y)) => mul_add(minus(x), y, inner(a)),
-            (Product(x, y), b) => mul_add(inner(x), y, minus(b)),
-            (a, b) => {
+            Difference(a, b) => {
                 let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
                 quote!(#a - #b)
             }
-        },
-        Product(a, b) => {
-            let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
-            quote!(#a * #b)
+            Product(a, b) => {
+                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
+                quote!(#a * #b)
+            }
         }
+    }
+
+    /// The factors, the addend and what of them is negated, if the expression is a fused multiply-add.
+    fn fused<'e>(&self, expression: &'e Expression, rest: usize) -> Option<FusedParts<'e>> {
+        use Expression::{Difference, Product, Sum};
+        let (addend, product, negative) = match expression {
+            Sum(a, b) if matches!(**b, Product(..)) => (a, b, None),
+            Sum(a, b) => (b, a, None),
+            Difference(a, b) if matches!(**b, Product(..)) => (a, b, Some(Negated::Factor)),
+            Difference(a, b) => (b, a, Some(Negated::Addend)),
+            _ => return None,
+        };
+        let Product(x, y) = &**product else { return None };
+        let is_fused = self.latency.is_none_or(|latency| latency.is_fused(addend, x, y, rest));
+        is_fused.then_some((x, y, addend, negative))
     }
 }
 
-fn is_product(expression: &Expression) -> bool {
-    matches!(expression, Expression::Product(..))
+/// Two factors, an addend, and what is negated.
+type FusedParts<'e> = (&'e Expression, &'e Expression, &'e Expression, Option<Negated>);
+
+/// What a difference negates.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Negated {
+    Factor,
+    Addend,
 }
 
 /// A number as a literal that reads back as the same bits; negative numbers as a minus and a literal, as in source text.

@@ -75,6 +75,9 @@ fn two_by_two<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) ->
     let pair = |even, odd| V::splat(even).plus_product(z, V::splat(odd));
     let first = |first, second, others: V| V::splat(first) + (V::splat(second) * z).plus_product(square, others);
     match *coefficients {
+        [c0, c1, c2, c3, c4, c5] if V::FUSED => {
+            pair(c0, c1).plus_product(square, pair(c2, c3).plus_product(square, pair(c4, c5)))
+        }
         [c0, c1, c2] => first(c0, c1, V::splat(c2)),
         [c0, c1, c2, c3, c4, c5] => first(c0, c1, pair(c2, c3).plus_product(square, pair(c4, c5))),
         _ => z,

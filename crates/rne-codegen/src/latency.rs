@@ -1,0 +1,119 @@
+//! How long the chains of operations are that a call waits for, on a processor that computes independent ones side by side.
+//!
+//! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an addition.
+//! So a product is fused where that is sooner, or where nothing waits for the sum.
+
+use std::collections::BTreeMap;
+
+use crate::program::{Expression, Program};
+use crate::quantity::Name;
+
+/// Cycles of a multiplication and of a fused multiply-add: x86 since 2017, of both makers.
+pub(crate) const PRODUCT: usize = 4;
+
+/// Cycles of an addition there.
+const SUM: usize = 3;
+
+/// Cycles after which sines and cosines are there.
+const TURN: usize = 50;
+
+/// A sum with less time to spare than this is waited for.
+const SPARE: usize = 4;
+
+/// When the values of a program are there, in cycles from the call on, and how long what follows takes.
+pub(crate) struct Latency {
+    known: BTreeMap<Name, usize>,
+    rest: BTreeMap<Name, usize>,
+    total: usize,
+}
+
+/// The two ways to add a product.
+struct Ways {
+    fused: usize,
+    apart: usize,
+}
+
+impl Latency {
+    pub(crate) fn new(program: &Program) -> Self {
+        let mut latency = Self { known: BTreeMap::new(), rest: BTreeMap::new(), total: 0 };
+        for name in program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten() {
+            latency.known.insert(name, TURN);
+        }
+        for statement in &program.statements {
+            let at = latency.at(&statement.value);
+            latency.known.insert(statement.name, at);
+        }
+        latency.total = program.outputs.iter().map(|output| latency.at(&output.value)).max().unwrap_or(0);
+        for output in &program.outputs {
+            latency.follow(&output.value, 0);
+        }
+        for statement in program.statements.iter().rev() {
+            let rest = latency.rest(statement.name);
+            latency.follow(&statement.value, rest);
+        }
+        latency
+    }
+
+    /// What follows a statement.
+    pub(crate) fn rest(&self, name: Name) -> usize {
+        self.rest.get(&name).copied().unwrap_or(0)
+    }
+
+    /// Whether x y is better fused with what it is added to; `rest` follows the sum.
+    pub(crate) fn is_fused(&self, addend: &Expression, x: &Expression, y: &Expression, rest: usize) -> bool {
+        let Ways { fused, apart } = self.ways(addend, x, y);
+        fused <= apart || apart + rest + SPARE < self.total
+    }
+
+    fn ways(&self, addend: &Expression, x: &Expression, y: &Expression) -> Ways {
+        let (addend, factors) = (self.at(addend), self.at(x).max(self.at(y)));
+        Ways { fused: addend.max(factors) + PRODUCT, apart: addend.max(factors + PRODUCT) + SUM }
+    }
+
+    fn at(&self, expression: &Expression) -> usize {
+        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        match expression {
+            Variable(name) => self.known.get(name).copied().unwrap_or(0),
+            Zero => 0,
+            Negative(a) => self.at(a),
+            Product(a, b) => self.at(a).max(self.at(b)) + PRODUCT,
+            Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
+                (a, Product(x, y)) | (Product(x, y), a) => {
+                    let Ways { fused, apart } = self.ways(a, x, y);
+                    fused.min(apart)
+                }
+                (a, b) => self.at(a).max(self.at(b)) + SUM,
+            },
+        }
+    }
+
+    /// Notes for what an expression uses that it and `rest` follow.
+    fn follow(&mut self, expression: &Expression, rest: usize) {
+        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        match expression {
+            Variable(name) => {
+                let known = self.rest.entry(*name).or_default();
+                *known = rest.max(*known);
+            }
+            Zero => {}
+            Negative(a) => self.follow(a, rest),
+            Product(a, b) => {
+                self.follow(a, rest + PRODUCT);
+                self.follow(b, rest + PRODUCT);
+            }
+            Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
+                (a, Product(x, y)) | (Product(x, y), a) => {
+                    let Ways { fused, apart } = self.ways(a, x, y);
+                    let (sum, product) = if fused <= apart { (PRODUCT, PRODUCT) } else { (SUM, SUM + PRODUCT) };
+                    self.follow(a, rest + sum);
+                    self.follow(x, rest + product);
+                    self.follow(y, rest + product);
+                }
+                (a, b) => {
+                    self.follow(a, rest + SUM);
+                    self.follow(b, rest + SUM);
+                }
+            },
+        }
+    }
+}
