@@ -1,4 +1,4 @@
-//! Products and sums as fused multiply-adds: the same polynomials in fewer instructions.
+//! The order of the terms of sums: for the fewest instructions, or for the shortest wait.
 //!
 //! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many products
 //! are left over depends on the order of the terms and on which products are computed at all:
@@ -8,11 +8,13 @@
 //! - A product that is used in several sums is fused with each of them and never computed by itself.
 //! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can start.
 //!
-//! Terms change places, so torques differ from those of the program as written in their last digits.
+//! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of operations: there
+//! the term that comes last should be added last ([`soonest`]).
 
 use std::collections::BTreeMap;
 
-use crate::program::{Expression, Output, Program, Sign, Statement};
+use crate::latency;
+use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
 use crate::quantity::Name;
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
@@ -35,18 +37,23 @@ pub fn fused(program: &Program) -> Program {
     }
     let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
     graph.count_uses(&outputs);
-    graph.flatten();
+    graph.flatten(Named::Too);
     graph.choose_products();
-    let mut statements = Vec::new();
-    for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
-        let found = graph.nodes.iter().position(|node| node.statement == Some(index));
-        if let Some(node) = found.filter(|&node| graph.is_named(node)) {
-            statements.push(Statement { place: *place, name: *name, value: graph.value(node) });
-        }
+    graph.program(program, &outputs)
+}
+
+/// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
+#[must_use]
+pub fn soonest(program: &Program) -> Program {
+    let mut graph = Graph::default();
+    for statement in &program.statements {
+        graph.define(statement);
     }
-    let outputs = program.outputs.iter().zip(outputs);
-    let outputs = outputs.map(|(output, term)| Output { name: output.name, value: graph.operand(term) }).collect();
-    Program { statements, outputs, ..program.clone() }
+    let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
+    graph.count_uses(&outputs);
+    graph.flatten(Named::Not);
+    graph.sort_terms(&program.turns);
+    graph.program(program, &outputs)
 }
 
 /// Instructions of one evaluation, without sines and cosines, where every product that stands right of + or - is fused.
@@ -105,11 +112,20 @@ struct Graph {
 
 impl Graph {
     fn define(&mut self, statement: &Statement) {
-        let term = self.term(&statement.value);
+        let mut term = self.term(&statement.value);
         let node = &mut self.nodes[term.node];
-        if node.statement.is_none() && !matches!(node.kind, Kind::Leaf(_)) {
-            (node.statement, node.name) = (Some(self.statements), Some(statement.name));
+        match &mut node.kind {
+            // a name stands for a value with its sign
+            Kind::Sum(terms) if node.name.is_none() && term.sign == Sign::Minus => {
+                terms.iter_mut().for_each(|term| *term = term.opposite());
+                term.sign = Sign::Plus;
+            }
+            Kind::Sum(_) | Kind::Product(_) if node.name.is_none() && term.sign == Sign::Plus => {}
+            // another name of what has one, or its negative
+            _ => term = Term { sign: Sign::Plus, node: self.push(Kind::Sum(vec![term])) },
         }
+        let node = &mut self.nodes[term.node];
+        (node.statement, node.name) = (Some(self.statements), Some(statement.name));
         self.statements += 1;
         self.known.insert(statement.name, term);
     }
@@ -166,14 +182,14 @@ impl Graph {
     }
 
     /// Sums that are used in one sum alone become terms of it. Nodes stand behind what they use.
-    fn flatten(&mut self) {
+    fn flatten(&mut self, which: Named) {
         for index in 0..self.nodes.len() {
             let Kind::Sum(terms) = &self.nodes[index].kind else { continue };
             let mut flat = Vec::new();
             let mut inlined = Vec::new();
             for &term in terms {
                 match &self.nodes[term.node] {
-                    Node { kind: Kind::Sum(inner), uses: 1, .. } => {
+                    Node { kind: Kind::Sum(inner), uses: 1, name, .. } if which == Named::Too || name.is_none() => {
                         let signed = |inner: &Term| if term.sign == Sign::Minus { inner.opposite() } else { *inner };
                         flat.extend(inner.iter().map(signed));
                         inlined.push(term.node);
@@ -216,9 +232,45 @@ impl Graph {
             let Some((&best, _)) = starts.iter().rev().max_by_key(|&(_, &count)| count) else { break };
             is_computed[best] = true;
         }
-        for (node, is_computed) in self.nodes.iter_mut().zip(is_computed) {
-            node.is_computed = is_computed;
+        for (index, node) in self.nodes.iter_mut().enumerate() {
+            node.is_computed = is_computed[index];
+            if let Kind::Sum(terms) = &mut node.kind {
+                terms.sort_by_key(|term| !is_computed[term.node]);
+            }
         }
+    }
+
+    fn sort_terms(&mut self, turns: &[Turn]) {
+        let turns: Vec<_> = turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect();
+        // nodes stand behind what they use
+        let mut known: Vec<usize> = Vec::with_capacity(self.nodes.len());
+        for node in &mut self.nodes {
+            let at = match &mut node.kind {
+                Kind::Leaf(Expression::Variable(name)) if turns.contains(name) => latency::TURN,
+                Kind::Leaf(_) => 0,
+                Kind::Product([a, b]) => known[*a].max(known[*b]) + latency::PRODUCT,
+                Kind::Sum(terms) => {
+                    terms.sort_by_key(|term| known[term.node]);
+                    let times = terms.iter().map(|term| known[term.node]);
+                    times.reduce(|sum, term| sum.max(term) + latency::SUM).unwrap_or(0)
+                }
+            };
+            known.push(at);
+        }
+    }
+
+    /// The program that the graph has become.
+    fn program(&self, program: &Program, outputs: &[Term]) -> Program {
+        let mut statements = Vec::new();
+        for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
+            let found = self.nodes.iter().position(|node| node.statement == Some(index));
+            if let Some(node) = found.filter(|&node| self.is_named(node)) {
+                statements.push(Statement { place: *place, name: *name, value: self.value(node) });
+            }
+        }
+        let outputs = program.outputs.iter().zip(outputs);
+        let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
+        Program { statements, outputs, ..program.clone() }
     }
 
     /// A product whose factors are not computed once more wherever it is fused.
@@ -259,24 +311,33 @@ impl Graph {
         }
     }
 
-    /// What is computed comes first, with a positive term in front if there is one; then what is fused.
+    /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has none.
     fn sum(&self, terms: &[Term]) -> Expression {
-        let is_computed = |term: &&Term| self.nodes[term.node].is_computed;
-        let mut ordered: Vec<Term> = terms.iter().filter(is_computed).copied().collect();
-        if let Some(positive) = ordered.iter().position(|term| term.sign == Sign::Plus) {
-            ordered[..=positive].rotate_right(1);
-        }
-        ordered.extend(terms.iter().filter(|term| !is_computed(term)));
-        let mut terms = ordered.into_iter();
-        let first = terms.next().map_or(Expression::Zero, |term| self.operand(term));
-        terms.fold(first, |sum, term| {
-            let value = Box::new(self.operand(Term { sign: Sign::Plus, ..term }));
-            match term.sign {
-                Sign::Plus => Expression::Sum(Box::new(sum), value),
-                Sign::Minus => Expression::Difference(Box::new(sum), value),
+        use Expression::{Difference, Negative, Sum};
+        let plain = |term: Term| self.operand(Term { sign: Sign::Plus, ..term });
+        let parts = terms.iter().map(|&term| (term.sign, plain(term)));
+        let sum = parts.reduce(|(sign, sum), (sign_of_term, term)| {
+            let (sum, term) = (Box::new(sum), Box::new(term));
+            match (sign, sign_of_term) {
+                (Sign::Plus, Sign::Plus) => (Sign::Plus, Sum(sum, term)),
+                (Sign::Plus, Sign::Minus) => (Sign::Plus, Difference(sum, term)),
+                (Sign::Minus, Sign::Plus) => (Sign::Plus, Difference(term, sum)),
+                (Sign::Minus, Sign::Minus) => (Sign::Minus, Sum(sum, term)),
             }
-        })
+        });
+        match sum {
+            Some((Sign::Plus, sum)) => sum,
+            Some((Sign::Minus, sum)) => Negative(Box::new(sum)),
+            None => Expression::Zero,
+        }
     }
+}
+
+/// Whether sums that have a name of their own become terms of others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Named {
+    Too,
+    Not,
 }
 
 impl Term {

@@ -12,10 +12,10 @@ use crate::quantity::Name;
 pub(crate) const PRODUCT: usize = 4;
 
 /// Cycles of an addition there.
-const SUM: usize = 3;
+pub(crate) const SUM: usize = 3;
 
 /// Cycles after which sines and cosines are there.
-const TURN: usize = 50;
+pub(crate) const TURN: usize = 50;
 
 /// A sum with less time to spare than this is waited for.
 const SPARE: usize = 4;

@@ -56,6 +56,21 @@ fn every_program_takes_fewer_instructions_and_no_more_sums() {
     }
 }
 
+/// The terms of sums change places, nothing else.
+#[test]
+fn the_shortest_wait_has_the_same_operations_under_the_same_names() {
+    for (_, programs) in compiled() {
+        for program in programs.into_iter().filter(|program| program.form != Form::SevenSteps) {
+            let soonest = fusion::soonest(&program);
+            check_definitions(&soonest);
+            assert_eq!(soonest.operations(), program.operations(), "{} of {}", program.function, program.robot);
+            let names = |program: &Program| program.statements.iter().map(|s| s.name).collect::<Vec<_>>();
+            assert_eq!(names(&soonest), names(&program), "{} of {}", program.function, program.robot);
+            assert!(fusion::soonest(&soonest) == soonest, "{} of {}", program.function, program.robot);
+        }
+    }
+}
+
 /// The proof runs in two prime fields; a program that it refuses is an error here.
 #[test]
 fn every_reduced_program_is_proved_as_it_is_fused() {

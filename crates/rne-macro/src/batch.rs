@@ -68,7 +68,6 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         &quote!(#dof),
         &quote! {
             struct Torques;
-            #[allow(unused_variables)] // each part uses only some arguments and constants
             impl #krate::batch::Torques<#dof, #angle_count> for Torques {
                 #[inline(always)]
                 fn angles<T: #scalar>(&self, q: &[T; #dof]) -> [T; #angle_count] {

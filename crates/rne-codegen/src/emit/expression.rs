@@ -63,7 +63,7 @@ pub(super) fn let_statement(indent: &str, name: &str, expression: &Expression) -
     let below = if next_line.chars().count() <= WIDTH {
         line(expression)
     } else {
-        broken(expression, indent, indent.len() + 4)
+        broken(expression, &format!("{indent}    "), indent.len() + 4)
     };
     let breaks = |text: &str| text.matches('\n').count();
     if breaks(&below) == 0 || breaks(&beside) > breaks(&below) + 1 {

@@ -1,5 +1,7 @@
 //! A program as Rust tokens.
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
 
@@ -52,37 +54,49 @@ impl<'a> Body<'a> {
     /// All of it.
     #[must_use]
     pub fn whole(&self) -> TokenStream {
-        let arguments = self.arguments(|_| true);
+        let arguments = self.arguments(|_| true, |_| true);
+        let constants = self.constants(|_| true);
         let angles = self.statements(&self.program.angles);
         let turns = self.turns();
-        let (constants, rest) = (self.constants(), self.beyond_turns());
+        let rest = self.beyond_turns();
         quote!(#arguments #constants #angles #turns #rest)
     }
 
     /// Its first part, for a loop of its own: the angles of [`Program::turns`] as an array, from the argument `q`.
     #[must_use]
     pub fn angles(&self) -> TokenStream {
-        let arguments = self.arguments(|name| name == "q");
+        let turns = self.program.turns.iter().map(|turn| &turn.angle);
+        let used = names(self.program.angles.iter().map(|statement| &statement.value).chain(turns.clone()));
+        let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
+        let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
-        let angles = self.program.turns.iter().map(|turn| &turn.angle);
-        let constants = self.constants();
-        quote!(#arguments #constants #statements [#(#angles),*])
+        quote!(#arguments #constants #statements [#(#turns),*])
     }
 
     /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its angles.
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
-        let arguments = self.arguments(|_| true);
-        let [sines, cosines] = self.turn_names();
-        let (constants, rest) = (self.constants(), self.beyond_turns());
-        quote!(#arguments let #sines = *sin; let #cosines = *cos; #constants #rest)
+        let outputs = self.program.outputs.iter().map(|output| &output.value);
+        let used = names(self.program.statements.iter().map(|statement| &statement.value).chain(outputs));
+        let arguments = self.arguments(|_| true, |name| used.contains(&name));
+        let constants = self.constants(|name| used.contains(&name));
+        let turns = match self.program.turns.len() {
+            0 => quote!(let _ = (sin, cos);),
+            _ => {
+                let [sines, cosines] = self.turn_names();
+                quote!(let #sines = *sin; let #cosines = *cos;)
+            }
+        };
+        let rest = self.beyond_turns();
+        quote!(#arguments #turns #constants #rest)
     }
 
-    fn arguments(&self, is_asked: impl Fn(&str) -> bool) -> TokenStream {
+    fn arguments(&self, is_asked: impl Fn(&str) -> bool, is_used: impl Fn(Name) -> bool) -> TokenStream {
         let arrays = arguments(self.program).into_iter().filter(|array| is_asked(array.name));
         arrays
             .map(|ArgumentArray { name, elements }| {
                 let array = ident(name);
+                let elements: Vec<_> = elements.into_iter().map(|name| name.filter(|name| is_used(*name))).collect();
                 if elements.iter().all(Option::is_none) {
                     return quote!(let _ = #array;);
                 }
@@ -92,13 +106,13 @@ impl<'a> Body<'a> {
             .collect()
     }
 
-    fn constants(&self) -> TokenStream {
+    fn constants(&self, is_used: impl Fn(Name) -> bool) -> TokenStream {
         let scalar = self.scalar;
         let zero = self.program.returns_zero().then(|| {
             let zero = literal(0.0);
             quote!(let zero: T = #scalar::from_f64(#zero);)
         });
-        let constants = self.program.constants.iter().map(|constant| {
+        let constants = self.program.constants.iter().filter(|constant| is_used(constant.name)).map(|constant| {
             let (name, value) = (constant.name, literal(constant.value));
             quote!(let #name: T = #scalar::from_f64(#value);)
         });
@@ -154,6 +168,27 @@ impl<'a> Body<'a> {
             }
         }
     }
+}
+
+/// The names that expressions use.
+fn names<'e>(expressions: impl Iterator<Item = &'e Expression>) -> BTreeSet<Name> {
+    fn visit(expression: &Expression, found: &mut BTreeSet<Name>) {
+        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        match expression {
+            Variable(name) => {
+                found.insert(*name);
+            }
+            Zero => {}
+            Negative(a) => visit(a, found),
+            Sum(a, b) | Difference(a, b) | Product(a, b) => {
+                visit(a, found);
+                visit(b, found);
+            }
+        }
+    }
+    let mut found = BTreeSet::new();
+    expressions.for_each(|expression| visit(expression, &mut found));
+    found
 }
 
 fn name_or_underscore(name: Option<Name>) -> TokenStream {

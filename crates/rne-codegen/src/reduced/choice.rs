@@ -45,12 +45,12 @@ impl Choice {
         Self::default_without(robot, &[])
     }
 
-    /// Compiles a function, and proves that it is that of the seven steps.
+    /// Compiles a function for the shortest wait ([`fusion::soonest`]), and proves that it is that of the seven steps.
     ///
     /// # Errors
     /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
     pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
-        self.compile_arranged(robot, function, form, |program| program)
+        self.compile_arranged(robot, function, form, |program| fusion::soonest(&program))
     }
 
     /// The same for the fewest instructions, as [`fusion::fused`] arranges it, and proved so. The seven steps are left as they
