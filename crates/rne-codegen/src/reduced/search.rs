@@ -12,7 +12,7 @@ use super::trick::Trick;
 use crate::function::Function;
 
 /// Plans counted by a build that finds no plan file.
-const DEFAULT_EVALUATIONS: usize = 420;
+const DEFAULT_EVALUATIONS: usize = 240;
 
 /// How far a search has come.
 #[derive(Clone, Debug)]
