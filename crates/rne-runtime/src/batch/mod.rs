@@ -32,15 +32,17 @@
 //! # Results
 //!
 //! A torque depends on its state and on the vector unit, not on the states beside it, the length of the arrays or the
-//! number of threads. On a unit without fused multiply-add (SSE2) it has the bits that
-//! [`inverse_dynamics`](InverseDynamics::inverse_dynamics) gives; on one with it, sine and cosine are rounded less often,
-//! and torques differ in their last bits.
+//! number of threads. In the form `seven_steps`, on a unit without fused multiply-add (SSE2), it has the bits that
+//! [`inverse_dynamics`](InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less often, and
+//! in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
 //!
 //! # Method
 //!
-//! The derived code is written once more, to be inlined into a loop over the states of a block, for a scalar that
-//! has no branch and no call; LLVM makes that a loop over registers, once for each vector unit. Angles that need a
-//! branch (beyond 10⁵ rad) become NaN there, and states with a NaN are computed again without registers.
+//! The derived code is written once more for the registers of every vector unit, in two parts and, in the reduced forms, for
+//! the fewest instructions. [`blocks`] takes some registers of states at a time: first it computes the sines and cosines of all
+//! of them, then the torques. Nothing in the two loops branches, so that a processor with room for some hundred instructions
+//! works on several registers at once. Angles that are too large for the branch-free kernel (beyond 10⁵ rad) or are no
+//! numbers show in the sum of their squares; the states that have one are computed again by themselves.
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
 mod blocks;
