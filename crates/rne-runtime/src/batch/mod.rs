@@ -39,8 +39,8 @@
 //! # Method
 //!
 //! The derived code is written once more for the registers of every vector unit, in two parts and, in the reduced forms, for
-//! the fewest instructions. [`blocks`] takes some registers of states at a time: first it computes the sines and cosines of all
-//! of them, then the torques. Nothing in the two loops branches, so that a processor with room for some hundred instructions
+//! the fewest instructions. Some registers of states are taken at a time: first the sines and cosines of all of them are
+//! computed, then the torques. Nothing in the two loops branches, so that a processor with room for some hundred instructions
 //! works on several registers at once. Angles that are too large for the branch-free kernel (beyond 10⁵ rad) or are no
 //! numbers show in the sum of their squares; the states that have one are computed again by themselves.
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
