@@ -10,6 +10,7 @@ use super::rewrite::Rewriting;
 use super::search::{Search, default_plan};
 use super::transcript::Drawing;
 use super::*;
+use crate::fusion::{fused, soonest};
 use crate::proof::{self, Exactly};
 use crate::{CompileError, Expression, Form, Function, Program};
 
@@ -44,8 +45,10 @@ fn is_identical(robot: &Robot, (program, exactly, frame): &(Program, Exactly, Fr
 
 /// Fails with these words, by which `scripts/mutate` knows that it was the proof that refused.
 fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, frame): &(Program, Exactly, Frame)) {
-    if let Err(error) = proof::identical(robot, program, exactly, frame.table.reading) {
-        panic!("the proof refuses {}: {error}\n{:#?}", robot.name, plan.choices());
+    for (arranged, what) in [(program, ""), (&soonest(program), " soonest"), (&fused(program), " fused")] {
+        if let Err(error) = proof::identical(robot, arranged, exactly, frame.table.reading) {
+            panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
+        }
     }
 }
 
