@@ -98,6 +98,7 @@
 //! [`model`] reads and checks them, and has the plain types of the table that [`Arm::new`] takes: one YAML document per
 //! arm, where every number may be an expression (`pi/2`, `m*a^2/12`).
 //! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
+#![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]

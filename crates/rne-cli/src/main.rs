@@ -1,4 +1,5 @@
 //! The command line of rne: a thin shell over functions that take arguments and return text.
+#![forbid(unsafe_code)]
 
 mod arguments;
 mod check;

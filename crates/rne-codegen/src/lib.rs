@@ -6,6 +6,7 @@
 //! [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! Data in, data out: nothing here opens a file or prints.
+#![forbid(unsafe_code)]
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]
 

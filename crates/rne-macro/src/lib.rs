@@ -1,6 +1,7 @@
 //! The derive macros of `rne`; use them through that crate.
 //!
 //! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`.
+#![forbid(unsafe_code)]
 
 mod attribute;
 mod batch;
