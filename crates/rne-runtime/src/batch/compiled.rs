@@ -49,7 +49,6 @@ vector! {
 
 #[cfg(feature = "std")]
 vector! {
-    wide::f64x8: [f64; 8], wide::f64x8::new, wide::f64x8::to_array;
     wide::f64x4: [f64; 4], wide::f64x4::new, wide::f64x4::to_array;
     wide::f64x2: [f64; 2], wide::f64x2::new, wide::f64x2::to_array;
     wide::f32x8: [f32; 8], wide::f32x8::new, wide::f32x8::to_array;

@@ -44,7 +44,6 @@ impl VectorUnit {
     pub fn name(self) -> &'static str {
         match self.0 {
             Unit::Target if cfg!(target_arch = "aarch64") => "NEON",
-            Unit::Target if cfg!(target_feature = "avx512f") => "AVX-512 (compiled)",
             Unit::Target if cfg!(target_feature = "avx") => "AVX (compiled)",
             Unit::Target if cfg!(target_feature = "sse2") => "SSE2",
             Unit::Target => "compiled target",

@@ -53,7 +53,8 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
     const ONE: Self;
     const P: &'static [Self];
     const Q: &'static [Self];
-    /// The widest SIMD register of the compiled target.
+    /// A SIMD register of the compiled target: the widest one up to 256 bits. A call has too few angles for more, and while an
+    /// instruction of 512 bits is on its way, Intel's processors close one of their three units for all others.
     #[cfg(feature = "std")]
     type Register: registers::Register<Element = Self>;
 

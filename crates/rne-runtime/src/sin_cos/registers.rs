@@ -83,7 +83,6 @@ macro_rules! register {
         }
     };
 }
-register!(f64x8, u64x8, [f64; 8], sign: 63);
 register!(f64x4, u64x4, [f64; 4], sign: 63);
 register!(f64x2, u64x2, [f64; 2], sign: 63);
 register!(f32x8, u32x8, [f32; 8], sign: 31);
