@@ -117,7 +117,9 @@ impl Graph {
         match &mut node.kind {
             // a name stands for a value with its sign
             Kind::Sum(terms) if node.name.is_none() && term.sign == Sign::Minus => {
-                terms.iter_mut().for_each(|term| *term = term.opposite());
+                for term in terms {
+                    *term = term.opposite();
+                }
                 term.sign = Sign::Plus;
             }
             Kind::Sum(_) | Kind::Product(_) if node.name.is_none() && term.sign == Sign::Plus => {}

@@ -80,12 +80,11 @@ impl<'a> Body<'a> {
         let used = names(self.program.statements.iter().map(|statement| &statement.value).chain(outputs));
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
-        let turns = match self.program.turns.len() {
-            0 => quote!(let _ = (sin, cos);),
-            _ => {
-                let [sines, cosines] = self.turn_names();
-                quote!(let #sines = *sin; let #cosines = *cos;)
-            }
+        let turns = if self.program.turns.is_empty() {
+            quote!(let _ = (sin, cos);)
+        } else {
+            let [sines, cosines] = self.turn_names();
+            quote!(let #sines = *sin; let #cosines = *cos;)
         };
         let rest = self.beyond_turns();
         quote!(#arguments #turns #constants #rest)
