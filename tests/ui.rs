@@ -18,7 +18,15 @@ fn mistakes_and_their_messages() {
 /// File, and what the one message has in it.
 const BY_RUSTC: [(&str, &[&str]); 4] = [
     ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
-    ("batch_alone", &["error[E0277]", "batch_alone.rs:6:8", "`Rod: InverseDynamics<1>`"]),
+    (
+        "batch_alone",
+        &[
+            "error[E0277]",
+            "batch_alone.rs:6:8",
+            "`Rod: InverseDynamics<1>`",
+            "derive(InverseDynamics, BatchInverseDynamics)",
+        ],
+    ),
     ("crate_is_elsewhere", &["error[E0433]", "crate_is_elsewhere.rs:4:48", "`dynamics`"]),
     ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
 ];

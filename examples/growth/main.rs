@@ -46,8 +46,17 @@ const COLUMNS: [(&str, usize); 5] =
     [("operations", 0), ("expansion, ms", 1), ("dev, s", 2), ("release, s", 2), ("code, bytes", 0)];
 
 fn main() {
-    let given: Vec<usize> = std::env::args().skip(1).map(|word| word.parse().expect("numbers of joints")).collect();
-    let joints = if given.is_empty() { JOINTS.to_vec() } else { given };
+    let given: Result<Vec<usize>, _> = std::env::args().skip(1).map(|word| word.parse()).collect();
+    let joints = match given {
+        Ok(given) if given.is_empty() => JOINTS.to_vec(),
+        Ok(given) if !given.contains(&0) => given,
+        _ => {
+            eprintln!(
+                "usage: cargo run --example growth -- [JOINTS]...\n\nJOINTS: numbers of joints, 1 or more each; by default {JOINTS:?}"
+            );
+            std::process::exit(2);
+        }
+    };
     for form in [Form::SevenSteps, Form::Reduced] {
         println!("{}", header(form));
         let mut samples: Vec<Sample> = Vec::new();

@@ -7,6 +7,10 @@ use crate::{Scalar, Wrench};
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
 /// τ is what the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q). No friction, no rotor inertia.
+#[diagnostic::on_unimplemented(
+    note = "`InverseDynamics` belongs into the same `derive`, for a number of joints that the robot file decides: \
+            `#[derive(InverseDynamics)]`, and with batches `#[derive(InverseDynamics, BatchInverseDynamics)]`"
+)]
 pub trait InverseDynamics<const DOF: usize> {
     /// Torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip.
     #[must_use]
