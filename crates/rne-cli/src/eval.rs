@@ -166,8 +166,8 @@ fn argument(
         None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
         Some(_) if !takes => Err(Failure::usage(format_args!("{function} takes no {name}"))),
         Some(List(values)) if values.len() != expected => {
-            let found = values.len();
-            Err(Failure::usage(format_args!("{name} needs {expected} numbers, not {found}: {what}")))
+            let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
+            Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
         }
         Some(List(values)) => Ok(Some(values.clone())),
     }

@@ -67,7 +67,7 @@ fn expression_instructions(expression: &Expression) -> usize {
     use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
     match expression {
         Variable(_) | Zero => 0,
-        // a sign goes into the instruction that uses it
+        // goes into the instruction that uses it, but for an output
         Negative(a) => expression_instructions(a),
         Sum(a, b) | Difference(a, b) => {
             let inner = |a: &Expression| expression_instructions(a);

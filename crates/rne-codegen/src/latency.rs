@@ -8,16 +8,16 @@ use std::collections::BTreeMap;
 use crate::program::{Expression, Program};
 use crate::quantity::Name;
 
-/// Cycles of a multiplication and of a fused multiply-add: x86 since 2017, of both makers.
+/// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of these years.
 pub(crate) const PRODUCT: usize = 4;
 
-/// Cycles of an addition there.
+/// Cycles of an addition.
 pub(crate) const SUM: usize = 3;
 
 /// Cycles after which sines and cosines are there.
 pub(crate) const TURN: usize = 50;
 
-/// A sum with less time to spare than this is waited for.
+/// A sum with no more time to spare than this is waited for.
 const SPARE: usize = 4;
 
 /// When the values of a program are there, in cycles from the call on, and how long what follows takes.

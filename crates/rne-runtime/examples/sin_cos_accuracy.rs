@@ -1,7 +1,8 @@
 //! Errors of sine and cosine against a reference of higher precision: of every `f32` up to 10⁵ rad, of 10⁸ random `f64` up
 //! to there and of those nearest to multiples of π/4. Fails above the promised bounds.
 //!
-//! `cargo run --release -p rne-runtime --example sin_cos_accuracy`
+//! `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy`; without the feature, without the vector
+//! units of batches.
 
 #[path = "../tests/sin_cos/reference.rs"]
 mod reference;
@@ -14,7 +15,8 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 
-use rne_runtime::Scalar;
+use rne_runtime::batch::{self, Torques};
+use rne_runtime::{BatchScalar, Scalar, VectorUnit};
 
 /// Promised for angles up to here, in rad, in units in the last place.
 const LIMIT: f32 = 1e5;
@@ -81,12 +83,16 @@ fn sweep<T: Copy + Debug + Default + Send>(
     kept
 }
 
-/// All of both signs: those of negative angles must be the same but for the sign.
-fn every_single(range: Range<u32>, worst: &mut [Worst<f32>; 2]) {
+/// Sines and cosines of eight angles.
+trait SinCos<T>: Fn([T; 8]) -> ([T; 8], [T; 8]) + Sync {}
+impl<T, F: Fn([T; 8]) -> ([T; 8], [T; 8]) + Sync> SinCos<T> for F {}
+
+/// All of both signs, `step` apart: those of negative angles must be the same but for the sign.
+fn singles(sin_cos: &impl SinCos<f32>, step: u32, range: Range<u32>, worst: &mut [Worst<f32>; 2]) {
     for first in range.step_by(8) {
-        let angles = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| f32::from_bits(first + lane));
-        let (sines, cosines) = Scalar::sin_cos_array(angles);
-        let opposite = Scalar::sin_cos_array(angles.map(|angle| -angle));
+        let angles = [0, 1, 2, 3, 4, 5, 6, 7].map(|lane| f32::from_bits(step * (first + lane)));
+        let (sines, cosines) = sin_cos(angles);
+        let opposite = sin_cos(angles.map(|angle| -angle));
         let mirrored = (opposite.0.map(|sine| (-sine).to_bits()), opposite.1.map(f32::to_bits));
         if mirrored != (sines.map(f32::to_bits), cosines.map(f32::to_bits)) {
             worst[0].meets(f64::INFINITY, angles[0]);
@@ -99,8 +105,8 @@ fn every_single(range: Range<u32>, worst: &mut [Worst<f32>; 2]) {
     }
 }
 
-fn double(angles: [f64; 8], worst: &mut [Worst<f64>; 2]) {
-    let (sines, cosines) = Scalar::sin_cos_array(angles);
+fn double(sin_cos: &impl SinCos<f64>, angles: [f64; 8], worst: &mut [Worst<f64>; 2]) {
+    let (sines, cosines) = sin_cos(angles);
     for ((angle, sine), cosine) in angles.into_iter().zip(sines).zip(cosines) {
         let exact = reference::sin_cos(angle);
         worst[0].meets(exact.0.error_in_ulp(sine), angle);
@@ -109,27 +115,68 @@ fn double(angles: [f64; 8], worst: &mut [Worst<f64>; 2]) {
 }
 
 /// Half of them up to the limit, half of them up to two turns.
-fn random_double(range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
+fn random_doubles(sin_cos: &impl SinCos<f64>, range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
     let mut numbers = fastrand::Rng::with_seed(range.start.into());
     for first in range.step_by(8) {
         let limit = if (first / 8).is_multiple_of(2) { f64::from(LIMIT) } else { 4.0 * std::f64::consts::PI };
-        double(std::array::from_fn(|_| (2.0 * numbers.f64() - 1.0) * limit), worst);
+        double(sin_cos, std::array::from_fn(|_| (2.0 * numbers.f64() - 1.0) * limit), worst);
     }
 }
 
 /// The nearest numbers to n π/4, from the fourth below to the third above.
-fn near_multiples(range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
+fn near_multiples(sin_cos: &impl SinCos<f64>, range: Range<u32>, worst: &mut [Worst<f64>; 2]) {
     for n in range {
         let nearest = (f64::from(n + 1) * FRAC_PI_4).to_bits() - 4;
-        double(std::array::from_fn(|step| f64::from_bits(nearest + step as u64)), worst);
+        double(sin_cos, std::array::from_fn(|step| f64::from_bits(nearest + step as u64)), worst);
     }
 }
 
+/// A robot whose torques are the sine and the cosine of its first joint: what a vector unit makes of them.
+struct Turn;
+
+impl Torques<2, 1> for Turn {
+    fn angles<T: Scalar>(&self, q: &[T; 2]) -> [T; 1] {
+        [q[0]]
+    }
+
+    fn torques<T: Scalar>(&self, sin: &[T; 1], cos: &[T; 1], _: &[T; 2], _: &[T; 2], _: &[T; 2]) -> [T; 2] {
+        [sin[0], cos[0]]
+    }
+}
+
+fn on<T: BatchScalar>(unit: VectorUnit, angles: [T; 8]) -> ([T; 8], [T; 8]) {
+    let (mut sines, mut cosines) = (angles, angles);
+    let inputs = [&angles[..]; 2];
+    batch::run(&Turn, unit, inputs, inputs, inputs, [&mut sines, &mut cosines]).expect("arrays of one length");
+    (sines, cosines)
+}
+
 fn main() -> ExitCode {
-    let kept = [
-        sweep("every f32 up to 1e5", LIMIT.to_bits() + 1, PROMISE_F32, every_single),
-        sweep("1e8 random f64     ", RANDOM_ANGLES, PROMISE_F64, random_double),
-        sweep("f64 near n pi/4    ", MULTIPLES, PROMISE_F64, near_multiples),
+    let f32s = LIMIT.to_bits() + 1;
+    let mut kept = vec![
+        sweep("every f32 up to 1e5", f32s, PROMISE_F32, |range, worst| {
+            singles(&Scalar::sin_cos_array, 1, range, worst);
+        }),
+        sweep("1e8 random f64     ", RANDOM_ANGLES, PROMISE_F64, |range, worst| {
+            random_doubles(&Scalar::sin_cos_array, range, worst);
+        }),
+        sweep("f64 near n pi/4    ", MULTIPLES, PROMISE_F64, |range, worst| {
+            near_multiples(&Scalar::sin_cos_array, range, worst);
+        }),
     ];
-    if kept == [true; 3] { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    // The kernel of batches, which is another one.
+    for unit in VectorUnit::all().skip(1) {
+        let name = |what: &str| format!("{unit}, {what}");
+        let (single, double) = (|angles| on::<f32>(unit, angles), |angles| on::<f64>(unit, angles));
+        kept.extend([
+            sweep(&name("every 10th f32 "), f32s / 10, PROMISE_F32, |range, worst| singles(&single, 10, range, worst)),
+            sweep(&name("1e7 random f64 "), RANDOM_ANGLES / 10, PROMISE_F64, |range, worst| {
+                random_doubles(&double, range, worst);
+            }),
+            sweep(&name("f64 near n pi/4"), MULTIPLES, PROMISE_F64, |range, worst| {
+                near_multiples(&double, range, worst);
+            }),
+        ]);
+    }
+    if kept.contains(&false) { ExitCode::FAILURE } else { ExitCode::SUCCESS }
 }

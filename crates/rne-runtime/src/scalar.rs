@@ -47,7 +47,7 @@ pub trait Scalar:
     /// Sine and cosine of an angle in rad.
     ///
     /// For `f32` and `f64` these are kernels of this crate, `f32`'s in `f32` alone: errors below 1 ulp for angles up to
-    /// 10⁵ rad, as `cargo run --release -p rne-runtime --example sin_cos_accuracy` shows, and the same bits with and without
+    /// 10⁵ rad, as `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy` shows, and the same bits with and without
     /// `std` on targets compiled without fused multiply-add. Beyond that range they are `std`'s functions; without `std`
     /// results there mean nothing. NaN and infinities give NaN, and sin(-0) is -0.
     ///

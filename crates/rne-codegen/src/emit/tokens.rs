@@ -24,7 +24,7 @@ pub struct Body<'a> {
 /// Which products are added by the scalar's `mul_add`.
 enum Fusing {
     None,
-    /// Those that are not waited for, or sooner there so.
+    /// Those that nothing waits for, and those that are sooner there for it.
     Soonest(Box<Latency>),
     All,
 }
@@ -205,7 +205,13 @@ impl Fused<'_> {
     /// An expression that `rest` follows.
     fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
         use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
-        let rest_of_operand = rest + latency::PRODUCT;
+        let fused = self.fused(expression, rest);
+        let rest_of_operand = rest
+            + match expression {
+                Sum(..) | Difference(..) if fused.is_none() => latency::SUM,
+                Negative(_) => 0,
+                _ => latency::PRODUCT,
+            };
         let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
         let operand = |operand: &Expression, position| {
             let tokens = inner(operand);
@@ -216,7 +222,7 @@ impl Fused<'_> {
             let tokens = operand(expression, Position::Negated);
             quote!(-#tokens)
         };
-        if let Some((x, y, addend, negative)) = self.fused(expression, rest) {
+        if let Some((x, y, addend, negative)) = fused {
             let (scalar, y) = (self.scalar, inner(y));
             let x = if negative == Some(Negated::Factor) { minus(x) } else { inner(x) };
             let addend = if negative == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
@@ -266,7 +272,7 @@ enum Negated {
     Addend,
 }
 
-/// A number as a literal that reads back as the same bits; negative numbers as a minus and a literal, as in source text.
+/// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source text.
 fn literal(value: f64) -> TokenStream {
     let text = format!("{:?}", value.abs());
     let magnitude = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(value.abs()));

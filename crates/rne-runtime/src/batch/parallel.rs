@@ -22,7 +22,7 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
 
 fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {
     let States { robot, count, inputs, tau: mut rest } = all;
-    let middle = (count / 2).next_multiple_of(TASK);
+    let middle = count / 2 / TASK * TASK;
     let inputs = inputs.map(|arrays| arrays.map(|numbers| numbers.split_at(middle)));
     let tau = from_fn(|joint| rest[joint].split_off_mut(..middle).unwrap_or_default());
     let [first, second] =

@@ -43,6 +43,7 @@ impl VectorUnit {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
+            Unit::Target if !cfg!(feature = "std") => "one by one",
             Unit::Target if cfg!(target_arch = "aarch64") => "NEON",
             Unit::Target if cfg!(target_feature = "avx") => "AVX (compiled)",
             Unit::Target if cfg!(target_feature = "sse2") => "SSE2",

@@ -1,12 +1,14 @@
 //! Registers of the vector units that pulp finds at run time.
 //!
 //! This is the one module with `unsafe` in it. Every operation of pulp wants its proof that the processor has the unit, a value
-//! of no size. Generic code cannot hand it on: `a + b` has two operands, and a constant is made from nothing. A register that
-//! carried the proof along would be a byte longer, and the processor would stall on every copy. So operations say that the
-//! unit is there ([`proven`]), and the only code that has registers at all shows that it is:
+//! of no size. Generic code cannot hand it on: a constant is made from nothing. A register that carried a proof or none would
+//! be a byte longer, and the processor would stall on every copy. So operations say that the unit is there ([`proven`]), and
+//! nobody has a register without having shown that it is:
 //!
-//! - The types are private to [`batch`](super). Generic code gets to know them as the parameter of
-//!   [`States::run`](super::blocks::States::run) alone, which takes the proof as an argument.
+//! - Registers are made by [`Lanes::splat`] and [`Vector::load`]. Both traits are private to this crate, so that no other can
+//!   call them, although it can name the types (as what the public `BatchScalar` computes with).
+//! - Within this crate the types are a parameter of [`States::run`](super::blocks::States::run) alone, which takes the proof as
+//!   an argument, and of what it calls: generated code, which makes constants of the scalar that it is given.
 //! - A processor that has a unit keeps it.
 #![allow(unsafe_code)]
 

@@ -12,7 +12,7 @@
 //! NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
 //!
 //! ```text
-//! cargo run --release -p rne-runtime --example sin_cos_accuracy    # every f32 of the range, 10⁸ f64
+//! cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy    # every f32 of the range, 10⁸ f64
 //! cargo run --release -p rne-runtime --example sin_cos_speed
 //! ```
 //!

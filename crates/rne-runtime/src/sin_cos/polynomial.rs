@@ -8,7 +8,7 @@
 //! | [`short`], for fewer operations | y² - 2 y e | y - (e - y z P(z)) | 1 + z (z Q(z) - 1/2) |
 //!
 //! The first does not wait for e, which comes late. The second needs fused multiply-add, or the cosine's product is rounded too
-//! coarsely; it leaves out e z/6, a twentieth of a unit in the last place of the sine.
+//! coarsely; it leaves out e z/6, for `f64` a twentieth of a unit in the last place of the sine.
 //!
 //! The last addition costs half a unit in the last place; what is added there is so small that its own errors are a fraction of
 //! that.

@@ -7,7 +7,8 @@ mod reference;
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
-use rne_runtime::Scalar;
+use rne_runtime::batch::{self, Torques};
+use rne_runtime::{BatchScalar, Scalar, VectorUnit};
 use simba::simd::{AutoF64x4, SimdComplexField, SimdValue};
 
 /// The promises, in units in the last place.
@@ -210,4 +211,49 @@ fn a_product_and_a_sum() {
     // Other scalars: a product and a sum.
     let [a, b, c] = [a, b, c].map(AutoF64x4::splat);
     assert_eq!(Scalar::mul_add(a, b, c), AutoF64x4::splat(0.0));
+}
+
+/// A robot whose torques are the sine and the cosine of its first joint: what a vector unit makes of them.
+struct Turn;
+
+impl Torques<2, 1> for Turn {
+    fn angles<T: Scalar>(&self, q: &[T; 2]) -> [T; 1] {
+        [q[0]]
+    }
+
+    fn torques<T: Scalar>(&self, sin: &[T; 1], cos: &[T; 1], _: &[T; 2], _: &[T; 2], _: &[T; 2]) -> [T; 2] {
+        [sin[0], cos[0]]
+    }
+}
+
+fn on_unit<T: BatchScalar>(unit: VectorUnit, angle: T) -> (T, T) {
+    let (mut sine, mut cosine) = ([angle], [angle]);
+    let inputs: [&[T]; 2] = [&[angle]; 2];
+    batch::run(&Turn, unit, inputs, inputs, inputs, [&mut sine, &mut cosine]).expect("arrays of one length");
+    (sine[0], cosine[0])
+}
+
+/// Theirs is another kernel.
+#[test]
+fn every_vector_unit_keeps_the_promise() {
+    for unit in VectorUnit::all() {
+        let errors = |angle: f64| {
+            let (sine, cosine) = on_unit(unit, angle);
+            let exact = reference::sin_cos(angle);
+            [exact.0.error_in_ulp(sine), exact.1.error_in_ulp(cosine)]
+        };
+        let errors_f32 = |angle: f32| {
+            let (sine, cosine) = on_unit(unit, angle);
+            let exact = f64::from(angle).sin_cos();
+            [reference::error_in_ulp_f32(sine, exact.0), reference::error_in_ulp_f32(cosine, exact.1)]
+        };
+        let mut numbers = fastrand::Rng::with_seed(7);
+        let random: Vec<f64> = (0..20_000).map(|_| (2.0 * numbers.f64() - 1.0) * LIMIT).collect();
+        let near = (1..2000).flat_map(|n| [-1, 0, 1].map(|steps| neighbour(f64::from(31 * n) * FRAC_PI_2, steps)));
+        check(random.iter().copied().chain(near), errors, PROMISE_F64);
+        #[allow(clippy::cast_possible_truncation)]
+        check(random.iter().map(|&angle| angle as f32), errors_f32, PROMISE_F32);
+        let (sine, cosine) = on_unit(unit, -0.0_f64);
+        assert!(sine == 0.0 && sine.is_sign_negative() && cosine == 1.0, "{unit}");
+    }
 }
