@@ -228,7 +228,8 @@ impl Torques<2, 1> for Turn {
 
 fn on_unit<T: BatchScalar>(unit: VectorUnit, angle: T) -> (T, T) {
     let (mut sine, mut cosine) = ([angle], [angle]);
-    let inputs: [&[T]; 2] = [&[angle]; 2];
+    let angles = [angle];
+    let inputs = [&angles[..]; 2];
     batch::run(&Turn, unit, inputs, inputs, inputs, [&mut sine, &mut cosine]).expect("arrays of one length");
     (sine[0], cosine[0])
 }
