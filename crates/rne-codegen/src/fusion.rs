@@ -31,12 +31,7 @@ use crate::quantity::Name;
 /// ```
 #[must_use]
 pub fn fused(program: &Program) -> Program {
-    let mut graph = Graph::default();
-    for statement in &program.statements {
-        graph.define(statement);
-    }
-    let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
-    graph.count_uses(&outputs);
+    let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Too);
     graph.choose_products();
     graph.program(program, &outputs)
@@ -45,12 +40,7 @@ pub fn fused(program: &Program) -> Program {
 /// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
 #[must_use]
 pub fn soonest(program: &Program) -> Program {
-    let mut graph = Graph::default();
-    for statement in &program.statements {
-        graph.define(statement);
-    }
-    let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
-    graph.count_uses(&outputs);
+    let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Not);
     graph.sort_terms(&program.turns);
     graph.program(program, &outputs)
@@ -111,6 +101,17 @@ struct Graph {
 }
 
 impl Graph {
+    /// The graph of a program and its outputs.
+    fn new(program: &Program) -> (Self, Vec<Term>) {
+        let mut graph = Self::default();
+        for statement in &program.statements {
+            graph.define(statement);
+        }
+        let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
+        graph.count_uses(&outputs);
+        (graph, outputs)
+    }
+
     fn define(&mut self, statement: &Statement) {
         let mut term = self.term(&statement.value);
         let node = &mut self.nodes[term.node];

@@ -2,6 +2,8 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter.
 
+use std::collections::BTreeSet;
+
 use crate::function::{Form, Function};
 use crate::ledger::{Causes, Ledger, Place};
 use crate::quantity::Name;
@@ -198,6 +200,21 @@ impl Program {
 }
 
 impl Expression {
+    /// Adds the names that it uses.
+    pub fn names(&self, found: &mut BTreeSet<Name>) {
+        match self {
+            Self::Variable(name) => {
+                found.insert(*name);
+            }
+            Self::Zero => {}
+            Self::Negative(a) => a.names(found),
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) => {
+                a.names(found);
+                b.names(found);
+            }
+        }
+    }
+
     fn count(&self, count: &mut Operations) {
         match self {
             Self::Variable(_) | Self::Zero => {}

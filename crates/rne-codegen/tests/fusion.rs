@@ -3,23 +3,8 @@
 mod common;
 
 use common::{choice, compiled, shipped};
-use rne_codegen::{Expression, Form, Function, Name, Program, fusion};
+use rne_codegen::{Form, Function, Name, Program, fusion};
 use std::collections::BTreeSet;
-
-fn names(expression: &Expression, found: &mut BTreeSet<Name>) {
-    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
-    match expression {
-        Variable(name) => {
-            found.insert(*name);
-        }
-        Zero => {}
-        Negative(a) => names(a, found),
-        Sum(a, b) | Difference(a, b) | Product(a, b) => {
-            names(a, found);
-            names(b, found);
-        }
-    }
-}
 
 /// What is defined, in order, is what is used, later.
 fn check_definitions(program: &Program) {
@@ -29,13 +14,13 @@ fn check_definitions(program: &Program) {
     let mut used = BTreeSet::new();
     for statement in &program.statements {
         let mut operands = BTreeSet::new();
-        names(&statement.value, &mut operands);
+        statement.value.names(&mut operands);
         assert!(operands.is_subset(&known), "{} of {}", statement.name, program.robot);
         used.extend(operands);
         assert!(known.insert(statement.name), "{} of {} twice", statement.name, program.robot);
     }
     for output in &program.outputs {
-        names(&output.value, &mut used);
+        output.value.names(&mut used);
     }
     let idle = program.statements.iter().find(|statement| !used.contains(&statement.name));
     assert_eq!(idle.map(|statement| statement.name), None, "of {}", program.robot);

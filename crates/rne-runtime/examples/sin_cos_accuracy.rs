@@ -6,6 +6,8 @@
 
 #[path = "../tests/sin_cos/reference.rs"]
 mod reference;
+#[path = "../tests/sin_cos/turn.rs"]
+mod turn;
 
 use std::f64::consts::FRAC_PI_4;
 use std::fmt::Debug;
@@ -15,8 +17,8 @@ use std::process::ExitCode;
 use std::sync::atomic::{AtomicU32, Ordering};
 use std::thread;
 
-use rne_runtime::batch::{self, Torques};
-use rne_runtime::{BatchScalar, Scalar, VectorUnit};
+use rne_runtime::{BatchScalar, Scalar, VectorUnit, batch};
+use turn::Turn;
 
 /// Promised for angles up to here, in rad, in units in the last place.
 const LIMIT: f32 = 1e5;
@@ -128,19 +130,6 @@ fn near_multiples(sin_cos: &impl SinCos<f64>, range: Range<u32>, worst: &mut [Wo
     for n in range {
         let nearest = (f64::from(n + 1) * FRAC_PI_4).to_bits() - 4;
         double(sin_cos, std::array::from_fn(|step| f64::from_bits(nearest + step as u64)), worst);
-    }
-}
-
-/// A robot whose torques are the sine and the cosine of its first joint: what a vector unit makes of them.
-struct Turn;
-
-impl Torques<2, 1> for Turn {
-    fn angles<T: Scalar>(&self, q: &[T; 2]) -> [T; 1] {
-        [q[0]]
-    }
-
-    fn torques<T: Scalar>(&self, sin: &[T; 1], cos: &[T; 1], _: &[T; 2], _: &[T; 2], _: &[T; 2]) -> [T; 2] {
-        [sin[0], cos[0]]
     }
 }
 

@@ -66,7 +66,9 @@ impl<'a> Body<'a> {
     #[must_use]
     pub fn angles(&self) -> TokenStream {
         let turns = self.program.turns.iter().map(|turn| &turn.angle);
-        let used = names(self.program.angles.iter().map(|statement| &statement.value).chain(turns.clone()));
+        let mut used = BTreeSet::new();
+        let angles = self.program.angles.iter().map(|statement| &statement.value);
+        angles.chain(turns.clone()).for_each(|expression| expression.names(&mut used));
         let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
@@ -77,7 +79,9 @@ impl<'a> Body<'a> {
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
         let outputs = self.program.outputs.iter().map(|output| &output.value);
-        let used = names(self.program.statements.iter().map(|statement| &statement.value).chain(outputs));
+        let mut used = BTreeSet::new();
+        let statements = self.program.statements.iter().map(|statement| &statement.value);
+        statements.chain(outputs).for_each(|expression| expression.names(&mut used));
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let turns = if self.program.turns.is_empty() {
@@ -167,27 +171,6 @@ impl<'a> Body<'a> {
             }
         }
     }
-}
-
-/// The names that expressions use.
-fn names<'e>(expressions: impl Iterator<Item = &'e Expression>) -> BTreeSet<Name> {
-    fn visit(expression: &Expression, found: &mut BTreeSet<Name>) {
-        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
-        match expression {
-            Variable(name) => {
-                found.insert(*name);
-            }
-            Zero => {}
-            Negative(a) => visit(a, found),
-            Sum(a, b) | Difference(a, b) | Product(a, b) => {
-                visit(a, found);
-                visit(b, found);
-            }
-        }
-    }
-    let mut found = BTreeSet::new();
-    expressions.for_each(|expression| visit(expression, &mut found));
-    found
 }
 
 fn name_or_underscore(name: Option<Name>) -> TokenStream {

@@ -3,13 +3,14 @@
 //! `cargo test -p rne-runtime --test sin_cos`, and with `--no-default-features` for the kernels as they are without `std`.
 
 mod reference;
+mod turn;
 
 use std::f64::consts::FRAC_PI_2;
 use std::fmt::Debug;
 
-use rne_runtime::batch::{self, Torques};
-use rne_runtime::{BatchScalar, Scalar, VectorUnit};
+use rne_runtime::{BatchScalar, Scalar, VectorUnit, batch};
 use simba::simd::{AutoF64x4, SimdComplexField, SimdValue};
+use turn::Turn;
 
 /// The promises, in units in the last place.
 const PROMISE_F64: f64 = 1.0;
@@ -211,19 +212,6 @@ fn a_product_and_a_sum() {
     // Other scalars: a product and a sum.
     let [a, b, c] = [a, b, c].map(AutoF64x4::splat);
     assert_eq!(Scalar::mul_add(a, b, c), AutoF64x4::splat(0.0));
-}
-
-/// A robot whose torques are the sine and the cosine of its first joint: what a vector unit makes of them.
-struct Turn;
-
-impl Torques<2, 1> for Turn {
-    fn angles<T: Scalar>(&self, q: &[T; 2]) -> [T; 1] {
-        [q[0]]
-    }
-
-    fn torques<T: Scalar>(&self, sin: &[T; 1], cos: &[T; 1], _: &[T; 2], _: &[T; 2], _: &[T; 2]) -> [T; 2] {
-        [sin[0], cos[0]]
-    }
 }
 
 fn on_unit<T: BatchScalar>(unit: VectorUnit, angle: T) -> (T, T) {
