@@ -20,7 +20,7 @@ use crate::quantity::Name;
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///
 /// ```
-/// use rne_codegen::{Expression, fusion};
+/// use rne_codegen::fusion;
 /// # use rne_codegen::{Form, Function, compile};
 /// # let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
 /// #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
@@ -264,10 +264,11 @@ impl Graph {
 
     /// The program that the graph has become.
     fn program(&self, program: &Program, outputs: &[Term]) -> Program {
+        let nodes = self.nodes.iter().enumerate();
+        let computed: BTreeMap<_, _> = nodes.filter_map(|(index, node)| Some((node.statement?, index))).collect();
         let mut statements = Vec::new();
         for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
-            let found = self.nodes.iter().position(|node| node.statement == Some(index));
-            if let Some(node) = found.filter(|&node| self.is_named(node)) {
+            if let Some(node) = computed.get(&index).copied().filter(|&node| self.is_named(node)) {
                 statements.push(Statement { place: *place, name: *name, value: self.value(node) });
             }
         }

@@ -124,7 +124,32 @@ mod sealed {
 mod tests {
     use super::Register;
     use crate::Scalar;
+    use crate::batch::{Torques, VectorUnit, run};
     use crate::sin_cos::{Float, Lanes};
+
+    /// q² + q̇
+    struct SquareAndSum;
+
+    impl Torques<1, 0> for SquareAndSum {
+        fn angles<T: Scalar>(&self, _: &[T; 1]) -> [T; 0] {
+            []
+        }
+
+        fn torques<T: Scalar>(&self, _: &[T; 0], _: &[T; 0], q: &[T; 1], qd: &[T; 1], _: &[T; 1]) -> [T; 1] {
+            [q[0].mul_add(q[0], qd[0])]
+        }
+    }
+
+    #[test]
+    fn a_product_and_a_sum_are_rounded_once_where_they_are_fused() {
+        let (q, qd) = ([1.0 + f64::EPSILON], [-(1.0 + 2.0 * f64::EPSILON)]);
+        for (index, unit) in VectorUnit::all().enumerate() {
+            let mut tau = [f64::NAN];
+            run(&SquareAndSum, unit, [&q], [&qd], [&[0.0]], [&mut tau]).expect("arrays of one length");
+            let is_fused = index > 0 || crate::sin_cos::FUSED;
+            assert_eq!(tau, [if is_fused { f64::EPSILON * f64::EPSILON } else { 0.0 }], "{unit}");
+        }
+    }
 
     #[test]
     fn a_register_has_the_sines_and_cosines_of_its_numbers() {
