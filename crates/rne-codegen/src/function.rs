@@ -16,11 +16,83 @@ pub enum Function {
     GravityTorques,
     /// τ(q, q̇, 0).
     BiasTorques,
+    /// M(q).
+    MassMatrix,
+    /// C(q, q̇).
+    CoriolisMatrix,
+    /// q̈(q, q̇, τ).
+    ForwardDynamics,
+    /// The tip in the world.
+    ForwardKinematics,
+    /// The frame of every link in the world.
+    LinkPoses,
+    /// J(q) of the tip.
+    Jacobian,
+    /// J̇ q̇ of the tip.
+    JacobianRateTimesVelocity,
+    /// T(q, q̇).
+    KineticEnergy,
+    /// V(q).
+    PotentialEnergy,
+    /// Y(q, q̇, q̈), torques per inertial parameter.
+    Regressor,
+    /// ∂τ/∂q and ∂τ/∂q̇.
+    InverseDynamicsDerivatives,
+    /// f_{i-1,i} and n_{i-1,i} of every joint.
+    JointWrenches,
+    /// τ(q, q̇, q̈) on a base that moves.
+    InverseDynamicsOnMovingBase,
+    /// What the motors add.
+    ActuatorTorques,
+}
+
+/// An argument of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Argument {
+    /// Sines of the joint positions.
+    Sines,
+    /// Cosines of the joint positions.
+    Cosines,
+    /// Joint positions.
+    Positions,
+    /// Joint rates.
+    Rates,
+    /// Joint accelerations.
+    Accelerations,
+    /// Joint torques.
+    Torques,
+    /// Force and moment at the tip.
+    Wrench,
+    /// Motion of the base, and gravity.
+    Base,
 }
 
 impl Function {
     /// All functions, in the order of the traits.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 19] = [
+        Self::InverseDynamics,
+        Self::InverseDynamicsWithWrench,
+        Self::InverseDynamicsSc,
+        Self::GravityTorques,
+        Self::BiasTorques,
+        Self::MassMatrix,
+        Self::CoriolisMatrix,
+        Self::ForwardDynamics,
+        Self::ForwardKinematics,
+        Self::LinkPoses,
+        Self::Jacobian,
+        Self::JacobianRateTimesVelocity,
+        Self::KineticEnergy,
+        Self::PotentialEnergy,
+        Self::Regressor,
+        Self::InverseDynamicsDerivatives,
+        Self::JointWrenches,
+        Self::InverseDynamicsOnMovingBase,
+        Self::ActuatorTorques,
+    ];
+
+    /// Those of the trait `InverseDynamics`: torques of an arm whose base stands still.
+    pub const TORQUES: [Self; 5] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWithWrench,
         Self::InverseDynamicsSc,
@@ -37,6 +109,20 @@ impl Function {
             Self::InverseDynamicsSc => "inverse_dynamics_sc",
             Self::GravityTorques => "gravity_torques",
             Self::BiasTorques => "bias_torques",
+            Self::MassMatrix => "mass_matrix",
+            Self::CoriolisMatrix => "coriolis_matrix",
+            Self::ForwardDynamics => "forward_dynamics",
+            Self::ForwardKinematics => "forward_kinematics",
+            Self::LinkPoses => "link_poses",
+            Self::Jacobian => "jacobian",
+            Self::JacobianRateTimesVelocity => "jacobian_rate_times_velocity",
+            Self::KineticEnergy => "kinetic_energy",
+            Self::PotentialEnergy => "potential_energy",
+            Self::Regressor => "regressor",
+            Self::InverseDynamicsDerivatives => "inverse_dynamics_derivatives",
+            Self::JointWrenches => "joint_wrenches",
+            Self::InverseDynamicsOnMovingBase => "inverse_dynamics_on_moving_base",
+            Self::ActuatorTorques => "actuator_torques",
         }
     }
 
@@ -55,27 +141,265 @@ impl Function {
             }
             Self::GravityTorques => "Torques that hold the arm still against gravity, τ(q, 0, 0).",
             Self::BiasTorques => "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).",
+            Self::MassMatrix => "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
+            Self::CoriolisMatrix => "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
+            Self::ForwardDynamics => "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
+            Self::ForwardKinematics => "The tip in the world, base and tool included.",
+            Self::LinkPoses => "The frame of every row of the table in the world.",
+            Self::Jacobian => "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
+            Self::JacobianRateTimesVelocity => "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
+            Self::KineticEnergy => "Kinetic energy, J.",
+            Self::PotentialEnergy => "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.",
+            Self::Regressor => {
+                "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)."
+            }
+            Self::InverseDynamicsDerivatives => "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
+            Self::JointWrenches => "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
+            Self::InverseDynamicsOnMovingBase => "Torques on a base that moves as told, under gravity as told, with a free tip.",
+            Self::ActuatorTorques => "What rotors behind gears and friction add to the torques.",
         }
     }
 
-    /// Whether the joint rates are an argument.
-    pub(crate) const fn has_rates(self) -> bool {
-        !matches!(self, Self::GravityTorques)
+    /// Its arguments, in order.
+    #[must_use]
+    pub const fn arguments(self) -> &'static [Argument] {
+        use Argument::{Accelerations, Base, Cosines, Positions, Rates, Sines, Torques, Wrench};
+        match self {
+            Self::InverseDynamics | Self::Regressor | Self::InverseDynamicsDerivatives | Self::JointWrenches => {
+                &[Positions, Rates, Accelerations]
+            }
+            Self::InverseDynamicsWithWrench => &[Positions, Rates, Accelerations, Wrench],
+            Self::InverseDynamicsSc => &[Sines, Cosines, Positions, Rates, Accelerations],
+            Self::GravityTorques
+            | Self::MassMatrix
+            | Self::ForwardKinematics
+            | Self::LinkPoses
+            | Self::Jacobian
+            | Self::PotentialEnergy => &[Positions],
+            Self::BiasTorques | Self::CoriolisMatrix | Self::JacobianRateTimesVelocity | Self::KineticEnergy => {
+                &[Positions, Rates]
+            }
+            Self::ForwardDynamics => &[Positions, Rates, Torques],
+            Self::InverseDynamicsOnMovingBase => &[Positions, Rates, Accelerations, Base],
+            Self::ActuatorTorques => &[Rates, Accelerations],
+        }
     }
 
-    /// Whether the joint accelerations are an argument.
-    pub(crate) const fn has_accelerations(self) -> bool {
-        matches!(self, Self::InverseDynamics | Self::InverseDynamicsWithWrench | Self::InverseDynamicsSc)
+    /// Whether it has an argument.
+    #[must_use]
+    pub fn takes(self, argument: Argument) -> bool {
+        self.arguments().contains(&argument)
     }
 
-    /// Whether sines and cosines are arguments.
-    pub(crate) const fn has_turns(self) -> bool {
-        matches!(self, Self::InverseDynamicsSc)
+    /// Whether what it returns are the torques of the joints.
+    #[must_use]
+    pub const fn returns_torques(self) -> bool {
+        matches!(
+            self,
+            Self::InverseDynamics
+                | Self::InverseDynamicsWithWrench
+                | Self::InverseDynamicsSc
+                | Self::GravityTorques
+                | Self::BiasTorques
+                | Self::InverseDynamicsOnMovingBase
+        )
     }
 
-    /// Whether the wrench at the tip is an argument.
-    pub(crate) const fn has_wrench(self) -> bool {
-        matches!(self, Self::InverseDynamicsWithWrench)
+    /// The shape of what it returns for so many joints.
+    #[must_use]
+    pub fn layout(self, dof: usize) -> Layout {
+        let array = |length, of: &Layout| Layout::Array(length, Box::new(of.clone()));
+        let vector = array(dof, &Layout::Number);
+        let matrix = array(dof, &vector);
+        let triple = array(3, &Layout::Number);
+        let pose = Layout::Record(Record::Pose, vec![array(3, &triple), triple.clone()]);
+        match self {
+            Self::InverseDynamics
+            | Self::InverseDynamicsWithWrench
+            | Self::InverseDynamicsSc
+            | Self::GravityTorques
+            | Self::BiasTorques
+            | Self::ForwardDynamics
+            | Self::InverseDynamicsOnMovingBase
+            | Self::ActuatorTorques => vector,
+            Self::MassMatrix | Self::CoriolisMatrix => matrix,
+            Self::ForwardKinematics => pose,
+            Self::LinkPoses => array(dof, &pose),
+            Self::Jacobian => array(6, &vector),
+            Self::JacobianRateTimesVelocity => array(6, &Layout::Number),
+            Self::KineticEnergy | Self::PotentialEnergy => Layout::Number,
+            Self::Regressor => array(dof, &array(dof, &array(10, &Layout::Number))),
+            Self::InverseDynamicsDerivatives => {
+                Layout::Record(Record::TorqueDerivatives, vec![matrix.clone(), matrix])
+            }
+            Self::JointWrenches => array(dof, &Layout::Record(Record::Wrench, vec![triple.clone(), triple])),
+        }
+    }
+}
+
+/// How the numbers that a function returns are grouped.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// One number.
+    Number,
+    /// So many of the same.
+    Array(usize, Box<Self>),
+    /// Named parts.
+    Record(Record, Vec<Self>),
+}
+
+/// The records that functions return.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Record {
+    /// Rotation and translation.
+    Pose,
+    /// Force and moment.
+    Wrench,
+    /// By q and by q̇.
+    TorqueDerivatives,
+}
+
+impl Record {
+    /// The name of its type.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Pose => "Pose",
+            Self::Wrench => "Wrench",
+            Self::TorqueDerivatives => "TorqueDerivatives",
+        }
+    }
+
+    /// The names of its parts.
+    #[must_use]
+    pub const fn fields(self) -> [&'static str; 2] {
+        match self {
+            Self::Pose => ["rotation", "translation"],
+            Self::Wrench => ["force", "moment"],
+            Self::TorqueDerivatives => ["dq", "dqd"],
+        }
+    }
+}
+
+impl Layout {
+    /// How many numbers there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Number => 1,
+            Self::Array(length, of) => length * of.len(),
+            Self::Record(_, parts) => parts.iter().map(Self::len).sum(),
+        }
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Puts numbers, in their order, into the shape: `array` and `record` join what their elements and parts became.
+    pub fn fold<R>(
+        &self,
+        numbers: &mut impl Iterator<Item = R>,
+        array: &impl Fn(Vec<R>) -> R,
+        record: &impl Fn(Record, Vec<R>) -> R,
+    ) -> Option<R> {
+        match self {
+            Self::Number => numbers.next(),
+            Self::Array(length, of) => {
+                (0..*length).map(|_| of.fold(numbers, array, record)).collect::<Option<_>>().map(array)
+            }
+            Self::Record(kind, parts) => {
+                let parts = parts.iter().map(|part| part.fold(numbers, array, record)).collect::<Option<_>>();
+                parts.map(|parts| record(*kind, parts))
+            }
+        }
+    }
+}
+
+/// What a robot can compute, named as the trait that a struct derives.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Capability {
+    /// Torques from motion.
+    InverseDynamics,
+    /// M(q).
+    MassMatrix,
+    /// C(q, q̇).
+    CoriolisMatrix,
+    /// Motion from torques.
+    ForwardDynamics,
+    /// Poses and Jacobian.
+    Kinematics,
+    /// Kinetic and potential.
+    Energy,
+    /// Torques per inertial parameter.
+    Regressor,
+    /// ∂τ/∂q and ∂τ/∂q̇.
+    InverseDynamicsDerivatives,
+    /// Bearing loads.
+    JointWrenches,
+    /// Torques on a base that moves.
+    MovingBase,
+    /// Rotors, gears, friction.
+    Actuation,
+}
+
+impl Capability {
+    /// All of them.
+    pub const ALL: [Self; 11] = [
+        Self::InverseDynamics,
+        Self::MassMatrix,
+        Self::CoriolisMatrix,
+        Self::ForwardDynamics,
+        Self::Kinematics,
+        Self::Energy,
+        Self::Regressor,
+        Self::InverseDynamicsDerivatives,
+        Self::JointWrenches,
+        Self::MovingBase,
+        Self::Actuation,
+    ];
+
+    /// The name of its trait.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::InverseDynamics => "InverseDynamics",
+            Self::MassMatrix => "MassMatrix",
+            Self::CoriolisMatrix => "CoriolisMatrix",
+            Self::ForwardDynamics => "ForwardDynamics",
+            Self::Kinematics => "Kinematics",
+            Self::Energy => "Energy",
+            Self::Regressor => "Regressor",
+            Self::InverseDynamicsDerivatives => "InverseDynamicsDerivatives",
+            Self::JointWrenches => "JointWrenches",
+            Self::MovingBase => "MovingBase",
+            Self::Actuation => "Actuation",
+        }
+    }
+
+    /// The methods of its trait.
+    #[must_use]
+    pub const fn functions(self) -> &'static [Function] {
+        match self {
+            Self::InverseDynamics => &Function::TORQUES,
+            Self::MassMatrix => &[Function::MassMatrix],
+            Self::CoriolisMatrix => &[Function::CoriolisMatrix],
+            Self::ForwardDynamics => &[Function::ForwardDynamics],
+            Self::Kinematics => &[
+                Function::ForwardKinematics,
+                Function::LinkPoses,
+                Function::Jacobian,
+                Function::JacobianRateTimesVelocity,
+            ],
+            Self::Energy => &[Function::KineticEnergy, Function::PotentialEnergy],
+            Self::Regressor => &[Function::Regressor],
+            Self::InverseDynamicsDerivatives => &[Function::InverseDynamicsDerivatives],
+            Self::JointWrenches => &[Function::JointWrenches],
+            Self::MovingBase => &[Function::InverseDynamicsOnMovingBase],
+            Self::Actuation => &[Function::ActuatorTorques],
+        }
     }
 }
 

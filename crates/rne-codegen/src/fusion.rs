@@ -54,7 +54,7 @@ pub fn instructions(program: &Program) -> usize {
 }
 
 fn expression_instructions(expression: &Expression) -> usize {
-    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+    use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
     match expression {
         Variable(_) | Zero => 0,
         // goes into the instruction that uses it, but for an output
@@ -65,7 +65,8 @@ fn expression_instructions(expression: &Expression) -> usize {
             let saved = usize::from(is_product(a) || is_product(b));
             1 + inner(a) + inner(b) - saved
         }
-        Product(a, b) => 1 + expression_instructions(a) + expression_instructions(b),
+        Product(a, b) | Quotient(a, b) => 1 + expression_instructions(a) + expression_instructions(b),
+        BySign(x, a, b) => 2 + [x, a, b].into_iter().map(|operand| expression_instructions(operand)).sum::<usize>(),
     }
 }
 
@@ -80,6 +81,8 @@ enum Kind {
     /// What the statements are made of: arguments, constants, sines and cosines.
     Leaf(Expression),
     Product([usize; 2]),
+    Quotient([usize; 2]),
+    BySign([Term; 3]),
     Sum(Vec<Term>),
 }
 
@@ -164,6 +167,15 @@ impl Graph {
                 let sign = if a.sign == b.sign { Plus } else { Minus };
                 Term { sign, node: self.push(Kind::Product([a.node, b.node])) }
             }
+            Expression::Quotient(a, b) => {
+                let (a, b) = (self.term(a), self.term(b));
+                let sign = if a.sign == b.sign { Plus } else { Minus };
+                Term { sign, node: self.push(Kind::Quotient([a.node, b.node])) }
+            }
+            Expression::BySign(x, a, b) => {
+                let operands = [x, a, b].map(|operand| self.term(operand));
+                Term { sign: Plus, node: self.push(Kind::BySign(operands)) }
+            }
         }
     }
 
@@ -172,7 +184,10 @@ impl Graph {
         for node in &self.nodes {
             match &node.kind {
                 Kind::Leaf(_) => {}
-                Kind::Product(factors) => factors.iter().for_each(|&factor| uses[factor] += 1),
+                Kind::Product(factors) | Kind::Quotient(factors) => {
+                    factors.iter().for_each(|&factor| uses[factor] += 1);
+                }
+                Kind::BySign(operands) => operands.iter().for_each(|operand| uses[operand.node] += 1),
                 Kind::Sum(terms) => terms.iter().for_each(|term| uses[term.node] += 1),
             }
         }
@@ -252,6 +267,10 @@ impl Graph {
                 Kind::Leaf(Expression::Variable(name)) if turns.contains(name) => latency::TURN,
                 Kind::Leaf(_) => 0,
                 Kind::Product([a, b]) => known[*a].max(known[*b]) + latency::PRODUCT,
+                Kind::Quotient([a, b]) => known[*a].max(known[*b]) + latency::QUOTIENT,
+                Kind::BySign(operands) => {
+                    operands.iter().map(|operand| known[operand.node]).max().unwrap_or(0) + latency::SUM
+                }
                 Kind::Sum(terms) => {
                     terms.sort_by_key(|term| known[term.node]);
                     let times = terms.iter().map(|term| known[term.node]);
@@ -285,7 +304,7 @@ impl Graph {
         };
         match &self.nodes[node].kind {
             Kind::Product(factors) => self.nodes[node].uses == 1 || !factors.iter().any(is_nameless),
-            Kind::Leaf(_) | Kind::Sum(_) => false,
+            Kind::Leaf(_) | Kind::Sum(_) | Kind::Quotient(_) | Kind::BySign(_) => false,
         }
     }
 
@@ -310,6 +329,14 @@ impl Graph {
             Kind::Product(factors) => {
                 let [a, b] = factors.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
                 Expression::Product(a, b)
+            }
+            Kind::Quotient(operands) => {
+                let [a, b] = operands.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
+                Expression::Quotient(a, b)
+            }
+            Kind::BySign(operands) => {
+                let [x, a, b] = operands.map(|operand| Box::new(self.operand(operand)));
+                Expression::BySign(x, a, b)
             }
             Kind::Sum(terms) => self.sum(terms),
         }

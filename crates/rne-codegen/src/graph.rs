@@ -9,6 +9,8 @@ use std::ops::Neg;
 
 use crate::exact::{Image, Number, Reading};
 use crate::quantity::Name;
+use crate::reduced::Point;
+use rne_model::Angle;
 
 /// The index of a node in its graph.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -57,6 +59,24 @@ pub(crate) enum Node {
     Sum(Term, Term),
     /// A product of two nodes.
     Product(NodeId, NodeId),
+    /// A quotient of two nodes.
+    Quotient(NodeId, NodeId),
+    /// One of two values, by the sign of the first; 0 where that is 0.
+    BySign(Term, Term, Term),
+}
+
+impl Node {
+    /// The nodes that it uses.
+    pub(crate) fn operands(self) -> impl Iterator<Item = NodeId> {
+        let operands = match self {
+            Self::Constant(_) | Self::Argument(_) => [None; 3],
+            Self::Sine(angle) | Self::Cosine(angle) => [Some(angle.node), None, None],
+            Self::Sum(a, b) => [Some(a.node), Some(b.node), None],
+            Self::Product(a, b) | Self::Quotient(a, b) => [Some(a), Some(b), None],
+            Self::BySign(x, a, b) => [x, a, b].map(|term| Some(term.node)),
+        };
+        operands.into_iter().flatten()
+    }
 }
 
 /// What became of an operation.
@@ -93,6 +113,8 @@ enum Key {
     Cosine(Term),
     Sum(NodeId, NodeId, bool),
     Product(NodeId, NodeId),
+    Quotient(NodeId, NodeId),
+    BySign(Term, Term, Term),
 }
 
 /// Nodes in order of creation, which is an order of evaluation too.
@@ -109,12 +131,80 @@ pub(crate) struct Graph {
 struct Exact {
     reading: Reading,
     numbers: HashMap<NodeId, Number>,
+    merged: Option<Merged>,
+}
+
+/// What nodes are worth at a random point: two that are equal there are one.
+struct Merged {
+    point: Point,
+    /// By node.
+    images: Vec<Image>,
+    /// The first node of each value, which may be its negative.
+    known: HashMap<Image, Term>,
+}
+
+impl Merged {
+    fn image(&self, term: Term) -> Image {
+        let image = self.images[term.node.index()];
+        if term.negative { -image } else { image }
+    }
+
+    fn term(&self, image: Image) -> Option<Term> {
+        let known = |image: Image| self.known.get(&image).copied();
+        known(image).or_else(|| known(-image).map(|term| -term))
+    }
 }
 
 impl Graph {
     /// A graph whose constants are exact: it folds what is zero and one, not what rounds to it.
     pub(crate) fn exact(reading: Reading) -> Self {
-        Self { exact: Some(Exact { reading, numbers: HashMap::new() }), ..Self::default() }
+        Self { exact: Some(Exact { reading, numbers: HashMap::new(), merged: None }), ..Self::default() }
+    }
+
+    /// An exact graph in which equal values are one node, however they are computed.
+    pub(crate) fn merged(reading: Reading) -> Self {
+        let merged = Merged { point: Point::new(reading, 0), images: Vec::new(), known: HashMap::new() };
+        Self { exact: Some(Exact { reading, numbers: HashMap::new(), merged: Some(merged) }), ..Self::default() }
+    }
+
+    fn merge(&self) -> Option<&Merged> {
+        self.exact.as_ref()?.merged.as_ref()
+    }
+
+    /// What a node is worth at a point, when those before it are worth `images`.
+    pub(crate) fn image(&self, node: Node, number: Option<Number>, images: &[Image], point: &Point) -> Image {
+        let of = |term: Term| {
+            let image = images[term.node.index()];
+            if term.negative { -image } else { image }
+        };
+        match node {
+            Node::Constant(_) => number.map_or(Image::ZERO, |number| number.image),
+            Node::Argument(name) => point.argument(name),
+            Node::Sine(angle) => self.turn_image(angle, point).0,
+            Node::Cosine(angle) => self.turn_image(angle, point).1,
+            Node::Sum(a, b) => of(a) + of(b),
+            Node::Product(a, b) => images[a.index()] * images[b.index()],
+            Node::Quotient(a, b) => images[a.index()] * images[b.index()].inverse().unwrap_or(Image::ZERO),
+            // no rational function: nothing is said of it
+            Node::BySign(..) => Image::ZERO,
+        }
+    }
+
+    /// Sine and cosine of an angle: q, or a constant and q.
+    fn turn_image(&self, angle: Term, point: &Point) -> (Image, Image) {
+        let (sine, cosine) = match self.node(angle.node) {
+            Node::Argument(name) => point.turn(name.joint - 1),
+            Node::Constant(magnitude) => {
+                let turn = self.reading().unwrap_or_default().turn(&Angle::new(magnitude));
+                (turn.sin.image, turn.cos.image)
+            }
+            Node::Sum(a, b) => {
+                let ((s, c), (sine, cosine)) = (self.turn_image(a, point), self.turn_image(b, point));
+                (s * cosine + c * sine, c * cosine - s * sine)
+            }
+            _ => (Image::ZERO, Image::ZERO),
+        };
+        (if angle.negative { -sine } else { sine }, cosine)
     }
 
     /// How an exact graph reads the numbers of a robot.
@@ -136,6 +226,10 @@ impl Graph {
         let (node, outcome) = self.intern(key, Node::Constant(value));
         if let (Outcome::Computed, Some(exact)) = (outcome, &mut self.exact) {
             exact.numbers.insert(node, magnitude);
+            if let Some(merged) = &mut exact.merged {
+                merged.images[node.index()] = magnitude.image;
+                merged.known.entry(magnitude.image).or_insert(Term { node, negative: false });
+            }
         }
         Term { node, negative: number.is_negative() }
     }
@@ -202,6 +296,15 @@ impl Graph {
         if a == -b {
             return (self.constant(0.0), Outcome::Cancelled);
         }
+        if let Some(merged) = self.merge() {
+            let image = merged.image(a) + merged.image(b);
+            if image.is_zero() {
+                return (self.constant(0.0), Outcome::Cancelled);
+            }
+            if let Some(known) = merged.term(image) {
+                return (known, Outcome::Shared);
+            }
+        }
         // Pull out the sign of the first operand: (-a) + b = -(a - b).
         let mut negative = a.negative;
         let (mut a, mut b) = (a.signed(negative), b.signed(negative));
@@ -241,9 +344,42 @@ impl Graph {
             };
             return (product, Outcome::Constants);
         }
+        if let Some(merged) = self.merge()
+            && let Some(known) = merged.term(merged.image(a) * merged.image(b))
+        {
+            return (known, Outcome::Shared);
+        }
         let key = Key::Product(a.node.min(b.node), a.node.max(b.node));
         let (node, outcome) = self.intern(key, Node::Product(a.node, b.node));
         (Term { node, negative: a.negative != b.negative }, outcome)
+    }
+
+    /// a / b. Only what is exact whatever b is folds.
+    pub(crate) fn quotient(&mut self, a: Term, b: Term) -> (Term, Outcome) {
+        let (left, right) = (self.value(a), self.value(b));
+        if let Some(right) = right
+            && right.abs() == 1.0
+        {
+            return (a.signed(right < 0.0), Outcome::One(Side::Right));
+        }
+        if let (Some(left), Some(right)) = (left, right) {
+            let inverse = self.number(b).and_then(Number::inverse);
+            let quotient = match (self.number(a), inverse) {
+                (Some(a), Some(inverse)) => self.constant_number(a * inverse),
+                _ => self.constant(left / right),
+            };
+            return (quotient, Outcome::Constants);
+        }
+        let (node, outcome) = self.intern(Key::Quotient(a.node, b.node), Node::Quotient(a.node, b.node));
+        (Term { node, negative: a.negative != b.negative }, outcome)
+    }
+
+    /// `positive` where x > 0, `negative` where x < 0, else 0.
+    pub(crate) fn by_sign(&mut self, x: Term, positive: Term, negative: Term) -> Term {
+        if self.value(positive) == Some(0.0) && self.value(negative) == Some(0.0) {
+            return self.constant(0.0);
+        }
+        self.leaf(Key::BySign(x, positive, negative), Node::BySign(x, positive, negative))
     }
 
     fn leaf(&mut self, key: Key, node: Node) -> Term {
@@ -255,9 +391,23 @@ impl Graph {
         let id = *self.known.entry(key).or_insert(next);
         if id == next {
             self.nodes.push(node);
+            self.remember(id, node);
             return (id, Outcome::Computed);
         }
         (id, Outcome::Shared)
+    }
+
+    fn remember(&mut self, id: NodeId, node: Node) {
+        let Some(merged) = self.merge() else { return };
+        let image = self.image(node, None, &merged.images, &merged.point);
+        // a constant is remembered when its number is
+        let is_known_later = matches!(node, Node::BySign(..) | Node::Constant(_));
+        if let Some(merged) = self.exact.as_mut().and_then(|exact| exact.merged.as_mut()) {
+            merged.images.push(image);
+            if !is_known_later && merged.term(image).is_none() {
+                merged.known.insert(image, Term { node: id, negative: false });
+            }
+        }
     }
 
     fn id(index: usize) -> NodeId {

@@ -1,7 +1,7 @@
 //! An interpreter of programs over any number type, so that thousands of robots can be tried without compiling each.
 
 use std::collections::BTreeMap;
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::program::{Expression, Program, Statement};
 use crate::quantity::{Component, Name, Quantity};
@@ -19,6 +19,21 @@ pub struct Arguments<'a, T> {
     pub force: [T; 3],
     /// Moment that the last link exerts at the tip, N m.
     pub moment: [T; 3],
+    /// Joint torques.
+    pub tau: &'a [T],
+    /// ω₀, ω̇₀, c̈₀ of the base and gravity, in frame 0.
+    pub base: [[T; 3]; 4],
+    /// Parameters that are known at run time only.
+    pub parameters: &'a [T],
+}
+
+impl<'a, T: Copy> Arguments<'a, T> {
+    /// Motion of the joints; everything else is `zero` or absent.
+    #[must_use]
+    pub const fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T], zero: T) -> Self {
+        let zeros = [zero; 3];
+        Self { q, qd, qdd, force: zeros, moment: zeros, tau: &[], base: [zeros; 4], parameters: &[] }
+    }
 }
 
 /// A program made ready to run: names are resolved to slots.
@@ -38,6 +53,41 @@ enum Instruction {
     Sum(usize, usize),
     Difference(usize, usize),
     Product(usize, usize),
+    Quotient(usize, usize),
+    BySign(usize, usize, usize),
+}
+
+/// What a number of the interpreter can do.
+pub trait Real:
+    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
+{
+    /// `positive` where it is above 0, `negative` where it is below, else 0.
+    #[must_use]
+    fn by_sign(self, positive: Self, negative: Self) -> Self;
+}
+
+impl Real for f64 {
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 {
+            positive
+        } else if self < 0.0 {
+            negative
+        } else {
+            0.0
+        }
+    }
+}
+
+impl Real for f32 {
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 {
+            positive
+        } else if self < 0.0 {
+            negative
+        } else {
+            0.0
+        }
+    }
 }
 
 impl Interpreter {
@@ -78,7 +128,7 @@ impl Interpreter {
         sin_cos: impl Fn(T) -> (T, T),
     ) -> Option<Vec<T>>
     where
-        T: Copy + Neg<Output = T> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+        T: Real,
     {
         self.run_named(arguments, |_, value| Some(constant(value)), sin_cos)
     }
@@ -91,7 +141,7 @@ impl Interpreter {
         sin_cos: impl Fn(T) -> (T, T),
     ) -> Option<Vec<T>>
     where
-        T: Copy + Neg<Output = T> + Add<Output = T> + Sub<Output = T> + Mul<Output = T>,
+        T: Real,
     {
         let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
         for &instruction in &self.code {
@@ -114,6 +164,8 @@ impl Interpreter {
                 Instruction::Sum(a, b) => slots[a] + slots[b],
                 Instruction::Difference(a, b) => slots[a] - slots[b],
                 Instruction::Product(a, b) => slots[a] * slots[b],
+                Instruction::Quotient(a, b) => slots[a] / slots[b],
+                Instruction::BySign(x, a, b) => slots[x].by_sign(slots[a], slots[b]),
             };
             slots.push(value);
         }
@@ -126,10 +178,16 @@ impl<T: Copy> Arguments<'_, T> {
         match (name.quantity, name.component) {
             (Quantity::JointForce, Component::Vector(axis)) => Some(self.force[axis as usize]),
             (Quantity::JointMoment, Component::Vector(axis)) => Some(self.moment[axis as usize]),
+            (Quantity::Omega, Component::Vector(axis)) => Some(self.base[0][axis as usize]),
+            (Quantity::OmegaDot, Component::Vector(axis)) => Some(self.base[1][axis as usize]),
+            (Quantity::Acceleration, Component::Vector(axis)) => Some(self.base[2][axis as usize]),
+            (Quantity::Gravity, Component::Vector(axis)) => Some(self.base[3][axis as usize]),
             (quantity, _) => {
                 let array = match quantity {
                     Quantity::Position => self.q,
                     Quantity::Rate => self.qd,
+                    Quantity::AppliedTorque => self.tau,
+                    Quantity::Parameter => self.parameters,
                     _ => self.qdd,
                 };
                 array.get(name.joint.checked_sub(1)?).copied()
@@ -171,6 +229,10 @@ impl Builder {
             Expression::Sum(a, b) => Instruction::Sum(self.expression(a), self.expression(b)),
             Expression::Difference(a, b) => Instruction::Difference(self.expression(a), self.expression(b)),
             Expression::Product(a, b) => Instruction::Product(self.expression(a), self.expression(b)),
+            Expression::Quotient(a, b) => Instruction::Quotient(self.expression(a), self.expression(b)),
+            Expression::BySign(x, a, b) => {
+                Instruction::BySign(self.expression(x), self.expression(a), self.expression(b))
+            }
         };
         self.push(instruction)
     }

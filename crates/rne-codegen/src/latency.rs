@@ -14,6 +14,9 @@ pub(crate) const PRODUCT: usize = 4;
 /// Cycles of an addition.
 pub(crate) const SUM: usize = 3;
 
+/// Cycles of a division.
+pub(crate) const QUOTIENT: usize = 14;
+
 /// Cycles after which sines and cosines are there.
 pub(crate) const TURN: usize = 50;
 
@@ -71,12 +74,14 @@ impl Latency {
     }
 
     fn at(&self, expression: &Expression) -> usize {
-        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
         match expression {
             Variable(name) => self.known.get(name).copied().unwrap_or(0),
             Zero => 0,
             Negative(a) => self.at(a),
             Product(a, b) => self.at(a).max(self.at(b)) + PRODUCT,
+            Quotient(a, b) => self.at(a).max(self.at(b)) + QUOTIENT,
+            BySign(x, a, b) => self.at(x).max(self.at(a)).max(self.at(b)) + SUM,
             Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
                 (a, Product(x, y)) | (Product(x, y), a) => {
                     let Ways { fused, apart } = self.ways(a, x, y);
@@ -89,7 +94,7 @@ impl Latency {
 
     /// Notes for what an expression uses that it and `rest` follow.
     fn follow(&mut self, expression: &Expression, rest: usize) {
-        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
         match expression {
             Variable(name) => {
                 let known = self.rest.entry(*name).or_default();
@@ -101,6 +106,11 @@ impl Latency {
                 self.follow(a, rest + PRODUCT);
                 self.follow(b, rest + PRODUCT);
             }
+            Quotient(a, b) => {
+                self.follow(a, rest + QUOTIENT);
+                self.follow(b, rest + QUOTIENT);
+            }
+            BySign(x, a, b) => [x, a, b].into_iter().for_each(|operand| self.follow(operand, rest + SUM)),
             Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
                 (a, Product(x, y)) | (Product(x, y), a) => {
                     let Ways { fused, apart } = self.ways(a, x, y);

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::quantity::{Axis, Name, Quantity, Step};
+use crate::quantity::{Axis, By, Name, Quantity, Step};
 
 /// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -30,6 +30,10 @@ pub enum Cause {
     AtRest,
     /// The function is for an arm that does not accelerate, q̈ = 0.
     NoAcceleration,
+    /// One joint accelerates, the others do not.
+    UnitAcceleration,
+    /// The function has nothing to do with gravity.
+    NoGravity,
 }
 
 impl fmt::Display for Cause {
@@ -46,6 +50,8 @@ impl fmt::Display for Cause {
             Self::FreeTip => f.write_str("nothing touches the tip"),
             Self::AtRest => f.write_str("the arm is at rest"),
             Self::NoAcceleration => f.write_str("the joints do not accelerate"),
+            Self::UnitAcceleration => f.write_str("one joint alone accelerates"),
+            Self::NoGravity => f.write_str("gravity has no part in it"),
         }
     }
 }
@@ -109,7 +115,12 @@ impl Cause {
             Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame => 1,
             Self::Table(_) => 2,
             Self::GravityDirection(_) => 3,
-            Self::FixedBase | Self::FreeTip | Self::AtRest | Self::NoAcceleration => 4,
+            Self::FixedBase
+            | Self::FreeTip
+            | Self::AtRest
+            | Self::NoAcceleration
+            | Self::UnitAcceleration
+            | Self::NoGravity => 4,
         }
     }
 
@@ -172,6 +183,8 @@ pub struct Place {
     pub step: Step,
     /// The quantity that was being computed.
     pub quantity: Quantity,
+    /// Of which variable it was the derivative.
+    pub by: Option<By>,
 }
 
 /// How many operations at one place met one fate.
@@ -222,7 +235,7 @@ impl Ledger {
         })
     }
 
-    /// (products, sums) of the seven steps before folding, step 3 included.
+    /// (products, sums) before folding; of the seven steps, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {
         self.total(|_| true)

@@ -10,20 +10,26 @@
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]
 
+mod actuation;
 mod derivation;
+mod elimination;
 pub mod emit;
+mod energy;
 mod exact;
 mod function;
 pub mod fusion;
 mod graph;
 mod interpret;
+mod kinematics;
 mod latency;
 mod ledger;
 mod links;
+mod mass_matrix;
 mod program;
 mod proof;
 mod quantity;
 pub mod reduced;
+mod regressor;
 mod schedule;
 mod seven_steps;
 mod symbol;
@@ -33,11 +39,11 @@ use std::fmt;
 
 use rne_model::Robot;
 
-pub use function::{Form, Function, UnknownName};
-pub use interpret::{Arguments, Interpreter};
+pub use function::{Argument, Capability, Form, Function, Layout, Record, UnknownName};
+pub use interpret::{Arguments, Interpreter, Real};
 pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
-pub use quantity::{Axis, Component, Name, Quantity, Step};
+pub use quantity::{Axis, By, Component, Name, Quantity, Step};
 
 use crate::worksheet::Worksheet;
 
@@ -66,11 +72,7 @@ pub fn compile_keeping(
     }
     let sheet = Worksheet::default();
     let dof = robot.dof();
-    let mut outputs: Vec<_> = derivation::torques(&sheet, robot, function)
-        .into_iter()
-        .enumerate()
-        .map(|(index, torque)| schedule::output(Name::scalar(Quantity::Torque, index + 1), torque))
-        .collect();
+    let mut outputs = derivation::outputs(&sheet, robot, function);
     let written = sheet.finish();
     let of_a_link = |name: &Name| (1..=dof).contains(&name.joint);
     let kept = written
@@ -94,8 +96,8 @@ pub enum CompileError {
     NotIdentical {
         /// The function.
         function: Function,
-        /// The first joint whose torque differs, counted from 1.
-        joint: usize,
+        /// The first number returned that differs, counted from 1: for torques, the joint.
+        output: usize,
     },
     /// Code whose torques round too far away from those of the seven steps; it is never emitted.
     Imprecise {
@@ -117,9 +119,9 @@ impl fmt::Display for CompileError {
                 name.quantity.meaning(),
                 name.joint
             ),
-            Self::NotIdentical { function, joint } => write!(
+            Self::NotIdentical { function, output } => write!(
                 f,
-                "this form of `{function}` is not the seven steps: the torque of joint {joint} differs. No code is written. A \
+                "this form of `{function}` is not the seven steps: number {output} of its result differs. No code is written. A \
                  graph in a plan file that has been edited does that; `rne search --fresh` writes it anew. Without a plan file, \
                  please report this robot"
             ),

@@ -28,6 +28,10 @@ pub(crate) struct Link<'s> {
     pub(crate) com: Vector<'s>,
     /// C_i → J_{i+1}.
     pub(crate) r: Vector<'s>,
+    /// From the end of the offset, where the link frame of the table stands, to J_{i+1} or to the tip.
+    pub(crate) lever: Vector<'s>,
+    /// Turns components in the link frame of the table into components in frame i.
+    pub(crate) table_axes: Matrix<'s>,
     pub(crate) mass: Symbol<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
@@ -40,6 +44,10 @@ pub(crate) struct Arm<'s> {
     pub(crate) tip: Matrix<'s>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
+    /// r_0: from the origin of frame 0 to J_1.
+    pub(crate) base_lever: Vector<'s>,
+    /// World → frame 0.
+    pub(crate) base: Placement<'s>,
 }
 
 impl<'s> Arm<'s> {
@@ -49,7 +57,7 @@ impl<'s> Arm<'s> {
         let joints = &robot.joints;
         let zero = || sheet.constant(0.0, Cause::Arithmetic);
         let along_x = |length: f64| Vector([sheet.constant(length, Cause::Arithmetic), zero(), zero()]);
-        let tool = Tool::new(sheet, &robot.tool);
+        let tool = Placement::new(sheet, &robot.tool);
 
         let turns: Vec<_> =
             rows.iter().enumerate().map(|(index, row)| turn_about_x(sheet, index + 1, &row.dh.alpha)).collect();
@@ -60,7 +68,7 @@ impl<'s> Arm<'s> {
             let written_com = Vector(row.link.com.map(|x| sheet.constant(x, Cause::Arithmetic)));
             let written_inertia = sheet.inertia(&joints[index]);
             let is_last = joint == dof;
-            let (twist, offset, com, mut r, inertia);
+            let (twist, offset, com, mut r, inertia, mut lever, table_axes);
             match robot.convention {
                 Convention::Standard => {
                     // the twist before joint i stands in row i-1
@@ -70,8 +78,11 @@ impl<'s> Arm<'s> {
                     com = own * written_com;
                     inertia = (own * written_inertia) * own.transpose();
                     r = -com;
+                    lever = sheet.zeros(Cause::Arithmetic);
+                    table_axes = own;
                     if is_last {
-                        r = r + own * tool.translation;
+                        lever = own * tool.translation;
+                        r = r + lever;
                         tip = own * tool.rotation;
                     }
                 }
@@ -80,9 +91,10 @@ impl<'s> Arm<'s> {
                     offset = [0.0, 0.0, row.dh.d];
                     com = written_com;
                     inertia = written_inertia;
-                    r = match rows.get(index + 1) {
-                        Some(next) => along_x(next.dh.a) - com,
-                        None => -com + tool.translation,
+                    table_axes = identity(sheet);
+                    (lever, r) = match rows.get(index + 1) {
+                        Some(next) => (along_x(next.dh.a), along_x(next.dh.a) - com),
+                        None => (tool.translation, -com + tool.translation),
                     };
                 }
             }
@@ -93,6 +105,8 @@ impl<'s> Arm<'s> {
                 offset: Vector(offset.map(|x| sheet.constant(x, Cause::Arithmetic))),
                 com,
                 r: sheet.entry_vector(Quantity::R, joint, r),
+                lever,
+                table_axes,
                 mass: sheet.entry(Name::scalar(Quantity::Mass, joint), row.link.mass),
                 inertia: sheet.entry_matrix(Quantity::Inertia, joint, inertia),
             });
@@ -101,18 +115,24 @@ impl<'s> Arm<'s> {
             links,
             tip: sheet.entry_matrix(Quantity::TipRotation, dof + 1, tip),
             gravity: gravity(sheet, robot.gravity),
+            base_lever: match (robot.convention, rows.first()) {
+                (Convention::Modified, Some(first)) => along_x(first.dh.a),
+                _ => sheet.zeros(Cause::FirstFrame),
+            },
+            base: Placement::new(sheet, &robot.base),
         }
     }
 }
 
-/// Frame n → tip frame.
-struct Tool<'s> {
-    rotation: Matrix<'s>,
-    translation: Vector<'s>,
+/// A constant placement: frame n → tip frame, or world → frame 0.
+#[derive(Clone, Copy)]
+pub(crate) struct Placement<'s> {
+    pub(crate) rotation: Matrix<'s>,
+    pub(crate) translation: Vector<'s>,
 }
 
-impl<'s> Tool<'s> {
-    /// R_t = (Rz(yaw) Ry(pitch)) Rx(roll).
+impl<'s> Placement<'s> {
+    /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
     fn new(sheet: &'s Worksheet, tool: &Transform) -> Self {
         let number = |value: f64| sheet.constant(value, Cause::Arithmetic);
         let (zero, one) = (number(0.0), number(1.0));
@@ -143,7 +163,7 @@ fn turn_about_x<'s>(sheet: &'s Worksheet, row: usize, alpha: &Angle) -> Matrix<'
 }
 
 /// α_0 of a standard table is 0.
-fn identity(sheet: &Worksheet) -> Matrix<'_> {
+pub(crate) fn identity(sheet: &Worksheet) -> Matrix<'_> {
     let (zero, one) = (sheet.constant(0.0, Cause::FirstFrame), sheet.constant(1.0, Cause::FirstFrame));
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
 }

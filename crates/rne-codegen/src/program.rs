@@ -29,7 +29,7 @@ pub struct Program {
     pub turns: Vec<Turn>,
     /// The statements, each using only what stands before it.
     pub statements: Vec<Statement>,
-    /// The values returned: the torques, then what was asked to be kept.
+    /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
     pub outputs: Vec<Output>,
     /// What every quantity of the recursion became, in its order.
     pub findings: Vec<Finding>,
@@ -115,6 +115,10 @@ pub enum Expression {
     Difference(Box<Expression>, Box<Expression>),
     /// a · b
     Product(Box<Expression>, Box<Expression>),
+    /// a / b
+    Quotient(Box<Expression>, Box<Expression>),
+    /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
+    BySign(Box<Expression>, Box<Expression>, Box<Expression>),
 }
 
 /// A returned value.
@@ -208,10 +212,24 @@ impl Expression {
             }
             Self::Zero => {}
             Self::Negative(a) => a.names(found),
-            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) => {
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
                 a.names(found);
                 b.names(found);
             }
+            Self::BySign(x, positive, negative) => [x, positive, negative].into_iter().for_each(|a| a.names(found)),
+        }
+    }
+
+    /// Whether the constant 0 stands in it.
+    pub(crate) fn has_zero(&self) -> bool {
+        match self {
+            Self::Variable(_) => false,
+            Self::Zero => true,
+            Self::Negative(a) => a.has_zero(),
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
+                a.has_zero() || b.has_zero()
+            }
+            Self::BySign(x, positive, negative) => x.has_zero() || positive.has_zero() || negative.has_zero(),
         }
     }
 
@@ -229,6 +247,12 @@ impl Expression {
                 a.count(count);
                 b.count(count);
             }
+            Self::Quotient(a, b) => {
+                count.div += 1;
+                a.count(count);
+                b.count(count);
+            }
+            Self::BySign(x, positive, negative) => [x, positive, negative].into_iter().for_each(|a| a.count(count)),
         }
     }
 }

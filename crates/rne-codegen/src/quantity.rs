@@ -19,6 +19,8 @@ pub enum Step {
     Wrenches,
     /// 7: torque τ.
     Torque,
+    /// What a function makes of them, beyond the lecture.
+    Beyond,
 }
 
 impl Step {
@@ -50,6 +52,7 @@ impl Step {
             Self::Gravity => "gravity in the link's frame",
             Self::Wrenches => "forces and moments",
             Self::Torque => "torque",
+            Self::Beyond => "beyond the seven steps",
         }
     }
 }
@@ -112,12 +115,26 @@ pub enum Quantity {
     Rate,
     /// q̈: joint acceleration.
     RateDot,
+    /// τ of an actuator, as an argument.
+    AppliedTorque,
+    /// A parameter that is known at run time only.
+    Parameter,
 
     // Constants of the table.
     /// A number without a name of its own.
     Constant,
     /// The number 2 of step 4 (prismatic joint).
     Two,
+    /// The number 1 of a quotient.
+    One,
+    /// The number 1/2.
+    Half,
+    /// Rotor inertia as seen at the joint, G² Jm.
+    RotorInertia,
+    /// Viscous friction as seen at the joint, G² B.
+    ViscousFriction,
+    /// Coulomb friction as seen at the joint, |G| Tc⁺ and |G| Tc⁻.
+    CoulombFriction,
     /// Constant part of a joint angle θ.
     Theta,
     /// Sine of a twist angle α.
@@ -230,6 +247,44 @@ pub enum Quantity {
     // Step 7.
     /// τ: torque of a revolute, force of a prismatic joint.
     Torque,
+
+    // Beyond the seven steps.
+    /// A term that has no meaning of its own.
+    Partial,
+    /// Rotation from the axes of a frame to those of the world.
+    FrameRotation,
+    /// Origin of a frame in the world.
+    FrameOrigin,
+    /// A column of the Jacobian, linear rows.
+    JacobianLinear,
+    /// A column of the Jacobian, angular rows.
+    JacobianAngular,
+    /// Acceleration of the tip, linear and angular.
+    TipAcceleration,
+    /// Centre of mass in frame 0.
+    ComPosition,
+    /// T
+    KineticEnergy,
+    /// V
+    PotentialEnergy,
+    /// An element of the Coriolis matrix.
+    CoriolisElement,
+    /// An element of the regressor.
+    RegressorElement,
+    /// L of M = L D Lᵀ.
+    LowerFactor,
+    /// L D.
+    ScaledFactor,
+    /// D
+    Pivot,
+    /// 1/D
+    InversePivot,
+    /// τ less the bias torque, then solved with L.
+    Reduced,
+    /// The same times 1/D.
+    Scaled,
+    /// What a motor adds.
+    ActuatorTorque,
 }
 
 impl Quantity {
@@ -272,6 +327,24 @@ impl Quantity {
             | Self::JointForce
             | Self::JointMoment => Some(Step::Wrenches),
             Self::Torque => Some(Step::Torque),
+            Self::Partial
+            | Self::FrameRotation
+            | Self::FrameOrigin
+            | Self::JacobianLinear
+            | Self::JacobianAngular
+            | Self::TipAcceleration
+            | Self::ComPosition
+            | Self::KineticEnergy
+            | Self::PotentialEnergy
+            | Self::CoriolisElement
+            | Self::RegressorElement
+            | Self::LowerFactor
+            | Self::ScaledFactor
+            | Self::Pivot
+            | Self::InversePivot
+            | Self::Reduced
+            | Self::Scaled
+            | Self::ActuatorTorque => Some(Step::Beyond),
             _ => None,
         }
     }
@@ -298,6 +371,16 @@ impl Quantity {
                 | Self::TurnedForce
                 | Self::TurnedMoment
                 | Self::Torque
+                | Self::FrameRotation
+                | Self::FrameOrigin
+                | Self::JacobianLinear
+                | Self::JacobianAngular
+                | Self::ComPosition
+                | Self::LowerFactor
+                | Self::Pivot
+                | Self::InversePivot
+                | Self::Reduced
+                | Self::Scaled
         )
     }
 
@@ -352,7 +435,31 @@ impl Quantity {
             Self::InertiaForce | Self::JointForce | Self::ReducedForce => "f",
             Self::AngularMomentum | Self::FirstMoment => "h",
             Self::InertiaMoment | Self::JointMoment | Self::ReducedMoment => "n",
-            Self::Torque => "tau",
+            Self::Torque | Self::AppliedTorque => "tau",
+            Self::Parameter => "par",
+            Self::One => "one",
+            Self::Half => "half",
+            Self::RotorInertia => "jm",
+            Self::ViscousFriction => "bv",
+            Self::CoulombFriction => "tc",
+            Self::Partial => "x",
+            Self::FrameRotation => "frame",
+            Self::FrameOrigin => "origin",
+            Self::JacobianLinear => "jv",
+            Self::JacobianAngular => "jw",
+            Self::TipAcceleration => "acc",
+            Self::ComPosition => "pos",
+            Self::KineticEnergy => "kinetic",
+            Self::PotentialEnergy => "potential",
+            Self::CoriolisElement => "cor",
+            Self::RegressorElement => "y",
+            Self::LowerFactor => "low",
+            Self::ScaledFactor => "lowd",
+            Self::Pivot => "pivot",
+            Self::InversePivot => "inv",
+            Self::Reduced => "rhs",
+            Self::Scaled => "sol",
+            Self::ActuatorTorque => "act",
         }
     }
 
@@ -361,7 +468,9 @@ impl Quantity {
     pub fn pattern(self) -> String {
         let prefix = self.prefix();
         match self {
-            Self::Two => prefix.to_owned(),
+            Self::Two | Self::One | Self::Half | Self::KineticEnergy | Self::PotentialEnergy => prefix.to_owned(),
+            Self::CoriolisElement | Self::LowerFactor | Self::ScaledFactor => format!("{prefix}i_j"),
+            Self::RegressorElement => format!("{prefix}i_j_1"),
             Self::Constant | Self::Term => format!("{prefix}_1"),
             Self::GroupPosition | Self::GroupTheta | Self::GroupAngle | Self::GroupSine | Self::GroupCosine => {
                 format!("{prefix}h_i")
@@ -372,6 +481,7 @@ impl Quantity {
             | Self::TipRotation
             | Self::SecondMoment
             | Self::Gradient
+            | Self::FrameRotation
             | Self::GradientUnturned => format!("{prefix}i_xy"),
             Self::Position
             | Self::Rate
@@ -389,6 +499,17 @@ impl Quantity {
             | Self::TurnedSine
             | Self::TurnedCosine
             | Self::TwiceRate
+            | Self::AppliedTorque
+            | Self::Parameter
+            | Self::RotorInertia
+            | Self::ViscousFriction
+            | Self::CoulombFriction
+            | Self::Partial
+            | Self::Pivot
+            | Self::InversePivot
+            | Self::Reduced
+            | Self::Scaled
+            | Self::ActuatorTorque
             | Self::Torque => format!("{prefix}i"),
             _ => format!("{prefix}i_x"),
         }
@@ -423,7 +544,7 @@ impl Quantity {
             Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
             Self::GroupSine => "its sine",
             Self::TurnedCosine | Self::GroupCosine => "its cosine",
-            Self::Term => "a term that has no meaning of its own",
+            Self::Term | Self::Partial => "a term that has no meaning of its own",
             Self::Rotation => "R: frame i → frame i-1",
             Self::FirstMoment => "first moment of regrouped matter about the frame's origin",
             Self::SecondMoment => "second moment ∫ r rᵀ dm of regrouped matter",
@@ -454,6 +575,30 @@ impl Quantity {
             Self::JointForce => "force exerted by link h = i - 1 on link i",
             Self::JointMoment => "moment exerted by link h = i - 1 on link i, about joint i",
             Self::Torque => "τ: joint torque (force, for a prismatic joint)",
+            Self::AppliedTorque => "τ of the actuator",
+            Self::Parameter => "a parameter of the robot file that is given at run time",
+            Self::One => "the number 1",
+            Self::Half => "the number 1/2",
+            Self::RotorInertia => "rotor inertia at the joint, G² Jm",
+            Self::ViscousFriction => "viscous friction at the joint, G² B",
+            Self::CoulombFriction => "Coulomb friction at the joint, |G| Tc",
+            Self::FrameRotation => "rotation from the axes of frame i to those of the world; of the tip for i = n + 1",
+            Self::FrameOrigin => "origin of that frame in the world",
+            Self::JacobianLinear => "velocity of the tip per rate of joint i, world axes",
+            Self::JacobianAngular => "angular velocity of the tip per rate of joint i, world axes",
+            Self::TipAcceleration => "acceleration of the tip where joints do not accelerate",
+            Self::ComPosition => "centre of mass in frame 0",
+            Self::KineticEnergy => "kinetic energy",
+            Self::PotentialEnergy => "potential energy",
+            Self::CoriolisElement => "element (i, j) of the Coriolis matrix",
+            Self::RegressorElement => "torque i per parameter of link j",
+            Self::LowerFactor => "element (i, j) of L, M = L D Lᵀ",
+            Self::ScaledFactor => "the same times D",
+            Self::Pivot => "element i of D",
+            Self::InversePivot => "1/D",
+            Self::Reduced => "L⁻¹ (τ - bias)",
+            Self::Scaled => "the same divided by D",
+            Self::ActuatorTorque => "what the motor adds",
         }
     }
 }
@@ -469,25 +614,50 @@ pub struct Name {
     pub component: Component,
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
+    /// Of which variable it is the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
+    pub by: Option<By>,
+}
+
+/// The variable of a partial derivative; joints count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum By {
+    /// A joint position.
+    Position(usize),
+    /// A joint rate.
+    Rate(usize),
+    /// A joint acceleration.
+    RateDot(usize),
+}
+
+impl By {
+    /// The name of the variable.
+    #[must_use]
+    pub const fn variable(self) -> Name {
+        match self {
+            Self::Position(joint) => Name::scalar(Quantity::Position, joint),
+            Self::Rate(joint) => Name::scalar(Quantity::Rate, joint),
+            Self::RateDot(joint) => Name::scalar(Quantity::RateDot, joint),
+        }
+    }
 }
 
 impl Name {
     /// A quantity that is one number.
     #[must_use]
     pub const fn scalar(quantity: Quantity, joint: usize) -> Self {
-        Self { quantity, joint, component: Component::Scalar, part: 0 }
+        Self { quantity, joint, component: Component::Scalar, part: 0, by: None }
     }
 
     /// A component of a vector.
     #[must_use]
     pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
-        Self { quantity, joint, component: Component::Vector(axis), part: 0 }
+        Self { quantity, joint, component: Component::Vector(axis), part: 0, by: None }
     }
 
     /// An element of a matrix.
     #[must_use]
     pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
-        Self { quantity, joint, component: Component::Matrix(row, column), part: 0 }
+        Self { quantity, joint, component: Component::Matrix(row, column), part: 0, by: None }
     }
 }
 
@@ -495,7 +665,13 @@ impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
         match self.quantity {
-            Quantity::Two | Quantity::Constant | Quantity::Term => {}
+            Quantity::Two
+            | Quantity::One
+            | Quantity::Half
+            | Quantity::KineticEnergy
+            | Quantity::PotentialEnergy
+            | Quantity::Constant
+            | Quantity::Term => {}
             Quantity::GroupPosition
             | Quantity::GroupTheta
             | Quantity::GroupAngle
@@ -514,8 +690,16 @@ impl fmt::Display for Name {
             Component::Vector(axis) => write!(f, "_{axis}")?,
             Component::Matrix(row, column) => write!(f, "_{row}{column}")?,
         }
-        if self.part > 0 {
-            write!(f, "_{}", self.part)?;
+        match self.part {
+            0 => {}
+            // link and parameter
+            part if self.quantity == Quantity::RegressorElement && part > 100 => {
+                write!(f, "_{}_{}", part / 100, part % 100)?;
+            }
+            part => write!(f, "_{part}")?,
+        }
+        if let Some(by) = self.by {
+            write!(f, "_{}", by.variable())?;
         }
         Ok(())
     }

@@ -8,7 +8,6 @@ use crate::graph::{Node, NodeId, Term};
 use crate::ledger::{Operation, Place};
 use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
 use crate::quantity::{Name, Quantity, Step};
-use crate::symbol::Symbol;
 use crate::worksheet::Written;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
@@ -55,11 +54,6 @@ pub(crate) fn program(
     })
 }
 
-/// The term of a symbol, without its sheet.
-pub(crate) fn output(name: Name, symbol: Symbol<'_>) -> (Name, Term) {
-    (name, symbol.term)
-}
-
 /// How often each node is used by live nodes and outputs; 0 is dead.
 fn count_uses(written: &Written, outputs: &[(Name, Term)]) -> Vec<usize> {
     let mut uses = vec![0_usize; written.graph.len()];
@@ -70,18 +64,7 @@ fn count_uses(written: &Written, outputs: &[(Name, Term)]) -> Vec<usize> {
         if uses[id.index()] == 0 {
             continue;
         }
-        match node {
-            Node::Constant(_) | Node::Argument(_) => {}
-            Node::Sine(angle) | Node::Cosine(angle) => uses[angle.node.index()] += 1,
-            Node::Sum(a, b) => {
-                uses[a.node.index()] += 1;
-                uses[b.node.index()] += 1;
-            }
-            Node::Product(a, b) => {
-                uses[a.index()] += 1;
-                uses[b.index()] += 1;
-            }
-        }
+        node.operands().for_each(|operand| uses[operand.index()] += 1);
     }
     uses
 }
@@ -137,11 +120,14 @@ impl<'w> Schedule<'w> {
             let quantity = definition.name.quantity;
             let slot = &mut self.names[node.index()];
             let lectures = |name: Name| name.quantity.is_of_the_lecture();
+            let is_turn = matches!(self.written.graph.node(node), Node::Sine(_) | Node::Cosine(_));
             let wins = slot.is_none_or(|old| {
-                !lectures(old.name) && lectures(definition.name) && old.name.quantity.step() == quantity.step()
+                // sines and cosines are called what they are
+                !is_turn && !lectures(old.name) && lectures(definition.name) && old.name.quantity.step() == quantity.step()
             });
-            // a torque is an alias of a component of a force or moment
-            if wins && quantity != Quantity::Torque {
+            // a torque is an alias of a component of a force or moment, a derivative may be a sine
+            let is_alias = quantity == Quantity::Torque || (is_turn && definition.name.by.is_some());
+            if wins && !is_alias {
                 *slot = Some(Given { name: definition.name, negative });
             }
         }
@@ -149,7 +135,7 @@ impl<'w> Schedule<'w> {
             let index = id.index();
             match node {
                 Node::Argument(name) => self.names[index] = Some(Given { name, negative: false }),
-                Node::Sum(..) | Node::Product(..) => {
+                Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..) => {
                     let keeps = self.names[index].is_some_and(|given| given.name.quantity.is_of_the_lecture());
                     // an auxiliary quantity that is used once is clearer where it is used
                     if !keeps && self.uses[index] < 2 && !self.is_angle(id) {
@@ -177,6 +163,7 @@ impl<'w> Schedule<'w> {
                 joint: birth.place.joint,
                 component: birth.component,
                 part: 0,
+                by: birth.place.by,
             });
             let part = parts.entry(base).or_default();
             *part += 1;
@@ -223,13 +210,7 @@ impl<'w> Schedule<'w> {
     fn users_of_constants(&self) -> HashMap<NodeId, Vec<NodeId>> {
         let mut users: HashMap<NodeId, Vec<NodeId>> = HashMap::new();
         for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
-            let operands = match node {
-                Node::Sum(a, b) => [Some(a.node), Some(b.node)],
-                Node::Product(a, b) => [Some(a), Some(b)],
-                Node::Sine(angle) | Node::Cosine(angle) => [Some(angle.node), None],
-                Node::Constant(_) | Node::Argument(_) => [None, None],
-            };
-            for operand in operands.into_iter().flatten() {
+            for operand in node.operands() {
                 if matches!(self.written.graph.node(operand), Node::Constant(_)) {
                     users.entry(operand).or_default().push(user);
                 }
@@ -271,7 +252,7 @@ impl<'w> Schedule<'w> {
     fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            if let (Node::Sum(..) | Node::Product(..), Some(given)) = (node, self.names[id.index()]) {
+            if let (Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..), Some(given)) = (node, self.names[id.index()]) {
                 let (negative, value) = self.operation(id);
                 let value = signed(negative != given.negative, value);
                 let place = self.place(id, given.name);
@@ -290,7 +271,7 @@ impl<'w> Schedule<'w> {
             let known = turns.iter().position(|(other, _)| *other == angle);
             let index = known.unwrap_or_else(|| {
                 let joint = name.map_or(0, |name| name.joint);
-                let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine };
+                let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine, by: None };
                 turns.push((angle, Turn { place, sine: None, cosine: None, angle: self.expression(angle) }));
                 turns.len() - 1
             });
@@ -302,22 +283,37 @@ impl<'w> Schedule<'w> {
 
     fn place(&self, id: NodeId, name: Name) -> Place {
         let step = name.quantity.step().unwrap_or(Step::AngularVelocity);
-        let own = Place { joint: name.joint, step, quantity: name.quantity };
+        let own = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
         self.written.births[id.index()].as_ref().map_or(own, |birth| birth.place)
     }
 
-    /// Outputs as variables; a torque gets a statement of its own name.
+    /// Outputs as variables; a torque, and whatever is computed for it alone, gets a statement of its own name.
     fn outputs(&self, outputs: &[(Name, Term)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
         let mut returned = Vec::with_capacity(outputs.len());
+        let mut first: HashMap<Name, usize> = HashMap::new();
+        for (order, definition) in self.written.definitions.iter().enumerate() {
+            first.entry(definition.name).or_insert(order);
+        }
+        let mut stated = BTreeSet::new();
         for &(name, term) in outputs {
             let value = self.expression(term);
-            let is_torque = name.quantity == Quantity::Torque && !matches!(value, Expression::Zero);
-            let named = self.written.definitions.iter().enumerate().find(|(_, definition)| definition.name == name);
-            let Some((order, definition)) = named.filter(|_| is_torque) else {
+            let is_stated = match &value {
+                Expression::Zero => false,
+                Expression::Variable(_) => name.quantity == Quantity::Torque,
+                Expression::Negative(a) if matches!(**a, Expression::Variable(_)) => name.quantity == Quantity::Torque,
+                _ => true,
+            };
+            let Some(&order) = first.get(&name).filter(|_| is_stated) else {
                 returned.push(Output { name, value });
                 continue;
             };
-            let place = Place { joint: name.joint, step: Step::Torque, quantity: Quantity::Torque };
+            if !stated.insert(name) {
+                returned.push(Output { name, value: Expression::Variable(name) });
+                continue;
+            }
+            let definition = &self.written.definitions[order];
+            let step = name.quantity.step().unwrap_or(Step::Torque);
+            let place = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
             // after the last node that was there when it was named, and after torques named before it
             statements.push(((definition.after.saturating_sub(1), order), Statement { place, name, value }));
             returned.push(Output { name, value: Expression::Variable(name) });
@@ -387,6 +383,18 @@ impl<'w> Schedule<'w> {
                 let (b_sign, b_value) = self.operand(Some(id), b);
                 (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
             }
+            Node::Quotient(a, b) => {
+                let (a_sign, a_value) = self.operand(Some(id), a);
+                let (b_sign, b_value) = self.operand(Some(id), b);
+                (a_sign != b_sign, Expression::Quotient(Box::new(a_value), Box::new(b_value)))
+            }
+            Node::BySign(x, a, b) => {
+                let [x, a, b] = [x, a, b].map(|term| {
+                    let (sign, value) = self.operand(Some(id), term.node);
+                    Box::new(signed(sign != term.negative, value))
+                });
+                (false, Expression::BySign(x, a, b))
+            }
             // leaves always have a name, but for the zero that no operation keeps
             Node::Constant(_) | Node::Argument(_) | Node::Sine(_) | Node::Cosine(_) => (false, Expression::Zero),
         }
@@ -427,6 +435,11 @@ fn negated(expression: &Expression) -> Option<Expression> {
             (None, Some(b)) => Some(Expression::Product(a.clone(), Box::new(b))),
             (None, None) => None,
         },
+        Expression::Quotient(a, b) => negated(a).map(|a| Expression::Quotient(Box::new(a), b.clone())),
+        Expression::BySign(x, positive, negative) => {
+            let (positive, negative) = (negated(positive)?, negated(negative)?);
+            Some(Expression::BySign(x.clone(), Box::new(positive), Box::new(negative)))
+        }
         Expression::Variable(_) => None,
     }
 }

@@ -30,32 +30,69 @@ pub(crate) struct Wrench<'s> {
     pub(crate) moment: Vector<'s>,
 }
 
-/// The motion of a link and gravity, in its frame, with what the backward pass needs again.
+/// How the base moves, and gravity, in frame 0.
 #[derive(Clone, Copy)]
-struct Motion<'s> {
-    rotation: Matrix<'s>,
-    d: Vector<'s>,
-    omega: Vector<'s>,
-    omega_dot: Vector<'s>,
-    c_ddot: Vector<'s>,
-    gravity: Vector<'s>,
+pub(crate) struct Base<'s> {
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+    pub(crate) acceleration: Vector<'s>,
+    pub(crate) gravity: Vector<'s>,
+    /// r_0, from the origin of frame 0 to joint 1. Nobody needs it while the base stands still.
+    pub(crate) lever: Vector<'s>,
 }
 
-/// The torques of all joints, base to tip, when the last link exerts `tip` on its environment.
+impl<'s> Base<'s> {
+    /// A base that stands still.
+    pub(crate) fn fixed(sheet: &'s Worksheet, gravity: Vector<'s>) -> Self {
+        let at_rest = sheet.zeros(Cause::FixedBase);
+        Self { omega: at_rest, omega_dot: at_rest, acceleration: at_rest, gravity, lever: at_rest }
+    }
+}
+
+/// The motion of a link and gravity, in its frame, with what the backward pass needs again.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'s> {
+    pub(crate) rotation: Matrix<'s>,
+    pub(crate) d: Vector<'s>,
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+    pub(crate) c_dot: Vector<'s>,
+    pub(crate) c_ddot: Vector<'s>,
+    pub(crate) gravity: Vector<'s>,
+}
+
+/// What link i-1 exerts on link i, and the actuator.
+#[derive(Clone, Copy)]
+pub(crate) struct Load<'s> {
+    pub(crate) wrench: Wrench<'s>,
+    pub(crate) torque: Symbol<'s>,
+}
+
+/// What the actuators of all joints deliver, base to tip, when the last link exerts `tip` on its environment.
 pub(crate) fn inverse_dynamics<'s>(
     sheet: &'s Worksheet,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
+    base: &Base<'s>,
     tip: Wrench<'s>,
-) -> Vec<Symbol<'s>> {
-    let e = Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)));
-    let at_rest = sheet.zeros(Cause::FixedBase);
+) -> Vec<Load<'s>> {
+    let motions = forward(sheet, arm, states, base);
+    backward(sheet, arm, &motions, tip)
+}
 
-    // Forward, i = 1 … n: the motion of each link from that of the link before it. The base does not move.
-    let (mut omega, mut omega_dot) = (at_rest, at_rest);
-    let (mut c_dot, mut c_ddot) = (at_rest, at_rest);
-    let mut r = at_rest;
-    let mut gravity = arm.gravity;
+/// Forward, i = 1 … n: the motion of each link from that of the link before it.
+pub(crate) fn forward<'s>(
+    sheet: &'s Worksheet,
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    base: &Base<'s>,
+) -> Vec<Motion<'s>> {
+    let e = Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)));
+    let (mut omega, mut omega_dot) = (base.omega, base.omega_dot);
+    // no function asks how fast the base itself moves
+    let (mut c_dot, mut c_ddot) = (sheet.zeros(Cause::FixedBase), base.acceleration);
+    let mut r = base.lever;
+    let mut gravity = base.gravity;
     let mut motions = Vec::with_capacity(arm.links.len());
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         let line = sheet.joint(index + 1);
@@ -107,16 +144,24 @@ pub(crate) fn inverse_dynamics<'s>(
         gravity = line.vector(Quantity::Gravity, || back * gravity);
 
         r = link.r;
-        motions.push(Motion { rotation, d, omega, omega_dot, c_ddot, gravity });
+        motions.push(Motion { rotation, d, omega, omega_dot, c_dot, c_ddot, gravity });
     }
+    motions
+}
 
-    // Backward, i = n … 1: the wrench of each joint from that of the joint after it.
+/// Backward, i = n … 1: the wrench of each joint from that of the joint after it.
+pub(crate) fn backward<'s>(
+    sheet: &'s Worksheet,
+    arm: &Arm<'s>,
+    motions: &[Motion<'s>],
+    tip: Wrench<'s>,
+) -> Vec<Load<'s>> {
     let mut child = tip;
     let mut into_frame = arm.tip;
-    let mut torques = Vec::with_capacity(arm.links.len());
-    for (index, (link, motion)) in arm.links.iter().zip(&motions).enumerate().rev() {
+    let mut loads = Vec::with_capacity(arm.links.len());
+    for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate().rev() {
         let line = sheet.joint(index + 1);
-        let Motion { rotation, d, omega, omega_dot, c_ddot, gravity } = *motion;
+        let Motion { rotation, d, omega, omega_dot, c_ddot, gravity, .. } = *motion;
         let child_force = line.vector(Quantity::ChildForce, || into_frame * child.force);
         let child_moment = line.vector(Quantity::ChildMoment, || into_frame * child.moment);
 
@@ -134,20 +179,21 @@ pub(crate) fn inverse_dynamics<'s>(
         });
 
         // 7   τ_i = e · n_{i-1,i}     (prismatic: e · f_{i-1,i})
-        torques.push(line.scalar(Quantity::Torque, || match link.kind {
+        let torque = line.scalar(Quantity::Torque, || match link.kind {
             Revolute => moment.z(),
             Prismatic => force.z(),
-        }));
+        });
 
         child = Wrench { force, moment };
         into_frame = rotation;
+        loads.push(Load { wrench: child, torque });
     }
-    torques.reverse();
-    torques
+    loads.reverse();
+    loads
 }
 
 /// R_i = Rx(α_{i-1}) Rz(θ_i).
-fn rotation<'s>(
+pub(crate) fn rotation<'s>(
     line: JointLines<'s>,
     sheet: &'s Worksheet,
     joint: usize,

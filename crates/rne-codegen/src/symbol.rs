@@ -74,7 +74,7 @@ impl<'s> Vector<'s> {
     }
 
     /// Σ a_k b_k, summed from left to right.
-    fn dot(self, other: Self) -> Symbol<'s> {
+    pub(crate) fn dot(self, other: Self) -> Symbol<'s> {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
         let (x, y, z) = (ax * bx, ay * by, az * bz);
         (x + y) + z

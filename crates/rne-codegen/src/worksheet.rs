@@ -6,9 +6,9 @@ use std::collections::HashMap;
 use rne_model::{Angle, Joint};
 
 use crate::exact::{Number, Reading};
-use crate::graph::{Graph, NodeId, Outcome, Side, Term};
+use crate::graph::{Graph, Node, NodeId, Outcome, Side, Term};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
-use crate::quantity::{Axis, Component, Name, Quantity};
+use crate::quantity::{Axis, By, Component, Name, Quantity};
 use crate::symbol::{Matrix, Symbol, Vector};
 
 /// A name given to a term, in the order in which the names were given.
@@ -97,6 +97,7 @@ struct State {
     causes: KnownCauses,
     place: Option<Place>,
     axis: Option<Axis>,
+    by: Option<By>,
 }
 
 impl Worksheet {
@@ -104,6 +105,13 @@ impl Worksheet {
     pub(crate) fn exact(reading: Reading) -> Self {
         let sheet = Self::default();
         sheet.state.borrow_mut().written.graph = Graph::exact(reading);
+        sheet
+    }
+
+    /// A sheet on which equal values are computed once, however they come about.
+    pub(crate) fn merged(reading: Reading) -> Self {
+        let sheet = Self::default();
+        sheet.state.borrow_mut().written.graph = Graph::merged(reading);
         sheet
     }
 
@@ -159,6 +167,7 @@ impl Worksheet {
     pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
         let state = &mut *self.state.borrow_mut();
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
+        let name = if is_entry { name } else { Name { by: name.by.or(state.by), ..name } };
         let causes = if is_entry { state.causes.id(Causes::one(Cause::Table(name))) } else { symbol.causes };
         let after = state.written.graph.len();
         let told = state.causes.get(causes);
@@ -227,6 +236,114 @@ impl Worksheet {
         Symbol { sheet: self, term, causes }
     }
 
+    /// Writes what is the derivative by one variable: its quantities bear that in their names.
+    pub(crate) fn by<R>(&self, by: By, formulas: impl FnOnce() -> R) -> R {
+        let outer = self.state.borrow_mut().by.replace(by);
+        let value = formulas();
+        self.state.borrow_mut().by = outer;
+        value
+    }
+
+    pub(crate) fn quotient<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let state = &mut *self.state.borrow_mut();
+        let (term, outcome) = state.written.graph.quotient(a.term, b.term);
+        let causes = state.arithmetic();
+        state.record_birth();
+        state.record_roles(term, outcome, [a, b]);
+        Symbol { sheet: self, term, causes }
+    }
+
+    pub(crate) fn by_sign<'s>(&'s self, x: Symbol<'s>, positive: Symbol<'s>, negative: Symbol<'s>) -> Symbol<'s> {
+        let state = &mut *self.state.borrow_mut();
+        let before = state.written.graph.len();
+        let term = state.written.graph.by_sign(x.term, positive.term, negative.term);
+        let causes = state.arithmetic();
+        state.record_birth();
+        let is_new = term.node.index() >= before;
+        state.record_roles(term, if is_new { Outcome::Computed } else { Outcome::Shared }, [positive, negative]);
+        Symbol { sheet: self, term, causes }
+    }
+
+    /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of
+    /// what they are derivatives of and under its names.
+    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+        let (nodes, births, definitions) = {
+            let state = &mut *self.state.borrow_mut();
+            let len = state.written.graph.len();
+            state.written.births.resize_with(len, || None);
+            let nodes: Vec<Node> = state.written.graph.nodes().map(|(_, node)| node).collect();
+            let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
+            for definition in state.written.definitions.iter().filter(|definition| definition.name.by.is_none()) {
+                definitions.entry(definition.term.node.index()).or_default().push(*definition);
+            }
+            (nodes, state.written.births.clone(), definitions)
+        };
+        let live = live(&nodes, of);
+        let symbol = |term: Term| {
+            let causes = self.state.borrow_mut().arithmetic();
+            Symbol { sheet: self, term, causes }
+        };
+        let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.constant(1.0, Cause::Arithmetic));
+        let mut rates: Vec<Symbol<'s>> = vec![zero; nodes.len()];
+        for (index, node) in nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
+            let rate = |term: Term| {
+                let rate = rates[term.node.index()];
+                if term.negative { -rate } else { rate }
+            };
+            let plain = |node: NodeId| Term { node, negative: false };
+            if let Node::Argument(name) = node {
+                rates[index] = if *name == by.variable() { one } else { zero };
+                continue;
+            }
+            let is_zero = |terms: &[Term]| terms.iter().all(|&term| rate(term).term == zero.term);
+            let birth = births[index];
+            let place = birth.map(|birth| Place { by: Some(by), ..birth.place });
+            let axis = birth.and_then(|birth| birth.component.axis());
+            let outer = self.enter(place, axis);
+            rates[index] = match *node {
+                Node::Constant(_) | Node::Argument(_) => zero,
+                Node::Sine(angle) | Node::Cosine(angle) if is_zero(&[angle]) => zero,
+                Node::Sine(angle) => {
+                    let cosine = self.sine_and_cosine(symbol(angle)).1;
+                    rate(angle) * cosine
+                }
+                Node::Cosine(angle) => {
+                    let sine = self.sine_and_cosine(symbol(angle)).0;
+                    -(rate(angle) * sine)
+                }
+                Node::Sum(a, b) => rate(a) + rate(b),
+                Node::Product(a, b) => {
+                    let (a, b) = (plain(a), plain(b));
+                    rate(a) * symbol(b) + symbol(a) * rate(b)
+                }
+                Node::Quotient(a, b) => {
+                    let (a, b) = (plain(a), plain(b));
+                    if is_zero(&[a, b]) {
+                        zero
+                    } else {
+                        let quotient = self.quotient(symbol(a), symbol(b));
+                        self.quotient(rate(a) - quotient * rate(b), symbol(b))
+                    }
+                }
+                Node::BySign(x, positive, negative) => {
+                    self.by_sign(symbol(x), rate(positive), rate(negative))
+                }
+            };
+            self.enter(outer.0, outer.1);
+            for definition in definitions.get(&index).into_iter().flatten() {
+                let rate = if definition.term.negative { -rates[index] } else { rates[index] };
+                if rate.term != zero.term && definition.name.quantity.step().is_some() {
+                    self.name(Name { by: Some(by), ..definition.name }, rate);
+                }
+            }
+        }
+        let rate_of = |symbol: &Symbol<'s>| {
+            let rate = rates[symbol.term.node.index()];
+            if symbol.term.negative { -rate } else { rate }
+        };
+        of.iter().map(rate_of).collect()
+    }
+
     /// Sets the component that the next operations belong to.
     pub(crate) fn along(&self, axis: Axis) {
         self.state.borrow_mut().axis = Some(axis);
@@ -269,6 +386,13 @@ impl State {
         }
     }
 
+    /// New nodes belong to the place at hand.
+    fn record_birth(&mut self) {
+        let component = self.axis.map_or(Component::Scalar, Component::Vector);
+        let birth = self.place.map(|place| Birth { place, component });
+        self.written.births.resize_with(self.written.graph.len(), || birth);
+    }
+
     fn record(&mut self, operation: Operation, outcome: Outcome, causes: CausesId) {
         // Constants of the table are formed outside any step: a runtime forms them once, too.
         let Some(place) = self.place else { return };
@@ -282,10 +406,22 @@ impl State {
             Outcome::Cancelled => Fate::Cancelled,
         };
         self.written.ledger.enter(place, operation, fate);
-        let births = &mut self.written.births;
-        let component = self.axis.map_or(Component::Scalar, Component::Vector);
-        births.resize_with(self.written.graph.len(), || Some(Birth { place, component }));
+        self.record_birth();
     }
+}
+
+/// Which nodes some symbols depend on.
+fn live(nodes: &[Node], of: &[Symbol<'_>]) -> Vec<bool> {
+    let mut live = vec![false; nodes.len()];
+    for symbol in of {
+        live[symbol.term.node.index()] = true;
+    }
+    for index in (0..nodes.len()).rev() {
+        if live[index] {
+            nodes[index].operands().for_each(|operand| live[operand.index()] = true);
+        }
+    }
+    live
 }
 
 /// The lines of one joint: each gives a quantity of the lecture its value.
@@ -322,8 +458,10 @@ impl<'s> JointLines<'s> {
         self.sheet.entry_matrix(quantity, self.named, value)
     }
 
-    fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {
-        let place = quantity.step().map(|step| Place { joint: self.joint, step, quantity });
+    /// Writes what belongs to a quantity and gets no name of its own.
+    pub(crate) fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {
+        let by = self.sheet.state.borrow().by;
+        let place = quantity.step().map(|step| Place { joint: self.joint, step, quantity, by });
         let outer = self.sheet.enter(place, None);
         let value = formula();
         self.sheet.enter(outer.0, outer.1);

@@ -154,7 +154,7 @@ pub(crate) fn choice(
 
 fn programs(robot: &Robot, form: Form, choice: &Choice, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
     let programs: Result<Vec<_>, _> =
-        Function::ALL.into_iter().map(|function| choice.compile(robot, function, form)).collect();
+        Function::TORQUES.into_iter().map(|function| choice.compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

@@ -58,7 +58,7 @@ impl Target<'_> {
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
-        let methods = Function::ALL.map(|function| self.signature(function, &joints, &quote!(*q)));
+        let methods = Function::TORQUES.map(|function| self.signature(function, &joints, &quote!(*q)));
         quote! {
             #constants
 

@@ -23,11 +23,11 @@ pub(super) enum Position {
 /// Whether an operand needs parentheses. A right operand keeps them even where mathematics would not: floating-point
 /// sums and products are computed in the order in which they are written.
 pub(super) fn needs_parentheses(operand: &Expression, position: Position) -> bool {
-    use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+    use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
     match operand {
-        Variable(_) | Zero => false,
+        Variable(_) | Zero | BySign(..) => false,
         Negative(_) | Sum(..) | Difference(..) => position != Position::Summand,
-        Product(..) => matches!(position, Position::RightFactor | Position::Negated),
+        Product(..) | Quotient(..) => matches!(position, Position::RightFactor | Position::Negated),
     }
 }
 
@@ -47,6 +47,12 @@ pub(super) fn line(expression: &Expression) -> String {
         }
         Expression::Product(a, b) => {
             format!("{} * {}", operand(a, Position::Factor), operand(b, Position::RightFactor))
+        }
+        Expression::Quotient(a, b) => {
+            format!("{} / {}", operand(a, Position::Factor), operand(b, Position::RightFactor))
+        }
+        Expression::BySign(x, positive, negative) => {
+            format!("Scalar::by_sign({}, {}, {})", line(x), line(positive), line(negative))
         }
     }
 }

@@ -29,6 +29,7 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String>
         ],
         Step::Torque if slides => vec![format!("τ{i} = e · f{p},{i}")],
         Step::Torque => vec![format!("τ{i} = e · n{p},{i}")],
+        Step::Beyond => Vec::new(),
     }
 }
 
@@ -59,6 +60,6 @@ pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec
         Step::Torque if slides => vec![format!("τ{i} = u · f{i}")],
         Step::Torque => vec![format!("τ{i} = z · n{i}")],
         // gravity is in the acceleration of the base, the velocity is not needed
-        Step::Velocity | Step::Gravity => Vec::new(),
+        Step::Velocity | Step::Gravity | Step::Beyond => Vec::new(),
     }
 }

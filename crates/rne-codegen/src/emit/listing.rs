@@ -283,8 +283,9 @@ fn one_cause(robot: &Robot, cause: Cause, magnitude: u8) -> String {
 }
 
 impl Program {
-    /// Whether a returned value is the constant 0.
+    /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
     pub(super) fn returns_zero(&self) -> bool {
-        self.outputs.iter().any(|output| output.value == Expression::Zero)
+        let statements = self.statements.iter().map(|statement| &statement.value);
+        self.outputs.iter().map(|output| &output.value).chain(statements).any(Expression::has_zero)
     }
 }

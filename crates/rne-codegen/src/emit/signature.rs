@@ -1,5 +1,6 @@
 //! The arguments of a generated function.
 
+use crate::function::Argument;
 use crate::program::Program;
 use crate::quantity::{Axis, Name, Quantity};
 
@@ -16,26 +17,31 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
         name,
         elements: (1..=program.dof).map(|joint| used(Name::scalar(quantity, joint))).collect(),
     };
-    let at_tip = |name, quantity| ArgumentArray {
+    let vector = |name, quantity, joint| ArgumentArray {
         name,
-        elements: Axis::ALL.map(|axis| used(Name::vector(quantity, program.dof + 1, axis))).into(),
+        elements: Axis::ALL.map(|axis| used(Name::vector(quantity, joint, axis))).into(),
     };
-    let function = program.function;
+    let tip = program.dof + 1;
     let mut arrays = Vec::new();
-    if function.has_turns() {
-        arrays.push(joints("sin", Quantity::Sine));
-        arrays.push(joints("cos", Quantity::Cosine));
-    }
-    arrays.push(joints("q", Quantity::Position));
-    if function.has_rates() {
-        arrays.push(joints("qd", Quantity::Rate));
-    }
-    if function.has_accelerations() {
-        arrays.push(joints("qdd", Quantity::RateDot));
-    }
-    if function.has_wrench() {
-        arrays.push(at_tip("force", Quantity::JointForce));
-        arrays.push(at_tip("moment", Quantity::JointMoment));
+    for argument in program.function.arguments() {
+        match argument {
+            Argument::Sines => arrays.push(joints("sin", Quantity::Sine)),
+            Argument::Cosines => arrays.push(joints("cos", Quantity::Cosine)),
+            Argument::Positions => arrays.push(joints("q", Quantity::Position)),
+            Argument::Rates => arrays.push(joints("qd", Quantity::Rate)),
+            Argument::Accelerations => arrays.push(joints("qdd", Quantity::RateDot)),
+            Argument::Torques => arrays.push(joints("tau", Quantity::AppliedTorque)),
+            Argument::Wrench => {
+                arrays.push(vector("force", Quantity::JointForce, tip));
+                arrays.push(vector("moment", Quantity::JointMoment, tip));
+            }
+            Argument::Base => {
+                arrays.push(vector("base_omega", Quantity::Omega, 0));
+                arrays.push(vector("base_omega_dot", Quantity::OmegaDot, 0));
+                arrays.push(vector("base_acceleration", Quantity::Acceleration, 0));
+                arrays.push(vector("base_gravity", Quantity::Gravity, 0));
+            }
+        }
     }
     arrays
 }

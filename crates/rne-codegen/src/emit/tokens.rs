@@ -187,12 +187,13 @@ struct Fused<'a> {
 impl Fused<'_> {
     /// An expression that `rest` follows.
     fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
-        use Expression::{Difference, Negative, Product, Sum, Variable, Zero};
+        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
         let fused = self.fused(expression, rest);
         let rest_of_operand = rest
             + match expression {
                 Sum(..) | Difference(..) if fused.is_none() => latency::SUM,
                 Negative(_) => 0,
+                Quotient(..) => latency::QUOTIENT,
                 _ => latency::PRODUCT,
             };
         let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
@@ -226,6 +227,11 @@ impl Fused<'_> {
                 let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
                 quote!(#a * #b)
             }
+            Quotient(a, b) => {
+                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
+                quote!(#a / #b)
+            }
+            BySign(..) => expression.to_token_stream(),
         }
     }
 
@@ -296,6 +302,12 @@ impl ToTokens for Expression {
                 let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
                 quote!(#a * #b)
             }
+            Self::Quotient(a, b) => {
+                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
+                quote!(#a / #b)
+            }
+            // in scope of the body: `Scalar::by_sign` of the crate's trait
+            Self::BySign(x, positive, negative) => quote!(Scalar::by_sign(#x, #positive, #negative)),
         };
         tokens.extend(stream);
     }

@@ -4,6 +4,7 @@ use rne_model::Robot;
 
 use super::evaluator::{self, Frame};
 use super::graph_text;
+use super::merged;
 use super::plan::Plan;
 use super::plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 use super::rewrite::Rewriting;
@@ -75,9 +76,16 @@ impl Choice {
         if form == Form::Rewritten && function == Function::InverseDynamics {
             return self.compile_rewritten(robot, arranged);
         }
-        let (frame, drawing) = drawn(robot, &self.plan, function)?;
-        let program = drawing.program(robot, &frame, function, form, arranged)?;
-        Ok(Program { choices: self.plan.choices(), ..program })
+        match function {
+            // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
+            Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
+            _ if Function::TORQUES.contains(&function) => {
+                let (frame, drawing) = drawn(robot, &self.plan, function)?;
+                let program = drawing.program(robot, &frame, function, form, arranged)?;
+                Ok(Program { choices: self.plan.choices(), ..program })
+            }
+            _ => merged::program(robot, function, arranged),
+        }
     }
 
     fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {

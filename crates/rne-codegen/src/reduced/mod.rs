@@ -10,6 +10,7 @@ mod choice;
 mod evaluator;
 mod graph_text;
 mod inward;
+mod merged;
 mod moves;
 mod numbers;
 mod outward;

@@ -148,7 +148,7 @@ impl Transcript<'_> {
             terms[index] = Some(term);
             let len = self.written.graph.len();
             let birth = drawing.births.get(&positive(node.image)).map(|&(place, component)| Birth { place, component });
-            let term_place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term };
+            let term_place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
             let unborn = (form == Form::Rewritten).then_some(Birth { place: term_place, component: Component::Scalar });
             let is_operation = matches!(node.op, Op::Sum(..) | Op::Product(..));
             let birth = if is_operation { birth.or(unborn) } else { None };

@@ -7,7 +7,7 @@ use super::pseudo_inertia::Triple;
 use super::rows::Row;
 use super::sheet::{Identity, Leaf, Ref, Sheet};
 use crate::exact::{Image, Number, Reading, Turn};
-use crate::function::Function;
+use crate::function::{Argument, Function};
 use crate::ledger::Place;
 use crate::quantity::{Axis, Component, Name, Quantity};
 use rne_model::QuarterTurns;
@@ -46,6 +46,31 @@ impl Point {
 
     pub(crate) fn moment(&self, axis: usize) -> Image {
         self.random(5, axis)
+    }
+
+    pub(crate) fn torque(&self, joint: usize) -> Image {
+        self.random(7, joint)
+    }
+
+    /// An argument of any function; positions of revolute joints are no numbers of the field by themselves, but random ones
+    /// serve where only their sines and cosines matter.
+    pub(crate) fn argument(&self, name: Name) -> Image {
+        let index = name.joint.wrapping_sub(1);
+        match (name.quantity, name.component) {
+            (Quantity::JointForce, Component::Vector(axis)) => self.force(axis as usize),
+            (Quantity::JointMoment, Component::Vector(axis)) => self.moment(axis as usize),
+            (Quantity::Omega, Component::Vector(axis)) => self.random(8, axis as usize),
+            (Quantity::OmegaDot, Component::Vector(axis)) => self.random(9, axis as usize),
+            (Quantity::Acceleration, Component::Vector(axis)) => self.random(10, axis as usize),
+            (Quantity::Gravity, Component::Vector(axis)) => self.random(11, axis as usize),
+            (Quantity::Parameter, _) => self.random(12, index),
+            (Quantity::Position, _) => self.position(index),
+            (Quantity::Sine, _) => self.turn(index).0,
+            (Quantity::Cosine, _) => self.turn(index).1,
+            (Quantity::Rate, _) => self.rate(index),
+            (Quantity::AppliedTorque, _) => self.torque(index),
+            _ => self.rate_dot(index),
+        }
     }
 
     /// Sine and cosine of the position of a joint.
@@ -149,14 +174,14 @@ impl Writer {
     }
 
     pub(crate) fn rate(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
-        if !self.function.has_rates() {
+        if !self.function.takes(Argument::Rates) {
             return self.zero();
         }
         self.leaf(Leaf::Rate(byte(joint)), self.point.rate(joint)).signed(rows[joint].reversed)
     }
 
     pub(crate) fn rate_dot(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
-        if !self.function.has_accelerations() {
+        if !self.function.takes(Argument::Accelerations) {
             return self.zero();
         }
         self.leaf(Leaf::RateDot(byte(joint)), self.point.rate_dot(joint)).signed(rows[joint].reversed)
@@ -165,7 +190,7 @@ impl Writer {
     /// Force and moment at the tip, if the function has them.
     pub(crate) fn wrench(&self) -> Option<(Vector<'_>, Vector<'_>)> {
         let axes = [0, 1, 2];
-        self.function.has_wrench().then(|| {
+        self.function.takes(Argument::Wrench).then(|| {
             let force = axes.map(|axis| self.leaf(Leaf::Force(byte(axis)), self.point.force(axis)));
             let moment = axes.map(|axis| self.leaf(Leaf::Moment(byte(axis)), self.point.moment(axis)));
             (Vector(force), Vector(moment))
@@ -174,7 +199,7 @@ impl Writer {
 
     /// The turn by the summed angle of joints `first` to `last`.
     pub(crate) fn turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
-        if self.function.has_turns() {
+        if self.function.takes(Argument::Sines) {
             return self.given_turn(rows, first, last);
         }
         let angle = Angle::of(rows, first, last);
@@ -215,7 +240,7 @@ impl Writer {
         if let (Some(naming), Some(step)) = (&self.naming, quantity.step()) {
             let mut naming = naming.borrow_mut();
             self.settle(&mut naming, Component::Scalar);
-            naming.place = Some(Place { joint, step, quantity });
+            naming.place = Some(Place { joint, step, quantity, by: None });
         }
     }
 

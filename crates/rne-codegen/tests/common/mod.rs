@@ -37,7 +37,7 @@ pub(crate) fn all() -> Vec<Robot> {
 
 /// All functions of a robot.
 pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
-    Function::ALL.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
+    Function::TORQUES.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
 }
 
 /// The plan file of a shipped robot.
@@ -54,7 +54,7 @@ pub(crate) fn choice(robot: &Robot) -> Choice {
 pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
     let choice = choice(robot);
     let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
-    let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
+    let mut programs = Function::TORQUES.map(|function| compiled(function, Form::Reduced)).to_vec();
     programs.push(compiled(Function::InverseDynamics, Form::Rewritten));
     programs
 }

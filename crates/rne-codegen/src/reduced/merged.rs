@@ -1,0 +1,47 @@
+//! The plain formulas of a function with every value computed once, however often and in whatever way the formulas compute
+//! it: the reduced form of what has no recursion of its own.
+
+use rne_model::{Angle, Robot};
+
+use crate::exact::{Number, Reading, Turn};
+use crate::function::{Form, Function};
+use crate::graph::{Node, Term};
+use crate::program::Program;
+use crate::proof::{self, Exactly};
+use crate::quantity::Quantity;
+use crate::worksheet::Worksheet;
+use crate::{CompileError, derivation, schedule};
+
+/// A function, `arranged` and proved to be that of the plain formulas.
+pub(crate) fn program(
+    robot: &Robot,
+    function: Function,
+    arranged: fn(Program) -> Program,
+) -> Result<Program, CompileError> {
+    let reading = Reading::default();
+    let sheet = Worksheet::merged(reading);
+    let outputs = derivation::outputs(&sheet, robot, function);
+    let written = sheet.finish();
+    let numbers: Vec<(f64, Number)> = written
+        .graph
+        .nodes()
+        .filter_map(|(node, kind)| {
+            let Node::Constant(value) = kind else { return None };
+            Some((value, written.graph.number(Term { node, negative: false })?))
+        })
+        .collect();
+    let heading = schedule::Heading { robot: &robot.name, dof: robot.dof(), function, form: Form::Reduced };
+    let program = schedule::program(&heading, written, &outputs)?;
+    let mut exactly = Exactly::new();
+    for constant in &program.constants {
+        let bits = constant.value.abs().to_bits();
+        let Some((_, number)) = numbers.iter().find(|(value, _)| value.to_bits() == bits) else { continue };
+        let turn = (constant.name.quantity == Quantity::Theta).then(|| reading.turn(&Angle::new(constant.value.abs())));
+        let signed =
+            if constant.value < 0.0 { (-*number, turn.map(Turn::back)) } else { (*number, turn) };
+        exactly.insert(constant.name, signed);
+    }
+    let mut program = arranged(program);
+    program.proof = Some(proof::prove(robot, &program, &exactly, reading)?);
+    Ok(program)
+}
