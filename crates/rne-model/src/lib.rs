@@ -51,6 +51,8 @@ mod document;
 #[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
+mod formula;
+#[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
 mod lint;
@@ -73,6 +75,8 @@ pub use data_file::{DataFile, Value};
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
 pub use expression::number;
+#[cfg(feature = "std")]
+pub use formula::Formula;
 #[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Motor, Robot};
 #[cfg(feature = "std")]
