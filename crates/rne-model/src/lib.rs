@@ -36,7 +36,7 @@ mod angle;
 mod table;
 
 pub use angle::{Angle, QuarterTurns};
-pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform};
+pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform};
 
 #[cfg(feature = "std")]
 mod check;
@@ -74,6 +74,6 @@ pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
 pub use expression::number;
 #[cfg(feature = "std")]
-pub use robot::{InertiaReference, Joint, Limits, Motor, Robot};
+pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use source::read_limited;
