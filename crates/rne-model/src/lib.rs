@@ -39,7 +39,7 @@ mod angle;
 mod table;
 
 pub use angle::{Angle, QuarterTurns};
-pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform};
+pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform};
 
 #[cfg(feature = "std")]
 mod check;
@@ -87,7 +87,7 @@ pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
 #[cfg(feature = "std")]
-pub use robot::{InertiaReference, Joint, Limits, Motor, Robot};
+pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
