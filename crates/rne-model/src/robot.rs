@@ -1,6 +1,6 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Inertia, Model, Row, Transform};
+use crate::{Convention, Inertia, Model, Motor, Row, RunTime, Transform};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,9 @@ pub struct Robot {
     pub parameters: Vec<(String, f64)>,
     /// The joints, base to tip; 1 to 64.
     pub joints: Vec<Joint>,
+    /// The parameters that stay free until run time, and which numbers depend on them; empty unless asked for, by
+    /// [`check_bytes_with_run_time`](crate::check_bytes_with_run_time).
+    pub run_time: RunTime,
 }
 
 /// One joint of a [`Robot`], with the link it moves.
@@ -60,19 +63,6 @@ pub struct Limits {
     pub velocity: Option<f64>,
     /// Largest torque or force, N m or N.
     pub effort: Option<f64>,
-}
-
-/// A motor behind a gear: adds `G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)` to the joint torque.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motor {
-    /// Rotor inertia Jm, kg m².
-    pub inertia: f64,
-    /// Gear ratio G: motor turns per joint turn (rad/m for a prismatic joint). Its sign carries no meaning.
-    pub gear_ratio: f64,
-    /// Viscous friction B at the motor shaft, N m s/rad.
-    pub viscous: f64,
-    /// Coulomb friction at the motor shaft for positive and negative speed, [Tc⁺, Tc⁻], Tc⁻ ≤ 0, N m.
-    pub coulomb: [f64; 2],
 }
 
 impl Robot {

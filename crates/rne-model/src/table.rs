@@ -81,6 +81,19 @@ pub struct Row<S = f64> {
     pub link: Link<S>,
 }
 
+/// A motor behind a gear: adds `G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)` to the joint torque.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Motor<S = f64> {
+    /// Rotor inertia Jm, kg m².
+    pub inertia: S,
+    /// Gear ratio G: motor turns per joint turn (rad/m for a prismatic joint). Its sign carries no meaning.
+    pub gear_ratio: S,
+    /// Viscous friction B at the motor shaft, N m s/rad.
+    pub viscous: S,
+    /// Coulomb friction at the motor shaft for positive and negative speed, [Tc⁺, Tc⁻], Tc⁻ ≤ 0, N m.
+    pub coulomb: [S; 2],
+}
+
 /// A constant placement: translation, then fixed-axis roll, pitch, yaw as in URDF, R = Rz(yaw) Ry(pitch) Rx(roll).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transform<S = f64> {
@@ -115,7 +128,7 @@ pub struct Model<const DOF: usize, S = f64> {
 
 #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
 mod single {
-    use super::{Dh, Inertia, Link, Model, Row, Transform};
+    use super::{Dh, Inertia, Link, Model, Motor, Row, Transform};
 
     const fn vector(v: [f64; 3]) -> [f32; 3] {
         [v[0] as f32, v[1] as f32, v[2] as f32]
@@ -149,6 +162,19 @@ mod single {
                         yz: i.yz as f32,
                     },
                 },
+            }
+        }
+    }
+
+    impl Motor<f64> {
+        /// The same motor in single precision, each number rounded once.
+        #[must_use]
+        pub const fn to_f32(self) -> Motor<f32> {
+            Motor {
+                inertia: self.inertia as f32,
+                gear_ratio: self.gear_ratio as f32,
+                viscous: self.viscous as f32,
+                coulomb: [self.coulomb[0] as f32, self.coulomb[1] as f32],
             }
         }
     }

@@ -2,13 +2,14 @@
 
 use core::array;
 
-use rne_model::Model;
+use rne_model::{Model, Motor};
 
 use crate::link_frame::{Chain, Ends, LinkFrame};
-use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
-use crate::seven_steps;
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::Known;
 use crate::trace::{self, LinkTrace, Trace};
-use crate::{BaseMotion, Constant, InverseDynamics, Scalar, Wrench};
+use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Scalar, Wrench};
 
 /// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, with
 /// the same bits, and is what generated code is tested against.
@@ -47,16 +48,30 @@ pub struct Arm<const DOF: usize, S = f64> {
     model: Model<DOF, S>,
     links: [LinkFrame<S>; DOF],
     ends: Ends<S>,
+    motors: [Option<Motor<S>>; DOF],
 }
 
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
-    /// The robot of a plain table. Needs neither `std` nor an allocator.
+    /// The robot of a plain table, without motors. Needs neither `std` nor an allocator.
     #[must_use]
     pub fn new(model: Model<DOF, S>) -> Self {
         let Model { convention, tool, rows, .. } = &model;
         let links = array::from_fn(|index| LinkFrame::new(*convention, rows, tool, index));
         let ends = Ends::new(*convention, rows, tool);
-        Self { model, links, ends }
+        Self { model, links, ends, motors: [None; DOF] }
+    }
+
+    /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
+    #[must_use]
+    pub const fn with_motors(mut self, motors: [Option<Motor<S>>; DOF]) -> Self {
+        self.motors = motors;
+        self
+    }
+
+    /// The motors, base to tip. [`Actuation`](crate::Actuation) alone asks for them.
+    #[must_use]
+    pub const fn motors(&self) -> &[Option<Motor<S>>; DOF] {
+        &self.motors
     }
 
     /// The table this robot was made from.
@@ -84,10 +99,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> [T; DOF] {
-        let mut motions = [LinkMotion::empty(); DOF];
-        let mut loads = [LinkLoad::empty(); DOF];
-        seven_steps::forward(self.chain(), base, JointMotions::new(q, qd, qdd), &mut motions);
-        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
+        let (_, loads) = self.mechanism().passes(JointMotions::new(q, qd, qdd), base, wrench);
         loads.map(|load| load.tau)
     }
 
@@ -103,18 +115,17 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Trace<DOF, T> {
-        let mut motions = [LinkMotion::empty(); DOF];
-        let mut loads = [LinkLoad::empty(); DOF];
         let mut links = [LinkTrace::empty(); DOF];
         let joints = JointMotions::new(q, qd, qdd);
-        seven_steps::forward(self.chain(), base, joints, &mut motions);
-        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
-        trace::record(self.chain(), base, joints, &motions, &loads, &mut links);
+        let (motions, loads) = self.mechanism().passes(joints, base, wrench);
+        trace::record(self.mechanism().chain, base, joints, &motions, &loads, &mut links);
         Trace { links }
     }
 
-    fn chain(&self) -> Chain<'_, S> {
-        Chain { links: &self.links, ends: &self.ends }
+    pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
+        let Model { convention, gravity, base, tool, rows } = &self.model;
+        let chain = Chain { links: &self.links, ends: &self.ends };
+        Mechanism { per_joint: Known, chain, convention: *convention, rows, motors: &self.motors, gravity, base, tool }
     }
 }
 
@@ -142,10 +153,7 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         qdd: &[T; DOF],
     ) -> [T; DOF] {
         let joints = JointMotions { turns: Some((sin, cos)), ..JointMotions::new(q, qd, qdd) };
-        let mut motions = [LinkMotion::empty(); DOF];
-        let mut loads = [LinkLoad::empty(); DOF];
-        seven_steps::forward(self.chain(), &self.fixed_base(), joints, &mut motions);
-        seven_steps::backward(self.chain(), &motions, None, &mut loads);
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), None);
         loads.map(|load| load.tau)
     }
 
@@ -156,5 +164,17 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
 
     fn bias_torques<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; DOF] {
         self.inverse_dynamics(q, qd, &[T::zero(); DOF])
+    }
+}
+
+impl<const DOF: usize, S: Constant> MovingBase<DOF> for Arm<DOF, S> {
+    fn inverse_dynamics_on_moving_base<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        base: &BaseMotion<T>,
+    ) -> [T; DOF] {
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, base, None)
     }
 }

@@ -1,10 +1,11 @@
 //! The runtime robot with a number of joints known at run time.
 
-use rne_model::{Convention, Model, Robot, Row, Transform};
+use rne_model::{Convention, Model, Motor, Robot, Row, Transform};
 
 use crate::link_frame::{Chain, Ends, LinkFrame};
-use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
-use crate::seven_steps;
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::Counted;
 use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
 use crate::{BaseMotion, Constant, Scalar, Wrench, WrongLength};
 
@@ -21,6 +22,7 @@ pub struct DynArm<S = f64> {
     rows: Vec<Row<S>>,
     links: Vec<LinkFrame<S>>,
     ends: Ends<S>,
+    motors: Vec<Option<Motor<S>>>,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -34,12 +36,14 @@ impl DynArm {
     /// The runtime robot of a robot file that has been read.
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
-        Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, robot.rows().copied().collect())
+        let motors = robot.joints.iter().map(|joint| joint.motor).collect();
+        let rows = robot.rows().copied().collect();
+        Self { motors, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
     }
 }
 
 impl<S: Constant> DynArm<S> {
-    /// The robot of a plain table.
+    /// The robot of a plain table, without motors.
     #[must_use]
     pub fn new<const DOF: usize>(model: &Model<DOF, S>) -> Self {
         let Model { convention, gravity, base, tool, rows } = model;
@@ -55,7 +59,17 @@ impl<S: Constant> DynArm<S> {
     ) -> Self {
         let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, &tool, index)).collect();
         let ends = Ends::new(convention, &rows, &tool);
-        Self { convention, gravity, base, tool, rows, links, ends }
+        let motors = vec![None; rows.len()];
+        Self { convention, gravity, base, tool, rows, links, ends, motors }
+    }
+
+    /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
+    ///
+    /// # Errors
+    /// When `motors` does not have one element per joint.
+    pub fn with_motors(self, motors: Vec<Option<Motor<S>>>) -> Result<Self, WrongLength> {
+        self.has_length("motors", &motors)?;
+        Ok(Self { motors, ..self })
     }
 
     /// Number of joints.
@@ -68,6 +82,12 @@ impl<S: Constant> DynArm<S> {
     #[must_use]
     pub fn rows(&self) -> &[Row<S>] {
         &self.rows
+    }
+
+    /// The motors, base to tip. [`actuator_torques`](Self::actuator_torques) alone asks for them.
+    #[must_use]
+    pub fn motors(&self) -> &[Option<Motor<S>>] {
+        &self.motors
     }
 
     /// How the rows are to be read.
@@ -131,7 +151,7 @@ impl<S: Constant> DynArm<S> {
         self.has_length("sin", sin)?;
         self.has_length("cos", cos)?;
         let joints = JointMotions { turns: Some((sin, cos)), ..self.joints(q, qd, qdd)? };
-        let (_, loads) = self.passes(joints, &self.fixed_base(), None);
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), None);
         Ok(loads.into_iter().map(|load| load.tau).collect())
     }
 
@@ -152,6 +172,20 @@ impl<S: Constant> DynArm<S> {
         self.inverse_dynamics(q, qd, &vec![T::zero(); self.dof()])
     }
 
+    /// Torques on a moving base with a free tip: `base` replaces the robot's gravity and the base at rest.
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn inverse_dynamics_on_moving_base<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+    ) -> Result<Vec<T>, WrongLength> {
+        self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, base, None)
+    }
+
     /// Torques on a moving base: `base` replaces the robot's gravity and the base at rest. `wrench` is what the last link
     /// exerts on its environment; `None` is a free tip.
     ///
@@ -166,7 +200,7 @@ impl<S: Constant> DynArm<S> {
         wrench: Option<&Wrench<T>>,
     ) -> Result<Vec<T>, WrongLength> {
         let joints = self.joints(q, qd, qdd)?;
-        let (_, loads) = self.passes(joints, base, wrench);
+        let (_, loads) = self.mechanism().passes(joints, base, wrench);
         Ok(loads.into_iter().map(|load| load.tau).collect())
     }
 
@@ -184,42 +218,45 @@ impl<S: Constant> DynArm<S> {
         wrench: Option<&Wrench<T>>,
     ) -> Result<DynTrace<T>, WrongLength> {
         let joints = self.joints(q, qd, qdd)?;
-        let (motions, loads) = self.passes(joints, base, wrench);
+        let (motions, loads) = self.mechanism().passes(joints, base, wrench);
         let mut links = vec![LinkTrace::empty(); self.dof()];
-        trace::record(self.chain(), base, joints, &motions, &loads, &mut links);
+        trace::record(self.mechanism().chain, base, joints, &motions, &loads, &mut links);
         Ok(DynTrace { links })
     }
 
-    fn passes<T: Scalar>(
-        &self,
-        joints: JointMotions<'_, T>,
-        base: &BaseMotion<T>,
-        wrench: Option<&Wrench<T>>,
-    ) -> (Vec<LinkMotion<T>>, Vec<LinkLoad<T>>) {
-        let mut motions = vec![LinkMotion::empty(); self.dof()];
-        let mut loads = vec![LinkLoad::empty(); self.dof()];
-        seven_steps::forward(self.chain(), base, joints, &mut motions);
-        seven_steps::backward(self.chain(), &motions, wrench, &mut loads);
-        (motions, loads)
-    }
-
     /// The joint arguments, one element per joint each.
-    fn joints<'a, T>(&self, q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Result<JointMotions<'a, T>, WrongLength> {
+    pub(crate) fn joints<'a, T>(
+        &self,
+        q: &'a [T],
+        qd: &'a [T],
+        qdd: &'a [T],
+    ) -> Result<JointMotions<'a, T>, WrongLength> {
         for (argument, values) in [("q", q), ("qd", qd), ("qdd", qdd)] {
             self.has_length(argument, values)?;
         }
         Ok(JointMotions::new(q, qd, qdd))
     }
 
-    fn has_length<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
+    pub(crate) fn has_length<T>(&self, argument: &'static str, values: &[T]) -> Result<(), WrongLength> {
         if values.len() == self.dof() {
             return Ok(());
         }
         Err(WrongLength { argument, expected: self.dof(), found: values.len() })
     }
 
-    fn chain(&self) -> Chain<'_, S> {
-        Chain { links: &self.links, ends: &self.ends }
+    pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
+        let Self { convention, gravity, base, tool, rows, links, ends, motors } = self;
+        let per_joint = Counted(rows.len());
+        Mechanism {
+            per_joint,
+            chain: Chain { links, ends },
+            convention: *convention,
+            rows,
+            motors,
+            gravity,
+            base,
+            tool,
+        }
     }
 }
 
@@ -229,13 +266,10 @@ impl DynArm<f64> {
     #[must_use]
     #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
     pub fn to_f32(&self) -> DynArm<f32> {
-        DynArm::of_rows(
-            self.convention,
-            self.gravity.map(|x| x as f32),
-            self.base.to_f32(),
-            self.tool.to_f32(),
-            self.rows.iter().map(|row| row.to_f32()).collect(),
-        )
+        let rows = self.rows.iter().map(|row| row.to_f32()).collect();
+        let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
+        let (base, tool) = (self.base.to_f32(), self.tool.to_f32());
+        DynArm { motors, ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows) }
     }
 }
 

@@ -69,7 +69,7 @@ impl Error for WrongJointCount {}
 /// A joint argument of a [`DynArm`](crate::DynArm) does not have one element per joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct WrongLength {
-    /// Which argument: `q`, `qd`, `qdd`, `sin` or `cos`.
+    /// Which argument: `q`, `qd`, `qdd`, `sin`, `cos`, `tau` or `motors`.
     pub argument: &'static str,
     /// Joints of the robot.
     pub expected: usize,

@@ -169,8 +169,7 @@ impl<S: Constant> Ends<S> {
     /// The ends of the chain of `rows`, with `tool` after the last of them.
     pub(crate) fn new(convention: Convention, rows: &[Row<S>], tool: &Transform<S>) -> Self {
         let zero = S::zero();
-        let [roll, pitch, yaw] = &tool.rpy;
-        let turned = (rotation_z((yaw.sin, yaw.cos)) * rotation_y(pitch)) * rotation_x(roll);
+        let turned = rotation_of(tool);
         match convention {
             Convention::Standard => {
                 Self { base_lever: Vector3::zeros(), tip_rotation: previous_twist(rows, rows.len()) * turned }
@@ -199,7 +198,13 @@ fn previous_twist<S: Constant>(rows: &[Row<S>], index: usize) -> Matrix3<S> {
     }
 }
 
-fn rotation_x<S: Scalar>(angle: &Angle<S>) -> Matrix3<S> {
+/// The rotation of a constant placement, Rz(yaw) Ry(pitch) Rx(roll).
+pub(crate) fn rotation_of<S: Constant>(transform: &Transform<S>) -> Matrix3<S> {
+    let [roll, pitch, yaw] = &transform.rpy;
+    (rotation_z((yaw.sin, yaw.cos)) * rotation_y(pitch)) * rotation_x(roll)
+}
+
+pub(crate) fn rotation_x<S: Scalar>(angle: &Angle<S>) -> Matrix3<S> {
     let (zero, one, s, c) = (S::zero(), S::one(), angle.sin, angle.cos);
     #[rustfmt::skip]
     let rx = Matrix3::new(

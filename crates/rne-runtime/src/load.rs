@@ -1,5 +1,6 @@
 //! Robots from robot files, at run time.
 
+use core::array;
 use std::fs::File;
 use std::path::Path;
 
@@ -30,7 +31,7 @@ impl<const DOF: usize> Arm<DOF> {
     /// When the robot does not have `DOF` joints.
     pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
         let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
-        Ok(Self::new(model))
+        Ok(Self::new(model).with_motors(array::from_fn(|joint| robot.joints[joint].motor)))
     }
 }
 

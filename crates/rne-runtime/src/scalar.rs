@@ -75,6 +75,35 @@ pub trait Scalar:
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
+
+    /// `positive` where this number is above zero, `negative` where it is below, zero where it is zero (or NaN): lane by
+    /// lane, without a branch. Coulomb friction needs it, and [`Actuation`](crate::Actuation) alone.
+    ///
+    /// A type of your own may leave it out; calling it then, directly or through `Actuation`, fails to compile.
+    #[must_use]
+    #[inline]
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        const {
+            assert!(
+                size_of::<Self>() == usize::MAX,
+                "this scalar has no sign: implement `Scalar::by_sign` for its type"
+            );
+        }
+        positive + negative
+    }
+
+    /// The square root, NaN below zero. Smooth Coulomb friction needs it, and
+    /// [`Actuation::actuator_torques_smooth`](crate::Actuation::actuator_torques_smooth) alone.
+    ///
+    /// A type of your own may leave it out; calling it then fails to compile.
+    #[must_use]
+    #[inline]
+    fn sqrt(self) -> Self {
+        const {
+            assert!(size_of::<Self>() == usize::MAX, "this scalar has no root: implement `Scalar::sqrt` for its type");
+        }
+        self
+    }
 }
 
 impl<T: SimdRealField + Copy> Scalar for T {
@@ -120,6 +149,17 @@ impl<T: SimdRealField + Copy> Scalar for T {
         let double = same(terms).and_then(|[c, a, b]: [f64; 3]| same(c.plus_product(a, b)));
         let single = || same(terms).and_then(|[c, a, b]: [f32; 3]| same(c.plus_product(a, b)));
         double.or_else(single).unwrap_or_else(|| self * factor + addend)
+    }
+
+    #[inline]
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        let zero = <Self as Zero>::zero();
+        positive.select(self.simd_gt(zero), negative.select(self.simd_lt(zero), zero))
+    }
+
+    #[inline]
+    fn sqrt(self) -> Self {
+        self.simd_sqrt()
     }
 }
 

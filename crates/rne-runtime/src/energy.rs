@@ -1,0 +1,78 @@
+//! Kinetic and potential energy.
+//!
+//! ```text
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i)      ω and ċ of steps 1 and 3, in the axes of form P
+//! V = - Σ m_i g · c_i                          c_i = R_i c̄_i + p_i from the rows of the table, in the axes of frame 0
+//! ```
+//!
+//! Sums run from the base to the tip; the half, and the sign, come last.
+
+use nalgebra::Vector3;
+
+use crate::kinematics::Placement;
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::PerJoint;
+use crate::seven_steps::velocities;
+use crate::{Arm, BaseMotion, Constant, Energy, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    pub(crate) fn kinetic_energy<T: Scalar>(self, q: &[T], qd: &[T]) -> T {
+        let zeros = self.zeros();
+        let joints = JointMotions::new(q, qd, zeros.as_ref());
+        let base = BaseMotion::fixed([T::zero(); 3]);
+        let motions = self.motions(joints, &base);
+        let velocities = velocities(self.chain, &base, joints, motions.as_ref());
+        let mut twice = T::zero();
+        for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities) {
+            let spin = motion.omega.dot(&(link.inertia * motion.omega));
+            twice += link.mass * velocity.dot(&velocity) + spin;
+        }
+        twice * T::from_f64(0.5)
+    }
+
+    pub(crate) fn potential_energy<T: Scalar>(self, q: &[T]) -> T {
+        let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
+        let links = self.placements(Placement::identity(), q);
+        let mut sum = T::zero();
+        for (row, placement) in self.rows.iter().zip(links.as_ref()) {
+            let com = placement.rotation * Vector3::from(row.link.com).map(S::to) + placement.translation;
+            sum += row.link.mass.to::<T>() * gravity.dot(&com);
+        }
+        -sum
+    }
+}
+
+impl<const DOF: usize, S: Constant> Energy<DOF> for Arm<DOF, S> {
+    fn kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> T {
+        self.mechanism().kinetic_energy(q, qd)
+    }
+
+    fn potential_energy<T: Scalar>(&self, q: &[T; DOF]) -> T {
+        self.mechanism().potential_energy(q)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`Energy::kinetic_energy`].
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<T, WrongLength> {
+        self.has_length("q", q)?;
+        self.has_length("qd", qd)?;
+        Ok(self.mechanism().kinetic_energy(q, qd))
+    }
+
+    /// As [`Energy::potential_energy`].
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn potential_energy<T: Scalar>(&self, q: &[T]) -> Result<T, WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().potential_energy(q))
+    }
+}

@@ -1,0 +1,86 @@
+//! Forward dynamics: the accelerations that follow from torques, M(q) q̈ = τ - bias(q, q̇).
+//!
+//! M is [`mass_matrix`](crate::MassMatrix::mass_matrix), the bias is [`bias_torques`](crate::InverseDynamics::bias_torques),
+//! and M = L D Lᵀ without pivoting, which a positive definite matrix does not need. The order of the operations is part of
+//! the contract; generated code repeats it:
+//!
+//! ```text
+//! for j = 1 … n      D_j  = M_jj - L_j1 c_j1 - L_j2 c_j2 - …        over k < j, subtracted one by one
+//!                    V_j  = 1 / D_j
+//!     for i > j      c_ij = M_ij - L_i1 c_j1 - L_i2 c_j2 - …        over k < j
+//!                    L_ij = c_ij V_j
+//! forward            y_i  = (τ_i - bias_i) - L_i1 y_1 - L_i2 y_2 - …         over k < i
+//!                    z_i  = y_i V_i
+//! backward           q̈_i  = z_i - L_{i+1,i} q̈_{i+1} - L_{i+2,i} q̈_{i+2} - …   over k > i, ascending
+//! ```
+
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::PerJoint;
+use crate::{Arm, Constant, ForwardDynamics, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    pub(crate) fn forward_dynamics<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T]) -> J::Of<T> {
+        let zeros = self.zeros();
+        let bias = self.torques(JointMotions::new(q, qd, zeros.as_ref()), &self.fixed_base());
+        let mut x = self.per_joint.of(|i| tau[i] - bias.as_ref()[i]);
+        solve(self.mass_matrix(q).as_mut(), zeros, x.as_mut());
+        x
+    }
+}
+
+/// Makes the solution x of M x = b from b. M keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a
+/// place for the reciprocals of D.
+fn solve<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], mut inverse: impl AsMut<[T]>, x: &mut [T]) {
+    let n = x.len();
+    let inverse = inverse.as_mut();
+    for j in 0..n {
+        // What is left of column j, M being symmetric: c_ij for i ≥ j, of which the first is D_j.
+        for i in j..n {
+            let mut rest = m[j].as_ref()[i];
+            for k in 0..j {
+                rest -= m[i].as_ref()[k] * m[k].as_ref()[j];
+            }
+            m[j].as_mut()[i] = rest;
+        }
+        inverse[j] = T::one() / m[j].as_ref()[j];
+        for i in j + 1..n {
+            m[i].as_mut()[j] = m[j].as_ref()[i] * inverse[j];
+        }
+    }
+    for i in 0..n {
+        for k in 0..i {
+            x[i] -= m[i].as_ref()[k] * x[k];
+        }
+    }
+    for (x, &inverse) in x.iter_mut().zip(&*inverse) {
+        *x *= inverse;
+    }
+    for i in (0..n).rev() {
+        for k in i + 1..n {
+            x[i] -= m[k].as_ref()[i] * x[k];
+        }
+    }
+}
+
+impl<const DOF: usize, S: Constant> ForwardDynamics<DOF> for Arm<DOF, S> {
+    fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF] {
+        self.mechanism().forward_dynamics(q, qd, tau)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`ForwardDynamics::forward_dynamics`]: accelerations, with a free tip.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<Vec<T>, WrongLength> {
+        self.has_length("q", q)?;
+        self.has_length("qd", qd)?;
+        self.has_length("tau", tau)?;
+        Ok(self.mechanism().forward_dynamics(q, qd, tau))
+    }
+}

@@ -1,0 +1,217 @@
+//! Poses, the Jacobian of the tip and what it lacks of the tip's acceleration.
+//!
+//! Poses are accumulated from the base, row by row of the table, and not by the frames of the seven steps. The order of the
+//! operations is part of the contract; generated code repeats it:
+//!
+//! ```text
+//! start             R = Rz(yaw) Ry(pitch) Rx(roll), p = xyz of the base
+//! row i             p := R p_i + p,   R := R R_i
+//! tip               p := R p_t + p,   R := R R_t     of the tool
+//!
+//!              R_i              p_i
+//! standard     Rz(θ) Rx(α)      (cos θ a, sin θ a, d)
+//! modified     Rx(α) Rz(θ)      (a, -sin α d, cos α d)
+//! ```
+//!
+//! Products of matrices are sums of three products, from the first to the last. θ or d contains the joint variable, d as the
+//! sum of constant and variable.
+
+use nalgebra::{Matrix3, Vector3};
+use rne_model::{Convention, JointKind, Row, Transform};
+
+use crate::link_frame::{LinkFrame, rotation_of, rotation_x, rotation_z};
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::PerJoint;
+use crate::{Arm, BaseMotion, Constant, Kinematics, Pose, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+/// A pose in nalgebra's types.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement<T> {
+    pub(crate) rotation: Matrix3<T>,
+    pub(crate) translation: Vector3<T>,
+}
+
+impl<T: Scalar> Placement<T> {
+    pub(crate) fn identity() -> Self {
+        Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
+    }
+
+    /// A constant placement.
+    fn constant<S: Constant>(transform: &Transform<S>) -> Self {
+        let translation = Vector3::from(transform.xyz).map(S::to);
+        Self { rotation: rotation_of(transform).map(S::to), translation }
+    }
+
+    /// From a link to the next one, the joint in between at `q`.
+    fn of_row<S: Constant>(convention: Convention, row: &Row<S>, link: &LinkFrame<S>, q: T) -> Self {
+        let turn @ (sin, cos) = link.to().sin_cos(q);
+        let (a, twist) = (row.dh.a.to::<T>(), rotation_x(&row.dh.alpha).map(S::to));
+        let d = match row.kind {
+            JointKind::Revolute => row.dh.d.to(),
+            JointKind::Prismatic => row.dh.d.to::<T>() + q,
+        };
+        match convention {
+            Convention::Standard => {
+                Self { rotation: rotation_z(turn) * twist, translation: Vector3::new(cos * a, sin * a, d) }
+            }
+            Convention::Modified => {
+                let (sin_alpha, cos_alpha) = (row.dh.alpha.sin.to::<T>(), row.dh.alpha.cos.to::<T>());
+                let translation = Vector3::new(a, -sin_alpha * d, cos_alpha * d);
+                Self { rotation: twist * rotation_z(turn), translation }
+            }
+        }
+    }
+
+    /// The placement `next`, which is given in this one.
+    fn then(&self, next: &Self) -> Self {
+        Self {
+            rotation: self.rotation * next.rotation,
+            translation: self.rotation * next.translation + self.translation,
+        }
+    }
+
+    fn pose(&self) -> Pose<T> {
+        Pose::from_matrix(self.rotation, self.translation)
+    }
+}
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// The link frames, when frame 0 stands at `start`.
+    pub(crate) fn placements<T: Scalar>(self, start: Placement<T>, q: &[T]) -> J::Of<Placement<T>> {
+        let mut placement = start;
+        self.per_joint.of(|i| {
+            let row = Placement::of_row(self.convention, &self.rows[i], &self.chain.links[i], q[i]);
+            placement = placement.then(&row);
+            placement
+        })
+    }
+
+    /// The tip frame behind the last of `links`.
+    fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
+        let last = links.last().copied().unwrap_or_else(|| Placement::constant(self.base));
+        last.then(&Placement::constant(self.tool))
+    }
+
+    pub(crate) fn forward_kinematics<T: Scalar>(self, q: &[T]) -> Pose<T> {
+        let links = self.placements(Placement::constant(self.base), q);
+        self.tip(links.as_ref()).pose()
+    }
+
+    pub(crate) fn link_poses<T: Scalar>(self, q: &[T]) -> J::Of<Pose<T>> {
+        let links = self.placements(Placement::constant(self.base), q);
+        self.per_joint.of(|i| links.as_ref()[i].pose())
+    }
+
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0. Axis i is the z axis of the link
+    /// frame before row i in a standard table, of the one behind it in a modified table.
+    pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
+        let base = Placement::constant(self.base);
+        let links = self.placements(base, q);
+        let tip = self.tip(links.as_ref());
+        let columns = self.per_joint.of(|i| {
+            let frame = match (self.convention, i.checked_sub(1)) {
+                (Convention::Modified, _) => links.as_ref()[i],
+                (Convention::Standard, Some(before)) => links.as_ref()[before],
+                (Convention::Standard, None) => base,
+            };
+            let axis = frame.rotation.column(2).into_owned();
+            match self.rows[i].kind {
+                JointKind::Revolute => (axis.cross(&(tip.translation - frame.translation)), axis),
+                JointKind::Prismatic => (axis, Vector3::zeros()),
+            }
+        });
+        core::array::from_fn(|row| {
+            self.per_joint.of(|i| {
+                let (linear, angular) = &columns.as_ref()[i];
+                if row < 3 { linear[row] } else { angular[row - 3] }
+            })
+        })
+    }
+
+    /// The tip's acceleration at q̈ = 0: steps 1, 2 and 4 without gravity, and from the last centre of mass to the tip as
+    /// step 4 goes on to the next joint,
+    ///
+    /// p̈ = c̈_n + ω̇_n × r_n + ω_n × (ω_n × r_n),
+    ///
+    /// then p̈ and ω̇_n turned by R_n … R_1 and by the base.
+    pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(self, q: &[T], qd: &[T]) -> [T; 6] {
+        let zeros = self.zeros();
+        let weightless = BaseMotion::fixed([T::zero(); 3]);
+        let motions = self.motions(JointMotions::new(q, qd, zeros.as_ref()), &weightless);
+        let (mut linear, mut angular) = (Vector3::zeros(), Vector3::zeros());
+        if let Some(last) = motions.as_ref().last() {
+            let centripetal = last.omega.cross(&last.omega.cross(&last.r));
+            linear = (last.acceleration + last.omega_dot.cross(&last.r)) + centripetal;
+            angular = last.omega_dot;
+        }
+        for motion in motions.as_ref().iter().rev() {
+            linear = motion.rotation * linear;
+            angular = motion.rotation * angular;
+        }
+        let base = rotation_of(self.base).map(S::to);
+        linear = base * linear;
+        angular = base * angular;
+        [linear.x, linear.y, linear.z, angular.x, angular.y, angular.z]
+    }
+}
+
+impl<const DOF: usize, S: Constant> Kinematics<DOF> for Arm<DOF, S> {
+    fn forward_kinematics<T: Scalar>(&self, q: &[T; DOF]) -> Pose<T> {
+        self.mechanism().forward_kinematics(q)
+    }
+
+    fn link_poses<T: Scalar>(&self, q: &[T; DOF]) -> [Pose<T>; DOF] {
+        self.mechanism().link_poses(q)
+    }
+
+    fn jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 6] {
+        self.mechanism().jacobian(q)
+    }
+
+    fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; 6] {
+        self.mechanism().jacobian_rate_times_velocity(q, qd)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`Kinematics::forward_kinematics`]: the tip in the world.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn forward_kinematics<T: Scalar>(&self, q: &[T]) -> Result<Pose<T>, WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().forward_kinematics(q))
+    }
+
+    /// As [`Kinematics::link_poses`]: the link frames in the world, base to tip.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn link_poses<T: Scalar>(&self, q: &[T]) -> Result<Vec<Pose<T>>, WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().link_poses(q))
+    }
+
+    /// As [`Kinematics::jacobian`]: six rows with one element per joint.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 6], WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().jacobian(q))
+    }
+
+    /// As [`Kinematics::jacobian_rate_times_velocity`]: J̇ q̇.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T], qd: &[T]) -> Result<[T; 6], WrongLength> {
+        self.has_length("q", q)?;
+        self.has_length("qd", qd)?;
+        Ok(self.mechanism().jacobian_rate_times_velocity(q, qd))
+    }
+}

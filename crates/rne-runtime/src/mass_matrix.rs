@@ -1,0 +1,47 @@
+//! The mass matrix M(q), by the seven steps: its columns are the torques of unit accelerations.
+//!
+//! Column j is τ(q, 0, e_j) without gravity: q̈ = e_j is 1 at j and 0 elsewhere. The rows i ≤ j of column j are taken, and
+//! mirrored, so the matrix is symmetric to the last bit. The order of the operations is that of the seven steps; generated
+//! code repeats it.
+
+use crate::link_state::JointMotions;
+use crate::mechanism::Mechanism;
+use crate::per_joint::{PerJoint, Square};
+use crate::{Arm, BaseMotion, Constant, MassMatrix, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    pub(crate) fn mass_matrix<T: Scalar>(self, q: &[T]) -> Square<J, T> {
+        let weightless = BaseMotion::fixed([T::zero(); 3]);
+        let at_rest = self.zeros();
+        let mut matrix = self.per_joint.all(&at_rest);
+        for j in 0..q.len() {
+            let unit = self.unit(j);
+            let column = self.torques(JointMotions::new(q, at_rest.as_ref(), unit.as_ref()), &weightless);
+            for (i, &element) in column.as_ref().iter().enumerate().take(j + 1) {
+                matrix.as_mut()[i].as_mut()[j] = element;
+                matrix.as_mut()[j].as_mut()[i] = element;
+            }
+        }
+        matrix
+    }
+}
+
+impl<const DOF: usize, S: Constant> MassMatrix<DOF> for Arm<DOF, S> {
+    fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF] {
+        self.mechanism().mass_matrix(q)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`MassMatrix::mass_matrix`]: rows of M(q).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Result<Vec<Vec<T>>, WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().mass_matrix(q))
+    }
+}

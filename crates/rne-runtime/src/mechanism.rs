@@ -1,0 +1,65 @@
+//! A robot as its functions see it, whatever owns its data: [`Arm`](crate::Arm) and `DynArm` share everything from here on.
+
+use rne_model::{Convention, Motor, Row, Transform};
+
+use crate::link_frame::Chain;
+use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
+use crate::per_joint::PerJoint;
+use crate::seven_steps;
+use crate::{BaseMotion, Constant, Scalar, Wrench};
+
+/// The table, the links prepared from it, and how to hold one value per joint.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Mechanism<'a, J, S> {
+    pub(crate) per_joint: J,
+    pub(crate) chain: Chain<'a, S>,
+    pub(crate) convention: Convention,
+    pub(crate) rows: &'a [Row<S>],
+    pub(crate) motors: &'a [Option<Motor<S>>],
+    pub(crate) gravity: &'a [S; 3],
+    pub(crate) base: &'a Transform<S>,
+    pub(crate) tool: &'a Transform<S>,
+}
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// The base at rest under the robot's gravity.
+    pub(crate) fn fixed_base<T: Scalar>(self) -> BaseMotion<T> {
+        BaseMotion::fixed(self.gravity.map(S::to))
+    }
+
+    /// The forward pass.
+    pub(crate) fn motions<T: Scalar>(self, joints: JointMotions<'_, T>, base: &BaseMotion<T>) -> J::Of<LinkMotion<T>> {
+        let mut motions = self.per_joint.all(&LinkMotion::empty());
+        seven_steps::forward(self.chain, base, joints, motions.as_mut());
+        motions
+    }
+
+    /// Both passes.
+    pub(crate) fn passes<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        wrench: Option<&Wrench<T>>,
+    ) -> (J::Of<LinkMotion<T>>, J::Of<LinkLoad<T>>) {
+        let motions = self.motions(joints, base);
+        let mut loads = self.per_joint.all(&LinkLoad::empty());
+        seven_steps::backward(self.chain, motions.as_ref(), wrench, loads.as_mut());
+        (motions, loads)
+    }
+
+    /// Torques of the seven steps with a free tip.
+    pub(crate) fn torques<T: Scalar>(self, joints: JointMotions<'_, T>, base: &BaseMotion<T>) -> J::Of<T> {
+        let (_, loads) = self.passes(joints, base, None);
+        self.per_joint.of(|joint| loads.as_ref()[joint].tau)
+    }
+
+    /// Zero for every joint.
+    pub(crate) fn zeros<T: Scalar>(self) -> J::Of<T> {
+        self.per_joint.all(&T::zero())
+    }
+
+    /// One at `joint`, zero elsewhere.
+    pub(crate) fn unit<T: Scalar>(self, joint: usize) -> J::Of<T> {
+        self.per_joint.of(|other| if other == joint { T::one() } else { T::zero() })
+    }
+}

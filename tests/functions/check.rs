@@ -1,0 +1,80 @@
+//! How numbers are read and compared.
+
+use rne::{DynArm, Wrench};
+use serde_json::Value;
+
+/// The workspace.
+pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+pub(crate) fn json(file: &str) -> Value {
+    let text = std::fs::read_to_string(format!("{ROOT}/{file}")).unwrap_or_else(|error| panic!("{file}: {error}"));
+    serde_json::from_str(&text).expect("JSON")
+}
+
+pub(crate) fn arm(file: &str) -> DynArm {
+    DynArm::from_file(format!("{ROOT}/{file}")).unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// All numbers of an array of arrays, row after row.
+pub(crate) fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        number => vec![number.as_f64().expect("a number")],
+    }
+}
+
+/// Rows of a matrix, one after the other.
+pub(crate) fn flat<T: Copy>(rows: impl IntoIterator<Item = impl AsRef<[T]>>) -> Vec<T> {
+    rows.into_iter().flat_map(|row| row.as_ref().to_vec()).collect()
+}
+
+pub(crate) fn wrench([fx, fy, fz, nx, ny, nz]: [f64; 6]) -> Wrench<f64> {
+    Wrench { force: [fx, fy, fz], moment: [nx, ny, nz] }
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// A matrix, as rows, times a vector.
+pub(crate) fn product(rows: &[impl AsRef<[f64]>], x: &[f64]) -> Vec<f64> {
+    rows.iter().map(|row| dot(row.as_ref(), x)).collect()
+}
+
+/// The largest difference, relative to the largest of `expected` or, if that is smaller, to `scale`.
+pub(crate) fn error_on_scale(found: &[f64], expected: &[f64], scale: f64) -> f64 {
+    assert_eq!(found.len(), expected.len());
+    // `f64::max` drops what is not a number
+    assert!(found.iter().chain(expected).all(|x| x.is_finite()), "{found:?} {expected:?}");
+    let scale = expected.iter().fold(scale, |scale, x| scale.max(x.abs()));
+    let error = found.iter().zip(expected).fold(0.0_f64, |error, (a, b)| error.max((a - b).abs()));
+    if scale == 0.0 { error } else { error / scale }
+}
+
+pub(crate) fn relative_error(found: &[f64], expected: &[f64]) -> f64 {
+    error_on_scale(found, expected, 0.0)
+}
+
+/// The worst error of each quantity.
+#[derive(Default)]
+pub(crate) struct Worst(Vec<(&'static str, f64)>);
+
+impl Worst {
+    pub(crate) fn see(&mut self, what: &'static str, error: f64) {
+        assert!(!error.is_nan(), "{what}");
+        match self.0.iter_mut().find(|(name, _)| *name == what) {
+            Some((_, worst)) => *worst = worst.max(error),
+            None => self.0.push((what, error)),
+        }
+    }
+
+    /// Prints all and fails on those above `tolerance`.
+    #[track_caller]
+    pub(crate) fn at_most(&self, tolerance: f64, of: &str) {
+        for (what, error) in &self.0 {
+            println!("{of:16} {what:30} {error:.1e}");
+            assert!(*error <= tolerance, "{of}, {what}: {error:e}");
+        }
+    }
+}

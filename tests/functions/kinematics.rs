@@ -1,0 +1,72 @@
+//! Poses and Jacobians of random arms: derivatives with respect to time by dual numbers.
+
+use nalgebra::Vector3;
+use rne::DynArm;
+use rne_model::{Robot, Transform};
+
+use crate::case::{Case, cases, holds, largest, sum};
+use crate::check::{error_on_scale, flat, product, relative_error};
+
+#[test]
+fn the_jacobian_moves_the_tip_and_carries_its_wrench() {
+    holds("Jacobian", |case, worst| {
+        let Case { arm, q, qd, .. } = case;
+        let jacobian = arm.jacobian(q).expect("one per joint");
+        let velocity = product(&jacobian, qd);
+        let moving = arm.forward_kinematics(&case.moving()).expect("one per joint");
+        let tip = arm.forward_kinematics(q).expect("one per joint");
+        let scale = largest(&flat(&jacobian)) * largest(qd);
+        worst.see("ṗ", error_on_scale(&moving.translation.map(|x| x.derivative), &velocity[..3], scale));
+        // Ṙ = ω × R
+        let spin = Vector3::from_column_slice(&velocity[3..]).cross_matrix() * tip.rotation_matrix();
+        let rate = moving.rotation_matrix().map(|x| x.derivative);
+        worst.see("Ṙ", error_on_scale(rate.as_slice(), spin.as_slice(), 1.0));
+
+        // Jᵀ w, the wrench turned from the tip into the world
+        let turned = |x: [f64; 3]| tip.rotation_matrix() * Vector3::from(x);
+        let wrench: Vec<f64> =
+            [turned(case.wrench.force), turned(case.wrench.moment)].iter().flat_map(|x| x.iter().copied()).collect();
+        let load: Vec<f64> =
+            (0..q.len()).map(|joint| (0..6).map(|row| jacobian[row][joint] * wrench[row]).sum()).collect();
+        let loaded = arm.inverse_dynamics_with_wrench(q, qd, &case.qdd, &case.wrench).expect("one per joint");
+        worst.see("τ + Jᵀ w", relative_error(&sum(&case.tau(), &load), &loaded));
+
+        let rate: Vec<Vec<f64>> = arm
+            .jacobian(&case.moving())
+            .expect("one per joint")
+            .iter()
+            .map(|row| row.iter().map(|x| x.derivative).collect())
+            .collect();
+        let expected = product(&rate, qd);
+        let found = arm.jacobian_rate_times_velocity(q, qd).expect("one per joint");
+        worst.see("J̇ q̇", error_on_scale(&found, &expected, largest(&flat(&jacobian))));
+    });
+}
+
+#[test]
+fn the_base_turns_what_is_seen_from_the_world_and_no_torque() {
+    for case in cases().filter(|case| case.robot.base != Transform::IDENTITY) {
+        let Case { robot, arm, q, qd, qdd, .. } = &case;
+        let unmoved = Robot { base: Transform::IDENTITY, ..robot.clone() };
+        let unmoved = DynArm::from_robot(&unmoved);
+        assert_eq!(arm.inverse_dynamics(q, qd, qdd), unmoved.inverse_dynamics(q, qd, qdd));
+        assert_eq!(arm.mass_matrix(q), unmoved.mass_matrix(q));
+        assert_eq!(arm.coriolis_matrix(q, qd), unmoved.coriolis_matrix(q, qd));
+        assert_eq!(arm.potential_energy(q), unmoved.potential_energy(q));
+        assert_eq!(arm.kinetic_energy(q, qd), unmoved.kinetic_energy(q, qd));
+        assert_eq!(arm.regressor(q, qd, qdd), unmoved.regressor(q, qd, qdd));
+
+        let turn = case.base_rotation();
+        let (tip, seen) = (unmoved.forward_kinematics(q).expect("tip"), arm.forward_kinematics(q).expect("tip"));
+        let expected = turn * tip.translation_vector() + Vector3::from(robot.base.xyz);
+        assert!(relative_error(&seen.translation, expected.as_slice()) < 1e-14);
+        let (rows, seen) = (unmoved.jacobian(q).expect("J"), arm.jacobian(q).expect("J"));
+        for joint in 0..q.len() {
+            for part in [0, 3] {
+                let column = |rows: &[Vec<f64>; 6]| Vector3::from_fn(|row, _| rows[part + row][joint]);
+                let error = (turn * column(&rows) - column(&seen)).amax();
+                assert!(error < 1e-13 * column(&rows).amax().max(1.0), "{error:e}");
+            }
+        }
+    }
+}
