@@ -92,8 +92,8 @@ fn operations(yaml: &str, form: Form) -> usize {
         Form::SevenSteps => Choice::none(&robot),
         Form::Reduced | Form::Rewritten => Choice::default_of(&robot),
     };
-    let programs =
-        Function::TORQUES.map(|function| choice.compile(&robot, function, form).unwrap_or_else(|error| panic!("{error}")));
+    let programs = Function::TORQUES
+        .map(|function| choice.compile(&robot, function, form).unwrap_or_else(|error| panic!("{error}")));
     std::hint::black_box(emit::rust_file(&robot, &programs));
     programs[0].operations().total()
 }

@@ -1,8 +1,9 @@
 //! What motors behind gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
 
-use rne_model::Robot;
+use rne_model::{Entry, Robot};
 
 use crate::ledger::Cause;
+use crate::links::number;
 use crate::quantity::{Name, Quantity};
 use crate::seven_steps::JointState;
 use crate::symbol::Symbol;
@@ -15,13 +16,23 @@ pub(crate) fn torques<'s>(sheet: &'s Worksheet, robot: &Robot, states: &[JointSt
         let Some(motor) = robot.joints.get(index).and_then(|joint| joint.motor) else {
             return sheet.constant(0.0, Cause::Arithmetic);
         };
-        let number = |quantity, value| sheet.entry(Name::scalar(quantity, joint), value);
-        let (squared, ratio) = (motor.gear_ratio * motor.gear_ratio, motor.gear_ratio.abs());
-        let inertia = number(Quantity::RotorInertia, squared * motor.inertia);
-        let viscous = number(Quantity::ViscousFriction, squared * motor.viscous);
+        let number = |entry, value| number(sheet, robot, entry, value);
+        let ratio = number(Entry::GearRatio(index), motor.gear_ratio);
+        let squared = ratio * ratio;
+        let magnitude = match robot.run_time.formula(Entry::GearRatio(index)) {
+            Some(_) => sheet.by_sign(ratio, ratio, -ratio),
+            None if motor.gear_ratio < 0.0 => -ratio,
+            None => ratio,
+        };
+        let named = |name, symbol| sheet.name(name, symbol);
+        let inertia = squared * number(Entry::MotorInertia(index), motor.inertia);
+        let inertia = named(Name::scalar(Quantity::RotorInertia, joint), inertia);
+        let viscous = squared * number(Entry::Viscous(index), motor.viscous);
+        let viscous = named(Name::scalar(Quantity::ViscousFriction, joint), viscous);
+        let entries = [Entry::CoulombPositive(index), Entry::CoulombNegative(index)];
         let [positive, negative] = [0, 1].map(|side| {
             let name = Name { part: side + 1, ..Name::scalar(Quantity::CoulombFriction, joint) };
-            sheet.entry(name, ratio * motor.coulomb[side])
+            named(name, magnitude * number(entries[side], motor.coulomb[side]))
         });
         let value = sheet.joint(joint).within(Quantity::ActuatorTorque, || {
             inertia * state.qdd + viscous * state.qd + sheet.by_sign(state.qd, positive, negative)

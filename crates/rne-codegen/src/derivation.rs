@@ -169,10 +169,9 @@ impl<'s, 'r> Derivation<'s, 'r> {
         halves
             .flat_map(|(half, quantity)| Axis::ALL.map(|axis| (half, quantity, axis)))
             .flat_map(|(half, quantity, axis)| {
-                columns
-                    .iter()
-                    .enumerate()
-                    .map(move |(index, column)| (Name::vector(quantity, index + 1, axis), column[half].0[axis as usize]))
+                columns.iter().enumerate().map(move |(index, column)| {
+                    (Name::vector(quantity, index + 1, axis), column[half].0[axis as usize])
+                })
             })
             .collect()
     }
@@ -200,7 +199,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn potential_energy(&self) -> Outputs<'s> {
-        let zero_frame = Frame { rotation: crate::links::identity(self.sheet), origin: self.sheet.zeros(Cause::FirstFrame) };
+        let zero_frame =
+            Frame { rotation: crate::links::identity(self.sheet), origin: self.sheet.zeros(Cause::FirstFrame) };
         let frames = kinematics::frames(self.sheet, &self.arm, &self.states, zero_frame);
         let centres: Vec<_> = self.motions().iter().map(|motion| motion.d).collect();
         let energy = energy::potential(self.sheet, &self.arm, &frames, &centres);
@@ -226,8 +226,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let by = |kind: fn(usize) -> By| {
-            let columns: Vec<Vec<_>> =
-                (1..=dof).map(|joint| self.sheet.derivatives(&torques, kind(joint))).collect();
+            let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.sheet.derivatives(&torques, kind(joint))).collect();
             square(dof, |row, column| {
                 let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                 (name, columns[column][row])
@@ -256,7 +255,10 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
 /// Elements of an n × n matrix by rows.
 fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Symbol<'s>)) -> Outputs<'s> {
-    (0..dof).flat_map(|row| (0..dof).map(move |column| (row, column))).map(|(row, column)| element(row, column)).collect()
+    (0..dof)
+        .flat_map(|row| (0..dof).map(move |column| (row, column)))
+        .map(|(row, column)| element(row, column))
+        .collect()
 }
 
 /// Rotation by rows, then translation.

@@ -28,9 +28,8 @@ where
     let mut factors: Vec<Vec<(S, S)>> = vec![Vec::new(); dof];
     let mut inverses = Vec::with_capacity(dof);
     for j in 0..dof {
-        let pivot = sheet.within(of_joint(Quantity::Pivot, j), || {
-            factors[j].iter().fold(upper[j][0], |sum, &(l, c)| sum - l * c)
-        });
+        let pivot = sheet
+            .within(of_joint(Quantity::Pivot, j), || factors[j].iter().fold(upper[j][0], |sum, &(l, c)| sum - l * c));
         let inverse = sheet.within(of_joint(Quantity::InversePivot, j), || sheet.inverse(pivot));
         for i in j + 1..dof {
             let c = sheet.within(scaled(i, j), || {
@@ -44,9 +43,8 @@ where
     }
     let mut y: Vec<S> = Vec::with_capacity(dof);
     for (i, (row, &b)) in factors.iter().zip(b).enumerate() {
-        let value = sheet.within(of_joint(Quantity::Reduced, i), || {
-            row.iter().zip(&y).fold(b, |sum, (&(l, _), &y)| sum - l * y)
-        });
+        let value = sheet
+            .within(of_joint(Quantity::Reduced, i), || row.iter().zip(&y).fold(b, |sum, (&(l, _), &y)| sum - l * y));
         y.push(value);
     }
     let mut x: Vec<S> = y
@@ -56,9 +54,8 @@ where
         .map(|(i, (&y, &inverse))| sheet.within(of_joint(Quantity::Scaled, i), || y * inverse))
         .collect();
     for i in (0..dof).rev() {
-        x[i] = sheet.within(of_joint(Quantity::RateDot, i), || {
-            (i + 1..dof).fold(x[i], |sum, k| sum - factors[k][i].0 * x[k])
-        });
+        x[i] = sheet
+            .within(of_joint(Quantity::RateDot, i), || (i + 1..dof).fold(x[i], |sum, k| sum - factors[k][i].0 * x[k]));
     }
     x
 }

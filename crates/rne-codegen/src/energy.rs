@@ -2,11 +2,11 @@
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i);   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
 
+use crate::kinematics::Frames;
 use crate::ledger::Cause;
 use crate::links::Arm;
 use crate::quantity::{Name, Quantity};
 use crate::seven_steps::Motion;
-use crate::kinematics::Frames;
 use crate::symbol::Symbol;
 use crate::worksheet::Worksheet;
 

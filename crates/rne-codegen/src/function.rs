@@ -141,21 +141,35 @@ impl Function {
             }
             Self::GravityTorques => "Torques that hold the arm still against gravity, τ(q, 0, 0).",
             Self::BiasTorques => "Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).",
-            Self::MassMatrix => "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
-            Self::CoriolisMatrix => "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇.",
-            Self::ForwardDynamics => "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
+            Self::MassMatrix => {
+                "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest."
+            }
+            Self::CoriolisMatrix => {
+                "The Coriolis matrix C(q, q̇) of Christoffel: Ṁ - 2C is skew, and C = ½ ∂(bias torques)/∂q̇."
+            }
+            Self::ForwardDynamics => {
+                "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip."
+            }
             Self::ForwardKinematics => "The tip in the world, base and tool included.",
             Self::LinkPoses => "The frame of every row of the table in the world.",
-            Self::Jacobian => "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.",
-            Self::JacobianRateTimesVelocity => "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.",
+            Self::Jacobian => {
+                "The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones."
+            }
+            Self::JacobianRateTimesVelocity => {
+                "J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular."
+            }
             Self::KineticEnergy => "Kinetic energy, J.",
             Self::PotentialEnergy => "Potential energy in gravity, J; zero where a mass is at the origin of frame 0.",
             Self::Regressor => {
                 "Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)."
             }
             Self::InverseDynamicsDerivatives => "∂τ/∂q and ∂τ/∂q̇ of `inverse_dynamics`; row i is torque i.",
-            Self::JointWrenches => "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.",
-            Self::InverseDynamicsOnMovingBase => "Torques on a base that moves as told, under gravity as told, with a free tip.",
+            Self::JointWrenches => {
+                "Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i."
+            }
+            Self::InverseDynamicsOnMovingBase => {
+                "Torques on a base that moves as told, under gravity as told, with a free tip."
+            }
             Self::ActuatorTorques => "What rotors behind gears and friction add to the torques.",
         }
     }
@@ -229,9 +243,7 @@ impl Function {
             Self::JacobianRateTimesVelocity => array(6, &Layout::Number),
             Self::KineticEnergy | Self::PotentialEnergy => Layout::Number,
             Self::Regressor => array(dof, &array(dof, &array(10, &Layout::Number))),
-            Self::InverseDynamicsDerivatives => {
-                Layout::Record(Record::TorqueDerivatives, vec![matrix.clone(), matrix])
-            }
+            Self::InverseDynamicsDerivatives => Layout::Record(Record::TorqueDerivatives, vec![matrix.clone(), matrix]),
             Self::JointWrenches => array(dof, &Layout::Record(Record::Wrench, vec![triple.clone(), triple])),
         }
     }

@@ -49,16 +49,14 @@ pub(crate) fn frames<'s>(
         let line = sheet.joint(index + 1);
         let own = rotation(line, sheet, index + 1, link, state.q, state.turn);
         let axes = line.within(Quantity::FrameRotation, || before.rotation * own);
-        let origin = line.within(Quantity::FrameOrigin, || axes * offset(link.offset, link.kind, state.q) + before.origin);
+        let origin =
+            line.within(Quantity::FrameOrigin, || axes * offset(link.offset, link.kind, state.q) + before.origin);
         let table = line.within(Quantity::FrameRotation, || axes * link.table_axes);
         sheet.entry_matrix(Quantity::FrameRotation, index + 1, table);
         sheet.entry_vector(Quantity::FrameOrigin, index + 1, origin);
         joints.push(Frame { rotation: axes, origin: before.origin });
         links.push(Frame { rotation: table, origin });
-        before = Frame {
-            rotation: axes,
-            origin: line.within(Quantity::FrameOrigin, || axes * link.lever + origin),
-        };
+        before = Frame { rotation: axes, origin: line.within(Quantity::FrameOrigin, || axes * link.lever + origin) };
     }
     let line = sheet.joint(dof);
     let rotation = line.within(Quantity::FrameRotation, || before.rotation * arm.tip);

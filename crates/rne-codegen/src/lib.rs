@@ -80,7 +80,7 @@ pub fn compile_keeping(
         .iter()
         .filter(|definition| keep.contains(&definition.name.quantity) && of_a_link(&definition.name));
     outputs.extend(kept.map(|definition| (definition.name, definition.term)));
-    let heading = schedule::Heading { robot: &robot.name, dof, function, form };
+    let heading = schedule::Heading { robot: &robot.name, dof, parameters: robot.run_time.names.len(), function, form };
     schedule::program(&heading, written, &outputs)
 }
 

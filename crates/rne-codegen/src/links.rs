@@ -8,7 +8,7 @@
 //! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned into
 //! frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
 
-use rne_model::{Angle, Convention, JointKind, Robot, Transform};
+use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
 
 use crate::ledger::Cause;
 use crate::quantity::{Axis, Name, Quantity};
@@ -54,10 +54,10 @@ impl<'s> Arm<'s> {
     pub(crate) fn new(sheet: &'s Worksheet, robot: &Robot) -> Self {
         let dof = robot.dof();
         let rows: Vec<_> = robot.rows().collect();
-        let joints = &robot.joints;
         let zero = || sheet.constant(0.0, Cause::Arithmetic);
-        let along_x = |length: f64| Vector([sheet.constant(length, Cause::Arithmetic), zero(), zero()]);
-        let tool = Placement::new(sheet, &robot.tool);
+        let number = |entry: Entry, value: f64| number(sheet, robot, entry, value);
+        let along_x = |index: usize, length: f64| Vector([number(Entry::A(index), length), zero(), zero()]);
+        let tool = Placement::tool(sheet, robot);
 
         let turns: Vec<_> =
             rows.iter().enumerate().map(|(index, row)| turn_about_x(sheet, index + 1, &row.dh.alpha)).collect();
@@ -65,8 +65,8 @@ impl<'s> Arm<'s> {
         let mut links = Vec::with_capacity(dof);
         for (index, row) in rows.iter().enumerate() {
             let joint = index + 1;
-            let written_com = Vector(row.link.com.map(|x| sheet.constant(x, Cause::Arithmetic)));
-            let written_inertia = sheet.inertia(&joints[index]);
+            let written_com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
+            let written_inertia = inertia(sheet, robot, index);
             let is_last = joint == dof;
             let (twist, offset, com, mut r, inertia, mut lever, table_axes);
             match robot.convention {
@@ -74,7 +74,7 @@ impl<'s> Arm<'s> {
                     // the twist before joint i stands in row i-1
                     let own = turns[index];
                     twist = index.checked_sub(1).map_or_else(|| identity(sheet), |previous| turns[previous]);
-                    offset = [row.dh.a, 0.0, row.dh.d];
+                    offset = [number(Entry::A(index), row.dh.a), zero(), number(Entry::D(index), row.dh.d)];
                     com = own * written_com;
                     inertia = (own * written_inertia) * own.transpose();
                     r = -com;
@@ -88,12 +88,15 @@ impl<'s> Arm<'s> {
                 }
                 Convention::Modified => {
                     twist = turns[index];
-                    offset = [0.0, 0.0, row.dh.d];
+                    offset = [zero(), zero(), number(Entry::D(index), row.dh.d)];
                     com = written_com;
                     inertia = written_inertia;
                     table_axes = identity(sheet);
                     (lever, r) = match rows.get(index + 1) {
-                        Some(next) => (along_x(next.dh.a), along_x(next.dh.a) - com),
+                        Some(next) => {
+                            let lever = along_x(joint, next.dh.a);
+                            (lever, lever - com)
+                        }
                         None => (tool.translation, -com + tool.translation),
                     };
                 }
@@ -102,24 +105,33 @@ impl<'s> Arm<'s> {
                 kind: row.kind,
                 twist,
                 theta: row.dh.theta,
-                offset: Vector(offset.map(|x| sheet.constant(x, Cause::Arithmetic))),
+                offset: Vector(offset),
                 com,
                 r: sheet.entry_vector(Quantity::R, joint, r),
                 lever,
                 table_axes,
-                mass: sheet.entry(Name::scalar(Quantity::Mass, joint), row.link.mass),
+                mass: {
+                    let name = Name::scalar(Quantity::Mass, joint);
+                    let is_fixed = robot.run_time.formula(Entry::Mass(index)).is_none();
+                    // a constant says of itself which one it is
+                    if is_fixed {
+                        sheet.entry(name, row.link.mass)
+                    } else {
+                        sheet.name(name, number(Entry::Mass(index), row.link.mass))
+                    }
+                },
                 inertia: sheet.entry_matrix(Quantity::Inertia, joint, inertia),
             });
         }
         Self {
             links,
             tip: sheet.entry_matrix(Quantity::TipRotation, dof + 1, tip),
-            gravity: gravity(sheet, robot.gravity),
+            gravity: gravity(sheet, robot),
             base_lever: match (robot.convention, rows.first()) {
-                (Convention::Modified, Some(first)) => along_x(first.dh.a),
+                (Convention::Modified, Some(first)) => along_x(0, first.dh.a),
                 _ => sheet.zeros(Cause::FirstFrame),
             },
-            base: Placement::new(sheet, &robot.base),
+            base: Placement::base(sheet, robot),
         }
     }
 }
@@ -133,10 +145,10 @@ pub(crate) struct Placement<'s> {
 
 impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
-    fn new(sheet: &'s Worksheet, tool: &Transform) -> Self {
+    fn new(sheet: &'s Worksheet, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
         let number = |value: f64| sheet.constant(value, Cause::Arithmetic);
         let (zero, one) = (number(0.0), number(1.0));
-        let [roll, pitch, yaw] = tool.rpy.map(|angle| sheet.constant_turn(&angle, Cause::Arithmetic));
+        let [roll, pitch, yaw] = rpy.map(|angle| sheet.constant_turn(&angle, Cause::Arithmetic));
         let about_x = {
             let (s, c) = roll;
             Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
@@ -149,8 +161,55 @@ impl<'s> Placement<'s> {
             let (s, c) = yaw;
             Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]])
         };
-        Self { rotation: (about_z * about_y) * about_x, translation: Vector(tool.xyz.map(number)) }
+        Self { rotation: (about_z * about_y) * about_x, translation: Vector(translation) }
     }
+
+    fn tool(sheet: &'s Worksheet, robot: &Robot) -> Self {
+        let xyz = [0, 1, 2].map(|axis| number(sheet, robot, Entry::ToolXyz(axis), robot.tool.xyz[axis]));
+        Self::new(sheet, robot.tool.rpy, xyz)
+    }
+
+    fn base(sheet: &'s Worksheet, robot: &Robot) -> Self {
+        let xyz = [0, 1, 2].map(|axis| number(sheet, robot, Entry::BaseXyz(axis), robot.base.xyz[axis]));
+        Self::new(sheet, robot.base.rpy, xyz)
+    }
+}
+
+/// A number of the table: a constant, or a formula over what is known at run time only.
+pub(crate) fn number<'s>(sheet: &'s Worksheet, robot: &Robot, entry: Entry, value: f64) -> Symbol<'s> {
+    match robot.run_time.formula(entry) {
+        Some(written) => formula(sheet, written),
+        None => sheet.constant(value, Cause::Arithmetic),
+    }
+}
+
+fn formula<'s>(sheet: &'s Worksheet, written: &Formula) -> Symbol<'s> {
+    let of = |written: &Formula| formula(sheet, written);
+    match written {
+        Formula::Number(value) => sheet.constant(*value, Cause::Arithmetic),
+        Formula::Parameter(index) => sheet.argument(Name::scalar(Quantity::Parameter, index + 1)),
+        Formula::Negative(a) => -of(a),
+        Formula::Sum(a, b) => of(a) + of(b),
+        Formula::Difference(a, b) => of(a) - of(b),
+        Formula::Product(a, b) => of(a) * of(b),
+        Formula::Quotient(a, b) => {
+            let (a, b) = (of(a), of(b));
+            sheet.quotient(a, b)
+        }
+    }
+}
+
+/// The inertia of a link about its centre of mass.
+fn inertia<'s>(sheet: &'s Worksheet, robot: &Robot, index: usize) -> Matrix<'s> {
+    use InertiaElement::{Xx, Xy, Xz, Yy, Yz, Zz};
+    let Matrix(fixed) = sheet.inertia(&robot.joints[index]);
+    let element = |row: usize, column: usize, element: InertiaElement| {
+        let written = robot.run_time.formula(Entry::Inertia(index, element));
+        written.map_or(fixed[row].0[column], |written| formula(sheet, written))
+    };
+    let [xx, yy, zz] = [element(0, 0, Xx), element(1, 1, Yy), element(2, 2, Zz)];
+    let [xy, xz, yz] = [element(0, 1, Xy), element(0, 2, Xz), element(1, 2, Yz)];
+    Matrix::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 }
 
 /// Rx(α) of a row of the table.
@@ -169,9 +228,12 @@ pub(crate) fn identity(sheet: &Worksheet) -> Matrix<'_> {
 }
 
 /// Gravity in frame 0; a component that is zero says so.
-fn gravity(sheet: &Worksheet, [x, y, z]: [f64; 3]) -> Vector<'_> {
-    let component = |axis, value| {
-        let symbol = sheet.constant(value, Cause::GravityDirection(axis));
+fn gravity<'s>(sheet: &'s Worksheet, robot: &Robot) -> Vector<'s> {
+    let [x, y, z] = robot.gravity;
+    let component = |axis: Axis, value| {
+        let written = robot.run_time.formula(Entry::Gravity(axis as usize));
+        let symbol = written
+            .map_or_else(|| sheet.constant(value, Cause::GravityDirection(axis)), |written| formula(sheet, written));
         sheet.name(Name::vector(Quantity::Gravity, 0, axis), symbol)
     };
     Vector([component(Axis::X, x), component(Axis::Y, y), component(Axis::Z, z)])

@@ -12,8 +12,7 @@ use crate::worksheet::Worksheet;
 /// The lower half is the same, so that M is symmetric to the last bit.
 pub(crate) fn upper_half<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<Vec<Symbol<'s>>> {
     let dof = states.len();
-    let (rest, zero) =
-        (sheet.constant(0.0, Cause::AtRest), sheet.constant(0.0, Cause::UnitAcceleration));
+    let (rest, zero) = (sheet.constant(0.0, Cause::AtRest), sheet.constant(0.0, Cause::UnitAcceleration));
     let one = sheet.constant(1.0, Cause::UnitAcceleration);
     let base = Base::fixed(sheet, sheet.zeros(Cause::NoGravity));
     let tip = Wrench { force: sheet.zeros(Cause::FreeTip), moment: sheet.zeros(Cause::FreeTip) };

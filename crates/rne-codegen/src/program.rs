@@ -15,6 +15,8 @@ pub struct Program {
     pub robot: String,
     /// Number of joints.
     pub dof: usize,
+    /// Number of parameters that are known at run time only.
+    pub parameters: usize,
     /// The function.
     pub function: Function,
     /// How it is computed.
@@ -184,6 +186,13 @@ impl Program {
         self.proof.map_or_else(|| self.ledger.before(), |proof| proof.before)
     }
 
+    /// Whether a value is chosen by a sign somewhere.
+    #[must_use]
+    pub fn chooses_by_sign(&self) -> bool {
+        let statements = self.statements.iter().map(|statement| &statement.value);
+        statements.chain(self.outputs.iter().map(|output| &output.value)).any(Expression::chooses_by_sign)
+    }
+
     /// The operations of one evaluation.
     #[must_use]
     pub fn operations(&self) -> Operations {
@@ -217,6 +226,17 @@ impl Expression {
                 b.names(found);
             }
             Self::BySign(x, positive, negative) => [x, positive, negative].into_iter().for_each(|a| a.names(found)),
+        }
+    }
+
+    fn chooses_by_sign(&self) -> bool {
+        match self {
+            Self::Variable(_) | Self::Zero => false,
+            Self::BySign(..) => true,
+            Self::Negative(a) => a.chooses_by_sign(),
+            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
+                a.chooses_by_sign() || b.chooses_by_sign()
+            }
         }
     }
 

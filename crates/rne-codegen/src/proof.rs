@@ -200,12 +200,16 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
     let vector = |quantity, joint| Axis::ALL.map(|axis| argument(robot, point, Name::vector(quantity, joint, axis)));
     let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
     let tau = joints(Quantity::AppliedTorque);
+    let parameters: Vec<_> = (1..=robot.run_time.names.len())
+        .map(|index| Value::number(point.argument(Name::scalar(Quantity::Parameter, index))))
+        .collect();
     let arguments = Arguments {
         force: vector(Quantity::JointForce, dof + 1),
         moment: vector(Quantity::JointMoment, dof + 1),
         tau: &tau,
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
+        parameters: &parameters,
         ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Image::ZERO))
     };
     let constant = |name: Option<Name>, _| {
@@ -273,6 +277,11 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
         _ => None,
     };
     let reduced = Interpreter::new(program);
+    // as they stand in the file, and rounded
+    let parameters = robot.run_time.values(robot);
+    #[allow(clippy::cast_possible_truncation)]
+    let parameters_in_single: Vec<f32> = parameters.iter().map(|&value| value as f32).collect();
+    let parameters: Vec<f64> = parameters_in_single.iter().copied().map(f64::from).collect();
     let mut rng = fastrand::Rng::with_seed(2024);
     for _ in 0..states {
         // numbers of single precision, so that both precisions are given the same state
@@ -293,6 +302,7 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
             moment: wrench,
             tau: &qdd,
             base: [wrench; 4],
+            parameters: &parameters,
             ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
         };
         let [expected, found] =
@@ -319,6 +329,7 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
                 moment: wrench,
                 tau: &qdd,
                 base: [wrench; 4],
+                parameters: &parameters_in_single,
                 ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
             };
             #[allow(clippy::cast_possible_truncation)]

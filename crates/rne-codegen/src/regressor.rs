@@ -28,10 +28,8 @@ pub(crate) fn regressor<'s>(
 ) -> Vec<Vec<[Symbol<'s>; PARAMETERS]>> {
     let dof = states.len();
     let zero = sheet.constant(0.0, Cause::Arithmetic);
-    let (zeros, e) = (
-        sheet.zeros(Cause::JointAxis),
-        Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis))),
-    );
+    let (zeros, e) =
+        (sheet.zeros(Cause::JointAxis), Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis))));
     let mut rows = vec![vec![[zero; PARAMETERS]; dof]; dof];
     // acceleration of the joint's point less gravity, in the axes of the link before
     let mut point = -arm.gravity;
@@ -64,17 +62,13 @@ pub(crate) fn regressor<'s>(
         });
         // in the axes of the link frame
         let into = link.table_axes.transpose();
-        let in_frame = line.within(Quantity::Partial, || {
-            [omega, omega_dot, origin].map(|v| into * v)
-        });
+        let in_frame = line.within(Quantity::Partial, || [omega, omega_dot, origin].map(|v| into * v));
         let gradient_in_frame = line.within(Quantity::Gradient, || self::gradient(in_frame[0], in_frame[1]));
         for (joint, [u, v]) in twists.iter_mut().enumerate() {
             let at_origin = line.within(Quantity::Partial, || *v + u.cross(reach));
-            let (u_in_frame, v_in_frame) =
-                line.within(Quantity::Partial, || (into * *u, into * at_origin));
-            let elements = line.within(Quantity::Partial, || {
-                columns(in_frame, gradient_in_frame, u_in_frame, v_in_frame)
-            });
+            let (u_in_frame, v_in_frame) = line.within(Quantity::Partial, || (into * *u, into * at_origin));
+            let elements =
+                line.within(Quantity::Partial, || columns(in_frame, gradient_in_frame, u_in_frame, v_in_frame));
             let mut parameter = 0;
             rows[joint][index] = elements.map(|element| {
                 parameter += 1;
@@ -91,11 +85,7 @@ pub(crate) fn regressor<'s>(
 fn gradient<'s>(omega: Vector<'s>, omega_dot: Vector<'s>) -> Matrix<'s> {
     let ([x, y, z], [dx, dy, dz]) = (omega.0, omega_dot.0);
     let (xx, yy, zz, xy, xz, yz) = (x * x, y * y, z * z, x * y, x * z, y * z);
-    Matrix::from_rows([
-        [-(yy + zz), xy - dz, xz + dy],
-        [xy + dz, -(xx + zz), yz - dx],
-        [xz - dy, yz + dx, -(xx + yy)],
-    ])
+    Matrix::from_rows([[-(yy + zz), xy - dz, xz + dy], [xy + dz, -(xx + zz), yz - dx], [xz - dy, yz + dx, -(xx + yy)]])
 }
 
 /// The ten elements of one joint and one link.

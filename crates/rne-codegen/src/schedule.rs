@@ -17,6 +17,7 @@ type Position = (usize, usize);
 pub(crate) struct Heading<'a> {
     pub(crate) robot: &'a str,
     pub(crate) dof: usize,
+    pub(crate) parameters: usize,
     pub(crate) function: Function,
     pub(crate) form: Form,
 }
@@ -39,6 +40,7 @@ pub(crate) fn program(
     Ok(Program {
         robot: heading.robot.to_owned(),
         dof: heading.dof,
+        parameters: heading.parameters,
         function: heading.function,
         form: heading.form,
         arguments: schedule.arguments(),
@@ -123,7 +125,10 @@ impl<'w> Schedule<'w> {
             let is_turn = matches!(self.written.graph.node(node), Node::Sine(_) | Node::Cosine(_));
             let wins = slot.is_none_or(|old| {
                 // sines and cosines are called what they are
-                !is_turn && !lectures(old.name) && lectures(definition.name) && old.name.quantity.step() == quantity.step()
+                !is_turn
+                    && !lectures(old.name)
+                    && lectures(definition.name)
+                    && old.name.quantity.step() == quantity.step()
             });
             // a torque is an alias of a component of a force or moment, a derivative may be a sine
             let is_alias = quantity == Quantity::Torque || (is_turn && definition.name.by.is_some());
@@ -252,7 +257,9 @@ impl<'w> Schedule<'w> {
     fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            if let (Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..), Some(given)) = (node, self.names[id.index()]) {
+            if let (Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..), Some(given)) =
+                (node, self.names[id.index()])
+            {
                 let (negative, value) = self.operation(id);
                 let value = signed(negative != given.negative, value);
                 let place = self.place(id, given.name);

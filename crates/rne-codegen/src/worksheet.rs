@@ -325,9 +325,7 @@ impl Worksheet {
                         self.quotient(rate(a) - quotient * rate(b), symbol(b))
                     }
                 }
-                Node::BySign(x, positive, negative) => {
-                    self.by_sign(symbol(x), rate(positive), rate(negative))
-                }
+                Node::BySign(x, positive, negative) => self.by_sign(symbol(x), rate(positive), rate(negative)),
             };
             self.enter(outer.0, outer.1);
             for definition in definitions.get(&index).into_iter().flatten() {

@@ -22,6 +22,14 @@ pub struct RunTime {
 }
 
 impl RunTime {
+    /// The values that the parameters have in the file of `robot`, in the order of the names.
+    #[must_use]
+    pub fn values(&self, robot: &Robot) -> Vec<f64> {
+        let value =
+            |name: &String| robot.parameters.iter().find(|(known, _)| known == name).map_or(0.0, |known| known.1);
+        self.names.iter().map(value).collect()
+    }
+
     /// Whether there are no run-time parameters.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -8,7 +8,7 @@ use rne_model::{JointKind, Robot};
 use super::expression::let_statement;
 use super::formula::{formulas, reduced_formulas};
 use super::table::angle;
-use crate::function::Form;
+use crate::function::{Form, Function};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
 use crate::quantity::{Component, Name, Quantity, Step};
@@ -32,7 +32,10 @@ pub struct Listing {
 /// The statements of a program as Rust text with a comment per joint and step.
 #[must_use]
 pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
-    if program.form != Form::SevenSteps {
+    // only what returns torques keeps to joints and steps
+    if program.form != Form::SevenSteps
+        || !(program.function.returns_torques() || program.function == Function::JointWrenches)
+    {
         return in_order(robot, program, what);
     }
     let mut text = String::new();
@@ -47,7 +50,7 @@ pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
         if statements.is_empty() && turns.is_empty() && !what.explain {
             continue;
         }
-        heading(&mut text, robot, program.form, joint, step);
+        heading(&mut text, robot, program, joint, step);
         for turn in turns {
             let _ = writeln!(text, "    // {}", turn_line(turn));
         }
@@ -88,23 +91,40 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
     }
     let mut section = None;
     for statement in &program.statements {
-        let Place { joint, step, .. } = statement.place;
+        let Place { joint, step, by, .. } = statement.place;
         if !what.includes(joint, step) {
             continue;
         }
-        if program.form == Form::Reduced && section != Some((joint, step)) {
+        if program.form != Form::Rewritten && section != Some((joint, step, by)) {
             if section.is_some() {
                 text.push('\n');
             }
-            heading(&mut text, robot, program.form, joint, step);
-            section = Some((joint, step));
+            match by {
+                Some(by) => {
+                    let _ = writeln!(
+                        text,
+                        "    // joint {joint}, step {}: {} by {}",
+                        step.number(),
+                        step.title(),
+                        by.variable()
+                    );
+                }
+                None => heading(&mut text, robot, program, joint, step),
+            }
+            section = Some((joint, step, by));
         }
         let _ = writeln!(text, "{}", statement_line(statement));
     }
     text
 }
 
-fn heading(text: &mut String, robot: &Robot, form: Form, joint: usize, step: Step) {
+fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step) {
+    if step == Step::Beyond {
+        let _ = writeln!(text, "    // joint {joint}: {}", program.function);
+        return;
+    }
+    // only the torques have a form of their own
+    let form = if program.function.returns_torques() { program.form } else { Form::SevenSteps };
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     let title = match (form, step) {
         (Form::SevenSteps, _) => step.title(),

@@ -43,5 +43,9 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
             }
         }
     }
+    if program.parameters > 0 {
+        let elements = (1..=program.parameters).map(|index| used(Name::scalar(Quantity::Parameter, index))).collect();
+        arrays.push(ArgumentArray { name: "parameters", elements });
+    }
     arrays
 }

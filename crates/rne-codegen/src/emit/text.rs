@@ -10,6 +10,7 @@ use super::evidence::evidence;
 use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
 use super::table::{convention, dh_table};
+use crate::function::Layout;
 use crate::program::Program;
 use crate::quantity::{Name, Quantity};
 
@@ -17,7 +18,7 @@ use crate::quantity::{Name, Quantity};
 #[must_use]
 pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
     let mut text = header(robot, programs);
-    text.push_str(SCALAR);
+    text.push_str(&scalar(programs));
     for program in programs {
         text.push('\n');
         text.push_str(&function(robot, program));
@@ -26,14 +27,36 @@ pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
 }
 
 /// What the generated functions ask of a number type; the body of a function refers to nothing else.
-const SCALAR: &str = "
-use core::ops::{Add, Mul, Neg, Sub};
+fn scalar(programs: &[Program]) -> String {
+    let divides = programs.iter().any(|program| program.operations().div > 0);
+    let chooses = programs.iter().any(Program::chooses_by_sign);
+    let mut text = "\nuse core::ops::{Add, ".to_owned();
+    text.push_str(if divides { "Div, " } else { "" });
+    text.push_str(
+        "Mul, Neg, Sub};\n\n/// A number: `f64`, `f32`, or any type with these operations.\npub trait Scalar:\n",
+    );
+    if divides {
+        text.push_str(
+            "    Copy\n    + Neg<Output = Self>\n    + Add<Output = Self>\n    + Sub<Output = Self>\n    \
+             + Mul<Output = Self>\n    + Div<Output = Self>\n{\n",
+        );
+    } else {
+        text.push_str(
+            "    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>\n{\n",
+        );
+    }
+    text.push_str(METHODS);
+    if chooses {
+        text.push_str(
+            "    /// `positive` where it is above 0, `negative` where it is below, else 0.\n    \
+             fn by_sign(self, positive: Self, negative: Self) -> Self;\n",
+        );
+    }
+    text.push_str("}\n");
+    text
+}
 
-/// A number: `f64`, `f32`, or any type with these operations.
-pub trait Scalar:
-    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
-{
-    /// A constant of the robot, rounded once.
+const METHODS: &str = "    /// A constant of the robot, rounded once.
     fn from_f64(value: f64) -> Self;
     /// Sine and cosine of an angle in rad.
     fn sin_cos(self) -> (Self, Self);
@@ -42,7 +65,6 @@ pub trait Scalar:
         let pairs = angles.map(Self::sin_cos);
         (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
     }
-}
 ";
 
 fn header(robot: &Robot, programs: &[Program]) -> String {
@@ -97,6 +119,11 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     doc("impl Scalar for f64 {");
     doc("    fn from_f64(value: f64) -> Self { value }");
     doc("    fn sin_cos(self) -> (Self, Self) { f64::sin_cos(self) }");
+    if programs.iter().any(Program::chooses_by_sign) {
+        doc("    fn by_sign(self, positive: Self, negative: Self) -> Self {");
+        doc("        if self > 0.0 { positive } else if self < 0.0 { negative } else { 0.0 }");
+        doc("    }");
+    }
     doc("}");
     doc("```");
     text
@@ -121,7 +148,9 @@ fn function(robot: &Robot, program: &Program) -> String {
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
     let parameters: Vec<String> =
         arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
-    let line = format!("pub fn {}<T: Scalar>({}) -> [T; {dof}] {{", program.function, parameters.join(", "));
+    let layout = program.function.layout(dof);
+    let returned = returned_type(&layout);
+    let line = format!("pub fn {}<T: Scalar>({}) -> {returned} {{", program.function, parameters.join(", "));
     if line.chars().count() <= 100 {
         let _ = writeln!(text, "{line}");
     } else {
@@ -129,7 +158,7 @@ fn function(robot: &Robot, program: &Program) -> String {
         for parameter in &parameters {
             let _ = writeln!(text, "    {parameter},");
         }
-        let _ = writeln!(text, ") -> [T; {dof}] {{");
+        let _ = writeln!(text, ") -> {returned} {{");
     }
     for ArgumentArray { name, elements } in &arrays {
         if elements.iter().all(Option::is_none) {
@@ -163,9 +192,80 @@ fn function(robot: &Robot, program: &Program) -> String {
         let _ = write!(text, "\n{statements}");
     }
     text.push('\n');
-    let outputs: Vec<String> = program.outputs.iter().map(|output| super::expression::line(&output.value)).collect();
-    let _ = writeln!(text, "    [{}]\n}}", outputs.join(", "));
+    let mut outputs = program.outputs.iter().map(|output| Piece::Number(super::expression::line(&output.value)));
+    let array = |elements| Piece::List('[', ']', elements);
+    let record = |_, parts| Piece::List('(', ')', parts);
+    if let Some(returned) = layout.fold(&mut outputs, &array, &record) {
+        let _ = writeln!(text, "    {}\n}}", returned.broken(4));
+    }
     text
+}
+
+/// A record is a tuple here.
+fn returned_type(layout: &Layout) -> String {
+    match layout {
+        Layout::Number => "T".to_owned(),
+        Layout::Array(length, of) => format!("[{}; {length}]", returned_type(of)),
+        Layout::Record(_, parts) => {
+            let parts: Vec<String> = parts.iter().map(returned_type).collect();
+            format!("({})", parts.join(", "))
+        }
+    }
+}
+
+/// A part of what is returned.
+enum Piece {
+    Number(String),
+    List(char, char, Vec<Self>),
+}
+
+impl Piece {
+    fn line(&self) -> String {
+        match self {
+            Self::Number(text) => text.clone(),
+            Self::List(open, close, elements) => {
+                let elements: Vec<String> = elements.iter().map(Self::line).collect();
+                format!("{open}{}{close}", elements.join(", "))
+            }
+        }
+    }
+
+    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines.
+    fn broken(&self, indent: usize) -> String {
+        const LIST: usize = 60;
+        const SHORT: usize = 10;
+        const WIDTH: usize = 100;
+        let Self::List(open, close, elements) = self else { return self.line() };
+        let line = self.line();
+        let is_nested = elements.iter().any(|element| matches!(element, Self::List(..)));
+        let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
+        if line.chars().count() <= room && !(*open == '(' && is_nested && line.chars().count() > LIST) {
+            return line;
+        }
+        let (inner, mut text) = (indent + 4, format!("{open}\n"));
+        let blank = " ".repeat(inner);
+        let texts: Vec<String> = elements.iter().map(|element| element.broken(inner)).collect();
+        if *open == '[' && texts.iter().all(|text| text.chars().count() <= SHORT) {
+            let mut column = 0;
+            for element in &texts {
+                let width = element.chars().count();
+                if column > 0 && column + 1 + width + 1 > WIDTH {
+                    text.push('\n');
+                    column = 0;
+                }
+                let gap = if column == 0 { blank.clone() } else { " ".to_owned() };
+                column += gap.len() + width + 1;
+                let _ = write!(text, "{gap}{element},");
+            }
+            text.push('\n');
+        } else {
+            for element in &texts {
+                let _ = writeln!(text, "{blank}{element},");
+            }
+        }
+        let _ = write!(text, "{}{close}", " ".repeat(indent));
+        text
+    }
 }
 
 /// The one statement that evaluates all sines and cosines, broken as rustfmt does.

@@ -7,6 +7,7 @@ use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
+use crate::function::Record;
 use crate::latency::{self, Latency};
 use crate::program::{Expression, Program, Statement};
 use crate::quantity::Name;
@@ -18,6 +19,8 @@ use crate::quantity::Name;
 pub struct Body<'a> {
     program: &'a Program,
     scalar: &'a TokenStream,
+    /// Where the types of records are; tuples stand for them without.
+    library: Option<&'a TokenStream>,
     fusing: Fusing,
 }
 
@@ -33,7 +36,13 @@ impl<'a> Body<'a> {
     /// The body of a program, its products and sums rounded one by one.
     #[must_use]
     pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
-        Self { program, scalar, fusing: Fusing::None }
+        Self { program, scalar, library: None, fusing: Fusing::None }
+    }
+
+    /// The same with poses and other records as types of the crate at `library`, where they are tuples otherwise.
+    #[must_use]
+    pub fn with_records_of(self, library: &'a TokenStream) -> Self {
+        Self { library: Some(library), ..self }
     }
 
     /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product and sum
@@ -72,6 +81,7 @@ impl<'a> Body<'a> {
         let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
+        let turns = turns.map(|angle| self.expression(angle, None));
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
@@ -141,7 +151,7 @@ impl<'a> Body<'a> {
     fn turns(&self) -> TokenStream {
         let scalar = self.scalar;
         let [sines, cosines] = self.turn_names();
-        let angles = self.program.turns.iter().map(|turn| &turn.angle);
+        let angles = self.program.turns.iter().map(|turn| self.plain(&turn.angle));
         match &self.program.turns[..] {
             [] => TokenStream::new(),
             [turn] => {
@@ -155,21 +165,40 @@ impl<'a> Body<'a> {
     /// The statements and what is returned.
     fn beyond_turns(&self) -> TokenStream {
         let statements = self.statements(&self.program.statements);
-        let outputs = self.program.outputs.iter().map(|output| self.expression(&output.value, None));
-        quote!(#statements [#(#outputs),*])
+        let outputs = self.returned();
+        quote!(#statements #outputs)
+    }
+
+    /// What is returned, in its layout; what was asked to be kept as well makes it a list.
+    fn returned(&self) -> TokenStream {
+        let outputs = || self.program.outputs.iter().map(|output| self.expression(&output.value, None));
+        let layout = self.program.function.layout(self.program.dof);
+        let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
+        let record = |record: Record, parts: Vec<TokenStream>| match self.library {
+            Some(library) => {
+                let (name, fields) = (ident(record.name()), record.fields().map(ident));
+                quote!(#library::#name { #(#fields: #parts),* })
+            }
+            None => quote!((#(#parts),*)),
+        };
+        let grouped = layout.fold(&mut outputs(), &array, &record);
+        match grouped {
+            Some(grouped) if layout.len() == self.program.outputs.len() => grouped,
+            _ => array(outputs().collect()),
+        }
+    }
+
+    fn plain(&self, expression: &Expression) -> TokenStream {
+        Writing { scalar: self.scalar, fusing: &Fusing::None }.expression(expression, 0)
     }
 
     /// The value of a statement or, without a name, what is returned.
     fn expression(&self, expression: &Expression, name: Option<Name>) -> TokenStream {
-        let scalar = self.scalar;
-        match &self.fusing {
-            Fusing::None => expression.to_token_stream(),
-            Fusing::All => Fused { scalar, latency: None }.expression(expression, 0),
-            Fusing::Soonest(latency) => {
-                let rest = name.map_or(0, |name| latency.rest(name));
-                Fused { scalar, latency: Some(latency) }.expression(expression, rest)
-            }
-        }
+        let rest = match (&self.fusing, name) {
+            (Fusing::Soonest(latency), Some(name)) => latency.rest(name),
+            _ => 0,
+        };
+        Writing { scalar: self.scalar, fusing: &self.fusing }.expression(expression, rest)
     }
 }
 
@@ -177,14 +206,13 @@ fn name_or_underscore(name: Option<Name>) -> TokenStream {
     name.map_or_else(|| quote!(_), |name| name.to_token_stream())
 }
 
-/// Writes expressions with fused products.
-struct Fused<'a> {
+/// Writes expressions.
+struct Writing<'a> {
     scalar: &'a TokenStream,
-    /// `None`: all of them.
-    latency: Option<&'a Latency>,
+    fusing: &'a Fusing,
 }
 
-impl Fused<'_> {
+impl Writing<'_> {
     /// An expression that `rest` follows.
     fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
         use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
@@ -213,7 +241,8 @@ impl Fused<'_> {
             return quote!(#scalar::mul_add(#x, #y, #addend));
         }
         match expression {
-            Variable(_) | Zero => expression.to_token_stream(),
+            Variable(name) => quote!(#name),
+            Zero => quote!(zero),
             Negative(a) => minus(a),
             Sum(a, b) => {
                 let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
@@ -231,7 +260,10 @@ impl Fused<'_> {
                 let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
                 quote!(#a / #b)
             }
-            BySign(..) => expression.to_token_stream(),
+            BySign(x, positive, negative) => {
+                let (scalar, x, positive, negative) = (self.scalar, inner(x), inner(positive), inner(negative));
+                quote!(#scalar::by_sign(#x, #positive, #negative))
+            }
         }
     }
 
@@ -246,7 +278,11 @@ impl Fused<'_> {
             _ => return None,
         };
         let Product(x, y) = &**product else { return None };
-        let is_fused = self.latency.is_none_or(|latency| latency.is_fused(addend, x, y, rest));
+        let is_fused = match self.fusing {
+            Fusing::None => false,
+            Fusing::All => true,
+            Fusing::Soonest(latency) => latency.is_fused(addend, x, y, rest),
+        };
         is_fused.then_some((x, y, addend, negative))
     }
 }
@@ -275,40 +311,5 @@ fn ident(name: &str) -> Ident {
 impl ToTokens for Name {
     fn to_tokens(&self, tokens: &mut TokenStream) {
         ident(&self.to_string()).to_tokens(tokens);
-    }
-}
-
-impl ToTokens for Expression {
-    fn to_tokens(&self, tokens: &mut TokenStream) {
-        let operand = |operand: &Self, position| {
-            if needs_parentheses(operand, position) { quote!((#operand)) } else { quote!(#operand) }
-        };
-        let stream = match self {
-            Self::Variable(name) => quote!(#name),
-            Self::Zero => quote!(zero),
-            Self::Negative(a) => {
-                let a = operand(a, Position::Negated);
-                quote!(-#a)
-            }
-            Self::Sum(a, b) => {
-                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
-                quote!(#a + #b)
-            }
-            Self::Difference(a, b) => {
-                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
-                quote!(#a - #b)
-            }
-            Self::Product(a, b) => {
-                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
-                quote!(#a * #b)
-            }
-            Self::Quotient(a, b) => {
-                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
-                quote!(#a / #b)
-            }
-            // in scope of the body: `Scalar::by_sign` of the crate's trait
-            Self::BySign(x, positive, negative) => quote!(Scalar::by_sign(#x, #positive, #negative)),
-        };
-        tokens.extend(stream);
     }
 }

@@ -73,13 +73,15 @@ impl Choice {
         if form == Form::SevenSteps {
             return crate::compile(robot, function, form);
         }
-        if form == Form::Rewritten && function == Function::InverseDynamics {
+        if form == Form::Rewritten && function == Function::InverseDynamics && robot.run_time.is_empty() {
             return self.compile_rewritten(robot, arranged);
         }
+        let is_fixed = robot.run_time.is_empty();
         match function {
             // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
             Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
-            _ if Function::TORQUES.contains(&function) => {
+            // numbers that are not known cannot be regrouped
+            _ if is_fixed && Function::TORQUES.contains(&function) => {
                 let (frame, drawing) = drawn(robot, &self.plan, function)?;
                 let program = drawing.program(robot, &frame, function, form, arranged)?;
                 Ok(Program { choices: self.plan.choices(), ..program })

@@ -30,15 +30,20 @@ pub(crate) fn program(
             Some((value, written.graph.number(Term { node, negative: false })?))
         })
         .collect();
-    let heading = schedule::Heading { robot: &robot.name, dof: robot.dof(), function, form: Form::Reduced };
+    let heading = schedule::Heading {
+        robot: &robot.name,
+        dof: robot.dof(),
+        parameters: robot.run_time.names.len(),
+        function,
+        form: Form::Reduced,
+    };
     let program = schedule::program(&heading, written, &outputs)?;
     let mut exactly = Exactly::new();
     for constant in &program.constants {
         let bits = constant.value.abs().to_bits();
         let Some((_, number)) = numbers.iter().find(|(value, _)| value.to_bits() == bits) else { continue };
         let turn = (constant.name.quantity == Quantity::Theta).then(|| reading.turn(&Angle::new(constant.value.abs())));
-        let signed =
-            if constant.value < 0.0 { (-*number, turn.map(Turn::back)) } else { (*number, turn) };
+        let signed = if constant.value < 0.0 { (-*number, turn.map(Turn::back)) } else { (*number, turn) };
         exactly.insert(constant.name, signed);
     }
     let mut program = arranged(program);

@@ -94,7 +94,13 @@ impl Drawing {
         }
         let Transcript { mut written, numbers, .. } = transcript;
         written.births.resize_with(written.graph.len(), || None);
-        let heading = schedule::Heading { robot: &robot.name, dof: robot.dof(), function, form };
+        let heading = schedule::Heading {
+            robot: &robot.name,
+            dof: robot.dof(),
+            parameters: robot.run_time.names.len(),
+            function,
+            form,
+        };
         let program = schedule::program(&heading, written, &outputs)?;
         let mut exactly = Exactly::new();
         for constant in &program.constants {
