@@ -102,7 +102,10 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]
-pub use rne_macro::{BatchInverseDynamics, InverseDynamics};
+pub use rne_macro::{
+    Actuation, BatchInverseDynamics, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor,
+};
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]

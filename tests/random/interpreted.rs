@@ -27,7 +27,7 @@ impl State {
 
     fn arguments(&self) -> Arguments<'_, f64> {
         let Wrench { force, moment } = self.wrench;
-        Arguments { q: &self.q, qd: &self.qd, qdd: &self.qdd, force, moment }
+        Arguments { force, moment, ..Arguments::of_joints(&self.q, &self.qd, &self.qdd, 0.0) }
     }
 }
 
@@ -47,6 +47,7 @@ pub(crate) fn runtime(arm: &DynArm, function: Function, state: &State) -> Vec<f6
         }
         Function::GravityTorques => arm.gravity_torques(q),
         Function::BiasTorques => arm.bias_torques(q, qd),
+        _ => unreachable!("no torques of a fixed base"),
     }
     .expect("arrays of the right length")
 }

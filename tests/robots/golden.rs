@@ -70,6 +70,7 @@ pub(crate) fn call<const DOF: usize>(
         }
         Function::GravityTorques => robot.gravity_torques(q),
         Function::BiasTorques => robot.bias_torques(q, qd),
+        _ => unreachable!("no torques of a fixed base"),
     }
 }
 
@@ -84,7 +85,7 @@ fn interpret<const DOF: usize>(
     let text = std::fs::read_to_string(format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR")));
     let robot = Robot::from_yaml(&text.expect("a robot file")).unwrap_or_else(|report| panic!("{report}"));
     let program = compile(&robot, function, Form::SevenSteps).expect("finite constants");
-    let arguments = Arguments { q, qd, qdd, force: wrench.force, moment: wrench.moment };
+    let arguments = Arguments { force: wrench.force, moment: wrench.moment, ..Arguments::of_joints(q, qd, qdd, 0.0) };
     let torques = Interpreter::new(&program).run(&arguments, f64::from_f64, Scalar::sin_cos);
     torques.expect("arrays of the right length").try_into().expect("one torque per joint")
 }

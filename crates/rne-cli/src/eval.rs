@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::{DynArm, DynTrace, Wrench};
-use rne_codegen::Function;
+use rne_codegen::{Argument, Function};
 use rne_model::{JointKind, Robot};
 use serde::Serialize;
 
@@ -131,12 +131,11 @@ fn state(arguments: &Arguments, robot: &Robot) -> Result<State, Failure> {
         Some(_) => Function::InverseDynamicsWithWrench,
         None => Function::InverseDynamics,
     });
-    let (takes_qd, takes_qdd, takes_wrench) = match function {
-        Function::GravityTorques => (false, false, false),
-        Function::BiasTorques => (true, false, false),
-        Function::InverseDynamics | Function::InverseDynamicsSc => (true, true, false),
-        Function::InverseDynamicsWithWrench => (true, true, true),
-    };
+    let (takes_qd, takes_qdd, takes_wrench) = (
+        function.takes(Argument::Rates),
+        function.takes(Argument::Accelerations),
+        function.takes(Argument::Wrench),
+    );
     let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
     let per_joint = |name, list, takes| argument(function, name, list, takes, robot.dof(), &per_joint);

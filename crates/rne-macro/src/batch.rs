@@ -9,6 +9,7 @@ use crate::attribute::Attribute;
 use crate::error::Errors;
 use crate::expand::{choice, load};
 use crate::implementation::Target;
+use crate::parameters::Parameters;
 
 /// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
 /// `InverseDynamics`, which the trait requires: nothing is reported here, and an unknown robot computes nothing.
@@ -22,8 +23,18 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     };
     let mut said = Errors::default();
     let attribute = Attribute::parse(&item, &mut said);
-    let loaded = attribute.source.as_ref().map(|source| load(source, &mut said)).unwrap_or_default();
+    let parameters = Parameters::of(&item, &mut said);
+    let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut said)).unwrap_or_default();
+    let mut refused = Errors::default();
+    if let Some(name) = parameters.names().first() {
+        let message = format!("batches are of a robot whose numbers are all known; `{name}` is a run-time parameter");
+        refused.at(&item.ident, message);
+    }
+    let refused = refused.into_tokens();
     let program = loaded.robot.and_then(|robot| {
+        if !robot.run_time.is_empty() {
+            return None;
+        }
         let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), Span::call_site(), &mut said)?;
         choice.compile_fused(&robot, Function::InverseDynamics, attribute.form).ok()
     });
@@ -52,6 +63,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         let dof = quote!(__JOINTS);
         let method = method(&dof, &quote!(::core::result::Result::Ok(())));
         return quote! {
+            #refused
             #[automatically_derived]
             #[allow(unused_variables)]
             impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {

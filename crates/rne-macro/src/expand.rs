@@ -5,20 +5,21 @@ use std::path::Path;
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::reduced::{Choice, PlanFile};
-use rne_codegen::{Form, Function, Program};
-use rne_model::{Report, Robot, check_bytes};
+use rne_codegen::{Capability, Form, Program};
+use rne_model::{Report, Robot, check_bytes, check_bytes_with_run_time};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
 use crate::implementation::Target;
 use crate::location::{self, RobotFile};
+use crate::parameters::Parameters;
 
-/// `#[derive(InverseDynamics)]`.
+/// The derive of a capability.
 ///
 /// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is known,
 /// so that the code that uses it causes no errors of its own.
-pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
+pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStream {
     let item: DeriveInput = match syn::parse2(input) {
         Ok(item) => item,
         Err(error) => return error.to_compile_error(),
@@ -26,22 +27,34 @@ pub(crate) fn inverse_dynamics(input: TokenStream) -> TokenStream {
     let mut errors = Errors::default();
     is_struct(&item, &mut errors);
     let attribute = Attribute::parse(&item, &mut errors);
-    let loaded = attribute.source.as_ref().map(|source| load(source, &mut errors)).unwrap_or_default();
+    let parameters = Parameters::of(&item, &mut errors);
+    let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
+        if capability == Capability::Actuation && robot.joints.iter().all(|joint| joint.motor.is_none()) {
+            let message = format!(
+                "{} has no motors: `Actuation` needs a `motor` at one joint of the robot file at least, such as \
+                 `motor: {{inertia: 2.0e-4, gear_ratio: -62.6, viscous: 1.5e-3, coulomb: [0.395, -0.435]}}`",
+                robot.name
+            );
+            errors.at_span(span, message);
+            return None;
+        }
         let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
-        let programs = programs(&robot, attribute.form, &choice, span, &mut errors)?;
+        let programs = programs(&robot, capability, attribute.form, &choice, span, &mut errors)?;
         Some((robot, programs))
     });
     let target = Target { item: &item, krate: &attribute.krate };
     let code = match &compiled {
         Some((robot, programs)) => {
-            if let (Some(limit), Some(program)) = (attribute.max_ops, programs.first()) {
+            if let (Capability::InverseDynamics, Some(limit), Some(program)) =
+                (capability, attribute.max_ops, programs.first())
+            {
                 is_within(limit, program, &mut errors);
             }
-            target.robot(robot, programs)
+            target.robot(robot, capability, programs, &parameters)
         }
-        None => target.stub(loaded.joints),
+        None => target.stub(capability, loaded.joints),
     };
     // a plan that is not used is not watched
     let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file.absolute));
@@ -90,7 +103,7 @@ pub(crate) struct Loaded {
     joints: usize,
 }
 
-pub(crate) fn load(source: &Source, errors: &mut Errors) -> Loaded {
+pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
     let (name, bytes, watched, plan) = match source {
         Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None),
         Source::Path(path) => match location::read(path) {
@@ -105,7 +118,16 @@ pub(crate) fn load(source: &Source, errors: &mut Errors) -> Loaded {
             }
         },
     };
-    match check_bytes(&name, &bytes) {
+    let checked = check_bytes(&name, &bytes).and_then(|checked| {
+        let names = parameters.names();
+        let known: Vec<String> = checked.robot.parameters.iter().map(|(name, _)| name.clone()).collect();
+        if names.is_empty() || !parameters.check(&known, errors) {
+            return Ok(checked);
+        }
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        check_bytes_with_run_time(&name, &bytes, &names)
+    });
+    match checked {
         Ok(checked) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched, plan },
         Err(report) => {
             let joints = guess_joints(&report);
@@ -152,9 +174,16 @@ pub(crate) fn choice(
     }
 }
 
-fn programs(robot: &Robot, form: Form, choice: &Choice, span: Span, errors: &mut Errors) -> Option<Vec<Program>> {
+fn programs(
+    robot: &Robot,
+    capability: Capability,
+    form: Form,
+    choice: &Choice,
+    span: Span,
+    errors: &mut Errors,
+) -> Option<Vec<Program>> {
     let programs: Result<Vec<_>, _> =
-        Function::TORQUES.into_iter().map(|function| choice.compile(robot, function, form)).collect();
+        capability.functions().iter().map(|&function| choice.compile(robot, function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

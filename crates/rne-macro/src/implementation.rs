@@ -2,11 +2,12 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
-use rne_codegen::{Form, Function, Program, emit};
+use rne_codegen::{Argument, Capability, Form, Function, Operations, Program, emit};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
 use crate::description;
+use crate::parameters::Parameters;
 
 /// The type that the code is for, and where the library is.
 pub(crate) struct Target<'a> {
@@ -23,18 +24,28 @@ struct Constants {
     position_limits: Vec<(f64, f64)>,
     velocity_limits: Vec<f64>,
     effort_limits: Vec<f64>,
-    operations: rne_codegen::Operations,
+    operations: Operations,
 }
 
 impl Target<'_> {
-    /// Everything for a robot and its programs, the first of which is `inverse_dynamics`.
-    pub(crate) fn robot(&self, robot: &Robot, programs: &[Program]) -> TokenStream {
-        let constants = self.constants(&Constants::of(robot, programs));
+    /// Everything for a robot and the programs of one capability.
+    pub(crate) fn robot(
+        &self,
+        robot: &Robot,
+        capability: Capability,
+        programs: &[Program],
+        parameters: &Parameters,
+    ) -> TokenStream {
+        let constants = match capability {
+            Capability::InverseDynamics => self.constants(&Constants::of(robot, programs)),
+            _ => self.counts(programs),
+        };
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
         let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
+        let name = format_ident!("{}", capability.name());
         let operations = description::operations(programs);
         let evidence = description::evidence(programs).map(|evidence| quote!(#[doc = #evidence]));
-        let methods = programs.iter().map(|program| self.method(program));
+        let methods = programs.iter().map(|program| self.method(program, parameters));
         quote! {
             #constants
 
@@ -42,7 +53,7 @@ impl Target<'_> {
             #evidence
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
-            impl #impl_generics #krate::InverseDynamics<#dof> for #ident #type_generics #where_clause {
+            impl #impl_generics #krate::#name<#dof> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
         }
@@ -50,55 +61,100 @@ impl Target<'_> {
 
     /// What stands in for a robot that is not known: every use of it compiles, so that the mistake that is reported
     /// stays the only one. The trait is implemented for every number of joints.
-    pub(crate) fn stub(&self, joints: usize) -> TokenStream {
-        let constants = self.constants(&Constants::unknown(joints));
-        let (ident, krate) = (&self.item.ident, self.krate);
+    pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
+        let constants = match capability {
+            Capability::InverseDynamics => self.constants(&Constants::unknown(joints)),
+            _ => {
+                let functions = capability.functions().iter().map(|&function| (function, Operations::default()));
+                self.counts_of(functions)
+            }
+        };
+        let (ident, krate, name) = (&self.item.ident, self.krate, format_ident!("{}", capability.name()));
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();
         let mut generics = self.item.generics.clone();
         generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
         let (impl_generics, ..) = generics.split_for_impl();
         let joints = quote!(__JOINTS);
-        let methods = Function::TORQUES.map(|function| self.signature(function, &joints, &quote!(*q)));
+        let methods = capability.functions().iter().map(|&function| {
+            // what has the shape of an argument returns it
+            let body = if function.takes(Argument::Positions) && returns_vector(function) {
+                quote!(*q)
+            } else {
+                quote!(loop {})
+            };
+            self.signature(function, &joints, &body)
+        });
         quote! {
             #constants
 
             #[automatically_derived]
-            impl #impl_generics #krate::InverseDynamics<#joints> for #ident #type_generics #where_clause {
+            impl #impl_generics #krate::#name<#joints> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
         }
     }
 
-    fn method(&self, program: &Program) -> TokenStream {
+    fn method(&self, program: &Program, parameters: &Parameters) -> TokenStream {
         let krate = self.krate;
-        let scalar = quote!(#krate::Scalar);
-        let body = emit::Body::new(program, &scalar);
+        let (scalar, library) = (quote!(#krate::Scalar), quote!(#krate));
+        let body = emit::Body::new(program, &scalar).with_records_of(&library);
         // The seven steps compute the bits of the runtime, so that nothing is fused there.
         let body = if program.form == Form::SevenSteps { body } else { body.fused() }.whole();
-        let wrench = (program.function == Function::InverseDynamicsWithWrench)
-            .then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
+        let function = program.function;
+        let wrench = function.takes(Argument::Wrench).then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
+        let base = function.takes(Argument::Base).then(|| {
+            quote! {
+                let #krate::BaseMotion {
+                    omega: base_omega,
+                    omega_dot: base_omega_dot,
+                    acceleration: base_acceleration,
+                    gravity: base_gravity,
+                    ..
+                } = base;
+            }
+        });
+        let parameters = parameters.read(&scalar);
         let dof = Literal::usize_unsuffixed(program.dof);
         let documentation = description::method(program);
-        let method = self.signature(program.function, &quote!(#dof), &quote!(#wrench #body));
+        let method = self.signature(function, &quote!(#dof), &quote!(#wrench #base #parameters #body));
         quote!(#[doc = #documentation] #method)
     }
 
     /// A method of the trait with the given body, in which `T` is the scalar.
     fn signature(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
         let (krate, name) = (self.krate, format_ident!("{}", function.name()));
-        let rates = quote!(qd: &[T; #dof]);
-        let accelerations = quote!(qdd: &[T; #dof]);
-        let arguments = match function {
-            Function::InverseDynamics | Function::InverseDynamicsSc => quote!(#rates, #accelerations),
-            Function::InverseDynamicsWithWrench => quote!(#rates, #accelerations, wrench: &#krate::Wrench<T>),
-            Function::GravityTorques => TokenStream::new(),
-            Function::BiasTorques => rates,
-        };
-        let turns = (function == Function::InverseDynamicsSc).then(|| quote!(sin: &[T; #dof], cos: &[T; #dof],));
+        let arguments = function.arguments().iter().map(|argument| match argument {
+            Argument::Sines => quote!(sin: &[T; #dof]),
+            Argument::Cosines => quote!(cos: &[T; #dof]),
+            Argument::Positions => quote!(q: &[T; #dof]),
+            Argument::Rates => quote!(qd: &[T; #dof]),
+            Argument::Accelerations => quote!(qdd: &[T; #dof]),
+            Argument::Torques => quote!(tau: &[T; #dof]),
+            Argument::Wrench => quote!(wrench: &#krate::Wrench<T>),
+            Argument::Base => quote!(base: &#krate::BaseMotion<T>),
+        });
+        let returned = self.returned(function, dof);
         let method = quote! {
-            fn #name<T: #krate::Scalar>(&self, #turns q: &[T; #dof], #arguments) -> [T; #dof] { #body }
+            fn #name<T: #krate::Scalar>(&self, #(#arguments),*) -> #returned { #body }
         };
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
+    }
+
+    /// The type that a method returns.
+    fn returned(&self, function: Function, dof: &TokenStream) -> TokenStream {
+        let krate = self.krate;
+        match function {
+            _ if returns_vector(function) => quote!([T; #dof]),
+            Function::MassMatrix | Function::CoriolisMatrix => quote!([[T; #dof]; #dof]),
+            Function::ForwardKinematics => quote!(#krate::Pose<T>),
+            Function::LinkPoses => quote!([#krate::Pose<T>; #dof]),
+            Function::Jacobian => quote!([[T; #dof]; 6]),
+            Function::JacobianRateTimesVelocity => quote!([T; 6]),
+            Function::Regressor => quote!([[[T; 10]; #dof]; #dof]),
+            Function::InverseDynamicsDerivatives => quote!(#krate::TorqueDerivatives<#dof, T>),
+            Function::JointWrenches => quote!([#krate::Wrench<T>; #dof]),
+            _ => quote!(T),
+        }
     }
 
     /// A name for a method's scalar.
@@ -135,9 +191,47 @@ impl Target<'_> {
         visibility
     }
 
+    /// A constant with the operations of each method.
+    fn counts(&self, programs: &[Program]) -> TokenStream {
+        self.counts_of(programs.iter().map(|program| (program.function, program.operations())))
+    }
+
+    fn counts_of(&self, counts: impl Iterator<Item = (Function, Operations)>) -> TokenStream {
+        let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
+        let (ident, vis) = (&self.item.ident, self.visibility());
+        let constants = counts.map(|(function, operations)| {
+            let name = format_ident!("{}_OPERATIONS", function.name().to_uppercase());
+            let documentation = format!("Operations of one call of `{function}`.");
+            let (kind, value) = self.operations(&operations);
+            quote! {
+                #[doc = #documentation]
+                #vis const #name: #kind = #value;
+            }
+        });
+        quote! {
+            #[automatically_derived]
+            impl #impl_generics #ident #type_generics #where_clause {
+                #(#constants)*
+            }
+        }
+    }
+
+    /// The type of a count, and a value of it.
+    fn operations(&self, operations: &Operations) -> (TokenStream, TokenStream) {
+        let krate = self.krate;
+        let [mul, add, div, sincos, statements] =
+            [operations.mul, operations.add, operations.div, operations.sincos, operations.statements]
+                .map(Literal::usize_unsuffixed);
+        let kind = quote!(#krate::Operations);
+        let value = quote! {
+            #kind { mul: #mul, add: #add, div: #div, sincos: #sincos, statements: #statements }
+        };
+        (kind, value)
+    }
+
     fn constants(&self, constants: &Constants) -> TokenStream {
         let (impl_generics, type_generics, where_clause) = self.item.generics.split_for_impl();
-        let (ident, vis, krate) = (&self.item.ident, self.visibility(), self.krate);
+        let (ident, vis) = (&self.item.ident, self.visibility());
         let Constants { description, name, joint_names, .. } = constants;
         let description = description.as_ref().map(|description| quote!(#[doc = #description]));
         let dof = Literal::usize_unsuffixed(joint_names.len());
@@ -147,11 +241,7 @@ impl Target<'_> {
         });
         let velocity_limits = constants.velocity_limits.iter().copied().map(number);
         let effort_limits = constants.effort_limits.iter().copied().map(number);
-        let [mul, add, div, sincos, statements] = {
-            let operations = &constants.operations;
-            [operations.mul, operations.add, operations.div, operations.sincos, operations.statements]
-                .map(Literal::usize_unsuffixed)
-        };
+        let (count, operations) = self.operations(&constants.operations);
         let [positions, velocities, efforts] = [
             ("Lowest and highest position of each joint, rad or m", description::values(&constants.position_limits)),
             ("Highest speed of each joint, rad/s or m/s", description::values(&constants.velocity_limits)),
@@ -179,13 +269,7 @@ impl Target<'_> {
                 #[doc = #efforts]
                 #vis const EFFORT_LIMITS: [#f64; #dof] = [#(#effort_limits),*];
                 /// Operations of one call of `inverse_dynamics`.
-                #vis const OPERATIONS: #krate::Operations = #krate::Operations {
-                    mul: #mul,
-                    add: #add,
-                    div: #div,
-                    sincos: #sincos,
-                    statements: #statements,
-                };
+                #vis const OPERATIONS: #count = #operations;
             }
         }
     }
@@ -215,9 +299,16 @@ impl Constants {
             position_limits: vec![(f64::NEG_INFINITY, f64::INFINITY); joints],
             velocity_limits: vec![f64::INFINITY; joints],
             effort_limits: vec![f64::INFINITY; joints],
-            operations: rne_codegen::Operations::default(),
+            operations: Operations::default(),
         }
     }
+}
+
+/// Whether a function returns one number per joint.
+fn returns_vector(function: Function) -> bool {
+    function.layout(1).len() == 1
+        && !matches!(function, Function::KineticEnergy | Function::PotentialEnergy)
+        && !matches!(function, Function::MassMatrix | Function::CoriolisMatrix)
 }
 
 /// A number that reads back as the same bits, or infinity.

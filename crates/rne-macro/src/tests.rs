@@ -5,7 +5,11 @@ use std::time::{Duration, Instant};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-use crate::expand::inverse_dynamics;
+use rne_codegen::Capability;
+
+fn inverse_dynamics(input: TokenStream) -> TokenStream {
+    crate::expand::capability(Capability::InverseDynamics, input)
+}
 
 /// Formatted as rustfmt would, nearly.
 fn pretty(expansion: TokenStream) -> String {

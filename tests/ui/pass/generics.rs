@@ -13,10 +13,13 @@ where
     Number: Copy + ?Sized,
 {
     /// A reference.
+    #[robot(skip)]
     pub name: &'a [T; DOF],
     /// A value.
+    #[robot(skip)]
     pub payload: Number,
     /// More of them.
+    #[robot(skip)]
     pub spare: [T; N],
 }
 

@@ -1,0 +1,109 @@
+//! Run-time parameters: fields of the struct that are parameters of the robot file.
+
+use proc_macro2::TokenStream;
+use quote::{ToTokens, format_ident, quote};
+use syn::{Data, DeriveInput, Ident, Type};
+
+use crate::error::Errors;
+
+/// The fields that stay free until run time, in their order.
+#[derive(Default)]
+pub(crate) struct Parameters {
+    fields: Vec<Field>,
+}
+
+struct Field {
+    ident: Ident,
+    kind: Type,
+}
+
+impl Parameters {
+    /// The named fields of a struct. `#[robot(skip)]` keeps one out, and a `PhantomData` is none.
+    pub(crate) fn of(item: &DeriveInput, errors: &mut Errors) -> Self {
+        let Data::Struct(data) = &item.data else { return Self::default() };
+        let mut fields = Vec::new();
+        for field in &data.fields {
+            if is_skipped(field, errors) || is_phantom(&field.ty) {
+                continue;
+            }
+            // a field without a name can be no parameter
+            if let Some(ident) = &field.ident {
+                fields.push(Field { ident: ident.clone(), kind: field.ty.clone() });
+            }
+        }
+        Self { fields }
+    }
+
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.fields.iter().map(|field| unraw(&field.ident)).collect()
+    }
+
+    /// Says which fields are no parameters of the file; `known` are those it has.
+    pub(crate) fn check(&self, known: &[String], errors: &mut Errors) -> bool {
+        let before = errors.len();
+        for Field { ident, .. } in &self.fields {
+            let name = unraw(ident);
+            if known.contains(&name) {
+                continue;
+            }
+            let there = match known {
+                [] => "the robot file has no `parameters`".to_owned(),
+                _ => format!(
+                    "the robot file has {}",
+                    known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+                ),
+            };
+            errors.at(
+                ident,
+                format!(
+                    "`{name}` is no parameter of the robot file: {there}. A field is a parameter that stays free until run \
+                     time; a field for other purposes says `#[robot(skip)]`"
+                ),
+            );
+        }
+        errors.len() == before
+    }
+
+    /// Reads the fields into an array `parameters`, as the body of a method expects it.
+    pub(crate) fn read(&self, scalar: &TokenStream) -> TokenStream {
+        if self.fields.is_empty() {
+            return TokenStream::new();
+        }
+        let values = self.fields.iter().map(|Field { ident, kind }| {
+            if kind.to_token_stream().to_string() == "f32" {
+                quote!(#scalar::from_f32(self.#ident))
+            } else {
+                quote!(#scalar::from_f64(::core::convert::Into::into(self.#ident)))
+            }
+        });
+        let parameters = format_ident!("parameters");
+        quote!(let #parameters = &[#(#values),*];)
+    }
+}
+
+fn unraw(ident: &Ident) -> String {
+    use syn::ext::IdentExt;
+    ident.unraw().to_string()
+}
+
+fn is_skipped(field: &syn::Field, errors: &mut Errors) -> bool {
+    let mut skipped = false;
+    for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("robot")) {
+        let parsed = attribute.parse_nested_meta(|meta| {
+            if meta.path.is_ident("skip") {
+                skipped = true;
+                Ok(())
+            } else {
+                Err(meta.error("a field may say `#[robot(skip)]`: it is no parameter of the robot file"))
+            }
+        });
+        if let Err(error) = parsed {
+            errors.push(error);
+        }
+    }
+    skipped
+}
+
+fn is_phantom(kind: &Type) -> bool {
+    matches!(kind, Type::Path(path) if path.path.segments.last().is_some_and(|last| last.ident == "PhantomData"))
+}
