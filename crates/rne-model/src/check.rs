@@ -19,6 +19,10 @@ pub struct Checked {
 ///
 /// Everything that is wrong with the file, with line, column and what is allowed.
 pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
+    check_with_run_time(name, text, &[])
+}
+
+fn check_with_run_time(name: &str, text: &str, run_time: &[&str]) -> Result<Checked, Report> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let problems = Problems::new();
     if !source::size_is_fine(text.len(), &problems) {
@@ -27,7 +31,7 @@ pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))
         .flatten()
-        .and_then(|root| schema::robot(&Context::new(text, &problems), &root));
+        .and_then(|root| schema::robot(&Context::new(text, &problems, run_time), &root));
     let report = problems.finish(name, text);
     match robot {
         Some(robot) if !report.has_errors() => Ok(Checked { robot, lints: report }),
@@ -41,9 +45,44 @@ pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
 ///
 /// As [`check`]; bytes that are not UTF-8 are an error at the first of them.
 pub fn check_bytes(name: &str, bytes: &[u8]) -> Result<Checked, Report> {
+    check_bytes_with_run_time(name, bytes, &[])
+}
+
+/// As [`check_bytes`], for a robot some of whose parameters stay free until run time: `run_time` are their names, each
+/// once. The robot is that of the parameters' values in the file; [`Robot::run_time`] says how it depends on them.
+///
+/// ```
+/// use rne_model::{Entry, Formula, check_bytes_with_run_time};
+///
+/// let text = "
+/// format: 1
+/// name: pendulum
+/// source: a lecture
+/// convention: standard
+/// gravity: [0, -9.81, 0]
+/// parameters: {payload: 0, m: 1.2 + payload}
+/// joints:
+///   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mass: m, com: [-1/4, 0, 0]}}
+/// ";
+/// let robot = check_bytes_with_run_time("pendulum.yaml", text.as_bytes(), &["payload"]).unwrap().robot;
+/// let mass = Formula::Number(1.2) + Formula::Parameter(0);
+/// assert_eq!(robot.run_time.entries, [(Entry::Mass(0), mass)]);
+/// assert_eq!(robot.joints[0].row.link.mass, 1.2);
+/// ```
+///
+/// What may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors, by `+ - * /` and
+/// whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the robot is the product
+/// too.
+///
+/// # Errors
+///
+/// As [`check_bytes`]; a name that does not stand under `parameters`; an angle or a limit that depends on a run-time
+/// parameter; a function, another power or an exponent that does; a number that depends on one and is zero in the file,
+/// for zeros are folded away; a run-time parameter on which nothing depends.
+pub fn check_bytes_with_run_time(name: &str, bytes: &[u8], run_time: &[&str]) -> Result<Checked, Report> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let error = match std::str::from_utf8(bytes) {
-        Ok(text) => return check(name, text),
+        Ok(text) => return check_with_run_time(name, text, run_time),
         Err(error) => error,
     };
     let problems = Problems::new();

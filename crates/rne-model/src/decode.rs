@@ -7,9 +7,11 @@ use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
+use crate::RunTime;
 use crate::diagnostic::{Diagnostic, Problems};
 use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
+use crate::quantity::Quantity;
 use crate::source::{inside, quoted, rounded};
 use crate::spelling::did_you_mean;
 
@@ -34,6 +36,8 @@ pub(crate) struct Context<'t> {
     problems: &'t Problems,
     /// The named constants; in the order of their names, so that suggestions do not depend on chance.
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
+    /// The parameters that stay free until run time, and what is found to depend on them.
+    pub(crate) run_time: RefCell<RunTime>,
 }
 
 /// A named constant of the file.
@@ -48,7 +52,7 @@ impl Names for Context<'_> {
         let parameters = self.parameters.borrow();
         parameters.get(name).map_or(Meaning::Unknown, |parameter| {
             parameter.used.set(true);
-            parameter.meaning
+            parameter.meaning.clone()
         })
     }
 
@@ -57,11 +61,34 @@ impl Names for Context<'_> {
         // A bound on the time that a file of nothing but unknown names can take.
         did_you_mean(name, parameters.keys().take(100).map(String::as_str)).map(str::to_owned)
     }
+
+    fn run_time_parameter(&self, index: usize) -> String {
+        self.parameter_name(Some(index))
+    }
 }
 
 impl<'t> Context<'t> {
-    pub(crate) fn new(text: &'t str, problems: &'t Problems) -> Self {
-        Self { text, problems, parameters: RefCell::default() }
+    /// `run_time` are the names of the parameters that stay free until run time.
+    pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
+        let names = run_time.iter().map(|&name| name.to_owned()).collect();
+        let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
+        Self { text, problems, parameters: RefCell::default(), run_time }
+    }
+
+    /// Whether a mistake is found already.
+    pub(crate) fn has_errors(&self) -> bool {
+        self.problems.has_errors()
+    }
+
+    /// Which run-time parameter a name is, if it is one.
+    pub(crate) fn run_time_index(&self, name: &str) -> Option<usize> {
+        self.run_time.borrow().names.iter().position(|known| known == name)
+    }
+
+    /// The name of a run-time parameter.
+    pub(crate) fn parameter_name(&self, index: Option<usize>) -> String {
+        let run_time = self.run_time.borrow();
+        index.and_then(|index| run_time.names.get(index)).cloned().unwrap_or_default()
     }
 
     pub(crate) fn report(&self, diagnostic: Diagnostic) {
@@ -201,13 +228,13 @@ fn place_of(key: &str) -> Option<String> {
     Some(format!("`{key}` belongs under `{place}`"))
 }
 
-/// A finite number: a decimal or an expression.
-pub(crate) fn number(cx: &Context, node: &Node) -> Option<f64> {
+/// A finite number: a decimal or an expression. What may vary at run time, and where, is for [`varying`](crate::varying).
+pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
     let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, "a number") };
     let value = Expression::parse(&scalar.text).map_err(Some).and_then(|it| it.evaluate(&scalar.text, cx));
     match value {
         // -0 is 0: the sign of a zero carries no meaning in a table.
-        Ok(value) => Some(value + 0.0),
+        Ok(quantity) => Some(quantity.without_negative_zero()),
         Err(None) => None,
         Err(Some(mistake)) => {
             // The place inside the scalar, unless escapes or line breaks stand between the text and its value.
@@ -221,12 +248,12 @@ pub(crate) fn number(cx: &Context, node: &Node) -> Option<f64> {
     }
 }
 
-/// A list of exactly `N` values.
+/// A list of exactly `N` numbers; `read` gets the index of each.
 pub(crate) fn list<const N: usize>(
     cx: &Context,
     node: &Node,
     what: &str,
-    read: impl Fn(&Context, &Node) -> Option<f64>,
+    read: impl Fn(&Context, &Node, usize) -> Option<f64>,
 ) -> Option<[f64; N]> {
     let Content::Sequence(items) = &node.content else {
         return cx.wrong_shape(node, &format!("a list of {N} numbers {what}"));
@@ -235,14 +262,17 @@ pub(crate) fn list<const N: usize>(
         let message = format!("a list of {} where {N} numbers {what} are needed", items.len());
         return cx.refuse(Diagnostic::error(node.span.clone(), message).label(format!("{N} numbers are needed")));
     }
-    let values: Vec<Option<f64>> = items.iter().map(|item| read(cx, item)).collect();
+    let values: Vec<Option<f64>> = items.iter().enumerate().map(|(index, item)| read(cx, item, index)).collect();
     values.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
 
 /// A number that is not negative.
-pub(crate) fn not_negative(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f64> {
+pub(crate) fn not_negative(
+    what: &'static str,
+    read: impl Fn(&Context, &Node) -> Option<f64>,
+) -> impl Fn(&Context, &Node) -> Option<f64> {
     move |cx, node| {
-        let value = number(cx, node)?;
+        let value = read(cx, node)?;
         if value >= 0.0 {
             return Some(value);
         }

@@ -131,6 +131,11 @@ impl Problems {
         }
     }
 
+    /// Whether an error is found already.
+    pub(crate) fn has_errors(&self) -> bool {
+        self.found.borrow().iter().flatten().any(|found| found.severity == Severity::Error)
+    }
+
     /// Everything found, located in `text`, errors first.
     pub(crate) fn finish(self, name: &str, text: &str) -> Report {
         let mut diagnostics = self.found.borrow_mut().take().unwrap_or_default();

@@ -12,14 +12,19 @@ use std::f64::consts::PI;
 use std::ops::Range;
 
 use crate::diagnostic::Diagnostic;
+use crate::quantity::{LARGEST_POWER, Quantity};
 use crate::source::quoted;
 use crate::spelling::did_you_mean;
+use crate::varying::leave_out;
 
 /// Parentheses, signs and powers inside one another; bounds the recursion of the parser.
 const MAX_DEPTH: usize = 64;
 
 /// Numbers, names and operators of one expression; bounds the recursion over its tree.
 const MAX_PARTS: usize = 1000;
+
+/// Numbers, run-time parameters and operators of one formula; parameters defined by one another could double it forever.
+const MAX_RUN_TIME_PARTS: usize = 250;
 
 /// What a number may be, for the help of every mistake.
 pub(crate) const ALLOWED: &str = "a number is a finite decimal such as 0.4 or 2.0e-4, or an expression over numbers, \
@@ -71,14 +76,19 @@ impl Operator {
         }
     }
 
-    fn apply(self, a: f64, b: f64) -> f64 {
-        match self {
+    /// The result; `None` for a power that is none of products of a run-time parameter.
+    fn apply(self, a: Quantity, b: Quantity) -> Option<Quantity> {
+        Some(match self {
             Self::Add => a + b,
             Self::Subtract => a - b,
             Self::Multiply => a * b,
             Self::Divide => a / b,
-            Self::Power => libm::pow(a, b),
-        }
+            Self::Power => match (a.varying(), b.varying()) {
+                (None, None) => Quantity::constant(libm::pow(a.value, b.value)),
+                (Some(_), None) => a.whole_power(b.value)?,
+                (_, Some(_)) => return None,
+            },
+        })
     }
 }
 
@@ -156,10 +166,10 @@ impl Mistake {
 }
 
 /// What a name stands for.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Meaning {
     /// A parameter with a value.
-    Value(f64),
+    Value(Quantity),
     /// A parameter that stands below the place of use.
     Later,
     /// A parameter whose own expression is wrong, which is already reported.
@@ -174,6 +184,8 @@ pub(crate) trait Names {
     fn meaning(&self, name: &str) -> Meaning;
     /// A known name that resembles `name`.
     fn similar(&self, name: &str) -> Option<String>;
+    /// The name of a run-time parameter.
+    fn run_time_parameter(&self, index: usize) -> String;
 }
 
 impl Expression {
@@ -188,37 +200,86 @@ impl Expression {
         Ok(expression)
     }
 
-    /// The value. `Err(None)` when it depends on a faulty parameter: that mistake is reported where it was made.
-    pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<f64, Option<Mistake>> {
-        let mut divides_by_zero = false;
-        let value = match &self.kind {
-            Kind::Number(value) => *value,
-            Kind::Name(name) => match names.meaning(name) {
-                Meaning::Value(value) => value,
-                Meaning::Faulty => return Err(None),
-                Meaning::Later => {
-                    let message = format!("the parameter {} has no value yet", quoted(name));
-                    return Err(Some(
-                        Mistake::new(self.range.clone(), message)
-                            .help("a parameter may use only those that stand above it under `parameters`"),
-                    ));
-                }
-                Meaning::Unknown => return Err(Some(unknown_name(name, self.range.clone(), names))),
-            },
-            Kind::Negate(operand) => -operand.evaluate(text, names)?,
+    /// The value, and how it depends on run-time parameters. `Err(None)` when it depends on a faulty parameter: that
+    /// mistake is reported where it was made.
+    ///
+    /// Everything but the recursion is in functions of its own: the frames of this one are what bounds its depth.
+    pub(crate) fn evaluate(&self, text: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
+        match &self.kind {
+            Kind::Number(value) => Ok(Quantity::constant(*value)),
+            Kind::Name(name) => self.named(name, names),
+            Kind::Negate(operand) => Ok(-operand.evaluate(text, names)?),
             Kind::Binary(operator, a, b) => {
-                let (a, b) = (a.evaluate(text, names)?, b.evaluate(text, names)?);
-                divides_by_zero = match operator {
-                    Operator::Divide => b == 0.0,
-                    Operator::Power => a == 0.0,
-                    _ => false,
-                };
-                operator.apply(a, b)
+                let a = a.evaluate(text, names)?;
+                self.binary(*operator, a, b.evaluate(text, names)?, text, names).map_err(Some)
             }
-            Kind::Call(function, argument) => function.apply(argument.evaluate(text, names)?),
+            Kind::Call(function, argument) => {
+                self.call(*function, &argument.evaluate(text, names)?, text, names).map_err(Some)
+            }
+        }
+    }
+
+    fn named(&self, name: &str, names: &impl Names) -> Result<Quantity, Option<Mistake>> {
+        match names.meaning(name) {
+            Meaning::Value(quantity) => Ok(quantity),
+            Meaning::Faulty => Err(None),
+            Meaning::Later => {
+                let message = format!("the parameter {} has no value yet", quoted(name));
+                Err(Some(
+                    Mistake::new(self.range.clone(), message)
+                        .help("a parameter may use only those that stand above it under `parameters`"),
+                ))
+            }
+            Meaning::Unknown => Err(Some(unknown_name(name, self.range.clone(), names))),
+        }
+    }
+
+    fn binary(
+        &self,
+        operator: Operator,
+        a: Quantity,
+        b: Quantity,
+        text: &str,
+        names: &impl Names,
+    ) -> Result<Quantity, Mistake> {
+        let divides_by_zero = match operator {
+            Operator::Divide => b == 0.0,
+            Operator::Power => a == 0.0,
+            _ => false,
         };
+        let parameter = a.first_parameter().or(b.first_parameter());
+        match operator.apply(a, b) {
+            Some(quantity) => self.finite(quantity, divides_by_zero, text),
+            None => Err(self.only_in_the_file(text, parameter, names)),
+        }
+    }
+
+    fn call(
+        &self,
+        function: Function,
+        argument: &Quantity,
+        text: &str,
+        names: &impl Names,
+    ) -> Result<Quantity, Mistake> {
+        if argument.varying().is_some() {
+            return Err(self.only_in_the_file(text, argument.first_parameter(), names));
+        }
+        self.finite(Quantity::constant(function.apply(argument.value)), false, text)
+    }
+
+    /// The result, unless it is none or too long.
+    fn finite(&self, quantity: Quantity, divides_by_zero: bool, text: &str) -> Result<Quantity, Mistake> {
+        if quantity.varying().is_some_and(|formula| formula.parts() > MAX_RUN_TIME_PARTS) {
+            let message = format!(
+                "with the parameters it uses written out the expression has more than {MAX_RUN_TIME_PARTS} numbers, \
+                 run-time parameters and operators"
+            );
+            let help = "shorten it, or let fewer parameters vary at run time";
+            return Err(Mistake::new(self.range.clone(), message).help(help));
+        }
+        let value = quantity.value;
         if value.is_finite() {
-            return Ok(value);
+            return Ok(quantity);
         }
         let part = quoted(text.get(self.range.clone()).unwrap_or_default());
         let (message, help) = if value.is_nan() {
@@ -234,7 +295,19 @@ impl Expression {
                 "check the exponents and the factors",
             )
         };
-        Err(Some(Mistake::new(self.range.clone(), message).help(help)))
+        Err(Mistake::new(self.range.clone(), message).help(help))
+    }
+
+    /// A function or power of a run-time parameter.
+    fn only_in_the_file(&self, text: &str, parameter: Option<usize>, names: &impl Names) -> Mistake {
+        let name = parameter.map(|index| names.run_time_parameter(index)).unwrap_or_default();
+        let message = format!(
+            "{} depends on the run-time parameter {}; at run time there are + - * / and whole powers up to \
+             {LARGEST_POWER}",
+            quoted(text.get(self.range.clone()).unwrap_or_default()),
+            quoted(&name)
+        );
+        Mistake::new(self.range.clone(), message).help(leave_out(&name))
     }
 }
 
@@ -258,11 +331,14 @@ pub fn number(text: &str) -> Result<f64, Diagnostic> {
         fn similar(&self, _: &str) -> Option<String> {
             None
         }
+        fn run_time_parameter(&self, _: usize) -> String {
+            String::new()
+        }
     }
     let value = Expression::parse(text).map_err(Some).and_then(|expression| expression.evaluate(text, &Nameless));
     match value {
         // -0 is 0, as in a file.
-        Ok(value) => Ok(value + 0.0),
+        Ok(quantity) => Ok(quantity.without_negative_zero().value),
         Err(mistake) => {
             let Mistake { range, message, help } =
                 mistake.unwrap_or_else(|| Mistake::new(0..text.len(), "this is no number"));

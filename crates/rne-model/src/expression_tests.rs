@@ -1,13 +1,15 @@
 use super::*;
+use crate::Formula;
 
-/// `a` is 3, `m` is 0.5, `later` and `faulty` are what they say.
+/// `a` is 3, `m` is 0.5, `p` is 0.7 and a run-time parameter, `later` and `faulty` are what they say.
 struct Known;
 
 impl Names for Known {
     fn meaning(&self, name: &str) -> Meaning {
         match name {
-            "a" => Meaning::Value(3.0),
-            "m" => Meaning::Value(0.5),
+            "a" => Meaning::Value(Quantity::constant(3.0)),
+            "m" => Meaning::Value(Quantity::constant(0.5)),
+            "p" => Meaning::Value(Quantity::parameter(0, 0.7)),
             "later" => Meaning::Later,
             "faulty" => Meaning::Faulty,
             _ => Meaning::Unknown,
@@ -17,10 +19,18 @@ impl Names for Known {
     fn similar(&self, name: &str) -> Option<String> {
         did_you_mean(name, ["length"]).map(str::to_owned)
     }
+
+    fn run_time_parameter(&self, _: usize) -> String {
+        "p".to_owned()
+    }
+}
+
+fn quantity(text: &str) -> Result<Quantity, Option<Mistake>> {
+    Expression::parse(text).map_err(Some)?.evaluate(text, &Known)
 }
 
 fn value(text: &str) -> Result<f64, Option<Mistake>> {
-    Expression::parse(text).map_err(Some)?.evaluate(text, &Known)
+    quantity(text).map(|quantity| quantity.value)
 }
 
 /// The mistake and the columns it points at, from 1, both ends included.
@@ -182,6 +192,71 @@ fn mistakes_in_expressions_point_at_their_column() {
         assert!(found.2.contains(message), "{text}: {}", found.2);
         assert!(found.3.contains(help), "{text}: {}", found.3);
     }
+}
+
+#[test]
+fn formulas_take_the_steps_of_their_expression() {
+    for text in [
+        "p",
+        "-p",
+        "1.2 + p",
+        "(p + 0.1) + 0.2",
+        "2*p/3 - 1",
+        "0.1*0.3*p",
+        "p*0.1*0.3",
+        "m*p^2/12",
+        "p^3",
+        "p^-2",
+        "(1 + p)^16",
+        "1/(a - p)",
+        "2^a*p",
+        "sqrt(2)*p",
+        "p/p",
+    ] {
+        let quantity = quantity(text).unwrap();
+        let formula = quantity.varying().expect(text);
+        assert_eq!(formula.evaluate(&[0.7]).to_bits(), quantity.value.to_bits(), "{text}");
+        let written = text.replace('p', "(11/16)");
+        if !text.contains("p^") && !text.contains(")^") {
+            assert_eq!(Ok(formula.evaluate(&[0.6875])), value(&written), "{text}");
+        }
+    }
+    let square = Formula::Parameter(0) * Formula::Parameter(0);
+    assert_eq!(quantity("p^2").unwrap().varying(), Some(&square));
+    assert_eq!(quantity("p^1").unwrap().varying(), Some(&Formula::Parameter(0)));
+}
+
+#[test]
+fn what_folds_to_a_number_varies_no_more() {
+    for (text, expected) in
+        [("0*p", 0.0), ("p - p", 0.0), ("0/p + 2", 2.0), ("p^0", 1.0), ("sin(0*p)", 0.0), ("2^(p-p)", 1.0)]
+    {
+        assert_eq!(quantity(text), Ok(Quantity::constant(expected)), "{text}");
+    }
+}
+
+#[test]
+fn what_cannot_vary_at_run_time() {
+    for (text, from, to, message) in [
+        ("1 + sqrt(p)", 5, 11, "`sqrt(p)` depends on the run-time parameter `p`; at run time there are + - * /"),
+        ("sin(2*p)", 1, 8, "`sin(2*p)` depends on"),
+        ("cos(p)", 1, 6, "`cos(p)` depends on"),
+        ("tan(p)", 1, 6, "`tan(p)` depends on"),
+        ("deg(p)", 1, 6, "`deg(p)` depends on"),
+        ("p^0.5", 1, 5, "whole powers up to 16"),
+        ("p^17", 1, 4, "whole powers up to 16"),
+        ("p^-1e300", 1, 8, "whole powers up to 16"),
+        ("3*2^p", 3, 5, "`2^p` depends on"),
+        ("p^p", 1, 3, "`p^p` depends on"),
+        ("0/(p - 0.7)", 1, 11, "`0/(p - 0.7)` is not a real number"),
+        ("1/(p - 0.7)", 1, 11, "`1/(p - 0.7)` is infinite"),
+        ("((1 + p)^16)^16", 1, 15, "more than 250 numbers, run-time parameters and operators"),
+    ] {
+        let found = mistake(text);
+        assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
+        assert!(found.2.contains(message), "{text}: {}", found.2);
+    }
+    assert_eq!(mistake("sqrt(p)").3, "leave `p` out of the struct: it then has its value in the file");
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! Inertia tensors: the point they refer to, and their principal moments.
 
+use std::ops::{Add, Mul, Sub};
+
 use crate::Inertia;
 
 /// Rounding that is forgiven, relative to the largest magnitude involved.
@@ -8,17 +10,25 @@ pub(crate) const TOLERANCE: f64 = 1e-12;
 /// Moves a tensor from the origin of the link frame to the centre of mass: I - m(|c|² 1 - c cᵀ).
 ///
 /// A zero mass or a zero coordinate takes nothing away, so exact zeros stay exact zeros.
-pub(crate) fn about_com(origin: Inertia, m: f64, [x, y, z]: [f64; 3]) -> Inertia {
-    if m == 0.0 || [x, y, z] == [0.0; 3] {
+///
+/// The same for numbers and for formulas, so that both take the same steps.
+pub(crate) fn about_com<S>(origin: Inertia<S>, m: &S, [x, y, z]: [S; 3]) -> Inertia<S>
+where
+    S: Clone + PartialEq<f64> + Add<Output = S> + Sub<Output = S> + Mul<Output = S>,
+{
+    if *m == 0.0 || (x == 0.0 && y == 0.0 && z == 0.0) {
         return origin;
     }
+    let square = |a: &S| a.clone() * a.clone();
+    let moment = |a, b| m.clone() * (square(a) + square(b));
+    let product = |a: &S, b: &S| m.clone() * a.clone() * b.clone();
     Inertia {
-        xx: origin.xx - m * (y * y + z * z),
-        yy: origin.yy - m * (x * x + z * z),
-        zz: origin.zz - m * (x * x + y * y),
-        xy: origin.xy + m * x * y,
-        xz: origin.xz + m * x * z,
-        yz: origin.yz + m * y * z,
+        xx: origin.xx - moment(&y, &z),
+        yy: origin.yy - moment(&x, &z),
+        zz: origin.zz - moment(&x, &y),
+        xy: origin.xy + product(&x, &y),
+        xz: origin.xz + product(&x, &z),
+        yz: origin.yz + product(&y, &z),
     }
 }
 
@@ -112,14 +122,14 @@ mod tests {
     #[test]
     fn a_point_mass_has_no_inertia_about_itself() {
         let origin = tensor(13.0 * 2.0, 10.0 * 2.0, 5.0 * 2.0, -4.0, -6.0, -12.0);
-        assert_eq!(about_com(origin, 2.0, [1.0, 2.0, 3.0]), Inertia::default());
-        assert_eq!(about_com(origin, 0.0, [1.0, 2.0, 3.0]), origin);
-        assert_eq!(about_com(origin, 2.0, [0.0; 3]), origin);
+        assert_eq!(about_com(origin, &2.0, [1.0, 2.0, 3.0]), Inertia::default());
+        assert_eq!(about_com(origin, &0.0, [1.0, 2.0, 3.0]), origin);
+        assert_eq!(about_com(origin, &2.0, [0.0; 3]), origin);
     }
 
     #[test]
     fn zeros_stay_zeros() {
-        let com = about_com(tensor(0.3, 0.0, 0.3, 0.0, 0.0, 0.0), 1.5, [0.0, -0.1, 0.0]);
+        let com = about_com(tensor(0.3, 0.0, 0.3, 0.0, 0.0, 0.0), &1.5, [0.0, -0.1, 0.0]);
         assert_eq!((com.yy, com.xy, com.xz, com.yz), (0.0, 0.0, 0.0, 0.0));
     }
 }

@@ -28,6 +28,9 @@
 //! # }
 //! ```
 //!
+//! Parameters of the file may stay free until run time: [`check_bytes_with_run_time`] gives the numbers that depend on
+//! them as a [`Formula`] each.
+//!
 //! The plain types of the table ([`Row`], [`Angle`], [`Link`], [`Model`], …) need neither `std` nor an allocator.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -51,22 +54,30 @@ mod document;
 #[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
+mod formula;
+#[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
+mod quantity;
+#[cfg(feature = "std")]
 mod render;
 #[cfg(feature = "std")]
 mod robot;
+#[cfg(feature = "std")]
+mod run_time;
 #[cfg(feature = "std")]
 mod schema;
 #[cfg(feature = "std")]
 mod source;
 #[cfg(feature = "std")]
 mod spelling;
+#[cfg(feature = "std")]
+mod varying;
 
 #[cfg(feature = "std")]
-pub use check::{Checked, check, check_bytes};
+pub use check::{Checked, check, check_bytes, check_bytes_with_run_time};
 #[cfg(feature = "std")]
 pub use data_file::{DataFile, Value};
 #[cfg(feature = "std")]
@@ -74,6 +85,10 @@ pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
 pub use expression::number;
 #[cfg(feature = "std")]
+pub use formula::Formula;
+#[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Robot};
+#[cfg(feature = "std")]
+pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::read_limited;

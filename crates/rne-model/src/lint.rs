@@ -145,9 +145,12 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
     }
 }
 
-/// Parameters that no number uses.
+/// Parameters that no number uses; of a run-time parameter that is an error.
 pub(crate) fn unused_parameters(cx: &Context) {
     for (name, parameter) in cx.parameters.borrow().iter().filter(|(_, parameter)| !parameter.used.get()) {
+        if cx.run_time_index(name).is_some() {
+            continue;
+        }
         let message = format!("the parameter {} is never used", quoted(name));
         cx.report(Diagnostic::lint(parameter.span.clone(), message).label("unused").help("delete it, or use it"));
     }

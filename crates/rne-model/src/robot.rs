@@ -1,6 +1,6 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Inertia, Model, Motor, Row, Transform};
+use crate::{Convention, Inertia, Model, Motor, Row, RunTime, Transform};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,6 +25,9 @@ pub struct Robot {
     pub parameters: Vec<(String, f64)>,
     /// The joints, base to tip; 1 to 64.
     pub joints: Vec<Joint>,
+    /// The parameters that stay free until run time, and which numbers depend on them; empty unless asked for, by
+    /// [`check_bytes_with_run_time`](crate::check_bytes_with_run_time).
+    pub run_time: RunTime,
 }
 
 /// One joint of a [`Robot`], with the link it moves.

@@ -3,14 +3,16 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use crate::decode::{Context, Parameter, choice, list, not_negative, number, read_mapping, text};
+use crate::decode::{Context, Parameter, choice, list, not_negative, quantity, read_mapping, text};
 use crate::diagnostic::Diagnostic;
-use crate::document::{Content, Entry, Node};
+use crate::document::{self, Content, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
+use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, quoted, rounded};
+use crate::varying::{entry, fixed, inertia_about_com, inertia_element, unknown_names, without_effect};
 use crate::{
-    Angle, Convention, Dh, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Row, Transform,
-    inertia, lint,
+    Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, Limits, Link, Motor,
+    Robot, Row, Transform, inertia, lint,
 };
 
 /// More joints than any serial arm has; bounds the work of everything that follows.
@@ -25,6 +27,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     if let Some(version) = node.get("format") {
         format(cx, version)?;
     }
+    unknown_names(cx, node);
     read_mapping!(cx, node, "a robot file", {
         _format: required "format" format,
         name: required "name" robot_name,
@@ -34,12 +37,17 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         parameters: or(Vec::new()) "parameters" parameters,
         convention: required "convention" convention,
         gravity: required "gravity" gravity,
-        base: or(Transform::IDENTITY) "base" transform,
-        tool: or(Transform::IDENTITY) "tool" transform,
+        base: or(Transform::IDENTITY) "base" |cx, node| transform(cx, node, Entry::BaseXyz),
+        tool: or(Transform::IDENTITY) "tool" |cx, node| transform(cx, node, Entry::ToolXyz),
         joints: required "joints" joints,
     });
     lint::unused_parameters(cx);
-    Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints })
+    // Where something else is wrong it may be that which has no effect.
+    if !cx.has_errors() {
+        without_effect(cx);
+    }
+    let run_time = cx.run_time.take();
+    Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints, run_time })
 }
 
 fn format(cx: &Context, node: &Node) -> Option<()> {
@@ -91,7 +99,7 @@ fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) ->
 
 /// The acceleration of gravity in frame 0.
 fn gravity(cx: &Context, node: &Node) -> Option<[f64; 3]> {
-    let gravity = list(cx, node, "[x, y, z] (m/s²)", number)?;
+    let gravity = list(cx, node, "[x, y, z] (m/s²)", |cx, node, axis| entry(Entry::Gravity(axis))(cx, node))?;
     lint::gravity(cx, node, gravity);
     Some(gravity)
 }
@@ -109,20 +117,26 @@ fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
         let message = format!("{} parameters; at most {MAX_PARAMETERS} are allowed", entries.len());
         return cx.refuse(Diagnostic::error(excess.key_span.clone(), message));
     }
-    let declared = |entry: &Entry| {
+    let declared = |entry: &document::Entry| {
         let span = entry.key_span.clone();
         (entry.key.clone(), Parameter { span, meaning: Meaning::Later, used: Cell::new(false) })
     };
     // A repeated name, an error already, keeps its first value.
     *cx.parameters.borrow_mut() = entries.iter().rev().map(declared).collect();
     let mut values = Vec::new();
-    for Entry { key, key_span, value } in entries {
+    for (index, document::Entry { key, key_span, value }) in entries.iter().enumerate() {
         let name = parameter_name(cx, key, key_span.clone());
-        let value = number(cx, value);
-        if let Some(parameter) = cx.parameters.borrow_mut().get_mut(key).filter(|known| known.span == *key_span) {
-            parameter.meaning = value.map_or(Meaning::Faulty, Meaning::Value);
+        let mut quantity = quantity(cx, value);
+        values.push(name.zip(quantity.as_ref().map(|quantity| quantity.value)));
+        if let Some(own) = cx.run_time_index(key) {
+            // What it is in the file is but its value there, whatever that depends on.
+            quantity = quantity.map(|quantity| Quantity::parameter(own, quantity.value));
+        } else if let Some(formula) = quantity.as_ref().and_then(Quantity::varying) {
+            cx.run_time.borrow_mut().parameters.push((index, formula.clone()));
         }
-        values.push(name.zip(value));
+        if let Some(parameter) = cx.parameters.borrow_mut().get_mut(key).filter(|known| known.span == *key_span) {
+            parameter.meaning = quantity.map_or(Meaning::Faulty, Meaning::Value);
+        }
     }
     values.into_iter().collect()
 }
@@ -143,10 +157,10 @@ fn parameter_name(cx: &Context, name: &str, span: std::ops::Range<usize>) -> Opt
     Some(name.to_owned())
 }
 
-fn transform(cx: &Context, node: &Node) -> Option<Transform> {
+fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Transform> {
     read_mapping!(cx, node, "a placement", {
-        xyz: or([0.0; 3]) "xyz" |cx, node| list(cx, node, "[x, y, z] (m)", length),
-        rpy: or([0.0; 3]) "rpy" |cx, node| list(cx, node, "[roll, pitch, yaw] (rad)", angle),
+        xyz: or([0.0; 3]) "xyz" |cx, node| position(cx, node, place),
+        rpy: or([0.0; 3]) "rpy" |cx, node| list(cx, node, "[roll, pitch, yaw] (rad)", |cx, node, _| angle(cx, node)),
     });
     Some(Transform { xyz, rpy: rpy.map(Angle::new) })
 }
@@ -164,8 +178,7 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
         let message = format!("{} joints; 1 to {MAX_JOINTS} joints are allowed", items.len());
         return cx.refuse(Diagnostic::error(excess.head(), message).label(format!("joint {}", MAX_JOINTS + 1)));
     }
-    let joints: Vec<Option<Joint>> =
-        items.iter().enumerate().map(|(index, item)| joint(cx, item, &format!("joint{}", index + 1))).collect();
+    let joints: Vec<Option<Joint>> = items.iter().enumerate().map(|(index, item)| joint(cx, item, index)).collect();
     let mut known = HashMap::new();
     let mut unique = true;
     for (index, (item, joint)) in items.iter().zip(&joints).enumerate() {
@@ -189,14 +202,15 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
     unique.then_some(joints)
 }
 
-fn joint(cx: &Context, node: &Node, default_name: &str) -> Option<Joint> {
+/// The joint with this index, from 0.
+fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
     read_mapping!(cx, node, "a joint", {
-        name: or(default_name.to_owned()) "name" |cx, node| one_line(cx, node, "joint name"),
+        name: or(format!("joint{}", index + 1)) "name" |cx, node| one_line(cx, node, "joint name"),
         kind: required "type" joint_kind,
-        dh: required "dh" dh,
-        link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" link,
+        dh: required "dh" |cx, node| dh(cx, node, index),
+        link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" |cx, node| link(cx, node, index),
         limits: or(Limits::default()) "limits" limits,
-        motor: optional "motor" motor,
+        motor: optional "motor" |cx, node| motor(cx, node, index),
     });
     if let Some(position) = node.get("limits").and_then(|limits| limits.get("position")) {
         lint::position_limits(cx, position, kind, &limits);
@@ -209,29 +223,26 @@ fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
     choice(cx, node, "joint type", &[("revolute", JointKind::Revolute), ("prismatic", JointKind::Prismatic)])
 }
 
-fn dh(cx: &Context, node: &Node) -> Option<Dh> {
+fn dh(cx: &Context, node: &Node, joint: usize) -> Option<Dh> {
     read_mapping!(cx, node, "`dh`", {
         theta: required "theta" angle,
-        d: required "d" length,
-        a: required "a" length,
+        d: required "d" length(Entry::D(joint)),
+        a: required "a" length(Entry::A(joint)),
         alpha: required "alpha" angle,
     });
     Some(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) })
 }
 
 /// The link with its inertia about the centre of mass, and the inertia as written.
-fn link(cx: &Context, node: &Node) -> Option<(Link, (Inertia, InertiaReference))> {
+fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
     read_mapping!(cx, node, "a link", {
-        mass: or(0.0) "mass" mass,
-        com: or([0.0; 3]) "com" |cx, node| list(cx, node, "[x, y, z] (m)", length),
-        written: or(Inertia::default()) "inertia" tensor,
+        mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
+        com: or([0.0; 3]) "com" |cx, node| position(cx, node, |axis| Entry::Com(joint, axis)),
+        written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
     });
-    let inertia = match about {
-        InertiaReference::Com => written,
-        InertiaReference::Origin => inertia::about_com(written, mass, com),
-    };
     let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
+    let inertia = inertia_about_com(cx, place.clone(), joint, (written, about), (mass, com))?;
     let Some(moments) = inertia::principal_moments(&inertia) else {
         let message = "the inertia about the centre of mass is not finite; mass, com and inertia are too large";
         return cx.refuse(Diagnostic::error(place, message));
@@ -257,20 +268,21 @@ fn link(cx: &Context, node: &Node) -> Option<(Link, (Inertia, InertiaReference))
     Some((Link { mass, com, inertia }, (written, about)))
 }
 
-fn mass(cx: &Context, node: &Node) -> Option<f64> {
-    let mass = not_negative("mass")(cx, node)?;
+fn mass(cx: &Context, node: &Node, joint: usize) -> Option<f64> {
+    let mass = not_negative("mass", entry(Entry::Mass(joint)))(cx, node)?;
     lint::mass(cx, node, mass);
     Some(mass)
 }
 
-fn tensor(cx: &Context, node: &Node) -> Option<Inertia> {
+fn tensor(cx: &Context, node: &Node, joint: usize) -> Option<Inertia> {
+    let element = |element| inertia_element(joint, element);
     read_mapping!(cx, node, "an inertia", {
-        xx: or(0.0) "xx" number,
-        yy: or(0.0) "yy" number,
-        zz: or(0.0) "zz" number,
-        xy: or(0.0) "xy" number,
-        xz: or(0.0) "xz" number,
-        yz: or(0.0) "yz" number,
+        xx: or(0.0) "xx" element(InertiaElement::Xx),
+        yy: or(0.0) "yy" element(InertiaElement::Yy),
+        zz: or(0.0) "zz" element(InertiaElement::Zz),
+        xy: or(0.0) "xy" element(InertiaElement::Xy),
+        xz: or(0.0) "xz" element(InertiaElement::Xz),
+        yz: or(0.0) "yz" element(InertiaElement::Yz),
     });
     Some(Inertia { xx, yy, zz, xy, xz, yz })
 }
@@ -282,14 +294,14 @@ fn inertia_reference(cx: &Context, node: &Node) -> Option<InertiaReference> {
 fn limits(cx: &Context, node: &Node) -> Option<Limits> {
     read_mapping!(cx, node, "`limits`", {
         position: optional "position" position_limits,
-        velocity: optional "velocity" not_negative("velocity limit"),
-        effort: optional "effort" not_negative("effort limit"),
+        velocity: optional "velocity" not_negative("velocity limit", fixed("the limit")),
+        effort: optional "effort" not_negative("effort limit", fixed("the limit")),
     });
     Some(Limits { position, velocity, effort })
 }
 
 fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
-    let [lower, upper] = list(cx, node, "[lower, upper] (rad or m)", number)?;
+    let [lower, upper] = list(cx, node, "[lower, upper] (rad or m)", |cx, node, _| fixed("the limit")(cx, node))?;
     if lower <= upper {
         return Some((lower, upper));
     }
@@ -301,18 +313,18 @@ fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("exchange the two"))
 }
 
-fn motor(cx: &Context, node: &Node) -> Option<Motor> {
+fn motor(cx: &Context, node: &Node, joint: usize) -> Option<Motor> {
     read_mapping!(cx, node, "`motor`", {
-        inertia: or(0.0) "inertia" not_negative("rotor inertia"),
-        gear_ratio: or(1.0) "gear_ratio" gear_ratio,
-        viscous: or(0.0) "viscous" not_negative("viscous friction"),
-        coulomb: or([0.0; 2]) "coulomb" coulomb,
+        inertia: or(0.0) "inertia" not_negative("rotor inertia", entry(Entry::MotorInertia(joint))),
+        gear_ratio: or(1.0) "gear_ratio" |cx, node| gear_ratio(cx, node, joint),
+        viscous: or(0.0) "viscous" not_negative("viscous friction", entry(Entry::Viscous(joint))),
+        coulomb: or([0.0; 2]) "coulomb" |cx, node| coulomb(cx, node, joint),
     });
     Some(Motor { inertia, gear_ratio, viscous, coulomb })
 }
 
-fn gear_ratio(cx: &Context, node: &Node) -> Option<f64> {
-    let ratio = number(cx, node)?;
+fn gear_ratio(cx: &Context, node: &Node, joint: usize) -> Option<f64> {
+    let ratio = entry(Entry::GearRatio(joint))(cx, node)?;
     if ratio != 0.0 {
         return Some(ratio);
     }
@@ -320,8 +332,10 @@ fn gear_ratio(cx: &Context, node: &Node) -> Option<f64> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("a direct drive has `gear_ratio: 1`, the default"))
 }
 
-fn coulomb(cx: &Context, node: &Node) -> Option<[f64; 2]> {
-    let values: [f64; 2] = list(cx, node, "[Tc⁺, Tc⁻] (N m)", number)?;
+fn coulomb(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 2]> {
+    let places = [Entry::CoulombPositive(joint), Entry::CoulombNegative(joint)];
+    let values: [f64; 2] =
+        list(cx, node, "[Tc⁺, Tc⁻] (N m)", |cx, node, index| entry(*places.get(index)?)(cx, node))?;
     let Content::Sequence(items) = &node.content else { return None };
     let mut valid = true;
     for (item, value, sign, (name, rule)) in [
@@ -340,13 +354,20 @@ fn coulomb(cx: &Context, node: &Node) -> Option<[f64; 2]> {
 }
 
 fn angle(cx: &Context, node: &Node) -> Option<f64> {
-    let value = number(cx, node)?;
+    let value = fixed("the angle")(cx, node)?;
     lint::angle(cx, node, value);
     Some(value)
 }
 
-fn length(cx: &Context, node: &Node) -> Option<f64> {
-    let value = number(cx, node)?;
-    lint::length(cx, node, value);
-    Some(value)
+fn length(place: Entry) -> impl Fn(&Context, &Node) -> Option<f64> {
+    move |cx, node| {
+        let value = entry(place)(cx, node)?;
+        lint::length(cx, node, value);
+        Some(value)
+    }
+}
+
+/// A point or a displacement; `place` says where its components stand in the table.
+fn position(cx: &Context, node: &Node, place: impl Fn(usize) -> Entry) -> Option<[f64; 3]> {
+    list(cx, node, "[x, y, z] (m)", |cx, node, axis| length(place(axis))(cx, node))
 }

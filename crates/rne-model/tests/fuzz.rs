@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use common::BASE;
 use proptest::prelude::*;
-use rne_model::{Report, check, check_bytes};
+use rne_model::{Report, check, check_bytes, check_bytes_with_run_time};
 
 /// Reads, renders every way, and checks what must hold of every report.
 fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
@@ -16,6 +16,9 @@ fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
     let report = result.map_or_else(|report| report, |checked| checked.lints);
     prop_assert_eq!(report.has_errors(), !valid, "{}", report.short());
     well_formed(&report)?;
+    let varying = check_bytes_with_run_time("x.yaml", bytes, &["m", "r"]);
+    prop_assert!(valid || varying.is_err(), "no error is forgiven at run time");
+    well_formed(&varying.map_or_else(|report| report, |checked| checked.lints))?;
     prop_assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
     Ok(())
 }
