@@ -24,6 +24,7 @@ fn three_products_are_summed_from_left_to_right() {
 
         for i in 0..3 {
             assert_eq!((a * v)[i], sum(row(&a, i), x), "M v");
+            assert_eq!(a.row(i).transpose().dot(&v), sum(row(&a, i), x), "v · v");
             assert_eq!(a.tr_mul(&v)[i], sum(column(&a, i), x), "Mᵀ v");
             for j in 0..3 {
                 assert_eq!((a * b)[(i, j)], sum(row(&a, i), column(&b, j)), "M M");

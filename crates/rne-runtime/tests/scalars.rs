@@ -9,7 +9,10 @@ use std::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssi
 use num_dual::Dual64;
 use num_traits::{One, Zero};
 use rne_model::Convention::{Modified, Standard};
-use rne_runtime::{Arm, DynArm, InverseDynamics, Scalar, Wrench};
+use rne_runtime::{
+    Arm, CoriolisMatrix, DynArm, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, Kinematics,
+    MassMatrix, Regressor, Scalar, Wrench,
+};
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
 
 const LANES: usize = 4;
@@ -241,4 +244,23 @@ fn a_type_of_ones_own_needs_a_constant_and_a_sine() {
     let single = Arm::new(model.to_f32());
     let expected = single.inverse_dynamics(&SIX_Q, &SIX_QD, &SIX_QDD);
     assert_eq!(single.inverse_dynamics(&q, &qd, &qdd), expected.map(Own), "constants in single precision");
+}
+
+/// It has no `by_sign` and no `sqrt`: `actuator_torques` would not compile for it, and all else does.
+#[test]
+fn a_type_of_ones_own_has_every_function_but_friction() {
+    let arm = Arm::new(six_joints(Modified));
+    let state = [SIX_Q, SIX_QD, SIX_QDD];
+    let [q, qd, qdd] = state.map(|x| x.map(Own));
+    assert_eq!(arm.mass_matrix(&q), arm.mass_matrix(&SIX_Q).map(|row| row.map(Own)));
+    assert_eq!(arm.coriolis_matrix(&q, &qd), arm.coriolis_matrix(&SIX_Q, &SIX_QD).map(|row| row.map(Own)));
+    assert_eq!(arm.forward_dynamics(&q, &qd, &qdd), arm.forward_dynamics(&SIX_Q, &SIX_QD, &SIX_QDD).map(Own));
+    assert_eq!(arm.jacobian(&q), arm.jacobian(&SIX_Q).map(|row| row.map(Own)));
+    assert_eq!(arm.forward_kinematics(&q).translation, arm.forward_kinematics(&SIX_Q).translation.map(Own));
+    assert_eq!(arm.kinetic_energy(&q, &qd), Own(arm.kinetic_energy(&SIX_Q, &SIX_QD)));
+    let (own, double) =
+        (arm.inverse_dynamics_derivatives(&q, &qd, &qdd), arm.inverse_dynamics_derivatives(&SIX_Q, &SIX_QD, &SIX_QDD));
+    assert_eq!(own.dq, double.dq.map(|row| row.map(Own)));
+    let (own, double) = (arm.regressor(&q, &qd, &qdd), arm.regressor(&SIX_Q, &SIX_QD, &SIX_QDD));
+    assert_eq!(own, double.map(|row| row.map(|link| link.map(Own))));
 }
