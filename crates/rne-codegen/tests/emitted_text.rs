@@ -172,8 +172,10 @@ fn every_reduced_form_tells_its_proof() {
         for program in reduced {
             let proof = program.proof.expect("a proof");
             assert!(proof.rounding < 1e-13, "{} of {}: {}", program.function, robot.name, proof.rounding);
+            // single precision is demanded of the torques alone
+            let is_torque = Function::TORQUES.contains(&program.function);
             assert!(
-                proof.single <= 4.0 * proof.single_of_seven_steps.max(1e-7),
+                !is_torque || proof.single <= 4.0 * proof.single_of_seven_steps.max(1e-7),
                 "{} of {}: {proof:?}",
                 program.function,
                 robot.name
