@@ -23,11 +23,8 @@ fn torques_of_dense_arms_are_the_independent_ones() {
             // these values were made with the wrench that the environment exerts on the robot: the opposite sign
             let [fx, fy, fz, nx, ny, nz] = array("wrench").try_into().expect("six numbers");
             let wrench = Wrench { force: [-fx, -fy, -fz], moment: [-nx, -ny, -nz] };
-            let arguments = Arguments {
-                force: wrench.force,
-                moment: wrench.moment,
-                ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
-            };
+            let arguments =
+                Arguments { force: wrench.force, moment: wrench.moment, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) };
             for program in &programs {
                 let (expected, runtime) = match program.function {
                     Function::InverseDynamics => (array("tau"), arm.inverse_dynamics(&q, &qd, &qdd)),

@@ -131,11 +131,8 @@ fn state(arguments: &Arguments, robot: &Robot) -> Result<State, Failure> {
         Some(_) => Function::InverseDynamicsWithWrench,
         None => Function::InverseDynamics,
     });
-    let (takes_qd, takes_qdd, takes_wrench) = (
-        function.takes(Argument::Rates),
-        function.takes(Argument::Accelerations),
-        function.takes(Argument::Wrench),
-    );
+    let (takes_qd, takes_qdd, takes_wrench) =
+        (function.takes(Argument::Rates), function.takes(Argument::Accelerations), function.takes(Argument::Wrench));
     let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
     let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
     let per_joint = |name, list, takes| argument(function, name, list, takes, robot.dof(), &per_joint);

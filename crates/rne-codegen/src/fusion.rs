@@ -185,7 +185,9 @@ impl Graph {
             match &node.kind {
                 Kind::Leaf(_) => {}
                 Kind::Product(factors) | Kind::Quotient(factors) => {
-                    factors.iter().for_each(|&factor| uses[factor] += 1);
+                    for &factor in factors {
+                        uses[factor] += 1;
+                    }
                 }
                 Kind::BySign(operands) => operands.iter().for_each(|operand| uses[operand.node] += 1),
                 Kind::Sum(terms) => terms.iter().for_each(|term| uses[term.node] += 1),

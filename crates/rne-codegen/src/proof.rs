@@ -163,7 +163,8 @@ impl Div for Value {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
-        Self::number(self.number * other.number.inverse().unwrap_or(Image::ZERO))
+        let inverse = Self::number(other.number.inverse().unwrap_or(Image::ZERO));
+        self * inverse
     }
 }
 

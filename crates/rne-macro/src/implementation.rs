@@ -62,12 +62,10 @@ impl Target<'_> {
     /// What stands in for a robot that is not known: every use of it compiles, so that the mistake that is reported
     /// stays the only one. The trait is implemented for every number of joints.
     pub(crate) fn stub(&self, capability: Capability, joints: usize) -> TokenStream {
-        let constants = match capability {
-            Capability::InverseDynamics => self.constants(&Constants::unknown(joints)),
-            _ => {
-                let functions = capability.functions().iter().map(|&function| (function, Operations::default()));
-                self.counts_of(functions)
-            }
+        let constants = if capability == Capability::InverseDynamics {
+            self.constants(&Constants::unknown(joints))
+        } else {
+            self.counts_of(capability.functions().iter().map(|&function| (function, Operations::default())))
         };
         let (ident, krate, name) = (&self.item.ident, self.krate, format_ident!("{}", capability.name()));
         let (_, type_generics, where_clause) = self.item.generics.split_for_impl();

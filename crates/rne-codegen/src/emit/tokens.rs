@@ -174,12 +174,10 @@ impl<'a> Body<'a> {
         let outputs = || self.program.outputs.iter().map(|output| self.expression(&output.value, None));
         let layout = self.program.function.layout(self.program.dof);
         let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
-        let record = |record: Record, parts: Vec<TokenStream>| match self.library {
-            Some(library) => {
-                let (name, fields) = (ident(record.name()), record.fields().map(ident));
-                quote!(#library::#name { #(#fields: #parts),* })
-            }
-            None => quote!((#(#parts),*)),
+        let record = |record: Record, parts: Vec<TokenStream>| {
+            let Some(library) = self.library else { return quote!((#(#parts),*)) };
+            let (name, fields) = (ident(record.name()), record.fields().map(ident));
+            quote!(#library::#name { #(#fields: #parts),* })
         };
         let grouped = layout.fold(&mut outputs(), &array, &record);
         match grouped {

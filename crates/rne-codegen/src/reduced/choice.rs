@@ -12,6 +12,7 @@ use super::search::{Clock, Over, Progress, Search, default_plan};
 use super::sheet::{Cost, Dag};
 use super::transcript::Drawing;
 use super::trick::Trick;
+use super::way::Way;
 use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::fusion;
@@ -81,13 +82,30 @@ impl Choice {
             // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
             Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
             // numbers that are not known cannot be regrouped
-            _ if is_fixed && Function::TORQUES.contains(&function) => {
-                let (frame, drawing) = drawn(robot, &self.plan, function)?;
+            _ if is_fixed && !Way::of(function).is_empty() => {
+                let (plan, way) = self.cheapest(robot, function);
+                let (frame, drawing) = drawn_in(robot, &plan, function, way)?;
                 let program = drawing.program(robot, &frame, function, form, arranged)?;
-                Ok(Program { choices: self.plan.choices(), ..program })
+                let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
+                Ok(Program { choices, ..program })
             }
             _ => merged::program(robot, function, arranged),
         }
+    }
+
+    /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without the
+    /// choices that it makes joint by joint for the recursion.
+    fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Way) {
+        let ways = Way::of(function);
+        let first = (self.plan.clone(), ways.first().copied().unwrap_or(Way::Recursion));
+        if ways.len() < 2 {
+            return first;
+        }
+        let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
+        let mut evaluator = evaluator::Evaluator::new(robot, function);
+        let candidates = ways.iter().flat_map(|way| [(self.plan.clone(), *way), (plain.clone(), *way)]);
+        let costs = candidates.filter_map(|(plan, way)| Some((evaluator.cost_of(&plan, way)?.weight(), plan, way)));
+        costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, way)| (plan, way))
     }
 
     fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
@@ -121,7 +139,12 @@ fn misread(robot: &Robot, line: usize, message: &str) -> CompileError {
     ))
 }
 
+/// The recursion of a function.
 fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawing), CompileError> {
+    drawn_in(robot, plan, function, Way::Recursion)
+}
+
+fn drawn_in(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Result<(Frame, Drawing), CompileError> {
     let misfit = || {
         CompileError::Plan(format!(
             "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` writes it anew",
@@ -129,7 +152,7 @@ fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawi
         ))
     };
     let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
-    let drawing = Drawing::new(&frame, plan, function).ok_or_else(misfit)?;
+    let drawing = Drawing::new(&frame, plan, function, way).ok_or_else(misfit)?;
     Ok((frame, drawing))
 }
 

@@ -2,14 +2,15 @@
 
 use rne_model::Robot;
 
-use super::inward::torques;
-use super::outward::{Arm, motions};
+use super::outward::Arm;
 use super::plan::Plan;
 use super::regroup::{Offers, Parameters, parameters};
 use super::rows::{Frames, Table};
 use super::sheet::{Cost, Dag, Identity, Ref, Sheet};
+use super::way::{self, Way};
 use super::writer::{Angle, Writer};
 use crate::function::Function;
+use crate::quantity::Name;
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]
@@ -23,6 +24,7 @@ pub(crate) struct Frame {
 pub(crate) struct Evaluator {
     frames: Vec<Frame>,
     writer: Writer,
+    function: Function,
     dag: Dag,
     live: Vec<bool>,
 }
@@ -66,11 +68,17 @@ impl Frame {
     }
 }
 
-/// Writes the torques on the writer's sheet.
-pub(crate) fn write(writer: &Writer, frame: &Frame, plan: &Plan, parameters: &Parameters) -> Vec<Ref> {
+/// Writes a function on the writer's sheet.
+pub(crate) fn write(
+    writer: &Writer,
+    frame: &Frame,
+    plan: &Plan,
+    parameters: &Parameters,
+    function: Function,
+    way: Way,
+) -> Vec<(Name, Ref)> {
     let arm = Arm { table: &frame.table, plan, parameters };
-    let moved = motions(writer, &arm);
-    torques(writer, &arm, &moved).into_iter().map(|torque| torque.at).collect()
+    way::write(writer, &arm, function, way).into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
 
 impl Evaluator {
@@ -80,6 +88,7 @@ impl Evaluator {
         Self {
             frames,
             writer: Writer::new(function, reading, false),
+            function,
             dag: Dag { sheet: Sheet::new(Identity::Value), outputs: Vec::new() },
             live: Vec::new(),
         }
@@ -91,10 +100,16 @@ impl Evaluator {
 
     /// What a plan costs; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
+        self.cost_of(plan, Way::Recursion)
+    }
+
+    /// What a plan costs when the function is written in one of its ways.
+    pub(crate) fn cost_of(&mut self, plan: &Plan, way: Way) -> Option<Cost> {
         let frame = self.frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
         self.writer.restart(frame.table.reading);
-        let outputs = write(&self.writer, frame, plan, &parameters);
+        let outputs: Vec<Ref> =
+            write(&self.writer, frame, plan, &parameters, self.function, way).into_iter().map(|(_, at)| at).collect();
         self.dag.rewrite_from(&self.writer.sheet.borrow(), &outputs, &mut self.live);
         Some(cost(&self.dag, frame, &mut self.live))
     }

@@ -38,6 +38,8 @@ pub(crate) fn written(dag: &Dag, given: usize) -> String {
             Op::Sum(a, b) if b.is_negative() => format!("{} - {}", operand(a), operand(-b)),
             Op::Sum(a, b) => format!("{} + {}", operand(a), operand(b)),
             Op::Product(a, b) => format!("{} * {}", operand(a), operand(b)),
+            // torques divide by nothing
+            Op::Inverse(a) => format!("1 / {}", operand(a)),
         };
         terms += 1;
         names[index] = format!("t{terms}");
@@ -95,6 +97,7 @@ fn leaf_name(leaf: Leaf) -> String {
         Leaf::Position(at) => format!("q{}", joint(at)),
         Leaf::Rate(at) => format!("qd{}", joint(at)),
         Leaf::RateDot(at) => format!("qdd{}", joint(at)),
+        Leaf::Torque(at) => format!("tau{}", joint(at)),
         Leaf::Force(axis) => format!("f{}", joint(axis)),
         Leaf::Moment(axis) => format!("n{}", joint(axis)),
         Leaf::GivenSine(at) => turn("s", at, at),
@@ -155,6 +158,10 @@ pub(crate) fn on_numbers_of(read: &Dag, plan: &Dag) -> Dag {
         let at = match node.op {
             Op::Constant(place) => constant_on(&mut sheet, &read.sheet.numbers, &mut places, place),
             Op::Leaf(leaf) => sheet.leaf(leaf, node.image),
+            Op::Inverse(a) => {
+                let a = mapped(&map, a);
+                sheet.inverse(a)
+            }
             Op::Sum(a, b) => {
                 let (a, b) = (mapped(&map, a), mapped(&map, b));
                 sheet.sum(a, b)

@@ -19,9 +19,9 @@ use crate::quantity::{Axis, Name, Quantity};
 
 /// A force, times μ, and a moment about the origin of a frame.
 #[derive(Clone, Copy)]
-struct Wrench<'s> {
-    force: Vector<'s>,
-    moment: Vector<'s>,
+pub(crate) struct Wrench<'s> {
+    pub(crate) force: Vector<'s>,
+    pub(crate) moment: Vector<'s>,
 }
 
 impl<'s> Wrench<'s> {
@@ -33,7 +33,7 @@ impl<'s> Wrench<'s> {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
-    fn map(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+    pub(crate) fn map(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
         Self { force: f(self.force), moment: f(self.moment) }
     }
 
@@ -42,7 +42,7 @@ impl<'s> Wrench<'s> {
     }
 
     /// n + p × f: the same wrench about a point from which the old one is at `p`.
-    fn about(self, p: Vector<'s>) -> Self {
+    pub(crate) fn about(self, p: Vector<'s>) -> Self {
         Self { moment: self.moment + p.cross(self.force), ..self }
     }
 }

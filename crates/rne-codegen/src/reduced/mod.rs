@@ -7,6 +7,7 @@
 //! on a `sheet`, `transcript` turns the sheet into a program, which the gate of `proof.rs` lets pass or not.
 
 mod choice;
+mod composite;
 mod evaluator;
 mod graph_text;
 mod inward;
@@ -26,6 +27,7 @@ mod sheet;
 mod tests;
 mod transcript;
 mod trick;
+mod way;
 mod writer;
 
 pub use choice::{Choice, Found, Wanted, cost, savings, search};

@@ -96,6 +96,7 @@ impl<C: Fn(&Dag, &mut Vec<bool>) -> Cost> Rewriting<C> {
             self.map[index] = match node.op {
                 Op::Constant(place) => next.constant_at(place),
                 Op::Leaf(leaf) => next.leaf(leaf, node.image),
+                Op::Inverse(a) => next.inverse(mapped(a)),
                 Op::Sum(a, b) => {
                     let (a, b) = (mapped(a), mapped(b));
                     if index == target {

@@ -52,6 +52,8 @@ pub(crate) enum Op {
     Sum(Ref, Ref),
     /// A constant factor comes first.
     Product(Ref, Ref),
+    /// 1/a
+    Inverse(Ref),
 }
 
 /// Where the numbers come from that no operation makes. Joints count from 0.
@@ -60,6 +62,8 @@ pub(crate) enum Leaf {
     Position(u8),
     Rate(u8),
     RateDot(u8),
+    /// τ of an actuator.
+    Torque(u8),
     Force(u8),
     Moment(u8),
     /// Sine of the position of a joint, as an argument.
@@ -270,6 +274,21 @@ impl Sheet {
         self.intern(Op::Product(a, b), image).signed(negative)
     }
 
+    /// 1/a
+    pub(crate) fn inverse(&mut self, a: Ref) -> Ref {
+        if let Some(constant) = self.constant_inverse(a) {
+            return constant;
+        }
+        let (negative, a) = (a.is_negative(), a.magnitude());
+        let image = self.image(a).inverse().unwrap_or(Image::ZERO);
+        if self.identity == Identity::Value
+            && let Some(known) = self.valued(image)
+        {
+            return known.signed(negative);
+        }
+        self.intern(Op::Inverse(a), image).signed(negative)
+    }
+
     /// A term as a constant times something: the something, and the constant as a reference.
     fn factored(&self, at: Ref) -> (Ref, Ref) {
         if let Op::Product(factor, rest) = self.op(at)
@@ -321,7 +340,7 @@ impl Sheet {
         self.structures = vec![0; self.structures.len() * 2];
         let mask = self.structures.len() - 1;
         for (index, node) in self.nodes.iter().enumerate() {
-            if matches!(node.op, Op::Sum(..) | Op::Product(..)) {
+            if matches!(node.op, Op::Sum(..) | Op::Product(..) | Op::Inverse(_)) {
                 let mut slot = hash(node.op) & mask;
                 while self.structures[slot] != 0 {
                     slot = (slot + 1) & mask;
@@ -380,6 +399,7 @@ fn hash(op: Op) -> usize {
         Op::Product(a, b) => (2, a.0, b.0),
         Op::Constant(index) => (3, index, 0),
         Op::Leaf(_) => (4, 0, 0),
+        Op::Inverse(a) => (5, a.0, 0),
     };
     let key = (kind << 62) ^ (u64::from(a) << 31) ^ u64::from(b);
     #[allow(clippy::cast_possible_truncation)] // the upper half is mixed best
@@ -439,6 +459,7 @@ impl Dag {
                 Op::Leaf(leaf) => target.leaf(leaf, node.image),
                 Op::Sum(a, b) => target.sum(mapped(a), mapped(b)),
                 Op::Product(a, b) => target.product(mapped(a), mapped(b)),
+                Op::Inverse(a) => target.inverse(mapped(a)),
             };
         }
         self.outputs.clear();
@@ -481,9 +502,13 @@ pub(crate) fn mark_live(nodes: &[Node], outputs: &[Ref], live: &mut Vec<bool>) {
         live[at.index()] = true;
     }
     for (index, node) in nodes.iter().enumerate().rev() {
-        if let (true, Op::Sum(a, b) | Op::Product(a, b)) = (live[index], node.op) {
-            live[a.index()] = true;
-            live[b.index()] = true;
+        match node.op {
+            Op::Sum(a, b) | Op::Product(a, b) if live[index] => {
+                live[a.index()] = true;
+                live[b.index()] = true;
+            }
+            Op::Inverse(a) if live[index] => live[a.index()] = true,
+            _ => {}
         }
     }
 }

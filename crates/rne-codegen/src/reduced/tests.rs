@@ -29,7 +29,7 @@ const SEVERAL: [&str; 8] =
 
 fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<(Frame, Drawing)> {
     let frame = frame(robot, plan)?;
-    let drawing = Drawing::new(&frame, plan, function)?;
+    let drawing = Drawing::new(&frame, plan, function, super::way::Way::Recursion)?;
     Some((frame, drawing))
 }
 

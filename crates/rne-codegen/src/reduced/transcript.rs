@@ -7,6 +7,7 @@ use rne_model::Robot;
 use super::evaluator::{Frame, write};
 use super::plan::Plan;
 use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
+use super::way::Way;
 use super::writer::{Angle, Writer};
 use crate::CompileError;
 use crate::exact::{Image, Number, Turn};
@@ -22,6 +23,8 @@ use crate::worksheet::{Birth, Definition, Written};
 /// The graph of a function under a plan, with names for its values.
 pub(crate) struct Drawing {
     pub(crate) dag: Dag,
+    /// The names of what is returned.
+    returned: Vec<Name>,
     /// Names in the order in which they were given, and the value that bears each.
     names: Vec<(Name, Image)>,
     /// Where a value was first written.
@@ -30,10 +33,11 @@ pub(crate) struct Drawing {
 
 impl Drawing {
     /// Writes the reduced form.
-    pub(crate) fn new(frame: &Frame, plan: &Plan, function: Function) -> Option<Self> {
+    pub(crate) fn new(frame: &Frame, plan: &Plan, function: Function, way: Way) -> Option<Self> {
         let parameters = frame.parameters(plan)?;
         let writer = Writer::new(function, frame.table.reading, true);
-        let outputs = write(&writer, frame, plan, &parameters);
+        let (returned, outputs): (Vec<Name>, Vec<Ref>) =
+            write(&writer, frame, plan, &parameters, function, way).into_iter().unzip();
         let sheet = writer.sheet.into_inner();
         let naming = writer.naming.map(std::cell::RefCell::into_inner).unwrap_or_default();
         let mut dag = Dag { sheet: Sheet::new(Identity::Value), outputs: Vec::new() };
@@ -46,7 +50,7 @@ impl Drawing {
                 births.entry(positive(node.image)).or_insert(*birth);
             }
         }
-        Some(Self { dag, names, births })
+        Some(Self { dag, returned, names, births })
     }
 
     /// Another graph of the same outputs: values keep their names.
@@ -80,15 +84,14 @@ impl Drawing {
         let mut transcript = Transcript { frame, written: Written::default(), numbers: HashMap::new() };
         let terms = transcript.nodes(self, form);
         let mut outputs = Vec::new();
-        for (index, &at) in self.dag.outputs.iter().enumerate() {
-            let name = Name::scalar(Quantity::Torque, index + 1);
+        for (&name, &at) in self.returned.iter().zip(&self.dag.outputs) {
             let term = mapped(&terms, at);
             transcript.define(name, term);
             outputs.push((name, term));
         }
         for (name, image) in &self.names {
             let Some(at) = self.dag.sheet.valued(*image).filter(|at| terms[at.index()].is_some()) else { continue };
-            if name.quantity != Quantity::Torque && at.index() > 1 {
+            if !self.returned.contains(name) && at.index() > 1 {
                 transcript.define(*name, mapped(&terms, at));
             }
         }
@@ -150,13 +153,18 @@ impl Transcript<'_> {
                 Op::Leaf(leaf) => self.leaf(leaf),
                 Op::Sum(a, b) => graph.sum(mapped(&terms, a), mapped(&terms, b)).0,
                 Op::Product(a, b) => graph.product(mapped(&terms, a), mapped(&terms, b)).0,
+                Op::Inverse(a) => {
+                    let one = self.constant(Number::ONE);
+                    self.define(Name::scalar(Quantity::One, 0), one);
+                    self.written.graph.quotient(one, mapped(&terms, a)).0
+                }
             };
             terms[index] = Some(term);
             let len = self.written.graph.len();
             let birth = drawing.births.get(&positive(node.image)).map(|&(place, component)| Birth { place, component });
             let term_place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
             let unborn = (form == Form::Rewritten).then_some(Birth { place: term_place, component: Component::Scalar });
-            let is_operation = matches!(node.op, Op::Sum(..) | Op::Product(..));
+            let is_operation = matches!(node.op, Op::Sum(..) | Op::Product(..) | Op::Inverse(_));
             let birth = if is_operation { birth.or(unborn) } else { None };
             self.written.births.resize_with(len, || birth);
         }
@@ -182,6 +190,7 @@ impl Transcript<'_> {
             Leaf::Position(at) => Name::scalar(Quantity::Position, joint(at)),
             Leaf::Rate(at) => Name::scalar(Quantity::Rate, joint(at)),
             Leaf::RateDot(at) => Name::scalar(Quantity::RateDot, joint(at)),
+            Leaf::Torque(at) => Name::scalar(Quantity::AppliedTorque, joint(at)),
             Leaf::Force(along) => Name::vector(Quantity::JointForce, tip, axis(along)),
             Leaf::Moment(along) => Name::vector(Quantity::JointMoment, tip, axis(along)),
             Leaf::GivenSine(at) => Name::scalar(Quantity::Sine, joint(at)),

@@ -1,15 +1,16 @@
 //! Symbols, vectors and rotations for the formulas of the reduced form, and the sheet on which they are written.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::pseudo_inertia::Triple;
 use super::rows::Row;
-use super::sheet::{Identity, Leaf, Ref, Sheet};
+use super::sheet::{Identity, Leaf, Op, Ref, Sheet, mark_live};
 use crate::exact::{Image, Number, Reading, Turn};
 use crate::function::{Argument, Function};
 use crate::ledger::Place;
-use crate::quantity::{Axis, Component, Name, Quantity};
+use crate::quantity::{Axis, By, Component, Name, Quantity};
 use rne_model::QuarterTurns;
 
 /// Random values for all arguments: what a function of the robot is compared at.
@@ -126,6 +127,10 @@ pub(crate) struct Writer {
     pub(crate) naming: Option<RefCell<Naming>>,
     function: Function,
     point: Point,
+    /// The one joint that accelerates, while a column of the mass matrix is written; nothing moves then.
+    accelerating: Cell<Option<usize>>,
+    /// The variable of the derivatives that are being written.
+    by: Cell<Option<By>>,
 }
 
 impl Writer {
@@ -135,6 +140,8 @@ impl Writer {
             naming: named.then(RefCell::default),
             function,
             point: Point::new(reading, 0),
+            accelerating: Cell::new(None),
+            by: Cell::new(None),
         }
     }
 
@@ -174,17 +181,120 @@ impl Writer {
     }
 
     pub(crate) fn rate(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
-        if !self.function.takes(Argument::Rates) {
+        if !self.function.takes(Argument::Rates) || self.accelerating.get().is_some() {
             return self.zero();
         }
         self.leaf(Leaf::Rate(byte(joint)), self.point.rate(joint)).signed(rows[joint].reversed)
     }
 
     pub(crate) fn rate_dot(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+        if let Some(accelerating) = self.accelerating.get() {
+            let one = if accelerating == joint { self.number(Number::ONE) } else { self.zero() };
+            return one.signed(accelerating == joint && rows[joint].reversed);
+        }
         if !self.function.takes(Argument::Accelerations) {
             return self.zero();
         }
         self.leaf(Leaf::RateDot(byte(joint)), self.point.rate_dot(joint)).signed(rows[joint].reversed)
+    }
+
+    /// What `formulas` are when one joint accelerates with 1 and nothing moves.
+    pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
+        self.accelerating.set(Some(joint));
+        let by = self.by.replace(Some(By::RateDot(joint + 1)));
+        let value = formulas();
+        self.by.set(by);
+        self.accelerating.set(None);
+        value
+    }
+
+    /// τ of an actuator.
+    pub(crate) fn torque(&self, joint: usize) -> Symbol<'_> {
+        self.leaf(Leaf::Torque(byte(joint)), self.point.torque(joint))
+    }
+
+    /// The partial derivatives of some symbols by a variable, in the places of what they are derivatives of.
+    pub(crate) fn derivatives<'s>(&'s self, rows: &[Row], of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+        let (ops, births, definitions) = {
+            let sheet = self.sheet.borrow();
+            let ops: Vec<Op> = sheet.nodes.iter().map(|node| node.op).collect();
+            let mut births = vec![None; ops.len()];
+            let mut definitions: HashMap<usize, Vec<(Name, bool)>> = HashMap::new();
+            if let Some(naming) = &self.naming {
+                let mut naming = naming.borrow_mut();
+                naming.births.resize(ops.len(), None);
+                births.clone_from(&naming.births);
+                for (name, at) in naming.definitions.iter().filter(|(name, _)| name.by.is_none()) {
+                    definitions.entry(at.index()).or_default().push((*name, at.is_negative()));
+                }
+            }
+            (ops, births, definitions)
+        };
+        let outputs: Vec<Ref> = of.iter().map(|symbol| symbol.at).collect();
+        let mut live = Vec::new();
+        mark_live(&self.sheet.borrow().nodes, &outputs, &mut live);
+        let zero = self.zero();
+        let mut rates: Vec<Symbol<'s>> = vec![zero; ops.len()];
+        for (index, op) in ops.iter().enumerate().filter(|(index, _)| live[*index]) {
+            let rate = |at: Ref| {
+                let rate = rates[at.index()];
+                if at.is_negative() { -rate } else { rate }
+            };
+            let value = |at: Ref| self.symbol(at);
+            let rate = match *op {
+                Op::Constant(_) => zero,
+                Op::Leaf(leaf) => self.leaf_rate(rows, leaf, by),
+                Op::Sum(a, b) => rate(a) + rate(b),
+                Op::Product(a, b) => rate(a) * value(b) + value(a) * rate(b),
+                Op::Inverse(a) => {
+                    let inverse = value(Ref::new(index));
+                    -(inverse * inverse * rate(a))
+                }
+            };
+            rates[index] = rate;
+            if let Some(naming) = &self.naming {
+                let mut naming = naming.borrow_mut();
+                let birth = births[index].map(|(place, component)| (Place { by: Some(by), ..place }, component));
+                let len = self.sheet.borrow().nodes.len();
+                naming.births.resize(len, birth);
+                for (name, negative) in definitions.get(&index).into_iter().flatten().filter(|_| !rate.is_zero()) {
+                    if name.quantity.step().is_some() {
+                        naming.definitions.push((Name { by: Some(by), ..*name }, rate.signed(*negative).at));
+                    }
+                }
+            }
+        }
+        of.iter()
+            .map(|symbol| {
+                rates[symbol.at.index()].signed(symbol.at.is_negative() && !rates[symbol.at.index()].is_zero())
+            })
+            .collect()
+    }
+
+    /// The derivative of an argument, or of the sine or cosine of a sum of positions.
+    fn leaf_rate<'s>(&'s self, rows: &[Row], leaf: Leaf, by: By) -> Symbol<'s> {
+        let (zero, one) = (self.zero(), self.number(Number::ONE));
+        let is = |joint: u8, at: usize| usize::from(joint) + 1 == at;
+        match (leaf, by) {
+            (Leaf::Position(joint), By::Position(at)) | (Leaf::Rate(joint), By::Rate(at)) if is(joint, at) => one,
+            (Leaf::RateDot(joint), By::RateDot(at)) if is(joint, at) => one,
+            (Leaf::Sine(first, last) | Leaf::Cosine(first, last), By::Position(at)) => {
+                let (first, last, joint) = (usize::from(first), usize::from(last), at - 1);
+                if !(first..=last).contains(&joint) {
+                    return zero;
+                }
+                // counted with the sign of the first joint
+                let same = rows[joint].reversed == rows[first].reversed;
+                let (sine, cosine) = Angle::of(rows, first, last).image(rows, &self.point);
+                let (from, to) = (byte(first), byte(last));
+                if let Leaf::Sine(..) = leaf {
+                    self.leaf(Leaf::Cosine(from, to), cosine).signed(!same)
+                } else {
+                    self.leaf(Leaf::Sine(from, to), sine).signed(same)
+                }
+            }
+            _ => zero,
+        }
     }
 
     /// Force and moment at the tip, if the function has them.
@@ -240,7 +350,7 @@ impl Writer {
         if let (Some(naming), Some(step)) = (&self.naming, quantity.step()) {
             let mut naming = naming.borrow_mut();
             self.settle(&mut naming, Component::Scalar);
-            naming.place = Some(Place { joint, step, quantity, by: None });
+            naming.place = Some(Place { joint, step, quantity, by: self.by.get() });
         }
     }
 
@@ -259,7 +369,8 @@ impl Writer {
         if let Some(naming) = &self.naming {
             let mut naming = naming.borrow_mut();
             self.settle(&mut naming, name.component);
-            naming.definitions.push((name, x.at));
+            let by = name.by.or(self.by.get()).filter(|_| name.quantity.step().is_some());
+            naming.definitions.push((Name { by, ..name }, x.at));
         }
     }
 
@@ -290,6 +401,11 @@ impl Symbol<'_> {
 
     fn signed(self, negative: bool) -> Self {
         Self { at: self.at.signed(negative), ..self }
+    }
+
+    /// 1/x
+    pub(crate) fn inverse(self) -> Self {
+        Self { at: self.writer.sheet.borrow_mut().inverse(self.at), ..self }
     }
 
     /// Times a constant.

@@ -1,0 +1,159 @@
+//! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
+
+use super::composite::{self, Gathering};
+use super::inward::torques;
+use super::outward::{Arm, motions};
+use super::rows::Table;
+use super::writer::{Symbol, Writer};
+use crate::elimination;
+use crate::exact::Number;
+use crate::function::Function;
+use crate::quantity::{By, Name, Quantity};
+
+/// How a function is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Way {
+    /// The recursion, out and back, and what follows from its torques.
+    Recursion,
+    /// Composite bodies.
+    Composite(Gathering),
+    /// The recursion, once per joint that accelerates.
+    Columns,
+}
+
+impl Way {
+    /// The ways of a function; none for what has no reduced recursion.
+    pub(crate) const fn of(function: Function) -> &'static [Self] {
+        const BY_GROUPS: Way = Way::Composite(Gathering::Groups);
+        const BY_JOINTS: Way = Way::Composite(Gathering::Joints);
+        match function {
+            Function::InverseDynamics
+            | Function::InverseDynamicsWithWrench
+            | Function::InverseDynamicsSc
+            | Function::BiasTorques
+            | Function::CoriolisMatrix
+            | Function::InverseDynamicsDerivatives => &[Way::Recursion],
+            Function::GravityTorques => &[Way::Recursion, BY_GROUPS, BY_JOINTS],
+            Function::MassMatrix | Function::ForwardDynamics => &[BY_GROUPS, BY_JOINTS, Way::Columns],
+            _ => &[],
+        }
+    }
+
+    /// In words, for the choices of a program; nothing is said of the recursion.
+    pub(crate) const fn words(self) -> Option<&'static str> {
+        match self {
+            Self::Recursion => None,
+            Self::Composite(Gathering::Groups) => Some("composite bodies, gathered per group of parallel axes"),
+            Self::Composite(Gathering::Joints) => Some("composite bodies, gathered joint by joint"),
+            Self::Columns => Some("columns: one recursion per joint that accelerates"),
+        }
+    }
+}
+
+/// Writes a function on the writer's sheet: what it returns, by name, in the order of its layout.
+pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, way: Way) -> Vec<(Name, Symbol<'s>)> {
+    let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
+        values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
+    };
+    match (function, way) {
+        (Function::GravityTorques, Way::Composite(gathering)) => {
+            by_joint(Quantity::Torque, composite::gravity_torques(writer, arm, gathering))
+        }
+        (Function::MassMatrix, _) => {
+            let upper = mass_matrix(writer, arm, way);
+            square(arm.rows().len(), |row, column| {
+                let (row, column) = (row.min(column), row.max(column));
+                let by = Some(By::RateDot(column + 1));
+                (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
+            })
+        }
+        (Function::ForwardDynamics, _) => {
+            let upper = mass_matrix(writer, arm, way);
+            let bias = recursion(writer, arm);
+            let rest: Vec<_> = bias
+                .into_iter()
+                .enumerate()
+                .map(|(index, torque)| {
+                    writer.at(Quantity::Reduced, index + 1);
+                    writer.torque(index) - torque
+                })
+                .collect();
+            by_joint(Quantity::RateDot, elimination::solved(&Solving { writer }, &upper, &rest))
+        }
+        (Function::InverseDynamicsDerivatives, _) => {
+            let torques = recursion(writer, arm);
+            let by = |kind: fn(usize) -> By| {
+                let columns: Vec<_> =
+                    (1..=torques.len()).map(|joint| writer.derivatives(arm.rows(), &torques, kind(joint))).collect();
+                square(torques.len(), |row, column| {
+                    let by = Some(kind(column + 1));
+                    (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
+                })
+            };
+            [by(By::Position), by(By::Rate)].concat()
+        }
+        (Function::CoriolisMatrix, _) => {
+            let torques = recursion(writer, arm);
+            let half = writer.number(Number::integer(2).inverse().unwrap_or_default());
+            let columns: Vec<_> =
+                (1..=torques.len()).map(|joint| writer.derivatives(arm.rows(), &torques, By::Rate(joint))).collect();
+            square(torques.len(), |row, column| {
+                writer.at(Quantity::CoriolisElement, row + 1);
+                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                let element = columns[column][row] * half;
+                writer.define(name, element);
+                (name, element)
+            })
+        }
+        _ => by_joint(Quantity::Torque, recursion(writer, arm)),
+    }
+}
+
+fn recursion<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
+    let moved = motions(writer, arm);
+    torques(writer, arm, &moved)
+}
+
+/// The upper half of M.
+fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, way: Way) -> Vec<Vec<Symbol<'s>>> {
+    let Way::Columns = way else {
+        let gathering = if let Way::Composite(gathering) = way { gathering } else { Gathering::Joints };
+        return composite::mass_matrix(writer, arm, gathering);
+    };
+    let table = Table { gravity: [Number::ZERO; 3], ..arm.table.clone() };
+    let still = Arm { table: &table, plan: arm.plan, parameters: arm.parameters };
+    let dof = arm.rows().len();
+    let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
+    for column in 0..dof {
+        let torques = writer.accelerating(column, || recursion(writer, &still));
+        for (row, torque) in torques.into_iter().take(column + 1).enumerate() {
+            rows[row].push(torque);
+        }
+    }
+    rows
+}
+
+fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Symbol<'s>)) -> Vec<(Name, Symbol<'s>)> {
+    (0..dof)
+        .flat_map(|row| (0..dof).map(move |column| (row, column)))
+        .map(|(row, column)| element(row, column))
+        .collect()
+}
+
+/// The sheet on which M x = b is solved.
+struct Solving<'s> {
+    writer: &'s Writer,
+}
+
+impl<'s> elimination::Sheet<Symbol<'s>> for Solving<'s> {
+    fn inverse(&self, a: Symbol<'s>) -> Symbol<'s> {
+        a.inverse()
+    }
+
+    fn within(&self, name: Name, value: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
+        self.writer.at(name.quantity, name.joint);
+        let value = value();
+        self.writer.define(name, value);
+        value
+    }
+}
