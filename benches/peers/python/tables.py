@@ -26,7 +26,6 @@ REQUIRED = {
 }
 
 
-
 def asked(real, dense):
     return dict.fromkeys(("puma560", "stanford", "iiwa14"), real) | dict.fromkeys(("dense7", "dense6_2p"), dense)
 
