@@ -80,7 +80,11 @@ fn counts_as_json() {
     let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
     let json: Value = serde_json::from_str(&json).expect("JSON");
     let entries = json.as_array().expect("a list");
-    assert_eq!(entries.len(), 22, "two robots, five functions, two forms; inverse_dynamics rewritten as well");
+    assert_eq!(
+        entries.len(),
+        2 * 37 + 2,
+        "18 functions, 19 with motors, two forms; inverse_dynamics rewritten as well"
+    );
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
         let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];
@@ -101,8 +105,22 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 10);
+    assert_eq!(widths.len(), 18 + 19);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
+}
+
+#[test]
+fn counts_of_some_functions() {
+    let robot = "robots/planar2.yaml";
+    let some = fine(&["ops", robot, "--function", "mass_matrix,gravity_torques"]);
+    let functions: Vec<_> = some.lines().skip(3).filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(functions, ["gravity_torques", "gravity_torques", "mass_matrix", "mass_matrix"], "{some}");
+    assert!(!some.contains(" div "), "nothing is divided: {some}");
+    assert!(fine(&["ops", robot, "--function", "forward_dynamics"]).contains(" div "));
+    let without_motors = fine(&["ops", robot, "--json"]);
+    assert!(!without_motors.contains("actuator_torques"));
+    fails(2, &["ops", robot, "--tricks", "--function", "mass_matrix"], &["--tricks", "--function"]);
+    fails(2, &["ops", robot, "--function", "torques"], &["mass_matrix"]);
 }
 
 #[test]

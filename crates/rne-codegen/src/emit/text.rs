@@ -230,7 +230,8 @@ impl Piece {
         }
     }
 
-    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines.
+    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines, and the
+    /// brackets of a list in a list of one stand together.
     fn broken(&self, indent: usize) -> String {
         const LIST: usize = 60;
         const SHORT: usize = 10;
@@ -241,6 +242,9 @@ impl Piece {
         let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
         if line.chars().count() <= room && !(*open == '(' && is_nested && line.chars().count() > LIST) {
             return line;
+        }
+        if let [only @ Self::List(..)] = elements.as_slice() {
+            return format!("{open}{}{close}", only.broken(indent));
         }
         let (inner, mut text) = (indent + 4, format!("{open}\n"));
         let blank = " ".repeat(inner);
