@@ -47,7 +47,7 @@ struct Pivot<'s> {
     rest: Symbol<'s>,
 }
 
-fn full<'s>([xx, yy, zz, xy, xz, yz]: Symmetric<'s>) -> Square<'s> {
+fn full([xx, yy, zz, xy, xz, yz]: Symmetric<'_>) -> Square<'_> {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 

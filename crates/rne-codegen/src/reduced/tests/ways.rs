@@ -1,5 +1,7 @@
 //! Every way in which a function can be written is that function, under any plan.
 
+use std::fmt::Write;
+
 use super::super::way::Way;
 use super::*;
 
@@ -66,7 +68,8 @@ fn long_arms_are_articulated() {
         let mut text =
             "format: 1\nname: chain\nsource: no arm\nconvention: modified\ngravity: [1, 2, -9]\njoints:\n".to_owned();
         for joint in 1..=joints {
-            text += &format!(
+            let _ = write!(
+                text,
                 "  - type: revolute\n    dh: {{theta: 0, d: 0.2, a: 0.{joint}, alpha: pi/2}}\n    link: {{mass: 1.{joint}, \
                  com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}\n"
             );
