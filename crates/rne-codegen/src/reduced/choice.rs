@@ -156,6 +156,12 @@ fn drawn_in(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Result<
     Ok((frame, drawing))
 }
 
+/// Whether the choices of a plan matter to a function.
+#[must_use]
+pub fn is_planned(function: Function) -> bool {
+    !Way::of(function).is_empty()
+}
+
 /// What a plan costs for a function; `None` when it does not fit the robot.
 #[must_use]
 pub fn cost(robot: &Robot, plan: &Plan) -> Option<Cost> {
