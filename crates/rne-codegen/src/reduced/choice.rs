@@ -52,7 +52,9 @@ impl Choice {
     /// # Errors
     /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
     pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
-        self.compile_arranged(robot, function, form, |program| fusion::soonest(&program))
+        self.compile_arranged(robot, function, form, |program| {
+            if program.is_long() { fusion::fused(&program) } else { fusion::soonest(&program) }
+        })
     }
 
     /// The same for the fewest instructions, as [`fusion::fused`] arranges it, and proved so. The seven steps are left as they

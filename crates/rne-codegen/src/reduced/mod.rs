@@ -22,6 +22,7 @@ mod regroup;
 mod rewrite;
 mod rows;
 mod search;
+mod sensitivity;
 mod sheet;
 #[cfg(test)]
 mod tests;
