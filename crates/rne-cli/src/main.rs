@@ -3,6 +3,7 @@
 
 mod answer;
 mod arguments;
+mod base_parameters;
 mod check;
 mod emit;
 mod eval;
