@@ -81,6 +81,10 @@ impl Choice {
         match function {
             // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
             Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
+            // then there is nothing to be the same as
+            Function::ForwardDynamics if proof::divides_by_zero(robot, function) => {
+                crate::compile(robot, function, Form::SevenSteps)
+            }
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 let (plan, way) = self.cheapest(robot, function);
