@@ -10,10 +10,10 @@ use std::hint::black_box;
 
 use gungraun::prelude::*;
 use gungraun::{Callgrind, main};
-use rne::{InverseDynamics, Scalar, Wrench};
-use rne_benches::{
-    PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps, State, Ur5Reduced, Ur5SevenSteps, states,
+use rne::{
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Scalar, TorqueDerivatives, Wrench,
 };
+use rne_benches::{PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps, State, states};
 
 fn state<const DOF: usize, T: Scalar>() -> State<DOF, T> {
     black_box(states()[0])
@@ -21,7 +21,10 @@ fn state<const DOF: usize, T: Scalar>() -> State<DOF, T> {
 
 /// Robots to what is counted: a call whose state is already made.
 mod setup {
-    use super::{InverseDynamics, Wrench, black_box, state};
+    use super::{
+        ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, TorqueDerivatives, Wrench, black_box,
+        state,
+    };
 
     pub(super) fn inverse_dynamics<const DOF: usize>(robot: impl InverseDynamics<DOF>) -> impl FnOnce() -> [f64; DOF] {
         let at = state();
@@ -49,11 +52,30 @@ mod setup {
         let at = state();
         move || robot.bias_torques(&at.q, &at.qd)
     }
+
+    pub(super) fn mass_matrix<const DOF: usize>(robot: impl MassMatrix<DOF>) -> impl FnOnce() -> [[f64; DOF]; DOF] {
+        let at = state();
+        move || robot.mass_matrix(&at.q)
+    }
+
+    pub(super) fn forward_dynamics<const DOF: usize>(robot: impl ForwardDynamics<DOF>) -> impl FnOnce() -> [f64; DOF] {
+        let at = state();
+        // What the accelerations are as torques does not matter: there are no branches.
+        move || robot.forward_dynamics(&at.q, &at.qd, &at.qdd)
+    }
+
+    pub(super) fn derivatives<const DOF: usize>(
+        robot: impl InverseDynamicsDerivatives<DOF>,
+    ) -> impl FnOnce() -> TorqueDerivatives<DOF, f64> {
+        let at = state();
+        move || robot.inverse_dynamics_derivatives(&at.q, &at.qd, &at.qdd)
+    }
 }
 
-/// One function for all robots; the rewritten form is another one in `inverse_dynamics` alone.
+/// One function for all robots that have it: the UR5 is derived with inverse dynamics only; the rewritten form is another
+/// one in `inverse_dynamics` alone.
 macro_rules! benchmarks {
-    ($($function:ident $(and $rewritten:ident)?;)*) => {$(
+    ($($function:ident $(and $rewritten:ident)? $(with $ur5:ident)?;)*) => {$(
         #[library_benchmark(setup = setup::$function)]
         #[bench::puma560_seven_steps(Puma560SevenSteps)]
         #[bench::puma560_reduced(Puma560Reduced)]
@@ -61,8 +83,8 @@ macro_rules! benchmarks {
         #[bench::panda_seven_steps(PandaSevenSteps)]
         #[bench::panda_reduced(PandaReduced)]
         $(#[bench::panda_rewritten($rewritten::PandaRewritten)])?
-        #[bench::ur5_seven_steps(Ur5SevenSteps)]
-        #[bench::ur5_reduced(Ur5Reduced)]
+        $(#[bench::ur5_seven_steps($ur5::Ur5SevenSteps)]
+        #[bench::ur5_reduced($ur5::Ur5Reduced)])?
         fn $function<T>(call: impl FnOnce() -> T) -> T {
             call()
         }
@@ -70,16 +92,28 @@ macro_rules! benchmarks {
 }
 
 benchmarks! {
-    inverse_dynamics and rne_benches;
-    inverse_dynamics_f32 and rne_benches;
-    with_wrench;
-    gravity_torques;
-    bias_torques;
+    inverse_dynamics and rne_benches with rne_benches;
+    inverse_dynamics_f32 and rne_benches with rne_benches;
+    with_wrench with rne_benches;
+    gravity_torques with rne_benches;
+    bias_torques with rne_benches;
+    mass_matrix;
+    forward_dynamics;
+    derivatives;
 }
 
 library_benchmark_group!(
     name = calls,
-    benchmarks = [inverse_dynamics, inverse_dynamics_f32, with_wrench, gravity_torques, bias_torques]
+    benchmarks = [
+        inverse_dynamics,
+        inverse_dynamics_f32,
+        with_wrench,
+        gravity_torques,
+        bias_torques,
+        mass_matrix,
+        forward_dynamics,
+        derivatives
+    ]
 );
 
 // Instructions only: no simulation of caches.

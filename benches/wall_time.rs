@@ -3,6 +3,7 @@
 //!
 //! - `independent`: one state after the other; the processor may overlap a call with the next.
 //! - `chained`: every `q` depends on the torques of the call before (times 1e-30, below rounding), so latency counts.
+//! - `gravity`, `mass_matrix`, `forward_dynamics`, `derivatives`: the other functions, independent.
 //!
 //! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops; `dynibo` is the other Rust
 //! crate. It reads URDF, which [`rne_benches::urdf`] writes from the table, has double precision only, and its gravity is
@@ -12,7 +13,7 @@ use std::hint::black_box;
 use std::path::Path;
 
 use divan::Bencher;
-use rne::{Arm, InverseDynamics, Scalar};
+use rne::{Arm, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Scalar};
 use rne_benches::{
     GRAVITY, PandaReduced, PandaRewritten, PandaSevenSteps, Puma560Reduced, Puma560Rewritten, Puma560SevenSteps,
     states, urdf,
@@ -39,6 +40,36 @@ fn gravity<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl InverseDyna
     bencher.bench_local(|| {
         index = (index + 1) % states.len();
         arm.gravity_torques(&black_box(&states[index]).q)
+    });
+}
+
+fn mass_matrix<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl MassMatrix<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        arm.mass_matrix(&black_box(&states[index]).q)
+    });
+}
+
+/// The accelerations of a state serve as torques.
+fn forward_dynamics<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl ForwardDynamics<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        arm.forward_dynamics(&state.q, &state.qd, &state.qdd)
+    });
+}
+
+fn derivatives<const DOF: usize, T: Scalar>(bencher: Bencher, arm: &impl InverseDynamicsDerivatives<DOF>) {
+    let states = states::<DOF, T>();
+    let mut index = 0;
+    bencher.bench_local(|| {
+        index = (index + 1) % states.len();
+        let state = black_box(&states[index]);
+        arm.inverse_dynamics_derivatives(&state.q, &state.qd, &state.qdd)
     });
 }
 
@@ -134,6 +165,9 @@ macro_rules! robot {
             robot!(@measurement independent, dynibo_independent, $name, $dof, $seven_steps, $reduced, $rewritten);
             robot!(@measurement chained, dynibo_chained, $name, $dof, $seven_steps, $reduced, $rewritten);
             robot!(@measurement gravity, dynibo_gravity, $name, $dof, $seven_steps, $reduced);
+            robot!(@function mass_matrix, $name, $dof, $seven_steps, $reduced);
+            robot!(@function forward_dynamics, $name, $dof, $seven_steps, $reduced);
+            robot!(@function derivatives, $name, $dof, $seven_steps, $reduced);
         }
     };
     (
@@ -143,25 +177,35 @@ macro_rules! robot {
         mod $measurement {
             use divan::{Bencher, bench};
 
-            robot!(@form $measurement, $dof, seven_steps, seven_steps_f32, $seven_steps);
-            robot!(@form $measurement, $dof, reduced, reduced_f32, $reduced);
+            robot!(@ours $measurement, $name, $dof, $seven_steps, $reduced);
             $(robot!(@form $measurement, $dof, rewritten, rewritten_f32, $rewritten);)?
-
-            #[bench]
-            fn arm(bencher: Bencher) {
-                crate::$measurement::<$dof, f64>(bencher, &crate::arm::<$dof>(stringify!($name)));
-            }
-
-            #[bench]
-            fn arm_f32(bencher: Bencher) {
-                let arm = rne::Arm::new(crate::arm::<$dof>(stringify!($name)).model().to_f32());
-                crate::$measurement::<$dof, f32>(bencher, &arm);
-            }
 
             #[bench]
             fn dynibo(bencher: Bencher) {
                 crate::$dynibo::<$dof>(bencher, stringify!($name));
             }
+        }
+    };
+    (@function $measurement:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
+        mod $measurement {
+            use divan::{Bencher, bench};
+
+            robot!(@ours $measurement, $name, $dof, $seven_steps, $reduced);
+        }
+    };
+    (@ours $measurement:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
+        robot!(@form $measurement, $dof, seven_steps, seven_steps_f32, $seven_steps);
+        robot!(@form $measurement, $dof, reduced, reduced_f32, $reduced);
+
+        #[bench]
+        fn arm(bencher: Bencher) {
+            crate::$measurement::<$dof, f64>(bencher, &crate::arm::<$dof>(stringify!($name)));
+        }
+
+        #[bench]
+        fn arm_f32(bencher: Bencher) {
+            let arm = rne::Arm::new(crate::arm::<$dof>(stringify!($name)).model().to_f32());
+            crate::$measurement::<$dof, f32>(bencher, &arm);
         }
     };
     (@form $measurement:ident, $dof:literal, $double:ident, $single:ident, $robot:ident) => {

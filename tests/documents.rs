@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use rne_codegen::emit::{self, Listing, listing};
 use rne_codegen::reduced::{self, Choice, PlanFile};
-use rne_codegen::{Form, Function, Operations, Program, Step, compile};
+use rne_codegen::{Capability, Form, Function, Operations, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
 /// The documents with blocks.
@@ -57,6 +57,7 @@ fn block(name: &str) -> String {
             format!("```rust\n{code}```\n")
         }
         "robots" => robots(),
+        "functions" => functions(),
         "operations" => operations(),
         "tricks" => tricks(),
         name => panic!("no block is called `{name}`"),
@@ -99,6 +100,39 @@ fn robots() -> String {
             counts.sincos,
             reduced.sincos
         );
+    }
+    text
+}
+
+/// What every function of the PUMA 560 costs in both forms.
+fn functions() -> String {
+    let path = root().join("robots/puma560.yaml");
+    let robot = robot(&path);
+    let (choice, _) = choice(&path, &robot);
+    let mut text = String::from(
+        "| derive | method | seven steps: products | sums | reduced: products | sums | divisions | angles |\n\
+         |---|---|---|---|---|---|---|---|\n",
+    );
+    for capability in Capability::ALL {
+        for &function in capability.functions() {
+            let count = |form| choice.compile(&robot, function, form).expect("finite constants").operations();
+            let [plain, reduced] = [Form::SevenSteps, Form::Reduced].map(count);
+            let angles = if plain.sincos == reduced.sincos {
+                plain.sincos.to_string()
+            } else {
+                format!("{} → {}", plain.sincos, reduced.sincos)
+            };
+            let _ = writeln!(
+                text,
+                "| `{}` | `{function}` | {} | {} | {} | {} | {} | {angles} |",
+                capability.name(),
+                plain.mul,
+                plain.add,
+                reduced.mul,
+                reduced.add,
+                reduced.div
+            );
+        }
     }
     text
 }

@@ -30,22 +30,31 @@ struct Plugin {
   std::string suffix;
 };
 
+using Result = const double*(int, void*, const double*, int);
+using Keep = void(int, void*, int);
+
 struct Peer {
   std::string name;
-  int kind;
+  int index, kind;
   void* function;
   void* context;
+  Result* result;  // null where the plugin has no rp_result
+  Keep* keep;      // null where it has no rp_keep
   std::vector<double> independent, chained;  // ns per state, one sample per stretch
   double error = NAN;                        // largest deviation from the reference over its largest value
   bool is_batch() const { return kind == RP_ID_BATCH || kind == RP_OTHER_BATCH; }
 };
 
-// The states of a robot and their reference torques, as [state][joint] and as structure of arrays [joint][state].
+// The states of a robot and their reference torques, as [state][joint] and as structure of arrays [joint][state], and
+// the other references, one state after the other.
 struct States {
   size_t joints = 0, count = 0;
   double *q, *qd, *qdd, *tau;
   double *soa_q, *soa_qd, *soa_qdd, *soa_tau;
-  double largest_tau = 0, largest_qdd = 0;
+  double* references[RP_QUANTITIES];
+  double largest_qdd = 0, largest[RP_QUANTITIES];
+  // Numbers per state.
+  size_t size_of(int what) const { return what < RP_MASS_MATRIX ? joints : joints * joints; }
 };
 
 [[noreturn]] void fail(const std::string& message) {
@@ -109,8 +118,17 @@ States read_states(const std::string& file) {
     for (size_t k = 0; k < s.count; k++)
       for (size_t j = 0; j < s.joints; j++) (*columns[i])[j * s.count + k] = (*rows[i])[k * s.joints + j];
   }
+  s.references[RP_TAU] = s.tau;
+  for (int what = RP_TAU; what < RP_QUANTITIES; what++) {
+    const size_t numbers = s.size_of(what) * s.count;
+    if (what != RP_TAU) {
+      s.references[what] = array(numbers);
+      if (std::fread(s.references[what], sizeof(double), numbers, f) != numbers) fail(file + " is too short");
+    }
+    s.largest[what] = largest(s.references[what], numbers);
+  }
   std::fclose(f);
-  s.largest_tau = largest(s.tau, size), s.largest_qdd = largest(s.qdd, size);
+  s.largest_qdd = largest(s.qdd, size);
   return s;
 }
 
@@ -130,7 +148,10 @@ std::vector<Peer> peers_of(const std::vector<Plugin>& plugins, const std::string
       if (!function) continue;
       Peer peer;
       peer.name = symbol<const char*(int)>(plugin.library, "rp_name")(k) + plugin.suffix;
+      peer.index = k;
       peer.kind = symbol<int(int)>(plugin.library, "rp_kind")(k);
+      peer.result = reinterpret_cast<Result*>(dlsym(plugin.library, "rp_result"));
+      peer.keep = reinterpret_cast<Keep*>(dlsym(plugin.library, "rp_keep"));
       peer.function = function;
       const auto open = symbol<void*(int, const char*, const char*)>(plugin.library, "rp_open");
       peer.context = open(k, robot.c_str(), dir.c_str());
@@ -140,19 +161,39 @@ std::vector<Peer> peers_of(const std::vector<Plugin>& plugins, const std::string
   return peers;
 }
 
+// All quantities that a competitor says it computes; each deviation is over the largest value of its quantity.
+void check_results(Peer& peer, const States& s, double* out) {
+  if (!peer.result) return;
+  if (peer.keep) peer.keep(peer.index, peer.context, 1);
+  for (size_t k = 0; k < s.count; k++) {
+    const size_t i = k * s.joints;
+    rp_call(peer.function)(peer.context, s.q + i, s.qd + i, s.qdd + i, out);
+    for (int what = RP_TAU; what < RP_QUANTITIES; what++) {
+      const double* result = peer.result(peer.index, peer.context, out, what);
+      if (!result) continue;
+      const size_t size = s.size_of(what);
+      const double error = deviation(result, s.references[what] + k * size, size) / s.largest[what];
+      peer.error = std::isnan(peer.error) ? error : std::max(peer.error, error);
+    }
+  }
+  if (peer.keep) peer.keep(peer.index, peer.context, 0);
+}
+
 void check(Peer& peer, const States& s, double* out) {
-  if (peer.kind == RP_OTHER || peer.kind == RP_OTHER_BATCH) return;
+  if (peer.kind == RP_OTHER_BATCH) return;
+  if (peer.kind == RP_OTHER) return check_results(peer, s, out);
   const size_t size = s.joints * s.count;
   std::fill(out, out + size, NAN);
   if (peer.is_batch()) {
     rp_batch(peer.function)(peer.context, s.soa_q, s.soa_qd, s.soa_qdd, out, s.count);
-    peer.error = deviation(out, s.soa_tau, size) / s.largest_tau;
+    peer.error = deviation(out, s.soa_tau, size) / s.largest[RP_TAU];
     return;
   }
   const bool forward = peer.kind == RP_FD;
   for (size_t i = 0; i < size; i += s.joints)
     rp_call(peer.function)(peer.context, s.q + i, s.qd + i, (forward ? s.tau : s.qdd) + i, out + i);
-  peer.error = forward ? deviation(out, s.qdd, size) / s.largest_qdd : deviation(out, s.tau, size) / s.largest_tau;
+  peer.error =
+      forward ? deviation(out, s.qdd, size) / s.largest_qdd : deviation(out, s.tau, size) / s.largest[RP_TAU];
 }
 
 void time_batch(Peer& peer, const States& s, double* out, bool counts) {

@@ -9,9 +9,12 @@
 
 namespace {
 
+using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 struct Context {
   pinocchio::Model model;
   pinocchio::Data data;
+  Matrix result;  // for the driver's check
   explicit Context(const pinocchio::Model& m) : model(m), data(model) {}
   EIGEN_MAKE_ALIGNED_OPERATOR_NEW
 };
@@ -47,6 +50,23 @@ void derivatives(void* context, const double* q, const double* qd, const double*
   out[0] = c.data.dtau_dq(0, 0);
 }
 
+// Results that are not in `out`; of a mass matrix Pinocchio fills the upper triangle.
+const double* result(void* context, const double* out, rp_call call, int what) {
+  Context& c = open(context);
+  if (call == nle && what == RP_BIAS) return out;
+  if (call == gravity && what == RP_GRAVITY) return out;
+  if (call == derivatives && what == RP_TAU) return c.data.tau.data();
+  if (call == derivatives && what == RP_DTAU_DQ)
+    c.result = c.data.dtau_dq;
+  else if (call == derivatives && what == RP_DTAU_DQD)
+    c.result = c.data.dtau_dv;
+  else if ((call == crba || call == derivatives) && what == RP_MASS_MATRIX)
+    c.result = c.data.M.selfadjointView<Eigen::Upper>();
+  else
+    return nullptr;
+  return c.result.data();
+}
+
 const struct {
   const char* name;
   int kind;
@@ -62,4 +82,7 @@ const char* rp_name(int k) { return table[k].name; }
 int rp_kind(int k) { return table[k].kind; }
 void* rp_func(int k, const char*) { return reinterpret_cast<void*>(table[k].call); }
 void* rp_open(int, const char* robot, const char* dir) { return new Context(pinocchio_model(read_flat(dir, robot))); }
+RP_EXPORT const double* rp_result(int k, void* context, const double* out, int what) {
+  return result(context, out, table[k].call, what);
+}
 }

@@ -13,7 +13,7 @@ extern "C" {
 enum {
   RP_ID = 0,         /* inverse dynamics: out = tau; checked */
   RP_FD = 1,         /* forward dynamics: third input = tau, out = qdd; checked */
-  RP_OTHER = 2,      /* anything else, one state per call */
+  RP_OTHER = 2,      /* anything else, one state per call; checked as far as rp_result says */
   RP_ID_BATCH = 3,   /* inverse dynamics of many states per call; checked */
   RP_OTHER_BATCH = 4 /* anything else, many states per call */
 };
@@ -33,6 +33,25 @@ RP_EXPORT int rp_kind(int k);
 RP_EXPORT void *rp_func(int k, const char *robot);
 /* and the `ctx` of its function. The folder `dir` holds the files of prepare.py. */
 RP_EXPORT void *rp_open(int k, const char *robot, const char *dir);
+
+/* What the driver has a reference of: torques, those at rest, those without acceleration, the mass matrix, the
+   derivatives of the torques by q and by qd. Matrices are row-major, row = torque. */
+enum {
+  RP_TAU = 0,
+  RP_GRAVITY = 1,
+  RP_BIAS = 2,
+  RP_MASS_MATRIX = 3,
+  RP_DTAU_DQ = 4,
+  RP_DTAU_DQD = 5,
+  RP_QUANTITIES = 6
+};
+/* Optional: the quantity `what` of the last call of an RP_OTHER with this `ctx` and `out`, null if it computes no such
+   thing. The driver checks all that are there. A matrix does not fit into `out`: a competitor keeps it and writes one
+   element into `out`. */
+RP_EXPORT const double *rp_result(int k, void *ctx, const double *out, int what);
+/* Optional, for a competitor that keeps results only to be checked: whether it does in the calls to come. At first it
+   does not. */
+RP_EXPORT void rp_keep(int k, void *ctx, int keep);
 #ifdef __cplusplus
 }
 #endif

@@ -1,7 +1,8 @@
 """prepare.py DIR ROBOT...: the files that the driver and the plugins read.
 
 DIR/<robot>.txt     constant transforms and inertias as plain numbers (native/flat.hpp)
-DIR/<robot>.states  random states and their reference torques, which are Pinocchio's
+DIR/<robot>.states  random states and their reference results, which are Pinocchio's: torques, those of gravity, those
+                    without acceleration, mass matrix, derivatives of the torques by q and q̇
 DIR/<robot>.mjb     the MuJoCo model, if MuJoCo is there
 """
 
@@ -40,9 +41,19 @@ def states_and_torques(robot):
     model = pinocchio_arm.build(robot)
     data = model.createData()
     q, qd, qdd = states(robot)
-    tau = np.array([pinocchio.rnea(model, data, *state) for state in zip(q, qd, qdd)])
+    tau, gravity, bias, mass_matrix, by_q, by_qd = ([] for _ in range(6))
+    for at_q, at_qd, at_qdd in zip(q, qd, qdd):
+        tau.append(pinocchio.rnea(model, data, at_q, at_qd, at_qdd).copy())
+        gravity.append(pinocchio.computeGeneralizedGravity(model, data, at_q).copy())
+        bias.append(pinocchio.nonLinearEffects(model, data, at_q, at_qd).copy())
+        upper = np.triu(pinocchio.crba(model, data, at_q))
+        mass_matrix.append(upper + np.triu(upper, 1).T)
+        pinocchio.computeRNEADerivatives(model, data, at_q, at_qd, at_qdd)
+        by_q.append(data.dtau_dq.copy())
+        by_qd.append(data.dtau_dv.copy())
     header = struct.pack("<qq", len(robot["joints"]), STATES)
-    return header + b"".join(np.ascontiguousarray(x, dtype="<f8").tobytes() for x in (q, qd, qdd, tau))
+    results = (q, qd, qdd, tau, gravity, bias, mass_matrix, by_q, by_qd)
+    return header + b"".join(np.ascontiguousarray(x, dtype="<f8").tobytes() for x in results)
 
 
 def main():

@@ -37,7 +37,8 @@ def main():
             robot = load(name)
             arm, (q, qd, qdd) = build(robot), states(robot)
             with open(f"{folder}/{name}.states", "rb") as file:
-                reference = np.frombuffer(file.read()[16:], dtype="<f8")[-q.size :].reshape(q.shape)
+                numbers = np.frombuffer(file.read()[16:], dtype="<f8")
+            reference = numbers[3 * q.size : 4 * q.size].reshape(q.shape)  # behind q, qd and qdd
             error = np.abs(arm.rne(q, qd, qdd) - reference).max() / np.abs(reference).max()
             times = []
             for _ in range(REPETITIONS):

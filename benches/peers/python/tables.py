@@ -26,6 +26,23 @@ REQUIRED = {
 }
 
 
+def asked(real, dense):
+    return dict.fromkeys(("puma560", "stanford", "iiwa14"), real) | dict.fromkeys(("dense7", "dense6_2p"), dense)
+
+
+# The other functions, and torques for comparison: Pinocchio's row, ours without its target, and what is asked.
+# Pinocchio's derivatives compute torques and mass matrix in passing, ours do not: hence twice.
+FUNCTIONS = {
+    "torques": ("pin_rnea", "rne", {"puma560": 9}),
+    "gravity": ("pin_gravity", "rne_gravity", {}),
+    "bias": ("pin_nle", "rne_bias", {}),
+    "mass matrix": ("pin_crba", "rne_mass_matrix", asked(4, 2.5)),
+    "forward dynamics": ("pin_aba", "rne_forward_dynamics", asked(4, 2.5)),
+    "derivatives": ("pin_rnea_deriv", "rne_derivatives", asked(3, 2)),
+    "derivatives, torques, mass matrix": ("pin_rnea_deriv", "rne_derivatives_tau_m", asked(3, 2)),
+}
+
+
 class Times:
     """Every competitor's times for every robot."""
 
@@ -64,7 +81,13 @@ class Times:
         return any(row["inverse_dynamics"] for (_, p), row in self.rows.items() if p == peer)
 
     def ours(self, batch):
-        return [peer for peer in self.peers if is_ours(peer) and self.is_batch(peer) == batch]
+        """Our inverse dynamics."""
+        return [p for p in self.peers if is_ours(p) and self.is_inverse_dynamics(p) and self.is_batch(p) == batch]
+
+    def targets(self):
+        """The ends of the names of our rows that have the other functions."""
+        row = "rne_mass_matrix"
+        return [peer.removeprefix(row) for peer in self.peers if peer.startswith(row)]
 
     def best_casadi(self, robot, key):
         """The fastest of CasADi's functions of one state, as (time, name), or None."""
@@ -86,12 +109,16 @@ def markdown(head, rows):
     return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
 
 
-def time_table(times, peers, key):
-    def cell(robot, peer):
+def time_cells(times, peer, key):
+    def cell(robot):
         x = times.get(robot, peer, key)
         return "-" if x is None else f"{nanoseconds(x)} ({nanoseconds(times.get(robot, peer, key + '_min'))})"
 
-    rows = [[bold(peer), *(cell(robot, peer) for robot in times.robots)] for peer in peers]
+    return [bold(peer), *map(cell, times.robots)]
+
+
+def time_table(times, peers, key):
+    rows = [time_cells(times, peer, key) for peer in peers]
     return markdown(["competitor", *times.robots], [row for row in rows if any(c != "-" for c in row[1:])])
 
 
@@ -147,6 +174,55 @@ def required(times):
     return markdown(["required", *robots], rows) + f"\n\n{reached} of {total} reached."
 
 
+def function_times(times):
+    peers = []
+    for name, (other, own, _) in FUNCTIONS.items():
+        if name != "torques":
+            peers += [other, *(own + target for target in times.targets())]
+    rows = []
+    for peer in dict.fromkeys(peers):
+        errors = [x for robot in times.robots if (x := times.get(robot, peer, "error")) is not None]
+        rows.append([*time_cells(times, peer, "independent"), f"{max(errors):.1e}" if errors else "-"])
+    return markdown(["competitor", *times.robots, "deviation"], rows)
+
+
+def function_ratios(times):
+    robots = [robot for robot in REQUIRED_ROBOTS if robot in times.robots]
+    rows, reached, total = [], 0, 0
+    for name, (other, own, limits) in FUNCTIONS.items():
+        head = [f"≥ {limits[robot]:g}" if robot in limits else "" for robot in robots]
+        rows.append([f"**{name}**, against {other}", *head])
+        for target in times.targets():
+            cells = []
+            for robot in robots:
+                time, rival = (times.get(robot, peer, "independent") for peer in (own + target, other))
+                if time is None or rival is None:
+                    cells.append("-")
+                elif robot not in limits:
+                    cells.append(f"{rival / time:.2f}")
+                else:
+                    is_reached = rival / time >= limits[robot]
+                    reached, total = reached + is_reached, total + 1
+                    cells.append(f"{rival / time:.2f} {'reached' if is_reached else 'not reached'}")
+            rows.append([own + target, *cells])
+    return markdown(["ratio of medians", *robots], rows) + f"\n\n{reached} of {total} reached."
+
+
+def functions(times):
+    """The section on the other functions, or nothing where the run had none."""
+    if not times.targets():
+        return []
+    return [
+        "### Other functions, beside Pinocchio's, independent calls: median ns (minimum ns)",
+        function_times(times),
+        "Deviation: the largest of 1024 states of each robot from the results of Pinocchio's Python package (forward "
+        "dynamics: from the accelerations of the states), over the robot's largest value. Of the derivatives both "
+        "matrices are compared, with torques and mass matrix all four.",
+        "### Other functions: how many times faster than Pinocchio's, and what is required",
+        function_ratios(times),
+    ]
+
+
 def losses(times):
     """Every inverse dynamics of others that is faster than our slowest or even our fastest row of its kind."""
     rows = []
@@ -180,8 +256,9 @@ def correctness(times):
     wrong = [f"{peer} on {robot}: {error:.1e}" for (robot, peer), error in checked.items() if error > TOLERANCE]
     if wrong:
         return "**Wrong results**, largest deviation over largest reference value: " + "; ".join(wrong)
-    others = max((e for (_, p), e in checked.items() if not is_ours(p) and p != "pin_aba"), default=math.nan)
-    own = max((e for (_, p), e in checked.items() if is_ours(p)), default=math.nan)
+    torques = {key: error for key, error in checked.items() if times.is_inverse_dynamics(key[1])}
+    others = max((e for (_, p), e in torques.items() if not is_ours(p)), default=math.nan)
+    own = max((e for (_, p), e in torques.items() if is_ours(p)), default=math.nan)
     return (
         "Every inverse dynamics agrees with the reference torques, 1024 states of each robot. Largest deviation over "
         f"the largest torque: {own:.1e} of our rows, {others:.1e} of the others (accepted: {TOLERANCE:g})."
@@ -200,6 +277,9 @@ def spread(times):
     )
 
 
+OTHER_FUNCTIONS = "gravity_torques", "bias_torques", "mass_matrix", "forward_dynamics", "inverse_dynamics_derivatives"
+
+
 def operations(casadi, ours):
     """Of CasADi's functions (a CSV file) and ours (the JSON of `rne ops`)."""
     counts = {}  # (function, robot): cell
@@ -213,6 +293,9 @@ def operations(casadi, ours):
     for row in json.loads(ours.read_text()):
         if row["function"] == "inverse_dynamics":
             count(f"**rne, {row['form']}**", row["robot"], row["mul"], row["add"], row["sincos"])
+    for row in json.loads(ours.read_text()):
+        if row["function"] in OTHER_FUNCTIONS and row["form"] == "reduced":
+            count(f"**rne, {row['function']}**", row["robot"], row["mul"], row["add"], row["sincos"])
     robots = [robot for robot in ROBOTS if any(robot == r for _, r in counts)]
     functions = list(dict.fromkeys(function for function, _ in counts))
     return markdown(["function", *robots], [[f, *(counts.get((f, robot), "-") for robot in robots)] for f in functions])
@@ -220,7 +303,8 @@ def operations(casadi, ours):
 
 def report(work):
     times = Times(work / "rounds")
-    single = [peer for peer in times.peers if not times.is_batch(peer)]
+    own = times.ours(batch=False)
+    single = [peer for peer in times.peers if not times.is_batch(peer) and (peer in own or not is_ours(peer))]
     batch = [peer for peer in times.peers if times.is_batch(peer)]
     parts = [
         (work / "conditions.md").read_text().strip(),
@@ -239,6 +323,7 @@ def report(work):
         required(times),
         "### Where our code loses",
         losses(times),
+        *functions(times),
         "### Operations: products + sums = both, angles",
         operations(work / "build/generated/operations.csv", work / "build/operations.json"),
     ]

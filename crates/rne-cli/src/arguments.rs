@@ -1,5 +1,7 @@
 //! The grammar of the command line, and the values that several commands take.
 
+use std::fmt;
+
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use rne_codegen::reduced::Trick;
@@ -45,6 +47,32 @@ pub(crate) enum Command {
 pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
     PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| name.parse::<Function>())
+}
+
+/// One function, or all that a robot has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FunctionOrAll {
+    All,
+    One(Function),
+}
+
+impl fmt::Display for FunctionOrAll {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::One(function) => function.fmt(f),
+        }
+    }
+}
+
+/// Reads the name of a function, or `all`.
+pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> {
+    let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
+    let all = PossibleValue::new("all").help("Every function of the robot");
+    PossibleValuesParser::new(Function::ALL.map(value).into_iter().chain([all])).try_map(|name| match name.as_str() {
+        "all" => Ok(FunctionOrAll::All),
+        name => name.parse::<Function>().map(FunctionOrAll::One),
+    })
 }
 
 /// Reads the name of a form.

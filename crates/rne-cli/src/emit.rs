@@ -7,21 +7,24 @@ use clap::{Args, ValueEnum};
 use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 
+use crate::arguments::FunctionOrAll;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
-use crate::{arguments, robot_file};
+use crate::{arguments, functions, robot_file};
 
 /// Write the generated code as a file that compiles by itself
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne emit robots/puma560.yaml                                         to the terminal
+  rne emit robots/puma560.yaml --function all -o puma.rs               everything the robot has
   rne emit robots/puma560.yaml --function gravity_torques -o puma.rs   into a file
   rne emit robots/puma560.yaml --check puma.rs                         is that file what rne would write?
 
-Every function is written unless --function names some. A file that rne did not generate is overwritten with
+The five functions of the trait InverseDynamics are written unless --function names others; all is every
+function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
 --force only. --check exits with 1 when the file is stale, and says how to refresh it.")]
 pub(crate) struct Arguments {
     /// Robot file
@@ -31,8 +34,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
     /// This function only; may be repeated
-    #[arg(long = "function", value_name = "F", value_parser = arguments::function())]
-    functions: Vec<Function>,
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all())]
+    functions: Vec<FunctionOrAll>,
     /// How it is computed
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name())]
     form: Form,
@@ -78,14 +81,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 /// The functions asked for, each once, in the order of the traits.
-fn functions(arguments: &Arguments) -> impl Iterator<Item = Function> {
+fn functions(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Failure> {
     let asked = &arguments.functions;
-    Function::ALL.into_iter().filter(move |function| asked.is_empty() || asked.contains(function))
+    if asked.contains(&FunctionOrAll::All) {
+        return Ok(functions::of(robot).collect());
+    }
+    let is_asked = |function: &Function| match asked.as_slice() {
+        [] => Function::TORQUES.contains(function),
+        asked => asked.contains(&FunctionOrAll::One(*function)),
+    };
+    let functions: Vec<Function> = Function::ALL.into_iter().filter(is_asked).collect();
+    functions.iter().try_for_each(|&function| functions::check(&arguments.file, robot, function))?;
+    Ok(functions)
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
-    functions(arguments).map(|function| compiler.compile(function, arguments.form)).collect()
+    let functions = functions(arguments, robot)?;
+    functions.into_iter().map(|function| compiler.compile(function, arguments.form)).collect()
 }
 
 fn is_ours(text: &str) -> bool {
@@ -169,10 +182,8 @@ fn first_difference(found: &str, expected: &str) -> String {
 /// The command that writes `out`.
 fn command(arguments: &Arguments, out: &Path) -> String {
     let mut command = format!("rne emit {} --lang {}", shell(&arguments.file), arguments.lang.name());
-    if !arguments.functions.is_empty() {
-        for function in functions(arguments) {
-            let _ = write!(command, " --function {function}");
-        }
+    for function in &arguments.functions {
+        let _ = write!(command, " --function {function}");
     }
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);

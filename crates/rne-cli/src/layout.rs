@@ -10,14 +10,14 @@ pub(crate) enum Align {
 }
 
 /// Lines of cells, each column as wide as its widest cell, two blanks between them.
-pub(crate) fn columns<const N: usize>(alignment: [Align; N], lines: &[[String; N]]) -> Vec<String> {
-    let mut widths = [0; N];
+pub(crate) fn columns(alignment: &[Align], lines: &[impl AsRef<[String]>]) -> Vec<String> {
+    let mut widths = vec![0; alignment.len()];
     for line in lines {
-        for (column, cell) in widths.iter_mut().zip(line) {
+        for (column, cell) in widths.iter_mut().zip(line.as_ref()) {
             *column = width(cell).max(*column);
         }
     }
-    let line = |cells: &[String; N]| {
+    let line = |cells: &[String]| {
         let mut line = String::new();
         for (position, ((cell, &width), align)) in cells.iter().zip(&widths).zip(alignment).enumerate() {
             let gap = if position == 0 { "" } else { "  " };
@@ -29,7 +29,7 @@ pub(crate) fn columns<const N: usize>(alignment: [Align; N], lines: &[[String; N
         line.truncate(line.trim_end().len());
         line
     };
-    lines.iter().map(line).collect()
+    lines.iter().map(|cells| line(cells.as_ref())).collect()
 }
 
 /// A text, then blanks up to a width.
@@ -85,6 +85,6 @@ mod tests {
     #[test]
     fn columns_are_as_wide_as_their_widest_cell() {
         let lines = [["a".to_owned(), "10".to_owned()], ["bcd".to_owned(), "1".to_owned()]];
-        assert_eq!(columns([Align::Left, Align::Right], &lines), ["a    10", "bcd   1"]);
+        assert_eq!(columns(&[Align::Left, Align::Right], &lines), ["a    10", "bcd   1"]);
     }
 }

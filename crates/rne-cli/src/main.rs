@@ -1,10 +1,13 @@
 //! The command line of rne: a thin shell over functions that take arguments and return text.
 #![forbid(unsafe_code)]
 
+mod answer;
 mod arguments;
+mod base_parameters;
 mod check;
 mod emit;
 mod eval;
+mod functions;
 mod heading;
 mod highlight;
 mod layout;
@@ -16,6 +19,7 @@ mod plan_file;
 mod robot_file;
 mod search;
 mod show;
+mod state;
 mod terminal;
 mod tour;
 mod worksheet;

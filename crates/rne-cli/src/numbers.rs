@@ -64,6 +64,17 @@ pub(crate) fn fixed(value: f64) -> String {
     format!("{value:>WIDTH$.DIGITS$}")
 }
 
+/// A number for a table: so many digits behind the point, an exact zero alone, what is tiny or huge with its power of ten.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-4 || value.abs() >= 1e6 {
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.digits$}")
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::f64::consts::FRAC_PI_2;
@@ -85,6 +96,7 @@ mod tests {
         assert_eq!(fixed(0.0), "    0       ");
         assert_eq!(fixed(-0.0), fixed(0.0));
         assert_eq!(fixed(1.25e-17), "  1.2500e-17");
+        assert_eq!([0.0, -0.0, 1.25, 1e-9].map(|x| rounded(x, 3)), ["0", "0", "1.250", "1.00e-9"]);
         assert_eq!(at_the_point(&["1.5".to_owned(), "-10".to_owned()]), ["  1.5", "-10"]);
     }
 }

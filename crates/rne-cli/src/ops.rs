@@ -13,7 +13,7 @@ use crate::layout::{Align, columns};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
-use crate::{arguments, plan_file, robot_file};
+use crate::{arguments, functions, plan_file, robot_file};
 
 /// Count the operations of every function, before folding and in the generated code
 #[derive(Args)]
@@ -21,15 +21,22 @@ use crate::{arguments, plan_file, robot_file};
 Example:
   rne ops robots/puma560.yaml robots/scara_cobra600.yaml
   rne ops robots/*.yaml --json
+  rne ops robots/*.yaml --function mass_matrix,forward_dynamics
   rne ops robots/puma560.yaml --tricks               what each trick of the reduced form saves
   rne ops robots/puma560.yaml --without gyrostat     the reduced form without it
 
 A subtraction counts as an addition, a negation is free, x·x is one multiplication, and sincos counts the
-angles whose sine or cosine is used. Before folding: the recursion as a loop over 3-vectors performs it.")]
+angles whose sine or cosine is used; divisions have a column where there are any, and are not in the total.
+Before folding: the recursion as a loop over 3-vectors performs it. actuator_torques is listed where the robot
+has motors, forward_dynamics where every joint moves a mass.")]
 pub(crate) struct Arguments {
     /// Robot files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// These functions only; may be repeated
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function(),
+        conflicts_with = "tricks")]
+    functions: Vec<Function>,
     /// A list of {robot, function, form, mul, add, div, sincos, statements}
     #[arg(long)]
     json: bool,
@@ -73,7 +80,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.choice()?));
             } else {
-                counted.push((robot.name.clone(), counts(path, &robot, &compiler, &arguments.without)?));
+                let functions: Vec<Function> = functions::of(&robot)
+                    .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
+                    .collect();
+                counted.push((robot.name.clone(), counts(path, &robot, &compiler, &functions, &arguments.without)?));
             }
             Ok(())
         });
@@ -88,11 +98,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// Counts every function of a robot in every form; the reduced form without some tricks alone, if there are any.
+/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any.
 pub(crate) fn counts(
     file: &Path,
     robot: &Robot,
     compiler: &Compiler<'_>,
+    functions: &[Function],
     without: &[Trick],
 ) -> Result<Vec<Count>, Failure> {
     let mut counts = Vec::new();
@@ -105,14 +116,14 @@ pub(crate) fn counts(
     if !without.is_empty() {
         let plan = without.iter().fold(compiler.choice()?.plan.clone(), |plan, trick| trick.left_out_of(&plan));
         let choice = Choice { plan, rewritten: None };
-        for function in Function::ALL {
+        for &function in functions {
             let program = choice.compile(robot, function, Form::Reduced);
             let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
             counts.push(count(function, Form::Reduced, &program));
         }
         return Ok(counts);
     }
-    for function in Function::ALL {
+    for &function in functions {
         for form in [Form::SevenSteps, Form::Reduced] {
             counts.push(count(function, form, &compiler.compile(function, form)?));
         }
@@ -130,7 +141,7 @@ fn tricks(robot: &Robot, choice: &Choice) -> String {
     for (trick, saved) in reduced::savings(robot, &choice.plan) {
         lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
     }
-    for (index, line) in columns([Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {
+    for (index, line) in columns(&[Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {
         let _ = match index {
             0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
             _ => writeln!(text, "{line}"),
@@ -156,28 +167,42 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
 /// The counts of robots as a table: a line per robot, below it a line per function and form.
 pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
     use Align::{Left, Right};
-    let titles =
-        ["", "form", "mul", "add", "total", "", "mul", "add", "total", "sincos", "statements"].map(str::to_owned);
-    let mut lines = vec![titles];
+    let divides = counted.iter().flat_map(|(_, counts)| counts).any(|count| count.after.div > 0);
+    let mut titles = vec!["", "form", "mul", "add", "total", "", "mul", "add", "total", "sincos", "statements"];
+    let mut alignment = vec![Left, Left, Right, Right, Right, Left, Right, Right, Right, Right, Right];
+    let division = 9; // its column, behind the total
+    if divides {
+        titles.insert(division, "div");
+        alignment.insert(division, Right);
+    }
+    let mut lines: Vec<Vec<String>> = vec![titles.into_iter().map(str::to_owned).collect()];
     for (_, counts) in counted {
-        for Count { function, form, before: (products, sums), after } in counts {
-            lines.push([
+        let mut function_before = None;
+        for &Count { function, form, before: (products, sums), after } in counts {
+            let again = function_before.replace(function) == Some(function);
+            // the forms of one function replace the same recursion
+            let [before_mul, before_add, before] =
+                [products, sums, products + sums].map(|count| if again { String::new() } else { count.to_string() });
+            let mut line = vec![
                 format!(" {function}"),
                 form.to_string(),
-                products.to_string(),
-                sums.to_string(),
-                (products + sums).to_string(),
+                before_mul,
+                before_add,
+                before,
                 "→".to_owned(),
                 after.mul.to_string(),
                 after.add.to_string(),
                 after.total().to_string(),
                 after.sincos.to_string(),
                 after.statements.to_string(),
-            ]);
+            ];
+            if divides {
+                line.insert(division, if after.div == 0 { String::new() } else { after.div.to_string() });
+            }
+            lines.push(line);
         }
     }
-    let alignment = [Left, Left, Right, Right, Right, Left, Right, Right, Right, Right, Right];
-    let mut lines = columns(alignment, &lines).into_iter();
+    let mut lines = columns(&alignment, &lines).into_iter();
     let titles = lines.next().unwrap_or_default();
     let (before, after) = (titles.find("mul"), titles.rfind("mul"));
     let mut text = String::new();

@@ -4,6 +4,7 @@ use rne_codegen::CompileError;
 use rne_model::Report;
 use serde::Serialize;
 
+use crate::functions;
 use crate::terminal::ERROR;
 
 /// Exit status when the input is at fault.
@@ -57,8 +58,14 @@ impl Failure {
         Self { text: headed(message), status: USAGE }
     }
 
-    /// The robot is valid but too large to be compiled.
+    /// The robot is valid but cannot be compiled.
     pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
+        if functions::is_singular(error) {
+            return Self::input(format_args!(
+                "{file}: the mass matrix is singular in every position, for a joint moves no mass; accelerations do not \
+                 follow from torques"
+            ));
+        }
         Self::input(format_args!("{file}: {error}"))
     }
 }

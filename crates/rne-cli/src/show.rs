@@ -11,7 +11,7 @@ use rne_model::Robot;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::QUIET;
-use crate::{arguments, heading, highlight, robot_file};
+use crate::{arguments, base_parameters, functions, heading, highlight, robot_file};
 
 /// Show the generated code of a function, step by step, with what was folded and why
 #[derive(Args)]
@@ -22,6 +22,8 @@ Examples:
   rne show robots/scara_cobra600.yaml --function gravity_torques
   rne show robots/planar2.yaml --step 3                 the velocities, which torques do not need
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
+  rne show robots/puma560.yaml --function mass_matrix --form reduced
+  rne show robots/puma560.yaml --base-parameters        what the torques can see of the links
 
 Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of link 2 along z, dw ω̇, dc ċ, ddc c̈,
 f1_2_x and n1_2_x what link 1 exerts on link 2. `rne emit` writes a file with the meaning of every name.")]
@@ -45,6 +47,9 @@ pub(crate) struct Arguments {
     /// Compute these for every link, even where no torque needs them; --step 3 keeps the velocity
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
     keep: Vec<Kept>,
+    /// Instead of code: which combinations of link parameters the torques depend on, for identification
+    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep"])]
+    base_parameters: bool,
 }
 
 /// A quantity of the lecture that may be folded away.
@@ -105,7 +110,11 @@ impl Kept {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
     let robot = robot_file::robot(&arguments.file)?;
+    if arguments.base_parameters {
+        return Ok(Outcome::text(heading::robot(&robot) + "\n" + &base_parameters::text(&robot)));
+    }
     check_joint(&robot, arguments.joint)?;
+    functions::check(&arguments.file, &robot, arguments.function)?;
 
     let mut keep = arguments.keep.clone();
     if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
@@ -126,7 +135,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
     let mut text = heading::robot(&robot);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
-    if !keep.is_empty() {
+    if program.outputs.len() > arguments.function.layout(robot.dof()).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let _ = writeln!(text, "{QUIET}kept for reading, and counted: {}{QUIET:#}", words.join(", "));
     }
@@ -138,7 +147,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let what = Listing { joint: arguments.joint, step: arguments.step, explain: true, ..Listing::default() };
     text.push('\n');
-    text.push_str(&highlight::listing(&emit::listing(&robot, &program, what)));
+    let listing = emit::listing(&robot, &program, what);
+    if listing.trim().is_empty() {
+        let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
+    }
+    text.push_str(&highlight::listing(&listing));
     Ok(Outcome::text(text))
 }
 

@@ -56,7 +56,7 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
          The functions that leave velocities or accelerations out are compiled for themselves.",
     );
     let file = Path::new(FILE);
-    let counts = ops::counts(file, &robot, &Compiler::built_in(file, &robot, PLAN)?, &[])?;
+    let counts = ops::counts(file, &robot, &Compiler::built_in(file, &robot, PLAN)?, &Function::TORQUES, &[])?;
     text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
     chapter(
         &mut text,
@@ -145,7 +145,7 @@ fn torques(robot: &Robot, generated: &[f64], runtime: &[f64]) -> String {
         .map(|line| cells.each_ref().map(|column: &Vec<String>| column.get(line).cloned().unwrap_or_default()))
         .collect();
     let mut text = String::new();
-    for (index, line) in columns([Align::Left; 7], &lines).iter().enumerate() {
+    for (index, line) in columns(&[Align::Left; 7], &lines).iter().enumerate() {
         let _ = match index {
             0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
             _ => writeln!(text, "{line}"),

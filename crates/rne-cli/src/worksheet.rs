@@ -3,12 +3,14 @@
 use std::fmt::Write as _;
 
 use clap::ValueEnum;
-use rne::{LinkTrace, Wrench};
+use rne::LinkTrace;
+use rne_codegen::Argument;
 use rne_model::{Joint, JointKind, Robot};
 use serde::Serialize;
 
 use crate::layout::left;
 use crate::numbers::{WIDTH, fixed};
+use crate::state::State;
 use crate::terminal::{FORMULA, QUIET, TITLE};
 
 /// Axes in which vectors are written.
@@ -57,12 +59,18 @@ impl Line {
 }
 
 /// The worksheet for reading.
-pub(crate) fn text(robot: &Robot, links: &[LinkTrace<f64>], axes: Axes, wrench: Option<&Wrench<f64>>) -> String {
+pub(crate) fn text(robot: &Robot, links: &[LinkTrace<f64>], axes: Axes, state: &State) -> String {
     let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
     let n = links.len();
-    let tip = if wrench.is_some() { "what the last link exerts at the tip" } else { "0, nothing touches the tip" };
+    let tip =
+        if state.wrench.is_some() { "what the last link exerts at the tip" } else { "0, nothing touches the tip" };
     let _ = writeln!(text, "{}", axes.meaning());
-    let _ = writeln!(text, "at the base ω0, ω̇0, ċ0, c̈0 = 0, g0 = gravity; f{n},{0} and n{n},{0} = {tip}", n + 1);
+    let base = if state.function.takes(Argument::Base) {
+        "ω0, ω̇0, c̈0, g0 as given, ċ0 = 0"
+    } else {
+        "ω0, ω̇0, ċ0, c̈0 = 0, g0 = gravity"
+    };
+    let _ = writeln!(text, "at the base {base}; f{n},{0} and n{n},{0} = {tip}", n + 1);
     let joints = links.iter().zip(&robot.joints).enumerate();
     for (index, (link, joint)) in joints.clone() {
         title(&mut text, "outward", index + 1, joint);

@@ -121,9 +121,10 @@ impl fmt::Display for CompileError {
             ),
             Self::NotIdentical { function, output } => write!(
                 f,
-                "this form of `{function}` is not the seven steps: number {output} of its result differs. No code is written. A \
+                "this form of `{function}` is not the seven steps: {} {output} differs. No code is written. A \
                  graph in a plan file that has been edited does that; `rne search --fresh` writes it anew. Without a plan file, \
-                 please report this robot"
+                 please report this robot",
+                if function.returns_torques() { "the torque of joint" } else { "of its result, number" }
             ),
             Self::Imprecise { function, rounding } => write!(
                 f,

@@ -193,6 +193,15 @@ impl Program {
         statements.chain(self.outputs.iter().map(|output| &output.value)).any(Expression::chooses_by_sign)
     }
 
+    /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then the fewest
+    /// instructions are the fastest.
+    #[must_use]
+    pub fn is_long(&self) -> bool {
+        /// Their code does not fit into the nearest cache of the processors of these years, 32 KB.
+        const LONG: usize = 4000;
+        self.operations().total() > LONG
+    }
+
     /// The operations of one evaluation.
     #[must_use]
     pub fn operations(&self) -> Operations {

@@ -175,6 +175,7 @@ impl Sub for Value {
     }
 }
 
+#[allow(clippy::suspicious_arithmetic_impl)] // a field divides by multiplying with the inverse
 impl Div for Value {
     type Output = Self;
 

@@ -1,7 +1,7 @@
 //! `#[derive(BatchInverseDynamics)]`.
 
 use proc_macro2::{Literal, Span, TokenStream};
-use quote::quote;
+use quote::{ToTokens, quote};
 use rne_codegen::{Form, Function, emit};
 use syn::DeriveInput;
 
@@ -31,6 +31,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         refused.at(&item.ident, message);
     }
     let refused = refused.into_tokens();
+    let joints = loaded.robot.as_ref().filter(|robot| !robot.run_time.is_empty()).map(rne_model::Robot::dof);
     let program = loaded.robot.and_then(|robot| {
         if !robot.run_time.is_empty() {
             return None;
@@ -58,9 +59,12 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     };
     let Some(program) = program else {
         let mut generics = item.generics.clone();
-        generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        // the robot is known where it is only refused
+        let dof = joints.map_or(quote!(__JOINTS), |joints| Literal::usize_unsuffixed(joints).into_token_stream());
+        if joints.is_none() {
+            generics.params.push(syn::parse_quote!(const __JOINTS: ::core::primitive::usize));
+        }
         let (impl_generics, ..) = generics.split_for_impl();
-        let dof = quote!(__JOINTS);
         let method = method(&dof, &quote!(::core::result::Result::Ok(())));
         return quote! {
             #refused

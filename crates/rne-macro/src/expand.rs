@@ -1,10 +1,11 @@
 //! The expansion: an item in, implementations out.
 
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::reduced::{self, Choice, PlanFile};
 use rne_codegen::{Capability, Form, Program};
 use rne_model::{Report, Robot, check_bytes, check_bytes_with_run_time};
 use syn::{Data, DeriveInput};
@@ -40,7 +41,10 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
             errors.at_span(span, message);
             return None;
         }
-        let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
+        // what makes no choices is compiled without
+        let is_planned = capability.functions().iter().any(|&function| reduced::is_planned(function));
+        let form = if is_planned { attribute.form } else { Form::SevenSteps };
+        let choice = choice(&robot, form, loaded.plan.as_ref(), span, &mut errors)?;
         let programs = programs(&robot, capability, attribute.form, &choice, span, &mut errors)?;
         Some((robot, programs))
     });
@@ -118,17 +122,20 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
             }
         },
     };
+    let names = parameters.names();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let checked = check_bytes(&name, &bytes).and_then(|checked| {
-        let names = parameters.names();
-        let known: Vec<String> = checked.robot.parameters.iter().map(|(name, _)| name.clone()).collect();
-        if names.is_empty() || !parameters.check(&known, errors) {
-            return Ok(checked);
+        let known: Vec<&str> = checked.robot.parameters.iter().map(|(name, _)| name.as_str()).collect();
+        match parameters.check(&known, errors) {
+            _ if names.is_empty() => Ok(Some(checked)),
+            true => check_bytes_with_run_time(&name, &bytes, &names).map(Some),
+            false => Ok(None),
         }
-        let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        check_bytes_with_run_time(&name, &bytes, &names)
     });
     match checked {
-        Ok(checked) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched, plan },
+        Ok(Some(checked)) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched, plan },
+        // a field is no parameter, which has been said
+        Ok(None) => Loaded { watched, ..Loaded::default() },
         Err(report) => {
             let joints = guess_joints(&report);
             errors.at_span(source.span(), describe(report));
@@ -162,7 +169,7 @@ pub(crate) fn choice(
     match (form, plan) {
         // whatever the choices, the seven steps make none
         (Form::SevenSteps, _) => Some(Choice::none(robot)),
-        (Form::Reduced | Form::Rewritten, None) => Some(Choice::default_of(robot)),
+        (Form::Reduced | Form::Rewritten, None) => Some(default_choice(robot)),
         (Form::Reduced | Form::Rewritten, Some(file)) => {
             let Ok(text) = std::str::from_utf8(&file.bytes) else {
                 errors.at_span(span, format!("`{}` is no text in UTF-8", file.shown));
@@ -172,6 +179,19 @@ pub(crate) fn choice(
             plan.map(Choice::from).map_err(|report| errors.at_span(span, describe(report))).ok()
         }
     }
+}
+
+/// The choice that a build makes by itself. The derives of one crate are expanded in one process, so it is made once per robot.
+fn default_choice(robot: &Robot) -> Choice {
+    static KNOWN: Mutex<Vec<(u64, Choice)>> = Mutex::new(Vec::new());
+    let print = reduced::fingerprint(robot);
+    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, choice)) = known.iter().find(|(other, _)| *other == print) {
+        return choice.clone();
+    }
+    let choice = Choice::default_of(robot);
+    known.push((print, choice.clone()));
+    choice
 }
 
 fn programs(

@@ -97,7 +97,12 @@ impl Target<'_> {
         let (scalar, library) = (quote!(#krate::Scalar), quote!(#krate));
         let body = emit::Body::new(program, &scalar).with_records_of(&library);
         // The seven steps compute the bits of the runtime, so that nothing is fused there.
-        let body = if program.form == Form::SevenSteps { body } else { body.fused() }.whole();
+        let body = match program.form {
+            Form::SevenSteps => body,
+            _ if program.is_long() => body.all_fused(),
+            _ => body.fused(),
+        };
+        let body = body.whole();
         let function = program.function;
         let wrench = function.takes(Argument::Wrench).then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
         let base = function.takes(Argument::Base).then(|| {

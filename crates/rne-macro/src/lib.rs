@@ -34,7 +34,7 @@ use rne_codegen::Capability;
 /// `unsafe`. They are generic over the scalar and need neither `std` nor the file at run time. A change of the file
 /// causes a new build.
 ///
-/// The struct may have fields, lifetimes and parameters; the methods use none of them.
+/// The struct may have lifetimes and parameters, which the methods do not use. A field is a run-time parameter, see below.
 ///
 /// The methods name their variables as the textbook does, `m1`, `w2_z`, `tau3`. A constant of such a name that is in scope
 /// where the struct stands (`const m1: f64`, against Rust's custom of capitals) would take their place and fail to compile;
@@ -155,6 +155,40 @@ use rne_codegen::Capability;
 /// struct Slide;
 /// # fn main() {}
 /// ```
+///
+/// # Run-time parameters
+///
+/// A name under `parameters:` of the robot file that is also a field of the struct stays free until run time; everything else is
+/// folded. The field is `f32`, `f64`, or a type that converts into `f64`. All derives read it.
+///
+/// ```
+/// use rne::InverseDynamics;
+///
+/// /// A rod of 2.5 kg that carries something at its end.
+/// #[derive(InverseDynamics)]
+/// #[robot(yaml = "
+///     format: 1
+///     name: rod
+///     source: own numbers
+///     convention: standard
+///     gravity: [9.81, 0, 0]
+///     parameters: {payload: 0}
+///     joints:
+///       - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}
+///       - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 0.1 + payload}}
+/// ")]
+/// struct Rod {
+///     payload: f64,
+/// }
+///
+/// let torque = |payload| Rod { payload }.gravity_torques(&[0.5, 0.0])[0];
+/// assert!((torque(2.0) - torque(0.0) - 2.0 * 9.81 * 0.8 * 0.5_f64.sin()).abs() < 1e-14);
+/// ```
+///
+/// Angles are constants, and so is every number that is zero in the file, for zeros are folded: a parameter that would make one of
+/// these vary is an error of the build, and so is a field that is no parameter. `#[robot(skip)]` on a field says that it is
+/// there for other purposes; fields without names and `PhantomData` are. With such parameters `form = "reduced"` regroups
+/// nothing: it computes every value of the seven steps once.
 ///
 /// # Constants
 ///

@@ -1,6 +1,6 @@
 //! Run-time parameters: fields of the struct that are parameters of the robot file.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{ToTokens, format_ident, quote};
 use syn::{Data, DeriveInput, Ident, Type};
 
@@ -39,11 +39,11 @@ impl Parameters {
     }
 
     /// Says which fields are no parameters of the file; `known` are those it has.
-    pub(crate) fn check(&self, known: &[String], errors: &mut Errors) -> bool {
+    pub(crate) fn check(&self, known: &[&str], errors: &mut Errors) -> bool {
         let before = errors.len();
         for Field { ident, .. } in &self.fields {
             let name = unraw(ident);
-            if known.contains(&name) {
+            if known.contains(&name.as_str()) {
                 continue;
             }
             let there = match known {
@@ -76,8 +76,8 @@ impl Parameters {
                 quote!(#scalar::from_f64(::core::convert::Into::into(self.#ident)))
             }
         });
-        let parameters = format_ident!("parameters");
-        quote!(let #parameters = &[#(#values),*];)
+        let (parameters, count) = (format_ident!("parameters"), Literal::usize_unsuffixed(self.fields.len()));
+        quote!(let #parameters: &[T; #count] = &[#(#values),*];)
     }
 }
 

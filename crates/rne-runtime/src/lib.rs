@@ -6,6 +6,8 @@
 mod actuation;
 mod arm;
 mod base_motion;
+#[cfg(feature = "std")]
+mod base_parameters;
 pub mod batch;
 mod capability;
 mod coriolis_matrix;
@@ -38,6 +40,8 @@ mod wrench;
 
 pub use arm::Arm;
 pub use base_motion::BaseMotion;
+#[cfg(feature = "std")]
+pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,

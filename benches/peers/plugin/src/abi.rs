@@ -4,67 +4,196 @@
 //! - `robot` is a string of C that lives as long as the call.
 //! - A function is called with the robot it was asked for; `q`, `qd`, `qdd` then hold one `f64` per joint (and state, in
 //!   a batch), are aligned, initialised and not written during the call; `out` is as large, aligned, and overlaps nothing.
+//! - A context is one that [`rp_open`] made, and one call at a time has it.
 
 use std::ffi::{CStr, c_char, c_int, c_void};
+#[cfg(feature = "functions")]
+use std::hint::black_box;
 use std::ptr;
 
 #[cfg(feature = "batch")]
 use rne::BatchInverseDynamics;
 use rne::InverseDynamics;
+#[cfg(feature = "functions")]
+use rne::{ForwardDynamics, InverseDynamicsDerivatives, MassMatrix};
 
 /// `rp_call`: one state.
 type Call = unsafe extern "C" fn(*mut c_void, *const f64, *const f64, *const f64, *mut f64);
 /// `rp_batch`: many states, structure of arrays.
-#[cfg(feature = "batch")]
 type Batch = unsafe extern "C" fn(*mut c_void, *const f64, *const f64, *const f64, *mut f64, usize);
 
-/// The kinds of `rnepeer.h` that are offered here.
-const ID: c_int = 0;
-const ID_BATCH: c_int = 3;
-
-/// A robot's functions.
+/// A robot and what is offered for it; the same competitors in the same order for all robots.
 pub(crate) struct Robot {
-    name: &'static str,
-    call: Call,
-    #[cfg(feature = "batch")]
-    batch: Batch,
+    pub(crate) name: &'static str,
+    pub(crate) competitors: &'static [(&'static CStr, Function)],
 }
 
-#[cfg(not(feature = "batch"))]
-impl Robot {
-    /// The functions of `R`.
-    pub(crate) const fn new<R: InverseDynamics<DOF> + Default, const DOF: usize>(name: &'static str) -> Self {
-        Self { name, call: call::<R, DOF> }
-    }
+/// A function by its kind.
+#[cfg_attr(not(all(feature = "batch", feature = "functions")), allow(dead_code))]
+pub(crate) enum Function {
+    InverseDynamics(Call),
+    ForwardDynamics(Call),
+    /// One of the quantities below in `out`.
+    Other(c_int, Call),
+    /// These quantities in the context.
+    Matrices(&'static [c_int], Call),
+    Batch(Batch),
 }
 
-#[cfg(feature = "batch")]
-impl Robot {
-    /// The functions of `R`.
-    pub(crate) const fn new<R, const DOF: usize>(name: &'static str) -> Self
-    where
-        R: InverseDynamics<DOF> + BatchInverseDynamics<DOF> + Default,
-    {
-        Self { name, call: call::<R, DOF>, batch: batch::<R, DOF> }
-    }
+/// The quantities of `rnepeer.h`.
+#[cfg_attr(not(feature = "functions"), allow(dead_code))]
+pub(crate) mod quantity {
+    use super::c_int;
+
+    pub(crate) const TAU: c_int = 0;
+    pub(crate) const GRAVITY: c_int = 1;
+    pub(crate) const BIAS: c_int = 2;
+    pub(crate) const MASS_MATRIX: c_int = 3;
+    pub(crate) const DTAU_DQ: c_int = 4;
+    pub(crate) const DTAU_DQD: c_int = 5;
 }
 
-/// Torques of one state.
+/// What does not fit into `out`, of the last call with this context. A robot with fewer joints uses the beginnings.
+struct Results {
+    keep: bool,
+    tau: [f64; MOST_JOINTS],
+    mass_matrix: [f64; MOST_JOINTS * MOST_JOINTS],
+    by_q: [f64; MOST_JOINTS * MOST_JOINTS],
+    by_qd: [f64; MOST_JOINTS * MOST_JOINTS],
+}
+
+const MOST_JOINTS: usize = 7;
+
+/// `DOF` numbers from C.
+///
+/// # Safety
+/// The pointer is to as many initialised numbers, which nobody writes while the reference lives.
+unsafe fn read<'a, const DOF: usize>(numbers: *const f64) -> &'a [f64; DOF] {
+    // SAFETY: as this function's.
+    unsafe { &*numbers.cast() }
+}
+
+/// Numbers to C, which may be too few to fill the room.
+///
+/// # Safety
+/// There is room for a `T`, aligned.
+unsafe fn write<T>(room: *mut f64, value: T) {
+    // SAFETY: as this function's.
+    unsafe { room.cast::<T>().write(value) }
+}
+
+/// The functions of one state: their inputs by name, then the torques or accelerations that they write.
+macro_rules! calls {
+    ($($(#[$attribute:meta])* $name:ident: $capability:ident, |$robot:ident, $q:tt, $qd:tt, $qdd:tt| $result:expr;)*) => {$(
+        $(#[$attribute])*
+        ///
+        /// # Safety
+        /// The pointers are as the module's page says, for a robot with `DOF` joints.
+        pub(crate) unsafe extern "C" fn $name<R: $capability<DOF> + Default, const DOF: usize>(
+            _context: *mut c_void,
+            q: *const f64,
+            qd: *const f64,
+            qdd: *const f64,
+            out: *mut f64,
+        ) {
+            // SAFETY: `DOF` initialised numbers each, which nobody writes while the references live.
+            let ($q, $qd, $qdd) = unsafe { (read::<DOF>(q), read::<DOF>(qd), read::<DOF>(qdd)) };
+            let $robot = R::default();
+            let result: [f64; DOF] = $result;
+            // SAFETY: room for `DOF` numbers.
+            unsafe { write(out, result) }
+        }
+    )*};
+}
+
+calls! {
+    /// Torques.
+    inverse_dynamics: InverseDynamics, |robot, q, qd, qdd| robot.inverse_dynamics(q, qd, qdd);
+    /// Torques at rest.
+    #[cfg(feature = "functions")]
+    gravity: InverseDynamics, |robot, q, _, _| robot.gravity_torques(q);
+    /// Torques without acceleration.
+    #[cfg(feature = "functions")]
+    bias: InverseDynamics, |robot, q, qd, _| robot.bias_torques(q, qd);
+    /// Accelerations.
+    #[cfg(feature = "functions")]
+    forward_dynamics: ForwardDynamics, |robot, q, qd, tau| robot.forward_dynamics(q, qd, tau);
+}
+
+/// The mass matrix; its first element goes to `out`.
+///
+/// It stays on the stack, where a program has what it called for, and all of it is there when `black_box` sees it. It is
+/// copied only to be checked: to copy at once what was written number by number takes a robot's mass matrix again.
 ///
 /// # Safety
 /// The pointers are as the module's page says, for a robot with `DOF` joints.
-unsafe extern "C" fn call<R: InverseDynamics<DOF> + Default, const DOF: usize>(
-    _context: *mut c_void,
+#[cfg(feature = "functions")]
+pub(crate) unsafe extern "C" fn mass_matrix<R: MassMatrix<DOF> + Default, const DOF: usize>(
+    context: *mut c_void,
+    q: *const f64,
+    _qd: *const f64,
+    _qdd: *const f64,
+    out: *mut f64,
+) {
+    // SAFETY: `DOF` initialised numbers, which nobody writes while the reference lives.
+    let q = unsafe { read::<DOF>(q) };
+    let matrix = R::default().mass_matrix(q);
+    black_box(&matrix);
+    // SAFETY: room for a number; a context of ours, which nobody else has meanwhile.
+    let results = unsafe {
+        write(out, matrix[0][0]);
+        &mut *context.cast::<Results>()
+    };
+    if results.keep {
+        copy(&mut results.mass_matrix, &matrix);
+    }
+}
+
+/// Both derivatives of the torques, as the mass matrix; an element goes to `out`. With `ALL`, torques and mass matrix as
+/// well, which Pinocchio's function computes in passing.
+///
+/// # Safety
+/// The pointers are as the module's page says, for a robot with `DOF` joints.
+#[cfg(feature = "functions")]
+pub(crate) unsafe extern "C" fn derivatives<R, const DOF: usize, const ALL: bool>(
+    context: *mut c_void,
     q: *const f64,
     qd: *const f64,
     qdd: *const f64,
     out: *mut f64,
-) {
+) where
+    R: InverseDynamics<DOF> + MassMatrix<DOF> + InverseDynamicsDerivatives<DOF> + Default,
+{
     // SAFETY: `DOF` initialised numbers each, which nobody writes while the references live.
-    let (q, qd, qdd) = unsafe { (&*q.cast::<[f64; DOF]>(), &*qd.cast::<[f64; DOF]>(), &*qdd.cast::<[f64; DOF]>()) };
-    let tau = R::default().inverse_dynamics(q, qd, qdd);
-    // SAFETY: room for `DOF` numbers.
-    unsafe { out.cast::<[f64; DOF]>().write(tau) }
+    let (q, qd, qdd) = unsafe { (read::<DOF>(q), read::<DOF>(qd), read::<DOF>(qdd)) };
+    let robot = R::default();
+    let derivatives = robot.inverse_dynamics_derivatives(q, qd, qdd);
+    black_box(&derivatives);
+    // SAFETY: room for a number; a context of ours, which nobody else has meanwhile.
+    let results = unsafe {
+        write(out, derivatives.dq[0][0]);
+        &mut *context.cast::<Results>()
+    };
+    if results.keep {
+        copy(&mut results.by_q, &derivatives.dq);
+        copy(&mut results.by_qd, &derivatives.dqd);
+    }
+    if ALL {
+        let tau = robot.inverse_dynamics(q, qd, qdd);
+        let matrix = robot.mass_matrix(q);
+        black_box((&tau, &matrix));
+        if results.keep {
+            copy(&mut results.tau, &[tau]);
+            copy(&mut results.mass_matrix, &matrix);
+        }
+    }
+}
+
+/// Rows one after the other, to the beginning of `place`.
+#[cfg(feature = "functions")]
+fn copy<const DOF: usize>(place: &mut [f64], rows: &[[f64; DOF]]) {
+    let numbers = rows.as_flattened();
+    place[..numbers.len()].copy_from_slice(numbers);
 }
 
 /// Torques of `count` states.
@@ -72,7 +201,7 @@ unsafe extern "C" fn call<R: InverseDynamics<DOF> + Default, const DOF: usize>(
 /// # Safety
 /// The pointers are as the module's page says, for `count` states of a robot with `DOF` joints.
 #[cfg(feature = "batch")]
-unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, const DOF: usize>(
+pub(crate) unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, const DOF: usize>(
     _context: *mut c_void,
     q: *const f64,
     qd: *const f64,
@@ -91,22 +220,32 @@ unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, const DOF: us
     assert!(done.is_ok(), "all slices have the same length");
 }
 
+/// Competitor `k` of a robot.
+fn competitor(robot: &Robot, k: c_int) -> Option<&'static (&'static CStr, Function)> {
+    usize::try_from(k).ok().and_then(|k| robot.competitors.get(k))
+}
+
 /// How many competitors there are.
 #[unsafe(no_mangle)]
 pub extern "C" fn rp_count() -> c_int {
-    if cfg!(feature = "batch") { 2 } else { 1 }
+    c_int::try_from(crate::ROBOTS[0].competitors.len()).expect("few competitors")
 }
 
 /// The name of competitor `k`.
 #[unsafe(no_mangle)]
 pub extern "C" fn rp_name(k: c_int) -> *const c_char {
-    if k == 0 { c"rne".as_ptr() } else { c"rne_batch".as_ptr() }
+    competitor(&crate::ROBOTS[0], k).map_or(ptr::null(), |(name, _)| name.as_ptr())
 }
 
 /// The kind of competitor `k`.
 #[unsafe(no_mangle)]
 pub extern "C" fn rp_kind(k: c_int) -> c_int {
-    if k == 0 { ID } else { ID_BATCH }
+    match competitor(&crate::ROBOTS[0], k) {
+        Some((_, Function::InverseDynamics(_))) => 0,
+        Some((_, Function::ForwardDynamics(_))) => 1,
+        Some((_, Function::Batch(_))) => 3,
+        Some((_, Function::Other(..) | Function::Matrices(..))) | None => 2,
+    }
 }
 
 /// The function of competitor `k` for the robot of this name, or null.
@@ -117,19 +256,56 @@ pub extern "C" fn rp_kind(k: c_int) -> c_int {
 pub unsafe extern "C" fn rp_func(k: c_int, robot: *const c_char) -> *const c_void {
     // SAFETY: the driver passes a string of C that outlives this call.
     let name = unsafe { CStr::from_ptr(robot) };
-    let Some(robot) = crate::ROBOTS.iter().find(|robot| robot.name.as_bytes() == name.to_bytes()) else {
-        return ptr::null();
-    };
-    match k {
-        0 => robot.call as *const c_void,
-        #[cfg(feature = "batch")]
-        1 => robot.batch as *const c_void,
-        _ => ptr::null(),
+    let robot = crate::ROBOTS.iter().find(|robot| robot.name.as_bytes() == name.to_bytes());
+    match robot.and_then(|robot| competitor(robot, k)) {
+        Some((_, function)) => match function {
+            Function::InverseDynamics(call)
+            | Function::ForwardDynamics(call)
+            | Function::Other(_, call)
+            | Function::Matrices(_, call) => *call as *const c_void,
+            Function::Batch(batch) => *batch as *const c_void,
+        },
+        None => ptr::null(),
     }
 }
 
-/// Nothing has to be opened: the robots are compiled in.
+/// The context of competitor `k`: room for results. It stays to the end of the process.
 #[unsafe(no_mangle)]
 pub extern "C" fn rp_open(_k: c_int, _robot: *const c_char, _folder: *const c_char) -> *mut c_void {
-    ptr::null_mut()
+    let nothing = [f64::NAN; MOST_JOINTS * MOST_JOINTS];
+    let tau = [f64::NAN; MOST_JOINTS];
+    let results = Results { keep: false, tau, mass_matrix: nothing, by_q: nothing, by_qd: nothing };
+    ptr::from_mut(Box::leak(Box::new(results))).cast()
+}
+
+/// Whether the calls to come leave their results in the context.
+///
+/// # Safety
+/// The context is one that [`rp_open`] made.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rp_keep(_k: c_int, context: *mut c_void, keep: c_int) {
+    // SAFETY: a context of ours, which nobody else has meanwhile.
+    unsafe { (*context.cast::<Results>()).keep = keep != 0 }
+}
+
+/// What competitor `k` computed in its last call with this context and `out`, or null.
+///
+/// # Safety
+/// The context is one that [`rp_open`] made.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rp_result(k: c_int, context: *mut c_void, out: *const f64, what: c_int) -> *const f64 {
+    match competitor(&crate::ROBOTS[0], k) {
+        Some((_, Function::Matrices(quantities, _))) if quantities.contains(&what) => {}
+        Some((_, Function::Other(quantity, _))) if *quantity == what => return out,
+        _ => return ptr::null(),
+    }
+    // SAFETY: a context of ours, which nobody writes during this call.
+    let results = unsafe { &*context.cast::<Results>() };
+    match what {
+        quantity::TAU => results.tau.as_ptr(),
+        quantity::MASS_MATRIX => results.mass_matrix.as_ptr(),
+        quantity::DTAU_DQ => results.by_q.as_ptr(),
+        quantity::DTAU_DQD => results.by_qd.as_ptr(),
+        _ => ptr::null(),
+    }
 }

@@ -2,7 +2,9 @@
 
 mod abi;
 
-use abi::Robot;
+#[cfg(feature = "functions")]
+use abi::quantity::{BIAS, DTAU_DQ, DTAU_DQD, GRAVITY, MASS_MATRIX, TAU};
+use abi::{Function, Robot};
 use rne::InverseDynamics;
 
 /// One line per robot: its struct, the number of its joints, its file.
@@ -12,13 +14,39 @@ macro_rules! robots {
             #[doc = concat!("The robot of `", $path, "`.")]
             #[derive(Clone, Copy, Debug, Default, InverseDynamics)]
             #[cfg_attr(feature = "batch", derive(rne::BatchInverseDynamics))]
+            #[cfg_attr(
+                feature = "functions",
+                derive(rne::MassMatrix, rne::ForwardDynamics, rne::InverseDynamicsDerivatives)
+            )]
             #[cfg_attr(not(feature = "reduced"), robot(path = $path))]
             #[cfg_attr(feature = "reduced", robot(path = $path, form = "reduced"))]
             pub struct $name;
         )*
 
         /// Every robot, by the name in its file.
-        static ROBOTS: &[Robot] = &[$(Robot::new::<$name, $dof>($name::NAME)),*];
+        static ROBOTS: &[Robot] = &[$(Robot {
+            name: $name::NAME,
+            competitors: &[
+                (c"rne", Function::InverseDynamics(abi::inverse_dynamics::<$name, $dof>)),
+                #[cfg(feature = "batch")]
+                (c"rne_batch", Function::Batch(abi::batch::<$name, $dof>)),
+                #[cfg(feature = "functions")]
+                (c"rne_gravity", Function::Other(GRAVITY, abi::gravity::<$name, $dof>)),
+                #[cfg(feature = "functions")]
+                (c"rne_bias", Function::Other(BIAS, abi::bias::<$name, $dof>)),
+                #[cfg(feature = "functions")]
+                (c"rne_mass_matrix", Function::Matrices(&[MASS_MATRIX], abi::mass_matrix::<$name, $dof>)),
+                #[cfg(feature = "functions")]
+                (c"rne_forward_dynamics", Function::ForwardDynamics(abi::forward_dynamics::<$name, $dof>)),
+                #[cfg(feature = "functions")]
+                (c"rne_derivatives", Function::Matrices(&[DTAU_DQ, DTAU_DQD], abi::derivatives::<$name, $dof, false>)),
+                #[cfg(feature = "functions")]
+                (
+                    c"rne_derivatives_tau_m",
+                    Function::Matrices(&[DTAU_DQ, DTAU_DQD, TAU, MASS_MATRIX], abi::derivatives::<$name, $dof, true>),
+                ),
+            ],
+        }),*];
     };
 }
 

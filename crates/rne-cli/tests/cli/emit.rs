@@ -1,9 +1,11 @@
 //! `rne emit`: what it writes compiles, and what it overwrites is its own.
 
+use std::fmt::Write as _;
 use std::fs;
 use std::process::Command;
 
 use crate::call::{fails, fine, folder, rne};
+use serde_json::Value;
 
 const ROBOT: &str = "robots/planar2.yaml";
 
@@ -12,21 +14,12 @@ fn path(folder: &std::path::Path, name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
 }
 
-/// The torques that a file computes once `rustc` has compiled it.
-fn compiled(folder: &std::path::Path, code: &str, state: &str) -> Vec<f64> {
+/// The numbers that a file computes once `rustc` has compiled it with `body` as its main function.
+fn printed(folder: &std::path::Path, code: &str, body: &str) -> Vec<f64> {
     let (source, program) = (path(folder, "main.rs"), path(folder, "main"));
-    let main = r#"
-impl Scalar for f64 {
-    fn from_f64(value: f64) -> Self { value }
-    fn sin_cos(self) -> (Self, Self) { f64::sin_cos(self) }
-}
-fn main() {
-    for torque in inverse_dynamics(&STATE) {
-        println!("{torque}");
-    }
-}
-"#;
-    fs::write(&source, code.to_owned() + &main.replace("STATE", state)).expect("written");
+    let by_sign = if code.contains("fn by_sign") { BY_SIGN } else { "" };
+    let scalar = format!("\nimpl Scalar for f64 {{{SCALAR}{by_sign}}}\n");
+    fs::write(&source, format!("{code}{scalar}fn main() {{{body}}}\n")).expect("written");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let compiled = Command::new(rustc).args(["--edition", "2024", "-A", "dead_code", "-o", &program, &source]).output();
     let compiled = compiled.expect("rustc starts");
@@ -35,10 +28,34 @@ fn main() {
     String::from_utf8_lossy(&computed.stdout).lines().map(|line| line.parse().expect("a number")).collect()
 }
 
-/// The torques of `rne eval --json`.
+const SCALAR: &str = "
+    fn from_f64(value: f64) -> Self { value }
+    fn sin_cos(self) -> (Self, Self) { f64::sin_cos(self) }
+";
+
+const BY_SIGN: &str = "
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 { positive } else if self < 0.0 { negative } else { 0.0 }
+    }
+";
+
+/// The torques that a file computes.
+fn compiled(folder: &std::path::Path, code: &str, state: &str) -> Vec<f64> {
+    printed(folder, code, &format!("for torque in inverse_dynamics(&{state}) {{ println!(\"{{torque}}\"); }}"))
+}
+
+/// The numbers of `rne eval --json`, whatever their shape: the fields of records are in alphabetical order.
 fn evaluated(arguments: &[&str]) -> Vec<f64> {
-    let json: serde_json::Value = serde_json::from_str(&fine(arguments)).expect("JSON");
-    json["result"].as_array().expect("a list").iter().map(|x| x.as_f64().expect("a number")).collect()
+    let json: Value = serde_json::from_str(&fine(arguments)).expect("JSON");
+    flat(&json["result"])
+}
+
+fn flat(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(elements) => elements.iter().flat_map(flat).collect(),
+        Value::Object(fields) => fields.values().flat_map(flat).collect(),
+        number => vec![number.as_f64().expect("a number")],
+    }
 }
 
 fn close(found: &[f64], expected: &[f64]) {
@@ -59,6 +76,81 @@ fn the_file_compiles_by_itself_and_computes_the_same() {
         let code = fine(&["emit", ROBOT, "--form", form]);
         assert!(code.contains("Proved identical to the seven steps"), "{code}");
         close(&compiled(&folder, &code, state), &expected);
+    }
+}
+
+/// Every function of a robot with motors, in both forms, against the runtime.
+#[test]
+fn all_functions_compile_and_compute_the_same() {
+    const PUMA: &str = "robots/puma560.yaml";
+    let folder = folder("all");
+    let [q, qd, qdd] = ["0.3,-0.8,0.5,1.1,-0.4,0.6", "0.9,-0.5,0.4,1.2,-0.3,0.7", "-1.1,0.6,0.8,-0.9,1.4,0.35"];
+    let (wrench, tau) = ("3,-2,1,0.1,0.2,0.5", "1,30,5,0.1,-0.2,0.3");
+    let motion = ["0.1,0.2,-0.3", "0.4,-0.5,0.6", "1,-2,3", "0.5,0.6,-9.7"];
+    let names = ["--base-omega", "--base-omega-dot", "--base-acceleration", "--gravity"];
+    let base: Vec<&str> = names.iter().zip(&motion).flat_map(|(name, value)| [*name, value]).collect();
+    let all: [&[&str]; 5] = [
+        &["--q", q],
+        &["--q", q, "--qd", qd],
+        &["--q", q, "--qd", qd, "--qdd", qdd],
+        &["--qd", qd, "--qdd", qdd],
+        &base,
+    ];
+    let [positions, rates, full, shaft, base] = all;
+    let expect = |function: &str, arguments: &[&[&str]]| {
+        let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
+        evaluated(&call)
+    };
+    let calls: [(&str, &[&[&str]], &str); 19] = [
+        ("inverse_dynamics", &[full], "q, qd, qdd"),
+        (
+            "inverse_dynamics_with_wrench",
+            &[full, &["--wrench", wrench]],
+            "q, qd, qdd, &[3., -2., 1.], &[0.1, 0.2, 0.5]",
+        ),
+        ("inverse_dynamics_sc", &[full], "&q.map(f64::sin), &q.map(f64::cos), q, qd, qdd"),
+        ("gravity_torques", &[positions], "q"),
+        ("bias_torques", &[rates], "q, qd"),
+        ("mass_matrix", &[positions], "q"),
+        ("coriolis_matrix", &[rates], "q, qd"),
+        ("forward_dynamics", &[rates, &["--tau", tau]], "q, qd, &[1., 30., 5., 0.1, -0.2, 0.3]"),
+        ("forward_kinematics", &[positions], "q"),
+        ("link_poses", &[positions], "q"),
+        ("jacobian", &[positions], "q"),
+        ("jacobian_rate_times_velocity", &[rates], "q, qd"),
+        ("kinetic_energy", &[rates], "q, qd"),
+        ("potential_energy", &[positions], "q"),
+        ("regressor", &[full], "q, qd, qdd"),
+        ("inverse_dynamics_derivatives", &[full], "q, qd, qdd"),
+        ("joint_wrenches", &[full], "q, qd, qdd"),
+        (
+            "inverse_dynamics_on_moving_base",
+            &[full, base],
+            "q, qd, qdd, &[0.1, 0.2, -0.3], &[0.4, -0.5, 0.6], &[1., -2., 3.], &[0.5, 0.6, -9.7]",
+        ),
+        ("actuator_torques", &[shaft], "qd, qdd"),
+    ];
+    let expected: Vec<Vec<f64>> = calls.iter().map(|(function, arguments, _)| expect(function, arguments)).collect();
+    let mut body = format!("let (q, qd, qdd) = (&[{q}], &[{qd}], &[{qdd}]);\n");
+    for (function, _, arguments) in calls {
+        let _ = writeln!(body, "print(&format!(\"{{:?}}\", {function}::<f64>({arguments})));");
+    }
+    // numbers between brackets and commas
+    let print = "fn print(text: &str) {
+        for number in text.split(|c: char| \"[(, )]\".contains(c)).filter(|word| !word.is_empty()) { println!(\"{number}\"); }
+    }\n";
+    for form in ["seven_steps", "reduced"] {
+        let code = fine(&["emit", PUMA, "--function", "all", "--form", form]) + print;
+        let computed = printed(&folder, &code, &body);
+        let mut from = 0;
+        for ((function, ..), expected) in calls.iter().zip(&expected) {
+            let found = computed.get(from..from + expected.len()).expect("as many numbers");
+            from += expected.len();
+            let scale = expected.iter().fold(1.0_f64, |scale, x| scale.max(x.abs()));
+            let error = found.iter().zip(expected).map(|(a, b)| (a - b).abs() / scale).fold(0.0, f64::max);
+            assert!(error < 1e-12, "{function}, {form}: {error:e}");
+        }
+        assert_eq!(from, computed.len());
     }
 }
 
@@ -93,6 +185,10 @@ fn functions_are_chosen() {
     assert_eq!(two.matches("pub fn ").count(), 2);
     let twice = fine(&["emit", ROBOT, "--function", "gravity_torques", "--function", "gravity_torques"]);
     assert_eq!(twice.matches("pub fn ").count(), 1);
+    let others = fine(&["emit", ROBOT, "--function", "mass_matrix,jacobian"]);
+    assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
+    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 18, "no motors");
+    fails(1, &["emit", ROBOT, "--function", "actuator_torques"], &["planar2 has no motors", ROBOT]);
     fails(2, &["emit", ROBOT, "--lang", "c"], &["rust"]);
     fails(2, &["emit", ROBOT, "--function", "torques"], &["gravity_torques"]);
 }

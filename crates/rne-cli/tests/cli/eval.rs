@@ -3,7 +3,11 @@
 use std::fs;
 
 use crate::call::{ROOT, fails, fine};
-use serde_json::Value;
+use rne::{
+    Actuation, Arm, BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Wrench,
+};
+use serde_json::{Value, json};
 
 fn reference(robot: &str) -> Vec<Value> {
     let text = fs::read_to_string(format!("{ROOT}/tests/reference/{robot}.golden.json")).expect("reference values");
@@ -122,4 +126,158 @@ fn arguments_that_do_not_fit() {
         call(2, &["--q", bad], &["number 2"]);
     }
     call(1, &["--q", three, "--qd", "1e200,1,1", "--qdd", three], &["overflows"]);
+}
+
+const PUMA: &str = "robots/puma560.yaml";
+const Q: [f64; 6] = [0.3, -0.8, 0.5, 1.1, -0.4, 0.6];
+const QD: [f64; 6] = [0.9, -0.5, 0.4, 1.2, -0.3, 0.7];
+const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
+
+fn written(values: &[f64]) -> String {
+    values.iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// The result of a function of the PUMA 560 with these of its arguments, and what is given beyond them.
+fn of_puma(function: &str, arguments: &str, more: &[&str]) -> Value {
+    let all = [("q", written(&Q)), ("qd", written(&QD)), ("qdd", written(&QDD))];
+    let mut call: Vec<String> = ["eval", PUMA, "--json", "--function", function].map(str::to_owned).into();
+    for (name, values) in all.iter().filter(|(name, _)| arguments.split(' ').any(|argument| argument == *name)) {
+        call.extend([format!("--{name}"), values.clone()]);
+    }
+    let call: Vec<&str> = call.iter().map(String::as_str).chain(more.iter().copied()).collect();
+    let mut answer: Value = serde_json::from_str(&fine(&call)).expect("JSON");
+    answer["result"].take()
+}
+
+fn pose(pose: &Pose<f64>) -> Value {
+    json!({"rotation": pose.rotation, "translation": pose.translation})
+}
+
+/// The same shape and the same numbers; the reader of JSON may round the last bit.
+#[track_caller]
+fn same(found: &Value, expected: &Value) {
+    match (found, expected) {
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => a.iter().zip(b).for_each(|(a, b)| same(a, b)),
+        (Value::Object(a), Value::Object(b)) => {
+            assert!(a.keys().eq(b.keys()), "{found} is not {expected}");
+            a.values().zip(b.values()).for_each(|(a, b)| same(a, b));
+        }
+        _ => {
+            let (a, b) = (found.as_f64().expect("a number"), expected.as_f64().expect("a number"));
+            assert!((a - b).abs() <= 2.0 * f64::EPSILON * b.abs(), "{a} is not {b}");
+        }
+    }
+}
+
+/// The numbers of the runtime, in the shape of the traits.
+#[test]
+fn every_function_has_the_shape_of_its_trait() {
+    let arm = Arm::<6>::from_file(format!("{ROOT}/{PUMA}")).expect("a robot");
+    let full = "q qd qdd";
+    same(&of_puma("inverse_dynamics", full, &[]), &json!(arm.inverse_dynamics(&Q, &QD, &QDD)));
+    same(&of_puma("inverse_dynamics_sc", full, &[]), &json!(arm.inverse_dynamics(&Q, &QD, &QDD)));
+    let wrench = Wrench { force: [3.0, -2.0, 1.0], moment: [0.1, 0.2, 0.5] };
+    let with_wrench = of_puma("inverse_dynamics_with_wrench", full, &["--wrench", "3,-2,1,0.1,0.2,0.5"]);
+    same(&with_wrench, &json!(arm.inverse_dynamics_with_wrench(&Q, &QD, &QDD, &wrench)));
+    same(&of_puma("gravity_torques", "q", &[]), &json!(arm.gravity_torques(&Q)));
+    same(&of_puma("bias_torques", "q qd", &[]), &json!(arm.bias_torques(&Q, &QD)));
+    same(&of_puma("mass_matrix", "q", &[]), &json!(arm.mass_matrix(&Q)));
+    same(&of_puma("coriolis_matrix", "q qd", &[]), &json!(arm.coriolis_matrix(&Q, &QD)));
+    let tau = [1.0, 30.0, 5.0, 0.1, -0.2, 0.3];
+    let forward = of_puma("forward_dynamics", "q qd", &["--tau", &written(&tau)]);
+    same(&forward, &json!(arm.forward_dynamics(&Q, &QD, &tau)));
+    same(&of_puma("forward_kinematics", "q", &[]), &pose(&arm.forward_kinematics(&Q)));
+    same(&of_puma("link_poses", "q", &[]), &json!(arm.link_poses(&Q).each_ref().map(pose)));
+    same(&of_puma("jacobian", "q", &[]), &json!(arm.jacobian(&Q)));
+    let carried = of_puma("jacobian_rate_times_velocity", "q qd", &[]);
+    same(&carried, &json!(arm.jacobian_rate_times_velocity(&Q, &QD)));
+    same(&of_puma("kinetic_energy", "q qd", &[]), &json!(arm.kinetic_energy(&Q, &QD)));
+    same(&of_puma("potential_energy", "q", &[]), &json!(arm.potential_energy(&Q)));
+    same(&of_puma("regressor", full, &[]), &json!(arm.regressor(&Q, &QD, &QDD)));
+    let derivatives = arm.inverse_dynamics_derivatives(&Q, &QD, &QDD);
+    let expected = json!({"dq": derivatives.dq, "dqd": derivatives.dqd});
+    same(&of_puma("inverse_dynamics_derivatives", full, &[]), &expected);
+    let wrenches = arm.joint_wrenches(&Q, &QD, &QDD);
+    let expected = wrenches.map(|wrench| json!({"force": wrench.force, "moment": wrench.moment}));
+    same(&of_puma("joint_wrenches", full, &[]), &json!(expected));
+    same(&of_puma("actuator_torques", "qd qdd", &[]), &json!(arm.actuator_torques(&QD, &QDD)));
+}
+
+#[test]
+fn a_moving_base_is_under_the_gravity_of_the_file_unless_told() {
+    let arm = Arm::<6>::from_file(format!("{ROOT}/{PUMA}")).expect("a robot");
+    let function = "inverse_dynamics_on_moving_base";
+    let motion = ["--base-omega", "0.1,0.2,-0.3", "--base-omega-dot", "0.4,-0.5,0.6", "--base-acceleration", "1,-2,3"];
+    let mut base = BaseMotion {
+        omega: [0.1, 0.2, -0.3],
+        omega_dot: [0.4, -0.5, 0.6],
+        acceleration: [1.0, -2.0, 3.0],
+        ..arm.fixed_base()
+    };
+    let expected = arm.inverse_dynamics_on_moving_base(&Q, &QD, &QDD, &base);
+    same(&of_puma(function, "q qd qdd", &motion), &json!(expected));
+    base.gravity = [1.0, 0.5, -9.7];
+    let expected = arm.inverse_dynamics_on_moving_base(&Q, &QD, &QDD, &base);
+    let tilted: Vec<&str> = motion.into_iter().chain(["--gravity", "1,0.5,-9.7"]).collect();
+    same(&of_puma(function, "q qd qdd", &tilted), &json!(expected));
+
+    let q = written(&Q);
+    let state = ["eval", PUMA, "--function", function, "--q", &q, "--qd", &q, "--qdd", &q];
+    let with = |more: &[&'static str]| -> Vec<&str> { state.iter().copied().chain(more.iter().copied()).collect() };
+    fails(2, &with(&motion[..4]), &["needs --base-acceleration, three numbers x,y,z", "in the axes of frame 0"]);
+    fails(2, &with(&["--base-omega", "1,2"]), &["--base-omega needs 3 numbers, not 2"]);
+    let worksheet: Vec<&str> = with(&motion).into_iter().chain(["--trace"]).collect();
+    assert!(fine(&worksheet).contains("at the base ω0, ω̇0, c̈0, g0 as given"));
+    for (name, value) in [("--base-omega", "0,0,1"), ("--gravity", "0,0,-9")] {
+        let call = ["eval", PUMA, "--q", &q, "--qd", &q, "--qdd", &q, name, value];
+        fails(2, &call, &["inverse_dynamics takes no", name, "inverse_dynamics_on_moving_base does"]);
+    }
+}
+
+#[test]
+fn functions_take_their_arguments_and_no_others() {
+    let robot = "robots/planar2.yaml";
+    let call = |status, function: &str, more: &[&str], parts: &[&str]| {
+        let arguments: Vec<&str> = ["eval", robot, "--function", function].iter().chain(more).copied().collect();
+        fails(status, &arguments, parts);
+    };
+    let (q, qd) = (["--q", "0.1,0.2"], ["--qd", "1,2"]);
+    call(2, "mass_matrix", &[], &["mass_matrix needs --q, one number for each joint of planar2: j1, j2"]);
+    call(2, "mass_matrix", &[q, qd].concat(), &["mass_matrix takes no --qd"]);
+    call(2, "forward_dynamics", &[q, qd].concat(), &["forward_dynamics needs --tau"]);
+    call(2, "forward_dynamics", &[q, qd, ["--tau", "1"]].concat(), &["--tau needs 2 numbers, not 1"]);
+    call(2, "bias_torques", &[q, qd, ["--tau", "1,2"]].concat(), &["takes no --tau; forward_dynamics does"]);
+    call(2, "jacobian", &[&q[..], &["--trace"]].concat(), &["--trace", "jacobian has none", "gravity_torques"]);
+    call(1, "actuator_torques", &qd, &["planar2 has no motors", robot, "motor:"]);
+    call(1, "kinetic_energy", &[q, ["--qd", "1e200,1"]].concat(), &["kinetic_energy overflows"]);
+    fails(2, &["eval", PUMA, "--function", "actuator_torques", "--q", "1"], &["actuator_torques takes no --q"]);
+}
+
+#[test]
+fn functions_for_reading() {
+    let robot = "robots/cylindrical_rpp.yaml";
+    let (q, qd, qdd) = (["--q", "0.6,0.2,0.1"], ["--qd", "1.3,-0.4,0.5"], ["--qdd", "-0.7,2.1,0"]);
+    let call = |function: &str, more: &[[&str; 2]]| {
+        let arguments: Vec<&str> =
+            ["eval", robot, "--function", function].into_iter().chain(more.iter().flatten().copied()).collect();
+        fine(&arguments)
+    };
+    let texts = [
+        call("mass_matrix", &[q]),
+        call("coriolis_matrix", &[q, qd]),
+        call("forward_dynamics", &[q, qd, ["--tau", "1,60,3"]]),
+        call("forward_kinematics", &[q]),
+        call("link_poses", &[q]),
+        call("jacobian", &[q]),
+        call("jacobian_rate_times_velocity", &[q, qd]),
+        call("kinetic_energy", &[q, qd]),
+        call("regressor", &[q, qd, qdd]),
+        call("inverse_dynamics_derivatives", &[q, qd, qdd]),
+        call("joint_wrenches", &[q, qd, qdd]),
+        call(
+            "inverse_dynamics_on_moving_base",
+            &[q, qd, qdd, ["--base-omega", "0,0,1"], ["--base-omega-dot", "0,0,0"], ["--base-acceleration", "0,0,0"]],
+        ),
+    ];
+    insta::assert_snapshot!(texts.join("\n"));
 }

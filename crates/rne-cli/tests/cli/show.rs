@@ -76,11 +76,56 @@ fn the_base_is_written_as_the_table_is() {
 }
 
 #[test]
+fn other_functions_for_reading() {
+    let robot = "robots/planar2.yaml";
+    let functions =
+        ["mass_matrix", "forward_dynamics", "forward_kinematics", "jacobian", "kinetic_energy", "regressor"];
+    let texts = functions.map(|function| {
+        let text = fine(&["show", robot, "--function", function]);
+        // the robot is the same
+        text.split_once("\n\n").and_then(|(_, rest)| rest.split_once("\n\n")).expect("a listing").1.to_owned()
+    });
+    insta::assert_snapshot!(texts.join("\n"));
+    let derivatives = ["show", robot, "--function", "inverse_dynamics_derivatives"];
+    let with =
+        |more: &[&'static str]| fine(&derivatives.iter().copied().chain(more.iter().copied()).collect::<Vec<_>>());
+    for form in ["seven_steps", "reduced"] {
+        let text = with(&["--form", form, "--joint", "1", "--step", "7"]);
+        assert!(text.contains("// joint 1, step 7: torque, by q̇1\n    let tau1_qd1 = "), "{text}");
+        assert!(!text.contains("joint 2, ") && !text.contains("step 6"), "{text}");
+    }
+    assert!(with(&[]).contains("// returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇\n"));
+    let nothing = fine(&["show", robot, "--function", "jacobian", "--step", "7"]);
+    assert!(nothing.contains("nothing of jacobian stands there"), "{nothing}");
+    fails(1, &["show", robot, "--function", "actuator_torques"], &["planar2 has no motors"]);
+    assert!(fine(&["show", "robots/puma560.yaml", "--function", "actuator_torques"]).contains("// motor 6: G² Jm q̈"));
+}
+
+#[test]
+fn what_the_torques_see_of_the_links() {
+    insta::assert_snapshot!(fine(&["show", "robots/planar3.yaml", "--base-parameters"]));
+    let puma = fine(&["show", "robots/puma560.yaml", "--base-parameters"]);
+    for part in ["36 base parameters: ", "of the 60 inertial parameters", "mcx2 + 0.4318 (m2 + m3 + m4 + m5 + m6)"] {
+        assert!(puma.contains(part), "no `{part}` in {puma}");
+    }
+    assert_eq!(puma, fine(&["show", "robots/puma560.yaml", "--base-parameters"]));
+    for other in [&["--joint", "1"][..], &["--step", "2"], &["--function", "regressor"], &["--form", "reduced"]] {
+        let call: Vec<&str> =
+            ["show", "robots/puma560.yaml", "--base-parameters"].iter().chain(other).copied().collect();
+        fails(2, &call, &["--base-parameters", other[0]]);
+    }
+}
+
+#[test]
 fn counts_as_json() {
     let json = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml", "--json"]);
     let json: Value = serde_json::from_str(&json).expect("JSON");
     let entries = json.as_array().expect("a list");
-    assert_eq!(entries.len(), 22, "two robots, five functions, two forms; inverse_dynamics rewritten as well");
+    assert_eq!(
+        entries.len(),
+        2 * 37 + 2,
+        "18 functions, 19 with motors, two forms; inverse_dynamics rewritten as well"
+    );
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
         let mut expected = ["robot", "function", "form", "mul", "add", "div", "sincos", "statements"];
@@ -101,8 +146,22 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 10);
+    assert_eq!(widths.len(), 18 + 19);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
+}
+
+#[test]
+fn counts_of_some_functions() {
+    let robot = "robots/planar2.yaml";
+    let some = fine(&["ops", robot, "--function", "mass_matrix,gravity_torques"]);
+    let functions: Vec<_> = some.lines().skip(3).filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(functions, ["gravity_torques", "gravity_torques", "mass_matrix", "mass_matrix"], "{some}");
+    assert!(!some.contains(" div "), "nothing is divided: {some}");
+    assert!(fine(&["ops", robot, "--function", "forward_dynamics"]).contains(" div "));
+    let without_motors = fine(&["ops", robot, "--json"]);
+    assert!(!without_motors.contains("actuator_torques"));
+    fails(2, &["ops", robot, "--tricks", "--function", "mass_matrix"], &["--tricks", "--function"]);
+    fails(2, &["ops", robot, "--function", "torques"], &["mass_matrix"]);
 }
 
 #[test]

@@ -1,5 +1,7 @@
 //! How an expression is written: where parentheses stand and where a long line breaks.
 
+use std::fmt::Write;
+
 use crate::program::Expression;
 
 /// Width of a line of emitted code, rustfmt's default.
@@ -57,59 +59,146 @@ pub(super) fn line(expression: &Expression) -> String {
     }
 }
 
-/// `let NAME = EXPRESSION;`, broken before + and - where it is too long, as rustfmt does.
+/// `let NAME = EXPRESSION;`, broken where it is too long, as rustfmt does.
 pub(super) fn let_statement(indent: &str, name: &str, expression: &Expression) -> String {
     let start = format!("{indent}let {name} = ");
     let one_line = format!("{start}{};", line(expression));
     if one_line.chars().count() <= WIDTH {
         return one_line;
     }
-    let beside = broken(expression, indent, start.chars().count());
-    let next_line = format!("{indent}    {};", line(expression));
-    let below = if next_line.chars().count() <= WIDTH {
-        line(expression)
-    } else {
-        broken(expression, &format!("{indent}    "), indent.len() + 4)
-    };
+    // one column is for the semicolon, wherever it stands
+    let room = |used: usize| (WIDTH - 1).saturating_sub(used);
+    let used = start.chars().count();
+    let beside = Room { width: room(used), indent: indent.len(), used };
+    let below = indent.len() + 4;
+    let below = Room { width: room(below), indent: below, used: below };
+    let next_line = |text: &str| format!("{}\n{indent}    {text};", start.trim_end());
     let breaks = |text: &str| text.matches('\n').count();
-    if breaks(&below) == 0 || breaks(&beside) > breaks(&below) + 1 {
-        return format!("{}\n{indent}    {below};", start.trim_end());
+    match (broken(expression, beside), broken(expression, below)) {
+        (Some(beside), Some(below)) if breaks(&below) > 0 && breaks(&beside) <= breaks(&below) + 1 => {
+            format!("{start}{beside};")
+        }
+        (_, Some(below)) => next_line(&below),
+        (Some(beside), None) => format!("{start}{beside};"),
+        // no line is wide enough for its names
+        (None, None) => next_line(&line(expression)),
     }
-    format!("{start}{beside};")
 }
 
-/// An expression over several lines: the summands of its outermost operator each on a line of its own, and so on inside
-/// the first of them where that is still too long.
-fn broken(expression: &Expression, indent: &str, start: usize) -> String {
-    let adds = matches!(expression, Expression::Sum(..));
-    let mut summands = Vec::new();
-    let mut first = expression;
-    loop {
-        let (operand, sign) = match first {
-            Expression::Sum(a, b) if adds => {
-                first = a;
-                (b, '+')
-            }
-            Expression::Difference(a, b) if !adds => {
-                first = a;
-                (b, '-')
-            }
-            _ => break,
-        };
-        let inner = format!("{indent}    ");
-        let text = match line(operand) {
-            text if !needs_parentheses(operand, Position::RightSummand) => text,
-            // sign, space, parentheses and the end of the statement
-            text if inner.len() + text.chars().count() + 5 <= WIDTH => format!("({text})"),
-            _ => format!("({})", broken(operand, &inner, inner.len() + 3)),
-        };
-        summands.push(format!("\n{inner}{sign} {text}"));
+/// The room for an expression.
+#[derive(Clone, Copy)]
+struct Room {
+    /// Columns that are left on its first line, less what must follow it.
+    width: usize,
+    /// Indentation of the block in which it stands; its further lines are indented by four more.
+    indent: usize,
+    /// Columns used on its first line.
+    used: usize,
+}
+
+impl Room {
+    /// Behind so many columns.
+    fn behind(self, columns: usize) -> Option<Self> {
+        let width = self.width.checked_sub(columns)?;
+        Some(Self { width, used: self.used + columns, ..self })
     }
-    summands.reverse();
-    let one_line = line(first);
-    let breaks = matches!(first, Expression::Sum(..) | Expression::Difference(..));
-    let first =
-        // one column is for the semicolon, wherever it stands
-        if breaks && start + one_line.chars().count() >= WIDTH { broken(first, indent, start) } else { one_line };
-    first + &summands.concat()
+
+    /// With so many columns behind it.
+    fn before(self, columns: usize) -> Option<Self> {
+        let width = self.width.checked_sub(columns)?;
+        Some(Self { width, ..self })
+    }
+
+    /// A line of its own, indented by four more, with the same behind it.
+    fn next_line(self) -> Option<Self> {
+        let behind = WIDTH.saturating_sub(self.used + self.width);
+        let indent = self.indent + 4;
+        Some(Self { width: (WIDTH - behind).checked_sub(indent)?, indent, used: indent })
+    }
+}
+
+/// An expression over several lines, if need be: the operands of its outermost operator each on a line of its own, and so on
+/// inside those that are still too long. `None` where there is no room for it.
+fn broken(expression: &Expression, room: Room) -> Option<String> {
+    let one_line = line(expression);
+    if one_line.chars().count() <= room.width {
+        return Some(one_line);
+    }
+    match expression {
+        Expression::Variable(_) | Expression::Zero | Expression::BySign(..) => Some(one_line),
+        Expression::Negative(a) => Some(format!("-{}", operand(a, Position::Negated, room.behind(1)?)?)),
+        Expression::Sum(..) | Expression::Difference(..) | Expression::Product(..) | Expression::Quotient(..) => {
+            let (first, others, sign) = chain(expression);
+            last_line_broken(first, &others, sign, room).or_else(|| all_broken(first, &others, sign, room))
+        }
+    }
+}
+
+type Operand<'a> = (&'a Expression, Position);
+
+/// The operands of an operator and of the same operator in its left operand, and so on.
+fn chain(expression: &Expression) -> (Operand<'_>, Vec<Operand<'_>>, char) {
+    use Expression::{Difference, Product, Quotient, Sum};
+    let (sign, left, right) = match expression {
+        Sum(..) => ('+', Position::Summand, Position::RightSummand),
+        Difference(..) => ('-', Position::Summand, Position::RightSummand),
+        Quotient(..) => ('/', Position::Factor, Position::RightFactor),
+        _ => ('*', Position::Factor, Position::RightFactor),
+    };
+    let mut others = Vec::new();
+    let mut first = expression;
+    while let (Sum(a, b), '+') | (Difference(a, b), '-') | (Product(a, b), '*') | (Quotient(a, b), '/') = (first, sign)
+    {
+        others.push((&**b, right));
+        first = a;
+    }
+    others.reverse();
+    ((first, left), others, sign)
+}
+
+fn operand(expression: &Expression, position: Position, room: Room) -> Option<String> {
+    if !needs_parentheses(expression, position) {
+        return broken(expression, room);
+    }
+    Some(format!("({})", broken(expression, room.behind(1)?.before(1)?)?))
+}
+
+/// All operands on one line, but for what the last one breaks: that is allowed where little stands before it.
+fn last_line_broken(first: Operand<'_>, others: &[Operand<'_>], sign: char, room: Room) -> Option<String> {
+    let (last, others) = others.split_last()?;
+    let mut text = operand(first.0, first.1, room)?;
+    for (expression, position) in others {
+        let _ = write!(text, " {sign} {}", operand(expression, *position, room.next_line()?.behind(2)?)?);
+    }
+    let _ = write!(text, " {sign} ");
+    if text.contains('\n') {
+        return None;
+    }
+    let before = text.chars().count();
+    let last = operand(last.0, last.1, room.behind(before)?)?;
+    let first_line = last.lines().next().unwrap_or_default();
+    let fits = before + first_line.chars().count() <= room.width;
+    let is_neat = !last.contains('\n') || !(last.starts_with('(') || before > 4);
+    (fits && is_neat).then(|| text + &last)
+}
+
+/// Every operand on a line of its own.
+fn all_broken(first: Operand<'_>, others: &[Operand<'_>], sign: char, room: Room) -> Option<String> {
+    let mut text = operand(first.0, first.1, room)?;
+    let next = room.next_line()?;
+    for (expression, position) in others {
+        // what is shorter than the indentation is no line
+        let used = if text.contains('\n') { 0 } else { room.used };
+        let last_line = text.lines().last().unwrap_or_default();
+        if last_line.chars().count() + used <= next.used {
+            let beside = room.behind(3 + last_line.trim_start().chars().count());
+            if let Some(beside) = beside.and_then(|room| operand(expression, *position, room)) {
+                let _ = write!(text, " {sign} {beside}");
+                continue;
+            }
+        }
+        let _ =
+            write!(text, "\n{}{sign} {}", " ".repeat(next.indent), operand(expression, *position, next.behind(2)?)?);
+    }
+    Some(text)
 }

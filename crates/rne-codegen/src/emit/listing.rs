@@ -8,10 +8,11 @@ use rne_model::{JointKind, Robot};
 use super::expression::let_statement;
 use super::formula::{formulas, reduced_formulas};
 use super::table::angle;
+use super::text::returned;
 use crate::function::{Form, Function};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
-use crate::quantity::{Component, Name, Quantity, Step};
+use crate::quantity::{By, Component, Name, Quantity, Step};
 
 /// Width of a comment.
 const WIDTH: usize = 100;
@@ -91,53 +92,129 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
     }
     let mut section = None;
     for statement in &program.statements {
-        let Place { joint, step, by, .. } = statement.place;
+        let place = shown_place(program, statement);
+        let Place { joint, step, by, .. } = place;
         if !what.includes(joint, step) {
             continue;
         }
-        if program.form != Form::Rewritten && section != Some((joint, step, by)) {
+        let title = match (by, step) {
+            (Some(by), _) => by_title(program, joint, step, by),
+            (None, Step::Beyond) => beyond_title(program, place.quantity, joint),
+            (None, _) => step_title(program, joint, step),
+        };
+        if program.form != Form::Rewritten && section.as_ref() != Some(&title) {
             if section.is_some() {
                 text.push('\n');
             }
-            match by {
-                Some(by) => {
-                    let _ = writeln!(
-                        text,
-                        "    // joint {joint}, step {}: {} by {}",
-                        step.number(),
-                        step.title(),
-                        by.variable()
-                    );
-                }
-                None => heading(&mut text, robot, program, joint, step),
+            if by.is_some() || step == Step::Beyond {
+                let _ = writeln!(text, "    // {title}");
+            } else {
+                heading(&mut text, robot, program, joint, step);
             }
-            section = Some((joint, step, by));
+            section = Some(title);
         }
         let _ = writeln!(text, "{}", statement_line(statement));
+    }
+    let is_whole = what.explain && what.joint.is_none() && what.step.is_none();
+    let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;
+    if let Some(returned) = returned(program).filter(|_| is_whole && has_shape) {
+        let _ = writeln!(text, "\n    // {}\n    {returned}", returned_title(program.function));
     }
     text
 }
 
-fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step) {
-    if step == Step::Beyond {
-        let _ = writeln!(text, "    // joint {joint}: {}", program.function);
-        return;
+/// The place under which a statement is listed: that of its name, where it has a step. A value that two formulas share stands
+/// at the first of them, whose joint and step may be others.
+fn shown_place(program: &Program, statement: &Statement) -> Place {
+    let Statement { name, place, .. } = statement;
+    let has_own_form = program.form != Form::SevenSteps && Function::TORQUES.contains(&program.function);
+    match name.quantity.step() {
+        // the last row of the solution is what is returned
+        _ if name.quantity == Quantity::RateDot => {
+            Place { joint: name.joint, step: Step::Beyond, quantity: Quantity::Scaled, by: None }
+        }
+        Some(step) if !has_own_form => Place { joint: name.joint, step, quantity: name.quantity, by: name.by },
+        _ => *place,
     }
-    // only the torques have a form of their own
-    let form = if program.function.returns_torques() { program.form } else { Form::SevenSteps };
+}
+
+/// The heading of derivatives, and of what one joint accelerates.
+fn by_title(program: &Program, joint: usize, step: Step, by: By) -> String {
+    let what = match step {
+        Step::Beyond => format!("joint {joint}"),
+        _ => step_title(program, joint, step),
+    };
+    match by {
+        By::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
+        By::Position(by) => format!("{what}, by q{by}"),
+        By::Rate(by) => format!("{what}, by q̇{by}"),
+    }
+}
+
+/// The heading of what is none of the seven steps.
+fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
+    match quantity {
+        Quantity::FrameRotation | Quantity::FrameOrigin if joint > program.dof => "the tip in the world".to_owned(),
+        Quantity::FrameRotation | Quantity::FrameOrigin => format!("frame {joint} in the world"),
+        Quantity::JacobianLinear | Quantity::JacobianAngular => format!("column {joint} of the Jacobian"),
+        Quantity::TipAcceleration => "acceleration of the tip where q̈ = 0".to_owned(),
+        Quantity::ComPosition => format!("centre of mass of link {joint}, in frame 0"),
+        Quantity::KineticEnergy => "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned(),
+        Quantity::PotentialEnergy => "potential energy: -Σ m g · c".to_owned(),
+        Quantity::CoriolisElement => format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇"),
+        Quantity::RegressorElement => format!("torque {joint} per parameter"),
+        Quantity::LowerFactor
+        | Quantity::ScaledFactor
+        | Quantity::Pivot
+        | Quantity::InversePivot
+        | Quantity::Reduced
+        | Quantity::Scaled => "L D Lᵀ q̈ = τ - bias, where M = L D Lᵀ".to_owned(),
+        Quantity::ActuatorTorque => format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"),
+        _ => format!("joint {joint}: terms that have no meaning of their own"),
+    }
+}
+
+const fn returned_title(function: Function) -> &'static str {
+    match function {
+        Function::MassMatrix | Function::CoriolisMatrix => "returned: the rows of the matrix",
+        Function::InverseDynamicsDerivatives => "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
+        Function::ForwardKinematics => "returned: the rows of the rotation, then the translation",
+        Function::LinkPoses => "returned: rotation and translation of every link",
+        Function::Jacobian => "returned: three linear rows, then three angular ones",
+        Function::Regressor => "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
+        Function::JointWrenches => "returned: force and moment of every joint",
+        _ => "returned",
+    }
+}
+
+fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step) {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    let title = match (form, step) {
+    let _ = writeln!(text, "    // {}", step_title(program, joint, step));
+    let formulas = match recursion(program) {
+        Form::SevenSteps => formulas(step, kind, joint),
+        _ => reduced_formulas(step, kind, joint),
+    };
+    for formula in formulas {
+        let _ = writeln!(text, "    // {formula}");
+    }
+}
+
+/// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of frames, not
+/// centres of mass.
+fn recursion(program: &Program) -> Form {
+    let is_reduced = program.form != Form::SevenSteps
+        && (Function::TORQUES.contains(&program.function) || !program.choices.is_empty());
+    if is_reduced || program.function == Function::Regressor { Form::Reduced } else { Form::SevenSteps }
+}
+
+fn step_title(program: &Program, joint: usize, step: Step) -> String {
+    let title = match (recursion(program), step) {
         (Form::SevenSteps, _) => step.title(),
         (_, Step::Acceleration) => "acceleration of the frame's origin",
         (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
         _ => step.title(),
     };
-    let _ = writeln!(text, "    // joint {joint}, step {}: {title}", step.number());
-    let formulas =
-        if form == Form::SevenSteps { formulas(step, kind, joint) } else { reduced_formulas(step, kind, joint) };
-    for formula in formulas {
-        let _ = writeln!(text, "    // {formula}");
-    }
+    format!("joint {joint}, step {}: {title}", step.number())
 }
 
 /// Which sine and cosine stand at the head of the function.

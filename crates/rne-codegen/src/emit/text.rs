@@ -148,9 +148,8 @@ fn function(robot: &Robot, program: &Program) -> String {
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
     let parameters: Vec<String> =
         arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
-    let layout = program.function.layout(dof);
-    let returned = returned_type(&layout);
-    let line = format!("pub fn {}<T: Scalar>({}) -> {returned} {{", program.function, parameters.join(", "));
+    let return_type = returned_type(&program.function.layout(dof));
+    let line = format!("pub fn {}<T: Scalar>({}) -> {return_type} {{", program.function, parameters.join(", "));
     if line.chars().count() <= 100 {
         let _ = writeln!(text, "{line}");
     } else {
@@ -158,7 +157,7 @@ fn function(robot: &Robot, program: &Program) -> String {
         for parameter in &parameters {
             let _ = writeln!(text, "    {parameter},");
         }
-        let _ = writeln!(text, ") -> {returned} {{");
+        let _ = writeln!(text, ") -> {return_type} {{");
     }
     for ArgumentArray { name, elements } in &arrays {
         if elements.iter().all(Option::is_none) {
@@ -192,13 +191,19 @@ fn function(robot: &Robot, program: &Program) -> String {
         let _ = write!(text, "\n{statements}");
     }
     text.push('\n');
+    if let Some(returned) = returned(program) {
+        let _ = writeln!(text, "    {returned}\n}}");
+    }
+    text
+}
+
+/// What a function returns, for a line that is indented by four.
+pub(super) fn returned(program: &Program) -> Option<String> {
     let mut outputs = program.outputs.iter().map(|output| Piece::Number(super::expression::line(&output.value)));
     let array = |elements| Piece::List('[', ']', elements);
     let record = |_, parts| Piece::List('(', ')', parts);
-    if let Some(returned) = layout.fold(&mut outputs, &array, &record) {
-        let _ = writeln!(text, "    {}\n}}", returned.broken(4));
-    }
-    text
+    let layout = program.function.layout(program.dof);
+    Some(layout.fold(&mut outputs, &array, &record)?.broken(4))
 }
 
 /// A record is a tuple here.
@@ -230,7 +235,8 @@ impl Piece {
         }
     }
 
-    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines.
+    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines, and the
+    /// brackets of a list in a list of one stand together.
     fn broken(&self, indent: usize) -> String {
         const LIST: usize = 60;
         const SHORT: usize = 10;
@@ -241,6 +247,9 @@ impl Piece {
         let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
         if line.chars().count() <= room && !(*open == '(' && is_nested && line.chars().count() > LIST) {
             return line;
+        }
+        if let [only @ Self::List(..)] = elements.as_slice() {
+            return format!("{open}{}{close}", only.broken(indent));
         }
         let (inner, mut text) = (indent + 4, format!("{open}\n"));
         let blank = " ".repeat(inner);

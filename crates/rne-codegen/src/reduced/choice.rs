@@ -52,7 +52,9 @@ impl Choice {
     /// # Errors
     /// When the plan does not fit the robot, or there is no rewritten graph for the rewritten form.
     pub fn compile(&self, robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
-        self.compile_arranged(robot, function, form, |program| fusion::soonest(&program))
+        self.compile_arranged(robot, function, form, |program| {
+            if program.is_long() { fusion::fused(&program) } else { fusion::soonest(&program) }
+        })
     }
 
     /// The same for the fewest instructions, as [`fusion::fused`] arranges it, and proved so. The seven steps are left as they
@@ -158,6 +160,12 @@ fn drawn_in(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Result<
     let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
     let drawing = Drawing::new(&frame, plan, function, way).ok_or_else(misfit)?;
     Ok((frame, drawing))
+}
+
+/// Whether the choices of a plan matter to a function.
+#[must_use]
+pub fn is_planned(function: Function) -> bool {
+    !Way::of(function).is_empty()
 }
 
 /// What a plan costs for a function; `None` when it does not fit the robot.

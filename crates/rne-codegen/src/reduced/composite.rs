@@ -28,7 +28,7 @@ pub(crate) enum Gathering {
 
 /// The matter of all links from one on. Its mass is a number.
 #[derive(Clone, Copy)]
-struct Composite<'s> {
+pub(crate) struct Composite<'s> {
     mass: Number,
     h: Vector<'s>,
     /// S11, S22, S33, S12, S13, S23
@@ -36,18 +36,18 @@ struct Composite<'s> {
 }
 
 impl<'s> Composite<'s> {
-    fn of(writer: &'s Writer, matter: &PseudoInertia) -> Self {
+    pub(crate) fn of(writer: &'s Writer, matter: &PseudoInertia) -> Self {
         let s = matter.s;
         let s = [s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]].map(|x| writer.number(x));
         Self { mass: matter.mass, h: writer.vector(matter.h), s }
     }
 
-    fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self { mass: self.mass + other.mass, h: self.h + other.h, s: std::array::from_fn(|k| self.s[k] + other.s[k]) }
     }
 
     /// Rz P Rzᵀ
-    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
+    pub(crate) fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
         let SymbolicTurn { s: sine, c: cosine } = turn;
         let [xx, yy, zz, xy, xz, yz] = self.s;
         let difference = xx - yy;
@@ -63,7 +63,7 @@ impl<'s> Composite<'s> {
     }
 
     /// Rx P Rxᵀ
-    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
+    pub(crate) fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
         let SymbolicTurn { s: sine, c: cosine } = turn;
         let [xx, yy, zz, xy, xz, yz] = self.s;
         let difference = yy - zz;
@@ -79,7 +79,7 @@ impl<'s> Composite<'s> {
     }
 
     /// The same matter about a point from which the old one is at t.
-    fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
+    pub(crate) fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
         let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
         let m = writer.number(self.mass);
         let [xx, yy, zz, xy, xz, yz] = self.s;
@@ -98,14 +98,26 @@ impl<'s> Composite<'s> {
         }
     }
 
+    /// What gives its points the accelerations b + e × r.
+    pub(crate) fn carried(&self, writer: &'s Writer, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
+        let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
+        // J = tr(S) 1 - S
+        let momentum = Vector([
+            (yy + zz) * x - (xy * y + xz * z),
+            (xx + zz) * y - (xy * x + yz * z),
+            (xx + yy) * z - (xz * x + yz * y),
+        ]);
+        Wrench { force: b * writer.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
+    }
+
     /// What accelerates it about the z axis with 1 rad/s².
-    fn turning(&self, writer: &'s Writer) -> Wrench<'s> {
+    pub(crate) fn turning(&self, writer: &'s Writer) -> Wrench<'s> {
         let ([hx, hy, _], [xx, yy, _, _, xz, yz]) = (self.h.0, self.s);
         Wrench { force: Vector([-hy, hx, writer.zero()]), moment: Vector([-xz, -yz, xx + yy]) }
     }
 
     /// What accelerates it along u with 1 m/s².
-    fn sliding(&self, u: Vector<'s>, writer: &'s Writer) -> Wrench<'s> {
+    pub(crate) fn sliding(&self, u: Vector<'s>, writer: &'s Writer) -> Wrench<'s> {
         Wrench { force: u * writer.number(self.mass), moment: self.h.cross(u) }
     }
 }

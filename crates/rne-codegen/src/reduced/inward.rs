@@ -29,7 +29,7 @@ impl<'s> Wrench<'s> {
         Self { force: writer.zeros(), moment: writer.zeros() }
     }
 
-    fn plus(self, other: Self) -> Self {
+    pub(crate) fn plus(self, other: Self) -> Self {
         Self { force: self.force + other.force, moment: self.moment + other.moment }
     }
 
@@ -146,7 +146,7 @@ fn own_wrench<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, link: &Moved<
     }
     if on.second_moment_unturned && is_revolute {
         let s = turned_second_moment(writer, matter, link.group_turn);
-        unturned.moment = unturned.moment + antisymmetric(&link.unturned.gradient, &s);
+        unturned.moment = unturned.moment + antisymmetric_of(&link.unturned.gradient, &s);
     } else {
         own.moment = own.moment + second_moment(writer, matter, &link.own, moment);
     }
@@ -174,7 +174,7 @@ fn first_moment<'s>(
 fn second_moment<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
     let s = matter.s;
     match form {
-        Moment::Second => antisymmetric(&motion.gradient, &s.map(|row| row.map(|x| writer.number(x)))),
+        Moment::Second => antisymmetric_of(&motion.gradient, &s.map(|row| row.map(|x| writer.number(x)))),
         Moment::Diagonal => {
             let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);
             let diagonal = |rate_dot: Symbol<'s>, product: Symbol<'s>, a: Number, b: Number| {
@@ -201,7 +201,7 @@ fn second_moment<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion
 }
 
 /// N_x = U31 S12 + U32 S22 - U23 S33 - U21 S13 + (U33 - U22) S23, and so on.
-fn antisymmetric<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]; 3]) -> Vector<'s> {
+pub(crate) fn antisymmetric_of<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]; 3]) -> Vector<'s> {
     let u = &gradient.u;
     let [zy, xz, yx] = gradient.differences;
     Vector([

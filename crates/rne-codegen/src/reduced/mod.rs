@@ -22,6 +22,7 @@ mod regroup;
 mod rewrite;
 mod rows;
 mod search;
+mod sensitivity;
 mod sheet;
 #[cfg(test)]
 mod tests;
@@ -30,7 +31,7 @@ mod trick;
 mod way;
 mod writer;
 
-pub use choice::{Choice, Found, Wanted, cost, savings, search};
+pub use choice::{Choice, Found, Wanted, cost, is_planned, savings, search};
 pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 pub use search::{Clock, Progress};

@@ -4,6 +4,7 @@ use super::composite::{self, Gathering};
 use super::inward::torques;
 use super::outward::{Arm, motions};
 use super::rows::Table;
+use super::sensitivity::sensitivity;
 use super::writer::{Symbol, Writer};
 use crate::elimination;
 use crate::exact::Number;
@@ -30,9 +31,8 @@ impl Way {
             Function::InverseDynamics
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsSc
-            | Function::BiasTorques
-            | Function::CoriolisMatrix
-            | Function::InverseDynamicsDerivatives => &[Way::Recursion],
+            | Function::BiasTorques => &[Way::Recursion],
+            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Way::Recursion],
             Function::GravityTorques => &[Way::Recursion, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix | Function::ForwardDynamics => &[BY_GROUPS, BY_JOINTS, Way::Columns],
             _ => &[],
@@ -79,6 +79,25 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
                 })
                 .collect();
             by_joint(Quantity::RateDot, elimination::solved(&Solving { writer }, &upper, &rest))
+        }
+        (Function::InverseDynamicsDerivatives, Way::Composite(gathering)) => {
+            let found = sensitivity(writer, arm, gathering, Number::integer(2));
+            let by = |kind: fn(usize) -> By, matrix: &[Vec<Symbol<'s>>]| {
+                square(arm.rows().len(), |row, column| {
+                    let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
+                    writer.define(name, matrix[row][column]);
+                    (name, matrix[row][column])
+                })
+            };
+            [by(By::Position, &found.by_position), by(By::Rate, &found.by_rate)].concat()
+        }
+        (Function::CoriolisMatrix, Way::Composite(gathering)) => {
+            let found = sensitivity(writer, arm, gathering, Number::ONE);
+            square(arm.rows().len(), |row, column| {
+                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                writer.define(name, found.by_rate[row][column]);
+                (name, found.by_rate[row][column])
+            })
         }
         (Function::InverseDynamicsDerivatives, _) => {
             let torques = recursion(writer, arm);

@@ -1,5 +1,7 @@
 //! The shipped robots, for the tests of the compiler.
 
+use std::sync::OnceLock;
+
 use rne_codegen::reduced::{Choice, PlanFile};
 use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
@@ -35,9 +37,12 @@ pub(crate) fn all() -> Vec<Robot> {
     robots
 }
 
-/// All functions of a robot.
+/// All functions of a robot that is shipped, those of the trait `InverseDynamics` of another.
 pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
-    Function::TORQUES.map(|function| compile(robot, function, Form::SevenSteps).expect("finite constants")).into()
+    static SHIPPED: OnceLock<Vec<String>> = OnceLock::new();
+    let names = SHIPPED.get_or_init(|| shipped().into_iter().map(|robot| robot.name).collect());
+    let functions = if names.contains(&robot.name) { &Function::ALL[..] } else { &Function::TORQUES };
+    functions.iter().map(|&function| compile(robot, function, Form::SevenSteps).expect("finite constants")).collect()
 }
 
 /// The plan file of a shipped robot.
@@ -54,7 +59,7 @@ pub(crate) fn choice(robot: &Robot) -> Choice {
 pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
     let choice = choice(robot);
     let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
-    let mut programs = Function::TORQUES.map(|function| compiled(function, Form::Reduced)).to_vec();
+    let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
     programs.push(compiled(Function::InverseDynamics, Form::Rewritten));
     programs
 }
@@ -68,7 +73,7 @@ pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
     });
     let reduced = shipped().into_iter().flat_map(|robot| {
         let programs = reduced_programs(&robot);
-        let (reduced, rewritten) = programs.split_at(5);
+        let (reduced, rewritten) = programs.split_at(Function::ALL.len());
         // functions of one name are in different files
         [(robot.clone(), reduced.to_vec()), (robot, rewritten.to_vec())]
     });

@@ -1,0 +1,248 @@
+//! What a function returned, for people: a line per joint, matrices with the names of their joints, poses, wrenches.
+
+use std::fmt::Write as _;
+
+use rne::Wrench;
+use rne_codegen::{Argument, Function};
+use rne_model::{JointKind, Robot};
+
+use crate::layout::{Align, columns, left, width};
+use crate::numbers::{at_the_point, exact, rounded};
+use crate::state::State;
+use crate::terminal::{QUIET, TITLE};
+
+/// Digits behind the point in a matrix.
+const DIGITS: usize = 6;
+
+/// Digits behind the point where ten parameters stand side by side.
+const FEW_DIGITS: usize = 4;
+
+/// The parameters of a link, as the regressor counts them.
+const PARAMETERS: [&str; 10] = ["m", "m cx", "m cy", "m cz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
+
+/// The numbers of a function as text.
+pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
+    let mut text = format!("{TITLE}{}{TITLE:#} of {}\n", state.function, robot.name);
+    let dof = robot.dof();
+    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    let kinds = Kinds::of(robot);
+    let matrix = |text: &mut String, about: &str, numbers: &[f64]| {
+        Table { about, rows: &joints, columns: &joints, numbers, digits: DIGITS }.write(text);
+    };
+    match state.function {
+        Function::MassMatrix => matrix(&mut text, kinds.mass(), numbers),
+        Function::CoriolisMatrix => matrix(&mut text, kinds.per_rate(), numbers),
+        Function::InverseDynamicsDerivatives => {
+            let (dq, dqd) = numbers.split_at(dof * dof);
+            matrix(&mut text, &format!("∂τ/∂q, {}", kinds.per_position()), dq);
+            text.push('\n');
+            matrix(&mut text, &format!("∂τ/∂q̇, {}", kinds.per_rate()), dqd);
+        }
+        Function::Jacobian => {
+            let rows = ["vx", "vy", "vz", "wx", "wy", "wz"].map(str::to_owned);
+            let about = "velocity of the tip per joint velocity, world axes: v in m/s, w in rad/s";
+            Table { about, rows: &rows, columns: &joints, numbers, digits: DIGITS }.write(&mut text);
+        }
+        Function::JacobianRateTimesVelocity => {
+            let rows = ["linear, m/s²", "angular, rad/s²"].map(str::to_owned);
+            let about = "acceleration of the tip where q̈ = 0, world axes";
+            Table { about, rows: &rows, columns: &axes(), numbers, digits: DIGITS }.write(&mut text);
+        }
+        Function::ForwardKinematics => poses(&mut text, &["tip".to_owned()], numbers),
+        Function::LinkPoses => poses(&mut text, &joints, numbers),
+        Function::JointWrenches => {
+            let columns = ["fx", "fy", "fz", "nx", "ny", "nz"].map(str::to_owned);
+            let about = "what the link before exerts at each joint, axes fixed to the link, z along the joint: f in N, n in N m";
+            Table { about, rows: &joints, columns: &columns, numbers, digits: DIGITS }.write(&mut text);
+        }
+        Function::Regressor => regressor(&mut text, &joints, numbers),
+        Function::KineticEnergy | Function::PotentialEnergy => {
+            let energy = numbers.iter().copied().map(exact).collect::<String>();
+            let _ = writeln!(text, "  {energy} J");
+        }
+        Function::InverseDynamics
+        | Function::InverseDynamicsWithWrench
+        | Function::InverseDynamicsSc
+        | Function::GravityTorques
+        | Function::BiasTorques
+        | Function::ForwardDynamics
+        | Function::InverseDynamicsOnMovingBase
+        | Function::ActuatorTorques => per_joint(&mut text, robot, state, numbers),
+    }
+    text
+}
+
+/// State and result, a line per joint, with all digits.
+fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
+    let forward = state.function == Function::ForwardDynamics;
+    let takes = |argument| state.function.takes(argument);
+    let all = [
+        ("q", &state.q[..], takes(Argument::Positions)),
+        ("qd", &state.qd, takes(Argument::Rates)),
+        ("qdd", &state.qdd, takes(Argument::Accelerations)),
+        ("tau", &state.tau, takes(Argument::Torques)),
+        (if forward { "qdd" } else { "tau" }, result, true),
+    ];
+    let mut cells = vec![vec![String::new()]];
+    cells.extend(robot.joints.iter().map(|joint| vec![format!("  {}", joint.name)]));
+    for (title, values, _) in all.into_iter().filter(|(.., taken)| *taken) {
+        let numbers: Vec<String> = values.iter().copied().map(exact).collect();
+        let column = std::iter::once(title.to_owned()).chain(at_the_point(&numbers));
+        cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
+    }
+    for (line, joint) in cells.iter_mut().skip(1).zip(&robot.joints) {
+        line.push(unit(joint.row.kind, forward).to_owned());
+    }
+    write_lines(text, &cells);
+    if let Some(Wrench { force, moment }) = &state.wrench {
+        let _ = writeln!(text, "{QUIET}the last link exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+    }
+    if takes(Argument::Base) {
+        let base = &state.base;
+        let [omega, omega_dot, acceleration, gravity] =
+            [base.omega, base.omega_dot, base.acceleration, base.gravity].map(|vector| list(&vector));
+        let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, ({omega_dot}) rad/s² and accelerates with");
+        let _ = writeln!(text, "({acceleration}) m/s², gravity is ({gravity}) m/s², all in frame 0{QUIET:#}");
+    }
+}
+
+/// Numbers with commas between them.
+pub(crate) fn list(values: &[f64; 3]) -> String {
+    values.map(exact).join(", ")
+}
+
+const fn unit(kind: JointKind, acceleration: bool) -> &'static str {
+    match (kind, acceleration) {
+        (JointKind::Revolute, false) => "N m",
+        (JointKind::Prismatic, false) => "N",
+        (JointKind::Revolute, true) => "rad/s²",
+        (JointKind::Prismatic, true) => "m/s²",
+    }
+}
+
+fn axes() -> [String; 3] {
+    ["x", "y", "z"].map(str::to_owned)
+}
+
+/// Columns of the rotation are the axes of the frame; beside them its origin.
+fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
+    let about = "axes of the frame and its origin (m), in the world";
+    let widest = frames.iter().map(|frame| width(frame)).max().unwrap_or(0);
+    let mut rows = Vec::new();
+    let mut elements = Vec::new();
+    for (frame, pose) in frames.iter().zip(numbers.chunks_exact(12)) {
+        let (rotation, origin) = pose.split_at(9);
+        let names = [frame, "", ""];
+        for (((axis, name), row), origin) in axes().iter().zip(names).zip(rotation.chunks_exact(3)).zip(origin) {
+            rows.push(format!("{}  {axis}", left(name, widest)));
+            elements.extend(row.iter().chain([origin]));
+        }
+    }
+    let columns = ["x axis", "y axis", "z axis", "origin"].map(str::to_owned);
+    Table { about, rows: &rows, columns: &columns, numbers: &elements, digits: DIGITS }.write(text);
+}
+
+/// A table per torque, a line per link that enters it.
+fn regressor(text: &mut String, joints: &[String], numbers: &[f64]) {
+    let columns = PARAMETERS.map(str::to_owned);
+    let per_torque = joints.len() * PARAMETERS.len();
+    for (joint, torque) in joints.iter().zip(numbers.chunks_exact(per_torque.max(1))) {
+        let links: Vec<(String, &[f64])> = torque
+            .chunks_exact(PARAMETERS.len())
+            .enumerate()
+            .filter(|(_, link)| link.iter().any(|number| *number != 0.0))
+            .map(|(index, link)| (format!("link {}", index + 1), link))
+            .collect();
+        let about = format!("torque of {joint} per parameter");
+        if links.is_empty() {
+            let _ = writeln!(text, "{QUIET}{about}: none{QUIET:#}");
+            continue;
+        }
+        let (rows, numbers): (Vec<String>, Vec<&[f64]>) = links.into_iter().unzip();
+        Table { about: &about, rows: &rows, columns: &columns, numbers: &numbers.concat(), digits: FEW_DIGITS }
+            .write(text);
+    }
+    let _ = writeln!(
+        text,
+        "{QUIET}links that are not listed do not enter; c and J from the link frame's origin, in its axes{QUIET:#}"
+    );
+}
+
+/// Numbers in rows and columns that have names.
+struct Table<'a> {
+    /// What they are, and their units.
+    about: &'a str,
+    rows: &'a [String],
+    columns: &'a [String],
+    /// Row by row.
+    numbers: &'a [f64],
+    digits: usize,
+}
+
+impl Table<'_> {
+    fn write(&self, text: &mut String) {
+        let _ = writeln!(text, "{QUIET}{}{QUIET:#}", self.about);
+        let mut cells = vec![vec![String::new()]];
+        cells.extend(self.rows.iter().map(|row| vec![format!("  {row}")]));
+        for (index, title) in self.columns.iter().enumerate() {
+            let numbers = self.numbers.iter().skip(index).step_by(self.columns.len());
+            let numbers: Vec<String> = numbers.map(|&number| rounded(number, self.digits)).collect();
+            let column = std::iter::once(title.clone()).chain(at_the_point(&numbers));
+            cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
+        }
+        write_lines(text, &cells);
+    }
+}
+
+/// Lines of cells; the first has the titles.
+fn write_lines(text: &mut String, cells: &[Vec<String>]) {
+    let most = cells.iter().map(Vec::len).max().unwrap_or(0);
+    for (index, line) in columns(&vec![Align::Left; most], cells).iter().enumerate() {
+        let _ = match index {
+            0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
+            _ => writeln!(text, "{line}"),
+        };
+    }
+}
+
+/// Which kinds of joints a robot has: they decide the units of its matrices.
+enum Kinds {
+    Revolute,
+    Prismatic,
+    Both,
+}
+
+impl Kinds {
+    fn of(robot: &Robot) -> Self {
+        let revolute = robot.rows().filter(|row| row.kind == JointKind::Revolute).count();
+        match revolute {
+            0 => Self::Prismatic,
+            all if all == robot.dof() => Self::Revolute,
+            _ => Self::Both,
+        }
+    }
+
+    const fn mass(&self) -> &'static str {
+        match self {
+            Self::Revolute => "kg m²",
+            Self::Prismatic => "kg",
+            Self::Both => "kg m² between revolute joints, kg between prismatic ones, kg m between the kinds",
+        }
+    }
+
+    const fn per_position(&self) -> &'static str {
+        match self {
+            Self::Revolute => "N m/rad",
+            Self::Prismatic => "N/m",
+            Self::Both => "N m or N of the row per rad or m of the column",
+        }
+    }
+
+    const fn per_rate(&self) -> &'static str {
+        match self {
+            Self::Revolute => "N m s/rad",
+            Self::Prismatic => "N s/m",
+            Self::Both => "N m or N of the row per rad/s or m/s of the column",
+        }
+    }
+}

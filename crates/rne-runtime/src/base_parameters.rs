@@ -1,0 +1,247 @@
+//! The base parameters: the fewest combinations of the links' inertial parameters that the torques depend on.
+//!
+//! The [regressor](DynArm::regressor) is stacked at random states, the same in every run. A column that is a combination of
+//! columns before it belongs to a parameter that no torque can tell from theirs: it is eliminated and regrouped into them. The
+//! columns run from the base to the tip and within a link as J, m c, m, so that what is eliminated is regrouped into links
+//! nearer to the base, and Jxx is kept where Jyy or Jzz goes: the usual choice.
+//!
+//! M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions on
+//! Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial parameters of
+//! robots, Journal of Robotic Systems 8 (1991), 485-506, for the factorisation.
+
+use std::fmt;
+
+use nalgebra::DVector;
+use rne_model::{JointKind, Link, Row};
+
+use crate::regressor::PARAMETERS;
+use crate::{DynArm, WrongLength};
+
+/// The order in which a link's parameters are kept, as they are counted in the regressor: J, m c, m.
+const ORDER: [usize; PARAMETERS] = [4, 5, 6, 7, 8, 9, 1, 2, 3, 0];
+
+const NAMES: [&str; PARAMETERS] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
+
+/// Random states: each gives a row per joint, and there are ten columns per joint.
+const STATES: usize = 40;
+
+/// A column is independent where what others do not explain is a larger part of it.
+const TOLERANCE: f64 = 1e-8;
+
+/// A parameter of a link, as the regressor counts them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct LinkParameter {
+    /// The link, counted from 0.
+    pub link: usize,
+    /// Its place in (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).
+    pub index: usize,
+}
+
+/// A combination of link parameters that the torques can see: `kept` + Σ coefficient · parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseParameter {
+    /// The parameter whose column of the regressor stands for it.
+    pub kept: LinkParameter,
+    /// The parameters that are regrouped into it.
+    pub regrouped: Vec<(f64, LinkParameter)>,
+    /// Its value for the robot: kg m², kg m or kg, as `kept` has it.
+    pub value: f64,
+}
+
+/// What the torques of a robot can see of its links, without rotors and friction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BaseParameters {
+    /// One per independent column, base to tip.
+    pub parameters: Vec<BaseParameter>,
+    /// Link parameters on which no torque depends.
+    pub without_effect: Vec<LinkParameter>,
+}
+
+impl DynArm {
+    /// The inertial parameters of every link, as the regressor counts them, about the origin of its link frame and in its axes.
+    #[must_use]
+    pub fn inertial_parameters(&self) -> Vec<[f64; PARAMETERS]> {
+        self.rows().iter().map(|row| about_the_origin(&row.link)).collect()
+    }
+
+    /// Which combinations of link parameters the torques can see.
+    #[must_use]
+    pub fn base_parameters(&self) -> BaseParameters {
+        let columns = self.stacked_regressor();
+        let order = (0..self.dof()).flat_map(|link| ORDER.map(|index| LinkParameter { link, index }));
+        let largest = columns.iter().map(DVector::norm).fold(0.0, f64::max);
+        let mut basis = Basis::default();
+        let mut found = BaseParameters { parameters: Vec::new(), without_effect: Vec::new() };
+        let values = self.inertial_parameters();
+        let value = |parameter: LinkParameter| values[parameter.link][parameter.index];
+        for parameter in order {
+            let column = &columns[parameter.link * PARAMETERS + parameter.index];
+            if column.norm() <= TOLERANCE * largest {
+                found.without_effect.push(parameter);
+                continue;
+            }
+            let Some(coefficients) = basis.combination_or_insert(column) else {
+                let kept = BaseParameter { kept: parameter, regrouped: Vec::new(), value: value(parameter) };
+                found.parameters.push(kept);
+                continue;
+            };
+            for (base, coefficient) in found.parameters.iter_mut().zip(coefficients) {
+                let coefficient = cleaned(coefficient);
+                if coefficient != 0.0 {
+                    base.value += coefficient * value(parameter);
+                    base.regrouped.push((coefficient, parameter));
+                }
+            }
+        }
+        for base in &mut found.parameters {
+            let parts = base.regrouped.iter().map(|(coefficient, parameter)| coefficient * value(*parameter));
+            let magnitude = parts.fold(value(base.kept).abs(), |sum, part| sum + part.abs());
+            if base.value.abs() <= 16.0 * f64::EPSILON * magnitude {
+                // what cancels exactly
+                base.value = 0.0;
+            }
+        }
+        found.without_effect.sort_unstable();
+        found
+    }
+
+    /// The columns of the regressor at many random states, one below the other.
+    fn stacked_regressor(&self) -> Vec<DVector<f64>> {
+        let mut columns = vec![Vec::new(); self.dof() * PARAMETERS];
+        let mut random = Random(1);
+        for _ in 0..STATES {
+            let q: Vec<f64> = self.rows().iter().map(|row| random.position(row)).collect();
+            let mut rates = |most: f64| -> Vec<f64> { (0..self.dof()).map(|_| most * random.number()).collect() };
+            let (qd, qdd) = (rates(3.0), rates(10.0));
+            // there is one number per joint
+            let Ok(matrix) = self.regressor(&q, &qd, &qdd) else { continue };
+            for torque in matrix {
+                for (column, element) in columns.iter_mut().zip(torque.iter().flatten()) {
+                    column.push(*element);
+                }
+            }
+        }
+        columns.into_iter().map(DVector::from_vec).collect()
+    }
+}
+
+impl BaseParameters {
+    /// The rank of the regressor.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.parameters.len()
+    }
+
+    /// The base parameters that are a link parameter by itself.
+    pub fn alone(&self) -> impl Iterator<Item = &BaseParameter> {
+        self.parameters.iter().filter(|base| base.regrouped.is_empty())
+    }
+
+    /// The columns of a regressor that belong to the base parameters: τ_i = Σ_k Y_ik value_k.
+    ///
+    /// # Errors
+    /// As [`DynArm::regressor`].
+    pub fn regressor(&self, arm: &DynArm, q: &[f64], qd: &[f64], qdd: &[f64]) -> Result<Vec<Vec<f64>>, WrongLength> {
+        let matrix = arm.regressor(q, qd, qdd)?;
+        let columns = |torque: Vec<[f64; PARAMETERS]>| {
+            self.parameters.iter().map(move |base| torque[base.kept.link][base.kept.index])
+        };
+        Ok(matrix.into_iter().map(|torque| columns(torque).collect()).collect())
+    }
+}
+
+impl fmt::Display for LinkParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}{}", NAMES.get(self.index).unwrap_or(&"?"), self.link + 1)
+    }
+}
+
+/// Independent columns, as orthonormal directions and the triangle that leads back to them.
+#[derive(Default)]
+struct Basis {
+    directions: Vec<DVector<f64>>,
+    /// Column k: the parts of independent column k along the directions 0 to k.
+    triangle: Vec<Vec<f64>>,
+}
+
+impl Basis {
+    /// The coefficients of a column that is a combination of those before it; `None` when it is not, and one of them from now on.
+    fn combination_or_insert(&mut self, column: &DVector<f64>) -> Option<Vec<f64>> {
+        let mut rest = column.clone();
+        let mut parts = vec![0.0; self.directions.len()];
+        // twice is enough for full precision
+        for _ in 0..2 {
+            for (part, direction) in parts.iter_mut().zip(&self.directions) {
+                let along = direction.dot(&rest);
+                rest.axpy(-along, direction, 1.0);
+                *part += along;
+            }
+        }
+        let length = rest.norm();
+        if length <= TOLERANCE * column.norm() {
+            return Some(self.solved(parts));
+        }
+        parts.push(length);
+        self.triangle.push(parts);
+        self.directions.push(rest / length);
+        None
+    }
+
+    /// The combination of independent columns with these parts along the directions.
+    fn solved(&self, mut parts: Vec<f64>) -> Vec<f64> {
+        for k in (0..parts.len()).rev() {
+            parts[k] /= self.triangle[k][k];
+            for earlier in 0..k {
+                parts[earlier] -= parts[k] * self.triangle[k][earlier];
+            }
+        }
+        parts
+    }
+}
+
+/// A coefficient without the rounding of its computation: a whole number where it is one but for 1e-9.
+fn cleaned(coefficient: f64) -> f64 {
+    let whole = coefficient.round();
+    if (coefficient - whole).abs() < 1e-9 { whole } else { coefficient }
+}
+
+/// Parameters about the origin of the link frame.
+fn about_the_origin(link: &Link) -> [f64; PARAMETERS] {
+    let Link { mass: m, com: [x, y, z], inertia: i } = *link;
+    [
+        m,
+        m * x,
+        m * y,
+        m * z,
+        i.xx + m * (y * y + z * z),
+        i.xy - m * x * y,
+        i.xz - m * x * z,
+        i.yy + m * (x * x + z * z),
+        i.yz - m * y * z,
+        i.zz + m * (x * x + y * y),
+    ]
+}
+
+/// Steele's SplitMix64: the same states on every machine.
+struct Random(u64);
+
+impl Random {
+    /// Between -1 and 1.
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        bits ^= bits >> 31;
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    /// Anywhere on a turn, or within a metre.
+    fn position(&mut self, row: &Row) -> f64 {
+        match row.kind {
+            JointKind::Revolute => std::f64::consts::PI * self.number(),
+            JointKind::Prismatic => self.number(),
+        }
+    }
+}
