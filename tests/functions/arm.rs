@@ -131,6 +131,11 @@ impl Arm {
         arm
     }
 
+    /// The code of a function.
+    pub(crate) fn program(&self, function: Function) -> &Program {
+        &self.compiled(self.code.as_ref().expect("an arm of code"), function).0
+    }
+
     fn compiled<'a>(&self, code: &'a Code, function: Function) -> &'a (Program, Interpreter) {
         let index = Function::ALL.iter().position(|other| *other == function).expect("all are in it");
         code.functions[index].get_or_init(|| {

@@ -10,6 +10,7 @@ mod equality;
 mod golden;
 mod kinematics;
 mod matrices;
+mod operations;
 mod peers;
 mod published;
 #[path = "../random/robots.rs"]

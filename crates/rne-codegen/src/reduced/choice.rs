@@ -95,7 +95,12 @@ impl Choice {
                 let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
                 Ok(Program { choices, ..program })
             }
-            _ => merged::program(robot, function, arranged),
+            _ => {
+                let merged = merged::program(robot, function, arranged)?;
+                let plain = crate::compile(robot, function, Form::SevenSteps)?;
+                // a value that is found where it is not used otherwise costs what it takes there
+                Ok(if plain.operations().total() < merged.operations().total() { plain } else { merged })
+            }
         }
     }
 
