@@ -50,7 +50,7 @@ fn case(seed: u64, maker: Maker) -> Case {
     let mut rng = Rng::with_seed(seed);
     let dof = rng.usize(1..=8);
     let mut yaml = robots::yaml(seed, dof);
-    if seed % 2 == 0 {
+    if seed.is_multiple_of(2) {
         yaml = yaml.replace("joints:", "base: {xyz: [0.3, -0.7, 1.1], rpy: [0.4, -1.2, 2.5]}\njoints:");
     }
     let mut robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}"));

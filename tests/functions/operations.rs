@@ -57,7 +57,7 @@ fn the_geometry_of_the_puma_with_any_inertias_is_below_sympybotics() {
 fn no_function_is_longer_in_the_reduced_form() {
     for form in [Form::SevenSteps, Form::Reduced] {
         println!("\nproducts + sums + divisions, {}", form.name());
-        println!("{:32}{}", "", ROBOTS.map(|name| format!("{:>10.9}", name)).concat());
+        println!("{:32}{}", "", ROBOTS.map(|name| format!("{name:>10.9}")).concat());
         for function in Function::ALL {
             let total = |name| counts(&format!("robots/{name}.yaml"), function, form).iter().sum::<usize>();
             println!("{:32}{}", function.name(), ROBOTS.map(|name| format!("{:10}", total(name))).concat());
