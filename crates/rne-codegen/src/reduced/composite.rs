@@ -35,6 +35,30 @@ pub(crate) struct Composite<'s> {
     s: [Symbol<'s>; 6],
 }
 
+/// Rz S Rzᵀ of a symmetric matrix: xx, yy, zz, xy, xz, yz.
+pub(crate) fn turned_about_z<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>) -> [Symbol<'s>; 6] {
+    let SymbolicTurn { s: sine, c: cosine } = turn;
+    let [xx, yy, zz, xy, xz, yz] = matrix;
+    let difference = xx - yy;
+    let twice = xy + xy;
+    let (both, square) = (cosine * sine, cosine * cosine);
+    let u = square * difference - both * twice;
+    let turned_xy = both * difference + (square * twice - xy);
+    [u + yy, xx - u, zz, turned_xy, cosine * xz - sine * yz, sine * xz + cosine * yz]
+}
+
+/// Rx S Rxᵀ
+pub(crate) fn turned_about_x<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>) -> [Symbol<'s>; 6] {
+    let SymbolicTurn { s: sine, c: cosine } = turn;
+    let [xx, yy, zz, xy, xz, yz] = matrix;
+    let difference = yy - zz;
+    let twice = yz + yz;
+    let (both, square) = (cosine * sine, cosine * cosine);
+    let u = square * difference - both * twice;
+    let turned_yz = both * difference + (square * twice - yz);
+    [xx, u + zz, yy - u, cosine * xy - sine * xz, sine * xy + cosine * xz, turned_yz]
+}
+
 impl<'s> Composite<'s> {
     pub(crate) fn of(writer: &'s Writer, matter: &PseudoInertia) -> Self {
         let s = matter.s;
@@ -48,34 +72,12 @@ impl<'s> Composite<'s> {
 
     /// Rz P Rzᵀ
     pub(crate) fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        let SymbolicTurn { s: sine, c: cosine } = turn;
-        let [xx, yy, zz, xy, xz, yz] = self.s;
-        let difference = xx - yy;
-        let twice = xy + xy;
-        let (both, square) = (cosine * sine, cosine * cosine);
-        let u = square * difference - both * twice;
-        let turned_xy = both * difference + (square * twice - xy);
-        Self {
-            mass: self.mass,
-            h: turn.about_z(self.h),
-            s: [u + yy, xx - u, zz, turned_xy, cosine * xz - sine * yz, sine * xz + cosine * yz],
-        }
+        Self { mass: self.mass, h: turn.about_z(self.h), s: turned_about_z(self.s, turn) }
     }
 
     /// Rx P Rxᵀ
     pub(crate) fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        let SymbolicTurn { s: sine, c: cosine } = turn;
-        let [xx, yy, zz, xy, xz, yz] = self.s;
-        let difference = yy - zz;
-        let twice = yz + yz;
-        let (both, square) = (cosine * sine, cosine * cosine);
-        let u = square * difference - both * twice;
-        let turned_yz = both * difference + (square * twice - yz);
-        Self {
-            mass: self.mass,
-            h: turn.about_x(self.h),
-            s: [xx, u + zz, yy - u, cosine * xy - sine * xz, sine * xy + cosine * xz, turned_yz],
-        }
+        Self { mass: self.mass, h: turn.about_x(self.h), s: turned_about_x(self.s, turn) }
     }
 
     /// The same matter about a point from which the old one is at t.

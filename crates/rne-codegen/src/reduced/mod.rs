@@ -6,6 +6,7 @@
 //! From the robot file to code: `rows` and `regroup` prepare the numbers, `outward` and `inward` write the recursion
 //! on a `sheet`, `transcript` turns the sheet into a program, which the gate of `proof.rs` lets pass or not.
 
+mod articulated;
 mod choice;
 mod composite;
 mod evaluator;

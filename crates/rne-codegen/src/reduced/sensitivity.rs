@@ -42,8 +42,8 @@ pub(crate) struct Sensitivity<'s> {
 
 /// How a link moves, in some axes. `twice` are velocities times a factor, 2 or 1.
 #[derive(Clone, Copy)]
-struct Motion<'s> {
-    omega: Vector<'s>,
+pub(crate) struct Motion<'s> {
+    pub(crate) omega: Vector<'s>,
     omega_dot: Vector<'s>,
     acceleration: Vector<'s>,
     twice_omega: Vector<'s>,
@@ -51,13 +51,13 @@ struct Motion<'s> {
 }
 
 /// A joint on the way out.
-struct Station<'s> {
+pub(crate) struct Station<'s> {
     /// Of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
-    before: Motion<'s>,
+    pub(crate) before: Motion<'s>,
     /// Of the link, in its axes.
-    own: Motion<'s>,
+    pub(crate) own: Motion<'s>,
     /// From the axes of the link to N.
-    turn: SymbolicTurn<'s>,
+    pub(crate) turn: SymbolicTurn<'s>,
 }
 
 /// ∫ r vᵀ dm
@@ -272,7 +272,7 @@ pub(crate) fn sensitivity<'s>(
 }
 
 /// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is taken back.
-fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
+pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
     let mut matter = arm.parameters.links[index];
     let Some(c) = arm.parameters.sphere else { return matter };
     let half = c * Number::integer(2).inverse().unwrap_or_default();
@@ -287,7 +287,12 @@ fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
 }
 
 /// How all links move.
-fn stations<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gathering, factor: Number) -> Vec<Station<'s>> {
+pub(crate) fn stations<'s>(
+    writer: &'s Writer,
+    arm: &Arm<'_>,
+    gathering: Gathering,
+    factor: Number,
+) -> Vec<Station<'s>> {
     let rows = arm.rows();
     let (zeros, zero) = (writer.zeros(), writer.zero());
     let along = |x: Number| Vector([zero, zero, writer.number(x)]);

@@ -1,6 +1,7 @@
 //! Whatever a search may find is the function of the seven steps, and what is not is refused.
 
 mod unusual;
+mod ways;
 
 use rne_model::{Robot, check_bytes};
 

@@ -1,5 +1,6 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
+use super::articulated;
 use super::composite::{self, Gathering};
 use super::inward::torques;
 use super::outward::{Arm, motions};
@@ -20,6 +21,8 @@ pub(crate) enum Way {
     Composite(Gathering),
     /// The recursion, once per joint that accelerates.
     Columns,
+    /// Articulated bodies.
+    Articulated(Gathering),
 }
 
 impl Way {
@@ -34,7 +37,14 @@ impl Way {
             | Function::BiasTorques => &[Way::Recursion],
             Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Way::Recursion],
             Function::GravityTorques => &[Way::Recursion, BY_GROUPS, BY_JOINTS],
-            Function::MassMatrix | Function::ForwardDynamics => &[BY_GROUPS, BY_JOINTS, Way::Columns],
+            Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Way::Columns],
+            Function::ForwardDynamics => &[
+                BY_GROUPS,
+                BY_JOINTS,
+                Way::Columns,
+                Way::Articulated(Gathering::Groups),
+                Way::Articulated(Gathering::Joints),
+            ],
             _ => &[],
         }
     }
@@ -46,6 +56,8 @@ impl Way {
             Self::Composite(Gathering::Groups) => Some("composite bodies, gathered per group of parallel axes"),
             Self::Composite(Gathering::Joints) => Some("composite bodies, gathered joint by joint"),
             Self::Columns => Some("columns: one recursion per joint that accelerates"),
+            Self::Articulated(Gathering::Groups) => Some("articulated bodies, gathered per group of parallel axes"),
+            Self::Articulated(Gathering::Joints) => Some("articulated bodies, gathered joint by joint"),
         }
     }
 }
@@ -66,6 +78,9 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
                 let by = Some(By::RateDot(column + 1));
                 (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
             })
+        }
+        (Function::ForwardDynamics, Way::Articulated(gathering)) => {
+            by_joint(Quantity::RateDot, articulated::forward_dynamics(writer, arm, gathering))
         }
         (Function::ForwardDynamics, _) => {
             let upper = mass_matrix(writer, arm, way);
