@@ -1,10 +1,14 @@
 //! Random arms at random states.
 
+use std::sync::LazyLock;
+
 use fastrand::Rng;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne::{Dual, DynArm, Wrench};
-use rne_model::Robot;
+use rne::{BaseMotion, Dual, Wrench};
+use rne_codegen::Form;
+use rne_model::{Motor, Robot};
 
+use crate::arm::{Arm, Given, Maker};
 use crate::check::Worst;
 use crate::robots;
 
@@ -13,48 +17,82 @@ const TOLERANCE: f64 = 1e-11;
 /// An arm at a state.
 pub(crate) struct Case {
     pub(crate) robot: Robot,
-    pub(crate) arm: DynArm,
+    pub(crate) arm: Arm,
     pub(crate) q: Vec<f64>,
     pub(crate) qd: Vec<f64>,
     pub(crate) qdd: Vec<f64>,
+    pub(crate) applied: Vec<f64>,
     pub(crate) wrench: Wrench<f64>,
+    pub(crate) base: BaseMotion<f64>,
 }
 
-/// Random robots with 1 to 8 joints, half of them with a base that stands anywhere in the world.
-pub(crate) fn cases() -> impl Iterator<Item = Case> {
-    (0..300_u64).map(|seed| {
-        let mut rng = Rng::with_seed(seed);
-        let dof = rng.usize(1..=8);
-        let mut yaml = robots::yaml(seed, dof);
-        if seed % 2 == 0 {
-            yaml = yaml.replace("joints:", "base: {xyz: [0.3, -0.7, 1.1], rpy: [0.4, -1.2, 2.5]}\njoints:");
-        }
-        let robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}"));
-        let mut array = |scale: f64| -> Vec<f64> { (0..dof).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect() };
-        let (q, qd, qdd) = (array(3.0), array(2.0), array(5.0));
-        let mut triple = || [(); 3].map(|()| (2.0 * rng.f64() - 1.0) * 10.0);
-        let wrench = Wrench { force: triple(), moment: triple() };
-        Case { arm: DynArm::from_robot(&robot), robot, q, qd, qdd, wrench }
-    })
+static OF_THE_RUNTIME: LazyLock<Vec<Case>> =
+    LazyLock::new(|| (0..300).map(|seed| case(seed, Maker::Runtime)).collect());
+static OF_SEVEN_STEPS: LazyLock<Vec<Case>> = LazyLock::new(|| compiled(Form::SevenSteps));
+static OF_THE_REDUCED_FORM: LazyLock<Vec<Case>> = LazyLock::new(|| compiled(Form::Reduced));
+
+/// As many robots as can be compiled in some seconds, from all over the seeds.
+fn compiled(form: Form) -> Vec<Case> {
+    (0..300).step_by(17).map(|seed| case(seed, Maker::Code(form))).collect()
 }
 
-/// A function of all cases, which reports its errors.
+/// Random robots with 1 to 8 joints, half of them with a base that stands anywhere in the world, some joints with motors.
+/// What is compiled is so once in all tests.
+pub(crate) fn cases(maker: Maker) -> &'static [Case] {
+    match maker {
+        Maker::Runtime => &OF_THE_RUNTIME,
+        Maker::Code(Form::SevenSteps) => &OF_SEVEN_STEPS,
+        Maker::Code(_) => &OF_THE_REDUCED_FORM,
+    }
+}
+
+fn case(seed: u64, maker: Maker) -> Case {
+    let mut rng = Rng::with_seed(seed);
+    let dof = rng.usize(1..=8);
+    let mut yaml = robots::yaml(seed, dof);
+    if seed.is_multiple_of(2) {
+        yaml = yaml.replace("joints:", "base: {xyz: [0.3, -0.7, 1.1], rpy: [0.4, -1.2, 2.5]}\njoints:");
+    }
+    let mut robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}\n{yaml}"));
+    let mut array = |scale: f64| -> Vec<f64> { (0..dof).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect() };
+    let (q, qd, qdd) = (array(3.0), array(2.0), array(5.0));
+    let applied = array(20.0);
+    for (joint, x) in robot.joints.iter_mut().zip(array(1.0)) {
+        let motor = Motor { inertia: 1e-4 * x, gear_ratio: 100.0 - 300.0 * x, viscous: 1e-3, coulomb: [0.3 * x, -x] };
+        joint.motor = (x > 0.0).then_some(motor);
+    }
+    let mut triple = || [(); 3].map(|()| (2.0 * rng.f64() - 1.0) * 10.0);
+    let wrench = Wrench { force: triple(), moment: triple() };
+    let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
+    let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
+    Case { arm: Arm::new(&robot, maker), robot, q, qd, qdd, applied, wrench, base }
+}
+
+/// A function of all cases of every maker, which reports its errors.
 #[track_caller]
 pub(crate) fn holds(of: &str, property: impl Fn(&Case, &mut Worst)) {
-    let mut worst = Worst::default();
-    for case in cases() {
-        property(&case, &mut worst);
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for case in cases(maker) {
+            property(case, &mut worst);
+        }
+        worst.at_most(TOLERANCE, &format!("{of}, {maker}"));
     }
-    worst.at_most(TOLERANCE, of);
 }
 
 impl Case {
+    /// All that a function can be asked with.
+    pub(crate) fn given(&self) -> Given<'_, f64> {
+        let Self { q, qd, qdd, applied, wrench, base, .. } = self;
+        Given { q, qd, qdd, tau: applied, wrench: *wrench, base: *base }
+    }
+
     pub(crate) fn tau(&self) -> Vec<f64> {
-        self.arm.inverse_dynamics(&self.q, &self.qd, &self.qdd).expect("one per joint")
+        self.arm.inverse_dynamics(&self.q, &self.qd, &self.qdd)
     }
 
     pub(crate) fn mass(&self) -> Vec<Vec<f64>> {
-        self.arm.mass_matrix(&self.q).expect("one per joint")
+        self.arm.mass_matrix(&self.q)
     }
 
     /// The positions, on their way with the velocities: derivatives are those with respect to time.

@@ -1,6 +1,7 @@
 //! How numbers are read and compared.
 
-use rne::{DynArm, Wrench};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use rne::Wrench;
 use serde_json::Value;
 
 /// The workspace.
@@ -9,10 +10,6 @@ pub(crate) const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 pub(crate) fn json(file: &str) -> Value {
     let text = std::fs::read_to_string(format!("{ROOT}/{file}")).unwrap_or_else(|error| panic!("{file}: {error}"));
     serde_json::from_str(&text).expect("JSON")
-}
-
-pub(crate) fn arm(file: &str) -> DynArm {
-    DynArm::from_file(format!("{ROOT}/{file}")).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// All numbers of an array of arrays, row after row.
@@ -56,6 +53,25 @@ pub(crate) fn relative_error(found: &[f64], expected: &[f64]) -> f64 {
     error_on_scale(found, expected, 0.0)
 }
 
+pub(crate) fn eigenvalues(symmetric: &[Vec<f64>]) -> DVector<f64> {
+    let matrix = DMatrix::from_row_slice(symmetric.len(), symmetric.len(), &flat(symmetric));
+    SymmetricEigen::new(matrix).eigenvalues
+}
+
+/// How much a matrix magnifies errors when it is divided by.
+pub(crate) struct Conditioning {
+    /// The ratio of its largest to its smallest eigenvalue.
+    pub(crate) number: f64,
+    pub(crate) largest: f64,
+}
+
+/// `None` for a matrix that is not positive definite.
+pub(crate) fn conditioning(symmetric: &[Vec<f64>]) -> Option<Conditioning> {
+    let eigenvalues = eigenvalues(symmetric);
+    let (smallest, largest) = (eigenvalues.min(), eigenvalues.max());
+    (smallest > 0.0).then(|| Conditioning { number: largest / smallest, largest })
+}
+
 /// The worst error of each quantity.
 #[derive(Default)]
 pub(crate) struct Worst(Vec<(&'static str, f64)>);
@@ -73,7 +89,7 @@ impl Worst {
     #[track_caller]
     pub(crate) fn at_most(&self, tolerance: f64, of: &str) {
         for (what, error) in &self.0 {
-            println!("{of:16} {what:30} {error:.1e}");
+            println!("{of:40} {what:20} {error:.1e}");
             assert!(*error <= tolerance, "{of}, {what}: {error:e}");
         }
     }

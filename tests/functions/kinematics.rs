@@ -1,9 +1,9 @@
 //! Poses and Jacobians of random arms: derivatives with respect to time by dual numbers.
 
 use nalgebra::Vector3;
-use rne::DynArm;
 use rne_model::{Robot, Transform};
 
+use crate::arm::{Arm, Maker};
 use crate::case::{Case, cases, holds, largest, sum};
 use crate::check::{error_on_scale, flat, product, relative_error};
 
@@ -11,10 +11,10 @@ use crate::check::{error_on_scale, flat, product, relative_error};
 fn the_jacobian_moves_the_tip_and_carries_its_wrench() {
     holds("Jacobian", |case, worst| {
         let Case { arm, q, qd, .. } = case;
-        let jacobian = arm.jacobian(q).expect("one per joint");
+        let jacobian = arm.jacobian(q);
         let velocity = product(&jacobian, qd);
-        let moving = arm.forward_kinematics(&case.moving()).expect("one per joint");
-        let tip = arm.forward_kinematics(q).expect("one per joint");
+        let moving = arm.forward_kinematics(&case.moving());
+        let tip = arm.forward_kinematics(q);
         let scale = largest(&flat(&jacobian)) * largest(qd);
         worst.see("ṗ", error_on_scale(&moving.translation.map(|x| x.derivative), &velocity[..3], scale));
         // Ṙ = ω × R
@@ -28,27 +28,27 @@ fn the_jacobian_moves_the_tip_and_carries_its_wrench() {
             [turned(case.wrench.force), turned(case.wrench.moment)].iter().flat_map(|x| x.iter().copied()).collect();
         let load: Vec<f64> =
             (0..q.len()).map(|joint| (0..6).map(|row| jacobian[row][joint] * wrench[row]).sum()).collect();
-        let loaded = arm.inverse_dynamics_with_wrench(q, qd, &case.qdd, &case.wrench).expect("one per joint");
+        let loaded = arm.inverse_dynamics_with_wrench(q, qd, &case.qdd, &case.wrench);
         worst.see("τ + Jᵀ w", relative_error(&sum(&case.tau(), &load), &loaded));
 
-        let rate: Vec<Vec<f64>> = arm
-            .jacobian(&case.moving())
-            .expect("one per joint")
-            .iter()
-            .map(|row| row.iter().map(|x| x.derivative).collect())
-            .collect();
+        let rate: Vec<Vec<f64>> =
+            arm.jacobian(&case.moving()).iter().map(|row| row.iter().map(|x| x.derivative).collect()).collect();
         let expected = product(&rate, qd);
-        let found = arm.jacobian_rate_times_velocity(q, qd).expect("one per joint");
+        let found = arm.jacobian_rate_times_velocity(q, qd);
         worst.see("J̇ q̇", error_on_scale(&found, &expected, largest(&flat(&jacobian))));
     });
 }
 
 #[test]
 fn the_base_turns_what_is_seen_from_the_world_and_no_torque() {
-    for case in cases().filter(|case| case.robot.base != Transform::IDENTITY) {
-        let Case { robot, arm, q, qd, qdd, .. } = &case;
-        let unmoved = Robot { base: Transform::IDENTITY, ..robot.clone() };
-        let unmoved = DynArm::from_robot(&unmoved);
+    let moved = |maker| {
+        let moved = cases(maker).iter().filter(|case| case.robot.base != Transform::IDENTITY);
+        // the other arm is compiled for this alone
+        moved.take(if maker == Maker::Runtime { 200 } else { 5 })
+    };
+    for (maker, case) in Maker::ALL.into_iter().flat_map(|maker| moved(maker).map(move |case| (maker, case))) {
+        let Case { robot, arm, q, qd, qdd, .. } = case;
+        let unmoved = Arm::new(&Robot { base: Transform::IDENTITY, ..robot.clone() }, maker);
         assert_eq!(arm.inverse_dynamics(q, qd, qdd), unmoved.inverse_dynamics(q, qd, qdd));
         assert_eq!(arm.mass_matrix(q), unmoved.mass_matrix(q));
         assert_eq!(arm.coriolis_matrix(q, qd), unmoved.coriolis_matrix(q, qd));
@@ -57,10 +57,10 @@ fn the_base_turns_what_is_seen_from_the_world_and_no_torque() {
         assert_eq!(arm.regressor(q, qd, qdd), unmoved.regressor(q, qd, qdd));
 
         let turn = case.base_rotation();
-        let (tip, seen) = (unmoved.forward_kinematics(q).expect("tip"), arm.forward_kinematics(q).expect("tip"));
+        let (tip, seen) = (unmoved.forward_kinematics(q), arm.forward_kinematics(q));
         let expected = turn * tip.translation_vector() + Vector3::from(robot.base.xyz);
         assert!(relative_error(&seen.translation, expected.as_slice()) < 1e-14);
-        let (rows, seen) = (unmoved.jacobian(q).expect("J"), arm.jacobian(q).expect("J"));
+        let (rows, seen) = (unmoved.jacobian(q), arm.jacobian(q));
         for joint in 0..q.len() {
             for part in [0, 3] {
                 let column = |rows: &[Vec<f64>; 6]| Vector3::from_fn(|row, _| rows[part + row][joint]);

@@ -2,7 +2,8 @@
 
 use serde_json::Value;
 
-use crate::check::{arm, flat, json, numbers};
+use crate::arm::{Arm, Maker};
+use crate::check::{flat, json, numbers};
 
 const PRINTED: f64 = 0.5001e-4;
 
@@ -17,21 +18,26 @@ fn as_printed(found: &[f64], printed: &Value) {
 
 #[test]
 fn what_is_printed_of_the_puma() {
-    let arm = arm("robots/puma560.yaml");
+    for maker in Maker::ALL {
+        as_published(Arm::from_file("robots/puma560.yaml", maker));
+    }
+}
+
+fn as_published(arm: &Arm) {
     let published = &json("tests/reference/puma560.json")["published"];
     let q = numbers(&published["poses"]["qn"]);
     let (zero, one) = (vec![0.0; 6], vec![1.0; 6]);
-    let rotors = arm.actuator_torques(&zero, &one).expect("six joints");
+    let rotors = arm.actuator_torques(&zero, &one);
 
     // Their mass matrix contains the rotors.
-    let mut mass = arm.mass_matrix(&q).expect("six joints");
+    let mut mass = arm.mass_matrix(&q);
     for (joint, rotor) in rotors.iter().enumerate() {
         mass[joint][joint] += rotor;
     }
     as_printed(&flat(&mass), &published["mass_matrix_qn"]["M"]);
 
     let coriolis = &published["coriolis_matrix_qn"];
-    let found = arm.coriolis_matrix(&q, &numbers(&coriolis["qd"])).expect("six joints");
+    let found = arm.coriolis_matrix(&q, &numbers(&coriolis["qd"]));
     as_printed(&flat(&found), &coriolis["C"]);
 
     // Their accelerations of torques: inverse dynamics with motors gives the torques back. The collection of these values
@@ -39,8 +45,8 @@ fn what_is_printed_of_the_puma() {
     // decimals is multiplied by the matrix.
     let accelerations = &published["accel_qn"];
     let [qd, qdd, torque] = ["qd", "qdd", "torque"].map(|key| numbers(&accelerations[key]));
-    let tau = arm.inverse_dynamics(&q, &qd, &qdd).expect("six joints");
-    let motors = arm.actuator_torques(&qd, &qdd).expect("six joints");
+    let tau = arm.inverse_dynamics(&q, &qd, &qdd);
+    let motors = arm.actuator_torques(&qd, &qdd);
     for ((tau, motor), torque) in tau.iter().zip(motors).zip(torque) {
         assert!((tau + motor - torque).abs() < 5e-4, "{tau} {motor} {torque}");
     }
@@ -49,14 +55,14 @@ fn what_is_printed_of_the_puma() {
     for value in published["values"].as_array().expect("values") {
         let q = numbers(&published["poses"][value["q"].as_str().expect("a name")]);
         let (qd, qdd) = (numbers(&value["qd"]), numbers(&value["qdd"]));
-        let mut tau = arm.inverse_dynamics(&q, &qd, &qdd).expect("six joints");
+        let mut tau = arm.inverse_dynamics(&q, &qd, &qdd);
         if value["gravity"] == false {
-            let gravity = arm.gravity_torques(&q).expect("six joints");
+            let gravity = arm.gravity_torques(&q);
             tau.iter_mut().zip(gravity).for_each(|(tau, gravity)| *tau -= gravity);
         }
         if value["motor"] == true {
             motors += 1;
-            let motor = arm.actuator_torques(&qd, &qdd).expect("six joints");
+            let motor = arm.actuator_torques(&qd, &qdd);
             tau.iter_mut().zip(motor).for_each(|(tau, motor)| *tau += motor);
         }
         as_printed(&tau, &value["tau"]);

@@ -21,6 +21,7 @@ Examples:
   rne                                              the tour
   rne check robots/*.yaml                          are the files in order? - is standard input
   rne show robots/puma560.yaml --joint 2           the code of joint 2, step by step
+  rne show robots/puma560.yaml --base-parameters   what its torques can see of its links
   rne ops robots/*.yaml                            what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself

@@ -153,8 +153,9 @@ impl Arguments {
 
 fn trace(arm: &DynArm, state: &State) -> Result<DynTrace<f64>, rne::WrongLength> {
     let zero = vec![0.0; arm.dof()];
-    let or_zero = |values: &'_ Vec<f64>| if values.is_empty() { zero.clone() } else { values.clone() };
-    arm.trace(&state.q, &or_zero(&state.qd), &or_zero(&state.qdd), &state.base, state.wrench.as_ref())
+    // what the function does not take is at rest
+    let [qd, qdd] = [&state.qd, &state.qdd].map(|values| if values.is_empty() { &zero } else { values });
+    arm.trace(&state.q, qd, qdd, &state.base, state.wrench.as_ref())
 }
 
 /// Numbers in the shape in which a function returns them.

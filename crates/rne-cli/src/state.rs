@@ -38,18 +38,17 @@ impl State {
         use Argument::{Accelerations, Base, Positions, Rates, Torques};
         let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
         let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
-        let asked = Asked { function };
-        let of_joints = |name, list, kind| asked.list(name, list, kind, robot.dof(), &per_joint);
+        let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
         let q = of_joints("--q", given.q, Positions)?;
         let qd = of_joints("--qd", given.qd, Rates)?;
         let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
         let tau = of_joints("--tau", given.tau, Torques)?;
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
-        let wrench = asked.list("--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
+        let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
-            let list = asked.list(name, list, Base, 3, axes)?;
+            let list = argument(function, name, list, Base, 3, axes)?;
             Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
         };
         let base = BaseMotion {
@@ -110,38 +109,30 @@ fn triple(list: &[f64], from: usize) -> [f64; 3] {
     [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
 }
 
-/// Whose arguments are asked for.
-struct Asked {
+/// One argument of a function; `expected` numbers, in words `what`.
+fn argument(
     function: Function,
-}
-
-impl Asked {
-    /// One argument; `expected` numbers, in words `what`.
-    fn list(
-        &self,
-        name: &str,
-        list: Option<&List>,
-        kind: Argument,
-        expected: usize,
-        what: &str,
-    ) -> Result<Option<Vec<f64>>, Failure> {
-        let function = self.function;
-        match list {
-            None if !function.takes(kind) => Ok(None),
-            None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
-            Some(_) if !function.takes(kind) => {
-                let others: Vec<Function> = Function::ALL.into_iter().filter(|other| other.takes(kind)).collect();
-                let hint = match others.as_slice() {
-                    [only] => format!("; {only} does"),
-                    _ => String::new(),
-                };
-                Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))
-            }
-            Some(List(values)) if values.len() != expected => {
-                let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
-                Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
-            }
-            Some(List(values)) => Ok(Some(values.clone())),
+    name: &str,
+    list: Option<&List>,
+    kind: Argument,
+    expected: usize,
+    what: &str,
+) -> Result<Option<Vec<f64>>, Failure> {
+    match list {
+        None if !function.takes(kind) => Ok(None),
+        None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
+        Some(_) if !function.takes(kind) => {
+            let others: Vec<Function> = Function::ALL.into_iter().filter(|other| other.takes(kind)).collect();
+            let hint = match others.as_slice() {
+                [only] => format!("; {only} does"),
+                _ => String::new(),
+            };
+            Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))
         }
+        Some(List(values)) if values.len() != expected => {
+            let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
+            Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
+        }
+        Some(List(values)) => Ok(Some(values.clone())),
     }
 }

@@ -277,16 +277,25 @@ impl Graph {
         }
     }
 
+    /// Whether a term is the constant 0: in an exact graph the number, not what rounds to it.
+    fn is_zero(&self, term: Term) -> bool {
+        self.value(term) == Some(0.0) && self.number(term).is_none_or(Number::is_zero)
+    }
+
+    /// Whether a term is the constant 1 or -1.
+    fn is_unit(&self, term: Term) -> bool {
+        self.value(term).is_some_and(|value| value.abs() == 1.0) && self.number(term).is_none_or(Number::is_unit)
+    }
+
     /// a + b
     pub(crate) fn sum(&mut self, a: Term, b: Term) -> (Term, Outcome) {
-        let (left, right) = (self.value(a), self.value(b));
-        if right == Some(0.0) {
+        if self.is_zero(b) {
             return (a, Outcome::Zero(Side::Right));
         }
-        if left == Some(0.0) {
+        if self.is_zero(a) {
             return (b, Outcome::Zero(Side::Left));
         }
-        if let (Some(left), Some(right)) = (left, right) {
+        if let (Some(left), Some(right)) = (self.value(a), self.value(b)) {
             let sum = match (self.number(a), self.number(b)) {
                 (Some(a), Some(b)) => self.constant_number(a + b),
                 _ => self.constant(left + right),
@@ -320,24 +329,19 @@ impl Graph {
 
     /// a · b
     pub(crate) fn product(&mut self, a: Term, b: Term) -> (Term, Outcome) {
-        let (left, right) = (self.value(a), self.value(b));
-        if right == Some(0.0) {
+        if self.is_zero(b) {
             return (b, Outcome::Zero(Side::Right));
         }
-        if left == Some(0.0) {
+        if self.is_zero(a) {
             return (a, Outcome::Zero(Side::Left));
         }
-        if let Some(right) = right
-            && right.abs() == 1.0
-        {
-            return (a.signed(right < 0.0), Outcome::One(Side::Right));
+        if self.is_unit(b) {
+            return (a.signed(b.negative), Outcome::One(Side::Right));
         }
-        if let Some(left) = left
-            && left.abs() == 1.0
-        {
-            return (b.signed(left < 0.0), Outcome::One(Side::Left));
+        if self.is_unit(a) {
+            return (b.signed(a.negative), Outcome::One(Side::Left));
         }
-        if let (Some(left), Some(right)) = (left, right) {
+        if let (Some(left), Some(right)) = (self.value(a), self.value(b)) {
             let product = match (self.number(a), self.number(b)) {
                 (Some(a), Some(b)) => self.constant_number(a * b),
                 _ => self.constant(left * right),
@@ -354,15 +358,14 @@ impl Graph {
         (Term { node, negative: a.negative != b.negative }, outcome)
     }
 
-    /// a / b. Only what is exact whatever b is folds.
+    /// a / b. Only what is exact whatever b is folds; what is divided by zero is left to the code, whose result is not finite.
     pub(crate) fn quotient(&mut self, a: Term, b: Term) -> (Term, Outcome) {
-        let (left, right) = (self.value(a), self.value(b));
-        if let Some(right) = right
-            && right.abs() == 1.0
-        {
-            return (a.signed(right < 0.0), Outcome::One(Side::Right));
+        if self.is_unit(b) {
+            return (a.signed(b.negative), Outcome::One(Side::Right));
         }
-        if let (Some(left), Some(right)) = (left, right) {
+        if let (Some(left), Some(right)) = (self.value(a), self.value(b))
+            && right != 0.0
+        {
             let inverse = self.number(b).and_then(Number::inverse);
             let quotient = match (self.number(a), inverse) {
                 (Some(a), Some(inverse)) => self.constant_number(a * inverse),
@@ -376,7 +379,7 @@ impl Graph {
 
     /// `positive` where x > 0, `negative` where x < 0, else 0.
     pub(crate) fn by_sign(&mut self, x: Term, positive: Term, negative: Term) -> Term {
-        if self.value(positive) == Some(0.0) && self.value(negative) == Some(0.0) {
+        if self.is_zero(positive) && self.is_zero(negative) {
             return self.constant(0.0);
         }
         self.leaf(Key::BySign(x, positive, negative), Node::BySign(x, positive, negative))
@@ -464,5 +467,7 @@ mod tests {
         let (sum, _) = graph.sum(a, b);
         let (other, _) = graph.sum(sum, -b);
         assert_ne!(other, a, "(a + b) - b is not a");
+        let [zero, one] = [0.0, 1.0].map(|value| graph.constant(value));
+        assert_eq!(graph.quotient(one, zero).1, Outcome::Computed, "infinity is no number of the table");
     }
 }

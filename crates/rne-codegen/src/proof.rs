@@ -12,7 +12,7 @@ use rne_model::{JointKind, Robot};
 use crate::derivation;
 use crate::exact::{Image, Number, Reading, Turn};
 use crate::function::{Form, Function};
-use crate::graph::{Graph, Term};
+use crate::graph::{Graph, Node, Term};
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::program::{Program, Proof};
 use crate::quantity::{Axis, Name, Quantity};
@@ -41,7 +41,8 @@ const fn largest_rounding(function: Function) -> f64 {
 /// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
 pub(crate) type Exactly = HashMap<Name, (Number, Option<Turn>)>;
 
-/// Gravity and bias torques may vanish but for rounding: they count as this part of the torques of motion at least.
+/// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
+/// torques at least.
 const LEAST_SCALE: f64 = 1e-2;
 
 /// Compares a program with the seven steps.
@@ -85,6 +86,15 @@ pub(crate) fn identical(
     Ok(())
 }
 
+/// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is always
+/// singular is the same function as another.
+pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
+    let reading = Reading::default();
+    let plain = Plain::new(robot, function, reading);
+    let images = plain.images(&Point::new(reading, 1));
+    plain.graph.nodes().any(|(_, node)| matches!(node, Node::Quotient(_, b) if images[b.index()].is_zero()))
+}
+
 /// The plain formulas with exact constants.
 struct Plain {
     graph: Graph,
@@ -98,12 +108,18 @@ impl Plain {
         Self { graph: sheet.finish().graph, outputs }
     }
 
-    fn outputs(&self, point: &Point) -> Vec<Image> {
+    /// By node.
+    fn images(&self, point: &Point) -> Vec<Image> {
         let mut images: Vec<Image> = Vec::with_capacity(self.graph.len());
         for (id, node) in self.graph.nodes() {
             let number = self.graph.number(Term { node: id, negative: false });
             images.push(self.graph.image(node, number, &images, point));
         }
+        images
+    }
+
+    fn outputs(&self, point: &Point) -> Vec<Image> {
+        let images = self.images(point);
         let image = |term: &Term| {
             let image = images[term.node.index()];
             if term.negative { -image } else { image }
@@ -273,7 +289,11 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);
     let motion = match program.function {
-        Function::GravityTorques | Function::BiasTorques => {
+        Function::GravityTorques
+        | Function::BiasTorques
+        | Function::MassMatrix
+        | Function::CoriolisMatrix
+        | Function::InverseDynamicsDerivatives => {
             Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
         }
         _ => None,

@@ -25,19 +25,28 @@ pub(crate) struct Heading<'a> {
 /// Turns a written sheet into a program that returns `outputs`.
 pub(crate) fn program(
     heading: &Heading<'_>,
-    mut written: Written,
+    written: Written,
     outputs: &[(Name, Term)],
 ) -> Result<Program, CompileError> {
+    Ok(program_and_constants(heading, written, outputs)?.0)
+}
+
+/// The same, with the nodes of its constants: two numbers may round to the same.
+pub(crate) fn program_and_constants(
+    heading: &Heading<'_>,
+    mut written: Written,
+    outputs: &[(Name, Term)],
+) -> Result<(Program, Vec<NodeId>), CompileError> {
     let uses = count_uses(&written, outputs);
     drop_unused(&mut written, &uses);
     let schedule = Schedule::new(&written, uses, outputs);
-    let constants = schedule.constants()?;
+    let (constants, nodes) = schedule.constants()?.into_iter().unzip();
     let mut statements = schedule.statements();
     let outputs = schedule.outputs(outputs, &mut statements);
     statements.sort_by_key(|&(position, _)| position);
     let statements = statements.into_iter().map(|(_, statement)| statement);
     let (angles, statements) = statements.partition(|statement| statement.name.quantity.is_of_an_angle());
-    Ok(Program {
+    let program = Program {
         robot: heading.robot.to_owned(),
         dof: heading.dof,
         parameters: heading.parameters,
@@ -53,7 +62,8 @@ pub(crate) fn program(
         ledger: written.ledger,
         choices: Vec::new(),
         proof: None,
-    })
+    };
+    Ok((program, nodes))
 }
 
 /// How often each node is used by live nodes and outputs; 0 is dead.
@@ -193,7 +203,7 @@ impl<'w> Schedule<'w> {
         names.into_iter().collect()
     }
 
-    fn constants(&self) -> Result<Vec<Constant>, CompileError> {
+    fn constants(&self) -> Result<Vec<(Constant, NodeId)>, CompileError> {
         let mut constants = Vec::new();
         let users = self.users_of_constants();
         for (id, node) in self.written.graph.nodes() {
@@ -203,11 +213,11 @@ impl<'w> Schedule<'w> {
                 if !value.is_finite() {
                     return Err(CompileError::NotFinite { name: given.name });
                 }
-                constants.push(Constant { name: given.name, value });
+                constants.push((Constant { name: given.name, value }, id));
             }
         }
         // by link, as the statements are
-        constants.sort_by_key(|constant| (constant.name.joint, constant.name));
+        constants.sort_by_key(|(constant, _)| (constant.name.joint, constant.name));
         Ok(constants)
     }
 

@@ -83,6 +83,10 @@ impl Choice {
         match function {
             // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
             Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
+            // then there is nothing to be the same as
+            Function::ForwardDynamics if proof::divides_by_zero(robot, function) => {
+                crate::compile(robot, function, Form::SevenSteps)
+            }
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 let (plan, way) = self.cheapest(robot, function);
@@ -91,7 +95,12 @@ impl Choice {
                 let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
                 Ok(Program { choices, ..program })
             }
-            _ => merged::program(robot, function, arranged),
+            _ => {
+                let merged = merged::program(robot, function, arranged)?;
+                let plain = crate::compile(robot, function, Form::SevenSteps)?;
+                // a value that is found where it is not used otherwise costs what it takes there
+                Ok(if plain.operations().total() < merged.operations().total() { plain } else { merged })
+            }
         }
     }
 

@@ -5,7 +5,7 @@ use rne_model::{Angle, Robot};
 
 use crate::exact::{Number, Reading, Turn};
 use crate::function::{Form, Function};
-use crate::graph::{Node, Term};
+use crate::graph::Term;
 use crate::program::Program;
 use crate::proof::{self, Exactly};
 use crate::quantity::Quantity;
@@ -22,14 +22,8 @@ pub(crate) fn program(
     let sheet = Worksheet::merged(reading);
     let outputs = derivation::outputs(&sheet, robot, function);
     let written = sheet.finish();
-    let numbers: Vec<(f64, Number)> = written
-        .graph
-        .nodes()
-        .filter_map(|(node, kind)| {
-            let Node::Constant(value) = kind else { return None };
-            Some((value, written.graph.number(Term { node, negative: false })?))
-        })
-        .collect();
+    let numbers: Vec<Option<Number>> =
+        written.graph.nodes().map(|(node, _)| written.graph.number(Term { node, negative: false })).collect();
     let heading = schedule::Heading {
         robot: &robot.name,
         dof: robot.dof(),
@@ -37,13 +31,12 @@ pub(crate) fn program(
         function,
         form: Form::Reduced,
     };
-    let program = schedule::program(&heading, written, &outputs)?;
+    let (program, nodes) = schedule::program_and_constants(&heading, written, &outputs)?;
     let mut exactly = Exactly::new();
-    for constant in &program.constants {
-        let bits = constant.value.abs().to_bits();
-        let Some((_, number)) = numbers.iter().find(|(value, _)| value.to_bits() == bits) else { continue };
+    for (constant, node) in program.constants.iter().zip(nodes) {
+        let Some(number) = numbers[node.index()] else { continue };
         let turn = (constant.name.quantity == Quantity::Theta).then(|| reading.turn(&Angle::new(constant.value.abs())));
-        let signed = if constant.value < 0.0 { (-*number, turn.map(Turn::back)) } else { (*number, turn) };
+        let signed = if constant.value < 0.0 { (-number, turn.map(Turn::back)) } else { (number, turn) };
         exactly.insert(constant.name, signed);
     }
     let mut program = arranged(program);

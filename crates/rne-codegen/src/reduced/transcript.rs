@@ -12,7 +12,7 @@ use super::writer::{Angle, Writer};
 use crate::CompileError;
 use crate::exact::{Image, Number, Turn};
 use crate::function::{Form, Function};
-use crate::graph::{NodeId, Term};
+use crate::graph::{Graph, NodeId, Term};
 use crate::ledger::{Cause, Causes, Place};
 use crate::program::Program;
 use crate::proof::{self, Exactly};
@@ -81,7 +81,8 @@ impl Drawing {
         function: Function,
         form: Form,
     ) -> Result<(Program, Exactly), CompileError> {
-        let mut transcript = Transcript { frame, written: Written::default(), numbers: HashMap::new() };
+        let written = Written { graph: Graph::exact(frame.table.reading), ..Written::default() };
+        let mut transcript = Transcript { frame, written, turns: HashMap::new() };
         let terms = transcript.nodes(self, form);
         let mut outputs = Vec::new();
         for (&name, &at) in self.returned.iter().zip(&self.dag.outputs) {
@@ -95,7 +96,10 @@ impl Drawing {
                 transcript.define(*name, mapped(&terms, at));
             }
         }
-        let Transcript { mut written, numbers, .. } = transcript;
+        let Transcript { mut written, turns, .. } = transcript;
+        let graph = &written.graph;
+        let numbers: Vec<Option<Number>> =
+            graph.nodes().map(|(node, _)| graph.number(Term { node, negative: false })).collect();
         written.births.resize_with(written.graph.len(), || None);
         let heading = schedule::Heading {
             robot: &robot.name,
@@ -104,15 +108,14 @@ impl Drawing {
             function,
             form,
         };
-        let program = schedule::program(&heading, written, &outputs)?;
+        let (program, nodes) = schedule::program_and_constants(&heading, written, &outputs)?;
         let mut exactly = Exactly::new();
-        for constant in &program.constants {
-            let known = numbers.get(&constant.value.abs().to_bits());
-            if let Some(&(number, turn)) = known {
-                let negative = constant.value < 0.0;
-                let signed = if negative { (-number, turn.map(Turn::back)) } else { (number, turn) };
-                exactly.insert(constant.name, signed);
-            }
+        for (constant, node) in program.constants.iter().zip(nodes) {
+            let Some(number) = numbers[node.index()] else { continue };
+            let turn = turns.get(&node).copied();
+            let negative = constant.value < 0.0;
+            let signed = if negative { (-number, turn.map(Turn::back)) } else { (number, turn) };
+            exactly.insert(constant.name, signed);
         }
         Ok((program, exactly))
     }
@@ -132,8 +135,8 @@ fn mapped(terms: &[Option<Term>], at: Ref) -> Term {
 struct Transcript<'a> {
     frame: &'a Frame,
     written: Written,
-    /// What magnitudes are, by the bits of their rounded values: a length and an angle may be the same constant.
-    numbers: HashMap<u64, (Number, Option<Turn>)>,
+    /// What the magnitudes of angles are.
+    turns: HashMap<NodeId, Turn>,
 }
 
 impl Transcript<'_> {
@@ -172,9 +175,7 @@ impl Transcript<'_> {
     }
 
     fn constant(&mut self, number: Number) -> Term {
-        let value = number.to_f64();
-        self.numbers.entry(value.abs().to_bits()).or_default().0 = number.abs();
-        self.written.graph.constant(value)
+        self.written.graph.constant_number(number)
     }
 
     fn define(&mut self, name: Name, term: Term) {
@@ -220,8 +221,8 @@ impl Transcript<'_> {
         if let Some(turn) = constant {
             let radians = turn.radians();
             let magnitude = if radians < 0.0 { turn.back() } else { turn };
-            self.numbers.entry(radians.abs().to_bits()).or_default().1 = Some(magnitude);
             let theta = self.written.graph.constant(radians);
+            self.turns.insert(theta.node, magnitude);
             self.define(group_name(Quantity::GroupTheta, Quantity::Theta, first, last), theta);
             angle = self.written.graph.sum(theta, angle).0;
             self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, last), angle);

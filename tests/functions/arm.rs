@@ -1,0 +1,327 @@
+//! An arm whose functions are computed by the runtime or by generated code: the same properties hold of both.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::sync::{Mutex, OnceLock};
+
+use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Pose, Scalar, Wrench};
+use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Arguments, Form, Function, Interpreter, Program, Real};
+use rne_model::Robot;
+
+use crate::check::{ROOT, flat};
+
+/// Who computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Maker {
+    /// The generic recursion.
+    Runtime,
+    /// Generated code of a form, interpreted.
+    Code(Form),
+}
+
+impl Maker {
+    pub(crate) const ALL: [Self; 3] = [Self::Runtime, Self::Code(Form::SevenSteps), Self::Code(Form::Reduced)];
+    pub(crate) const CODE: [Self; 2] = [Self::Code(Form::SevenSteps), Self::Code(Form::Reduced)];
+}
+
+impl fmt::Display for Maker {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Runtime => f.pad("runtime"),
+            Self::Code(form) => f.pad(form.name()),
+        }
+    }
+}
+
+/// What functions are asked with; what is not used may be empty.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a, T> {
+    pub(crate) q: &'a [T],
+    pub(crate) qd: &'a [T],
+    pub(crate) qdd: &'a [T],
+    pub(crate) tau: &'a [T],
+    pub(crate) wrench: Wrench<T>,
+    pub(crate) base: BaseMotion<T>,
+}
+
+impl<'a, T: Scalar> Given<'a, T> {
+    pub(crate) fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Self {
+        let zero = [T::zero(); 3];
+        Self { q, qd, qdd, tau: &[], wrench: Wrench::zero(), base: BaseMotion::fixed(zero) }
+    }
+}
+
+/// A scalar of the runtime as a number of the interpreter.
+#[derive(Clone, Copy)]
+struct Number<T>(T);
+
+impl<T: Scalar> Neg for Number<T> {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+macro_rules! operators {
+    ($($operator:ident $method:ident)*) => {$(
+        impl<T: Scalar> $operator for Number<T> {
+            type Output = Self;
+
+            fn $method(self, other: Self) -> Self {
+                Self($operator::$method(self.0, other.0))
+            }
+        }
+    )*};
+}
+
+operators! { Add add Sub sub Mul mul Div div }
+
+impl<T: Scalar> Real for Number<T> {
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        Self(self.0.by_sign(positive.0, negative.0))
+    }
+}
+
+/// The functions of a robot in a form, each compiled when it is first asked for.
+struct Code {
+    form: Form,
+    choice: OnceLock<Choice>,
+    functions: [OnceLock<(Program, Interpreter)>; Function::ALL.len()],
+}
+
+/// An arm.
+pub(crate) struct Arm {
+    pub(crate) robot: Robot,
+    pub(crate) runtime: DynArm,
+    code: Option<Code>,
+}
+
+impl Arm {
+    /// By the choices of a build without a plan file.
+    pub(crate) fn new(robot: &Robot, maker: Maker) -> Self {
+        let code = |form| Code { form, choice: OnceLock::new(), functions: Default::default() };
+        let code = match maker {
+            Maker::Runtime => None,
+            Maker::Code(form) => Some(code(form)),
+        };
+        Self { robot: robot.clone(), runtime: DynArm::from_robot(robot), code }
+    }
+
+    /// By the plan file that stands beside the robot file, if there is one; compiled once in all tests.
+    pub(crate) fn from_file(file: &str, maker: Maker) -> &'static Self {
+        static ARMS: Mutex<BTreeMap<String, &'static Arm>> = Mutex::new(BTreeMap::new());
+        let mut arms = ARMS.lock().expect("no test panics here");
+        arms.entry(format!("{file}, {maker}")).or_insert_with(|| Box::leak(Box::new(Self::read(file, maker))))
+    }
+
+    fn read(file: &str, maker: Maker) -> Self {
+        let path = format!("{ROOT}/{file}");
+        let yaml = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let robot = Robot::from_yaml(&yaml).unwrap_or_else(|report| panic!("{report}"));
+        let arm = Self::new(&robot, maker);
+        if let Some(code) = &arm.code
+            && let Ok(plan) = std::fs::read_to_string(path.replace(".yaml", ".plan.yaml"))
+        {
+            let plan = PlanFile::read(file, &plan, &robot).unwrap_or_else(|report| panic!("{report}"));
+            code.choice.set(Choice::from(plan)).expect("no choice has been made before");
+        }
+        arm
+    }
+
+    /// The code of a function.
+    pub(crate) fn program(&self, function: Function) -> &Program {
+        &self.compiled(self.code.as_ref().expect("an arm of code"), function).0
+    }
+
+    fn compiled<'a>(&self, code: &'a Code, function: Function) -> &'a (Program, Interpreter) {
+        let index = Function::ALL.iter().position(|other| *other == function).expect("all are in it");
+        code.functions[index].get_or_init(|| {
+            let program = match code.form {
+                Form::SevenSteps => rne_codegen::compile(&self.robot, function, code.form),
+                form => {
+                    let choice = code.choice.get_or_init(|| Choice::default_of(&self.robot));
+                    choice.compile(&self.robot, function, form)
+                }
+            };
+            let program = program.unwrap_or_else(|error| panic!("{}: {error}", self.robot.name));
+            let interpreter = Interpreter::new(&program);
+            (program, interpreter)
+        })
+    }
+
+    /// All numbers that a function returns, in the order of its layout.
+    pub(crate) fn numbers<T: Scalar>(&self, function: Function, given: &Given<'_, T>) -> Vec<T> {
+        let Some(code) = &self.code else { return of_runtime(&self.runtime, function, given) };
+        let [q, qd, qdd, tau] = [given.q, given.qd, given.qdd, given.tau]
+            .map(|array| array.iter().copied().map(Number).collect::<Vec<_>>());
+        let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = given.base;
+        let arguments = Arguments {
+            force: given.wrench.force.map(Number),
+            moment: given.wrench.moment.map(Number),
+            tau: &tau,
+            base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
+            ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
+        };
+        let sin_cos = |Number(angle): Number<T>| {
+            let (sine, cosine) = Scalar::sin_cos(angle);
+            (Number(sine), Number(cosine))
+        };
+        let (_, interpreter) = self.compiled(code, function);
+        let numbers = interpreter.run(&arguments, |constant| Number(T::from_f64(constant)), sin_cos);
+        let numbers: Vec<T> = numbers.expect("one per joint").into_iter().map(|Number(x)| x).collect();
+        assert_eq!(numbers.len(), function.layout(self.robot.dof()).len());
+        numbers
+    }
+
+    fn rows<T: Copy>(&self, numbers: &[T]) -> Vec<Vec<T>> {
+        numbers.chunks(self.robot.dof()).map(<[T]>::to_vec).collect()
+    }
+
+    pub(crate) fn inverse_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<T> {
+        self.numbers(Function::InverseDynamics, &Given::of_joints(q, qd, qdd))
+    }
+
+    pub(crate) fn inverse_dynamics_with_wrench<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        wrench: &Wrench<T>,
+    ) -> Vec<T> {
+        let given = Given { wrench: *wrench, ..Given::of_joints(q, qd, qdd) };
+        self.numbers(Function::InverseDynamicsWithWrench, &given)
+    }
+
+    pub(crate) fn inverse_dynamics_on_moving_base<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        base: &BaseMotion<T>,
+    ) -> Vec<T> {
+        let given = Given { base: *base, ..Given::of_joints(q, qd, qdd) };
+        self.numbers(Function::InverseDynamicsOnMovingBase, &given)
+    }
+
+    pub(crate) fn gravity_torques<T: Scalar>(&self, q: &[T]) -> Vec<T> {
+        self.numbers(Function::GravityTorques, &Given::of_joints(q, &[], &[]))
+    }
+
+    pub(crate) fn bias_torques<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+        self.numbers(Function::BiasTorques, &Given::of_joints(q, qd, &[]))
+    }
+
+    pub(crate) fn mass_matrix<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+        self.rows(&self.numbers(Function::MassMatrix, &Given::of_joints(q, &[], &[])))
+    }
+
+    pub(crate) fn coriolis_matrix<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<Vec<T>> {
+        self.rows(&self.numbers(Function::CoriolisMatrix, &Given::of_joints(q, qd, &[])))
+    }
+
+    pub(crate) fn forward_dynamics<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Vec<T> {
+        self.numbers(Function::ForwardDynamics, &Given { tau, ..Given::of_joints(q, qd, &[]) })
+    }
+
+    pub(crate) fn forward_kinematics<T: Scalar>(&self, q: &[T]) -> Pose<T> {
+        pose(&self.numbers(Function::ForwardKinematics, &Given::of_joints(q, &[], &[])))
+    }
+
+    pub(crate) fn link_poses<T: Scalar>(&self, q: &[T]) -> Vec<Pose<T>> {
+        self.numbers(Function::LinkPoses, &Given::of_joints(q, &[], &[])).chunks(12).map(pose).collect()
+    }
+
+    pub(crate) fn jacobian<T: Scalar>(&self, q: &[T]) -> [Vec<T>; 6] {
+        let rows = self.rows(&self.numbers(Function::Jacobian, &Given::of_joints(q, &[], &[])));
+        rows.try_into().unwrap_or_else(|_| unreachable!("six rows"))
+    }
+
+    pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T], qd: &[T]) -> Vec<T> {
+        self.numbers(Function::JacobianRateTimesVelocity, &Given::of_joints(q, qd, &[]))
+    }
+
+    pub(crate) fn kinetic_energy<T: Scalar>(&self, q: &[T], qd: &[T]) -> T {
+        self.numbers(Function::KineticEnergy, &Given::of_joints(q, qd, &[]))[0]
+    }
+
+    pub(crate) fn potential_energy<T: Scalar>(&self, q: &[T]) -> T {
+        self.numbers(Function::PotentialEnergy, &Given::of_joints(q, &[], &[]))[0]
+    }
+
+    /// By torque: a row of ten parameters of each link.
+    pub(crate) fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Vec<T>> {
+        let numbers = self.numbers(Function::Regressor, &Given::of_joints(q, qd, qdd));
+        numbers.chunks(10 * self.robot.dof()).map(<[T]>::to_vec).collect()
+    }
+
+    pub(crate) fn inverse_dynamics_derivatives<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+    ) -> DynTorqueDerivatives<T> {
+        let mut dq = self.rows(&self.numbers(Function::InverseDynamicsDerivatives, &Given::of_joints(q, qd, qdd)));
+        let dqd = dq.split_off(self.robot.dof());
+        DynTorqueDerivatives { dq, dqd }
+    }
+
+    pub(crate) fn joint_wrenches<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Wrench<T>> {
+        let numbers = self.numbers(Function::JointWrenches, &Given::of_joints(q, qd, qdd));
+        let wrench = |numbers: &[T]| {
+            let [force, moment] = [0, 3].map(|part| std::array::from_fn(|axis| numbers[part + axis]));
+            Wrench { force, moment }
+        };
+        numbers.chunks(6).map(wrench).collect()
+    }
+
+    pub(crate) fn actuator_torques<T: Scalar>(&self, qd: &[T], qdd: &[T]) -> Vec<T> {
+        self.numbers(Function::ActuatorTorques, &Given::of_joints(&[], qd, qdd))
+    }
+}
+
+fn pose<T: Scalar>(numbers: &[T]) -> Pose<T> {
+    let triple = |start: usize| std::array::from_fn(|index| numbers[start + index]);
+    Pose { rotation: [0, 3, 6].map(triple), translation: triple(9) }
+}
+
+/// What the runtime returns, as a row of numbers.
+pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
+    let Given { q, qd, qdd, tau, ref wrench, ref base } = *given;
+    let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
+        poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
+    };
+    let numbers = match function {
+        Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
+        Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
+        Function::InverseDynamicsSc => {
+            let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+            arm.inverse_dynamics_sc(&sin, &cos, q, qd, qdd)
+        }
+        Function::GravityTorques => arm.gravity_torques(q),
+        Function::BiasTorques => arm.bias_torques(q, qd),
+        Function::MassMatrix => arm.mass_matrix(q).map(flat),
+        Function::CoriolisMatrix => arm.coriolis_matrix(q, qd).map(flat),
+        Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau),
+        Function::ForwardKinematics => arm.forward_kinematics(q).map(|pose| poses(vec![pose])),
+        Function::LinkPoses => arm.link_poses(q).map(poses),
+        Function::Jacobian => arm.jacobian(q).map(flat),
+        Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd).map(Vec::from),
+        Function::KineticEnergy => arm.kinetic_energy(q, qd).map(|energy| vec![energy]),
+        Function::PotentialEnergy => arm.potential_energy(q).map(|energy| vec![energy]),
+        Function::Regressor => {
+            arm.regressor(q, qd, qdd).map(|rows| rows.iter().flat_map(|row| row.iter().flatten()).copied().collect())
+        }
+        Function::InverseDynamicsDerivatives => {
+            arm.inverse_dynamics_derivatives(q, qd, qdd).map(|by| flat([by.dq, by.dqd].concat()))
+        }
+        Function::JointWrenches => arm
+            .joint_wrenches(q, qd, qdd)
+            .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),
+        Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
+        Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
+    };
+    numbers.expect("one per joint")
+}

@@ -1,0 +1,170 @@
+//! Generated code against the runtime: the same bits where the operations are the same, else the same numbers but for rounding.
+//!
+//! Shipped and dense robots by their plan files, random ones by the choices of a build without one.
+
+use fastrand::Rng;
+use rne::{BaseMotion, Wrench};
+use rne_codegen::{Form, Function};
+use rne_model::{Dh, Robot};
+
+use crate::arm::{Arm, Given, Maker, of_runtime};
+use crate::case::{cases, largest};
+use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
+use crate::golden::ROBOTS;
+
+/// Functions whose seven steps are the runtime's operations, in its order.
+const SAME_BITS: [Function; 12] = [
+    Function::InverseDynamics,
+    Function::InverseDynamicsWithWrench,
+    Function::InverseDynamicsSc,
+    Function::GravityTorques,
+    Function::BiasTorques,
+    Function::MassMatrix,
+    Function::ForwardDynamics,
+    Function::KineticEnergy,
+    Function::InverseDynamicsDerivatives,
+    Function::JointWrenches,
+    Function::InverseDynamicsOnMovingBase,
+    Function::ActuatorTorques,
+];
+
+/// Of the largest number of the result.
+const TOLERANCE: f64 = 1e-13;
+
+/// States per robot that has its own code.
+const STATES: usize = 8;
+
+/// Numbers that vanish but for rounding are measured by those that they are parts of: this part of the forces and moments at
+/// the joints, of the energy at the farthest reach.
+const LEAST: f64 = 1e-2;
+
+/// What the numbers of a function are small against, if they are.
+fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
+    let of = |function| largest(&of_runtime(&arm.runtime, function, given));
+    match function {
+        Function::InverseDynamics
+        | Function::InverseDynamicsWithWrench
+        | Function::InverseDynamicsSc
+        | Function::InverseDynamicsOnMovingBase
+        | Function::GravityTorques
+        | Function::BiasTorques
+        | Function::InverseDynamicsDerivatives => LEAST * of(Function::JointWrenches),
+        // differences of torques at unit rates
+        Function::CoriolisMatrix => of(Function::MassMatrix),
+        // a sum of products of masses and heights
+        Function::PotentialEnergy => {
+            let reach = |dh: &Dh| dh.a.abs() + dh.d.abs();
+            let reach = arm.robot.rows().map(|row| reach(&row.dh)).sum::<f64>() + largest(given.q);
+            let mass = arm.robot.rows().map(|row| row.link.mass).sum::<f64>();
+            LEAST * mass * largest(&arm.robot.gravity) * reach
+        }
+        _ => 0.0,
+    }
+}
+
+/// Compares all functions of an arm at a state.
+fn compare(arm: &Arm, maker: Maker, given: &Given<'_, f64>, worst: &mut Worst) {
+    for function in Function::ALL {
+        let (found, expected) = (arm.numbers(function, given), of_runtime(&arm.runtime, function, given));
+        let name = function.name();
+        if function == Function::ForwardDynamics {
+            let matrix = arm.runtime.mass_matrix(given.q).expect("one per joint");
+            let Some(Conditioning { number, largest: of_matrix }) = conditioning(&matrix) else { continue };
+            if maker == Maker::Code(Form::SevenSteps) && expected.iter().all(|x| x.is_finite()) {
+                assert_eq!(found, expected, "{}, {function}", arm.robot.name);
+            } else if number < 1e12 {
+                // Rounding of a matrix changes the solution by the condition number times as much, relative to the solution;
+                // rounding of the torques and of the bias that they are compared with by M⁻¹, of 1/λ at most.
+                let bias = arm.runtime.bias_torques(given.q, given.qd).expect("one per joint");
+                let scale = largest(given.tau).max(largest(&bias)) / of_matrix;
+                worst.see("forward_dynamics / condition", error_on_scale(&found, &expected, scale) / number);
+            }
+        } else if maker == Maker::Code(Form::SevenSteps) && SAME_BITS.contains(&function) {
+            assert_eq!(found, expected, "{}, {function}", arm.robot.name);
+        } else {
+            let error = error_on_scale(&found, &expected, scale(arm, function, given));
+            assert!(error <= TOLERANCE, "{}, {function}: {error:e}", arm.robot.name);
+            worst.see(name, error);
+        }
+    }
+}
+
+/// Compares all functions of an arm at random states.
+fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
+    let mut rng = Rng::with_seed(19);
+    for _ in 0..STATES {
+        let mut array =
+            |scale: f64| -> Vec<f64> { (0..arm.robot.dof()).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect() };
+        let (q, qd, qdd, tau) = (array(3.0), array(2.0), array(5.0), array(20.0));
+        let mut triple = || [(); 3].map(|()| (2.0 * rng.f64() - 1.0) * 10.0);
+        let wrench = Wrench { force: triple(), moment: triple() };
+        let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
+        let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
+        compare(arm, maker, &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, base }, worst);
+    }
+}
+
+#[test]
+fn shipped_and_dense_robots_are_the_runtime() {
+    let dense = ["dense6_2p", "dense7"].map(|name| format!("tests/dense/{name}.yaml"));
+    let files: Vec<String> = ROBOTS.iter().map(|name| format!("robots/{name}.yaml")).chain(dense).collect();
+    for maker in Maker::CODE {
+        let mut worst = Worst::default();
+        for file in &files {
+            compare_at_states(Arm::from_file(file, maker), maker, &mut worst);
+        }
+        worst.at_most(TOLERANCE, &format!("shipped and dense, {maker}"));
+    }
+}
+
+#[test]
+fn random_robots_are_the_runtime() {
+    for maker in Maker::CODE {
+        let mut worst = Worst::default();
+        for case in cases(maker) {
+            compare(&case.arm, maker, &case.given(), &mut worst);
+        }
+        worst.at_most(TOLERANCE, &format!("random, {maker}"));
+    }
+}
+
+/// Some of the robots of tests/random, which are compiled there.
+#[test]
+fn random_robots_of_files_are_the_runtime() {
+    for maker in Maker::CODE {
+        let mut worst = Worst::default();
+        for seed in [3, 14, 25, 36] {
+            compare_at_states(Arm::from_file(&format!("tests/random/files/{seed}.yaml"), maker), maker, &mut worst);
+        }
+        worst.at_most(TOLERANCE, &format!("files of random robots, {maker}"));
+    }
+}
+
+/// Angles that are right but for rounding: their cosine is 1 in double precision and not exactly.
+#[test]
+fn angles_that_are_almost_zero_are_no_zeros() {
+    let yaml = "{format: 1, name: almost, source: own, convention: standard, gravity: [0, 0, -9.81],
+        tool: {xyz: [0, 0.1, 0], rpy: [1.0e-9, 0.3, 1.0e-17]}, joints: [
+        {type: revolute, dh: {theta: 1.0e-9, d: 0.1, a: 0.8, alpha: 0.3}, link: {mass: 2.5, com: [-0.4, 0, 1]}},
+        {type: revolute, dh: {theta: 0.3, d: 0.3, a: 1, alpha: 1.0e-17}, link: {mass: 2.5, com: [-0.4, 0.3, 0.2]}},
+        {type: revolute, dh: {theta: 1.0e-17, d: 0, a: 0.5, alpha: 1.0e-9}, link: {mass: 1, com: [1, 0.3, 0.2]}}]}";
+    let robot = Robot::from_yaml(yaml).unwrap_or_else(|report| panic!("{report}"));
+    for maker in Maker::CODE {
+        let mut worst = Worst::default();
+        compare_at_states(&Arm::new(&robot, maker), maker, &mut worst);
+        worst.at_most(TOLERANCE, &format!("almost right, {maker}"));
+    }
+}
+
+/// The mass matrix of an arm with a joint that moves nothing: code like any other, whose result is not finite.
+#[test]
+fn a_singular_mass_matrix_has_no_accelerations() {
+    let yaml = "{format: 1, name: massless, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+        {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}},
+        {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}}]}";
+    let robot = Robot::from_yaml(yaml).unwrap_or_else(|report| panic!("{report}"));
+    for maker in Maker::ALL {
+        let accelerations = Arm::new(&robot, maker).forward_dynamics(&[0.3_f64, 0.4], &[0.5, 0.6], &[0.7, 0.8]);
+        assert!(!accelerations[1].is_finite(), "{maker}: {accelerations:?}");
+    }
+}
