@@ -369,8 +369,8 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
             single_of_seven_steps: error(&single(&steps)),
         };
         // nor has one that is singular but for rounding
-        let is_singular = program.function == Function::ForwardDynamics && !(errors.single_of_seven_steps < SINGULAR);
-        if !is_singular {
+        let is_regular = errors.single_of_seven_steps < SINGULAR;
+        if is_regular || program.function != Function::ForwardDynamics {
             all.push(errors);
         }
     }
