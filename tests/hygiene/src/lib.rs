@@ -9,7 +9,10 @@
 #![deny(clippy::std_instead_of_core, clippy::alloc_instead_of_core, clippy::infinite_loop, clippy::exit)]
 
 use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
-use ::dynamics::{BatchInverseDynamics, InverseDynamics, LengthMismatch};
+use ::dynamics::{
+    Actuation, BatchInverseDynamics, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MovingBase, Regressor,
+};
 
 /// Seven joints, with limits.
 #[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug)]
@@ -24,11 +27,28 @@ where
     T: Copy + PartialEq,
 {
     /// The tools.
+    #[robot(skip)]
     pub tools: [Option<T>; TOOLS],
 }
 
-/// Numbers that look like π and e.
-#[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug)]
+/// Numbers that look like π and e, and everything that can be derived.
+#[derive(
+    InverseDynamics,
+    BatchInverseDynamics,
+    MassMatrix,
+    CoriolisMatrix,
+    ForwardDynamics,
+    Kinematics,
+    Energy,
+    Regressor,
+    InverseDynamicsDerivatives,
+    JointWrenches,
+    MovingBase,
+    Actuation,
+    Clone,
+    Copy,
+    Debug,
+)]
 #[robot(crate = ::dynamics, yaml = "
     format: 1
     name: slides
@@ -40,11 +60,36 @@ where
         dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0.693}
         link: {mass: 3.14, com: [0.318, 0.707, 1.57]}
         limits: {position: [-3.14159, 2.718], velocity: 6.283, effort: 0.434}
+        motor: {inertia: 2.0e-4, gear_ratio: -62.6, viscous: 1.5e-3, coulomb: [0.395, 0]}
       - type: revolute
         dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0}
         link: {mass: 3.14, com: [0.318, 0.707, 1.57]}
 ")]
 pub struct Slides;
+
+/// The same in the reduced form, of an arm that carries something.
+#[derive(
+    InverseDynamics,
+    MassMatrix,
+    CoriolisMatrix,
+    ForwardDynamics,
+    Kinematics,
+    Energy,
+    Regressor,
+    InverseDynamicsDerivatives,
+    JointWrenches,
+    MovingBase,
+    Clone,
+    Copy,
+    Debug,
+)]
+#[robot(path = "../../ui/robots/loaded.yaml", crate = ::dynamics, form = "reduced")]
+pub struct Loaded {
+    /// kg
+    pub payload: f32,
+    /// m
+    pub length: f64,
+}
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
 #[robot(path = "../../../robots/planar1.yaml", crate = ::dynamics)]

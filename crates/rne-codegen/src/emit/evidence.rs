@@ -12,14 +12,16 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
         }
         _ => "Reduced form: fewest operations; only the torques keep a physical meaning.",
     };
+    let (what, largest) =
+        if program.function.returns_torques() { ("all torques", "torque") } else { ("all results", "result") };
     let mut lines = vec![
         form.to_owned(),
         format!(
-            "Proved identical to the seven steps: all torques agree at {} random points of the fields of 2^61 - 1 and 2^61 - 31.",
+            "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and 2^61 - 31.",
             proof.points
         ),
         format!(
-            "Rounding at {} random states, in parts of the largest torque: {:.1e} (f64), {:.1e} (f32; seven steps {:.1e}).",
+            "Rounding at {} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; seven steps {:.1e}).",
             proof.states, proof.rounding, proof.single, proof.single_of_seven_steps
         ),
     ];
