@@ -4,7 +4,8 @@ use rne_model::{Entry, Robot};
 
 use crate::ledger::Cause;
 use crate::links::number;
-use crate::quantity::{Name, Quantity};
+use crate::name::Name;
+use crate::quantity::Quantity;
 use crate::seven_steps::JointState;
 use crate::symbol::Symbol;
 use crate::worksheet::Worksheet;

@@ -5,7 +5,8 @@
 
 use std::ops::{Mul, Sub};
 
-use crate::quantity::{Name, Quantity};
+use crate::name::Name;
+use crate::quantity::Quantity;
 
 /// What a symbol of a sheet can do here.
 pub(crate) trait Sheet<S> {

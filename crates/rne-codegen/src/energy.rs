@@ -5,7 +5,8 @@
 use crate::kinematics::Frames;
 use crate::ledger::Cause;
 use crate::links::Arm;
-use crate::quantity::{Name, Quantity};
+use crate::name::Name;
+use crate::quantity::Quantity;
 use crate::seven_steps::Motion;
 use crate::symbol::Symbol;
 use crate::worksheet::Worksheet;

@@ -14,8 +14,8 @@
 use std::collections::BTreeMap;
 
 use crate::latency;
+use crate::name::Name;
 use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
-use crate::quantity::Name;
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::ops::Neg;
 
 use crate::exact::{Image, Number, Reading};
-use crate::quantity::Name;
+use crate::name::Name;
 use crate::reduced::Point;
 use rne_model::Angle;
 

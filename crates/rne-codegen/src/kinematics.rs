@@ -117,8 +117,8 @@ pub(crate) fn tip_acceleration<'s>(
     let tip = motions.len() + 1;
     let linear = sheet.entry_vector(Quantity::TipAcceleration, tip, linear);
     let name = |axis: Axis, x| {
-        let name = crate::quantity::Name::vector(Quantity::TipAcceleration, tip, axis);
-        sheet.name(crate::quantity::Name { part: 1, ..name }, x)
+        let name = crate::name::Name::vector(Quantity::TipAcceleration, tip, axis);
+        sheet.name(crate::name::Name { part: 1, ..name }, x)
     };
     Some([linear, angular.map(name)])
 }

@@ -5,8 +5,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::name::Name;
 use crate::program::{Expression, Program};
-use crate::quantity::Name;
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of these years.
 pub(crate) const PRODUCT: usize = 4;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::quantity::{Axis, By, Name, Quantity, Step};
+use crate::name::{By, Name};
+use crate::quantity::{Axis, Quantity, Step};
 
 /// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -11,7 +11,9 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 mod actuation;
+mod capability;
 mod derivation;
+mod differentiation;
 mod elimination;
 pub mod emit;
 mod energy;
@@ -22,9 +24,11 @@ mod graph;
 mod interpret;
 mod kinematics;
 mod latency;
+mod layout;
 mod ledger;
 mod links;
 mod mass_matrix;
+mod name;
 mod program;
 mod proof;
 mod quantity;
@@ -39,11 +43,14 @@ use std::fmt;
 
 use rne_model::Robot;
 
-pub use function::{Argument, Capability, Form, Function, Layout, Record, UnknownName};
+pub use capability::Capability;
+pub use function::{Argument, Form, Function, UnknownName};
 pub use interpret::{Arguments, Interpreter, Real};
+pub use layout::{Layout, Record};
 pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
+pub use name::{By, Name};
 pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
-pub use quantity::{Axis, By, Component, Name, Quantity, Step};
+pub use quantity::{Axis, Component, Quantity, Step};
 
 use crate::worksheet::Worksheet;
 

@@ -11,7 +11,8 @@
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
 
 use crate::ledger::Cause;
-use crate::quantity::{Axis, Name, Quantity};
+use crate::name::Name;
+use crate::quantity::{Axis, Quantity};
 use crate::symbol::{Matrix, Symbol, Vector};
 use crate::worksheet::Worksheet;
 

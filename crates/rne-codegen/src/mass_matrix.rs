@@ -2,7 +2,7 @@
 
 use crate::ledger::Cause;
 use crate::links::Arm;
-use crate::quantity::By;
+use crate::name::By;
 use crate::seven_steps::{self, Base, JointState, Wrench};
 use crate::symbol::Symbol;
 use crate::worksheet::Worksheet;

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 use crate::function::{Form, Function};
 use crate::ledger::{Causes, Ledger, Place};
-use crate::quantity::Name;
+use crate::name::Name;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,9 @@ use crate::exact::{Image, Number, Reading, Turn};
 use crate::function::{Form, Function};
 use crate::graph::{Graph, Node, Term};
 use crate::interpret::{Arguments, Interpreter, Real};
+use crate::name::Name;
 use crate::program::{Program, Proof};
-use crate::quantity::{Axis, Name, Quantity};
+use crate::quantity::{Axis, Quantity};
 use crate::reduced::Point;
 use crate::worksheet::Worksheet;
 use crate::{CompileError, compile};
@@ -368,8 +369,8 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
             single_of_seven_steps: error(&single(&steps)),
         };
         // nor has one that is singular but for rounding
-        let is_singular = program.function == Function::ForwardDynamics && !(errors.single_of_seven_steps < SINGULAR);
-        if !is_singular {
+        let is_regular = errors.single_of_seven_steps < SINGULAR;
+        if is_regular || program.function != Function::ForwardDynamics {
             all.push(errors);
         }
     }

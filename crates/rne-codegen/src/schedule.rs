@@ -6,8 +6,9 @@ use crate::CompileError;
 use crate::function::{Form, Function};
 use crate::graph::{Node, NodeId, Term};
 use crate::ledger::{Operation, Place};
+use crate::name::Name;
 use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
-use crate::quantity::{Name, Quantity, Step};
+use crate::quantity::{Quantity, Step};
 use crate::worksheet::Written;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.

@@ -9,7 +9,8 @@ use rne_model::QuarterTurns;
 
 use crate::ledger::Cause;
 use crate::links::{Arm, Link};
-use crate::quantity::{Name, Quantity};
+use crate::name::Name;
+use crate::quantity::Quantity;
 use crate::symbol::{Matrix, Symbol, Vector};
 use crate::worksheet::{JointLines, Worksheet};
 

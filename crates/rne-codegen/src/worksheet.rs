@@ -8,7 +8,8 @@ use rne_model::{Angle, Joint};
 use crate::exact::{Number, Reading};
 use crate::graph::{Graph, Node, NodeId, Outcome, Side, Term};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
-use crate::quantity::{Axis, By, Component, Name, Quantity};
+use crate::name::{By, Name};
+use crate::quantity::{Axis, Component, Quantity};
 use crate::symbol::{Matrix, Symbol, Vector};
 
 /// A name given to a term, in the order in which the names were given.
@@ -39,6 +40,13 @@ pub(crate) struct Written {
     pub(crate) births: Vec<Option<Birth>>,
     /// As what a constant entered a node: (node, constant) → its name there.
     pub(crate) roles: HashMap<(NodeId, NodeId), Name>,
+}
+
+/// What has been written so far: nodes, where each was created, and names.
+pub(crate) struct Snapshot {
+    pub(crate) nodes: Vec<Node>,
+    pub(crate) births: Vec<Option<Birth>>,
+    pub(crate) definitions: Vec<Definition>,
 }
 
 /// The index of [`Causes`] on their sheet.
@@ -264,82 +272,30 @@ impl Worksheet {
         Symbol { sheet: self, term, causes }
     }
 
-    /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of
-    /// what they are derivatives of and under its names.
-    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
-        let (nodes, births, definitions) = {
-            let state = &mut *self.state.borrow_mut();
-            let len = state.written.graph.len();
-            state.written.births.resize_with(len, || None);
-            let nodes: Vec<Node> = state.written.graph.nodes().map(|(_, node)| node).collect();
-            let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
-            for definition in state.written.definitions.iter().filter(|definition| definition.name.by.is_none()) {
-                definitions.entry(definition.term.node.index()).or_default().push(*definition);
-            }
-            (nodes, state.written.births.clone(), definitions)
-        };
-        let live = live(&nodes, of);
-        let symbol = |term: Term| {
-            let causes = self.state.borrow_mut().arithmetic();
-            Symbol { sheet: self, term, causes }
-        };
-        let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.constant(1.0, Cause::Arithmetic));
-        let mut rates: Vec<Symbol<'s>> = vec![zero; nodes.len()];
-        for (index, node) in nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
-            let rate = |term: Term| {
-                let rate = rates[term.node.index()];
-                if term.negative { -rate } else { rate }
-            };
-            let plain = |node: NodeId| Term { node, negative: false };
-            if let Node::Argument(name) = node {
-                rates[index] = if *name == by.variable() { one } else { zero };
-                continue;
-            }
-            let is_zero = |terms: &[Term]| terms.iter().all(|&term| rate(term).term == zero.term);
-            let birth = births[index];
-            let place = birth.map(|birth| Place { by: Some(by), ..birth.place });
-            let axis = birth.and_then(|birth| birth.component.axis());
-            let outer = self.enter(place, axis);
-            rates[index] = match *node {
-                Node::Constant(_) | Node::Argument(_) => zero,
-                Node::Sine(angle) | Node::Cosine(angle) if is_zero(&[angle]) => zero,
-                Node::Sine(angle) => {
-                    let cosine = self.sine_and_cosine(symbol(angle)).1;
-                    rate(angle) * cosine
-                }
-                Node::Cosine(angle) => {
-                    let sine = self.sine_and_cosine(symbol(angle)).0;
-                    -(rate(angle) * sine)
-                }
-                Node::Sum(a, b) => rate(a) + rate(b),
-                Node::Product(a, b) => {
-                    let (a, b) = (plain(a), plain(b));
-                    rate(a) * symbol(b) + symbol(a) * rate(b)
-                }
-                Node::Quotient(a, b) => {
-                    let (a, b) = (plain(a), plain(b));
-                    if is_zero(&[a, b]) {
-                        zero
-                    } else {
-                        let quotient = self.quotient(symbol(a), symbol(b));
-                        self.quotient(rate(a) - quotient * rate(b), symbol(b))
-                    }
-                }
-                Node::BySign(x, positive, negative) => self.by_sign(symbol(x), rate(positive), rate(negative)),
-            };
-            self.enter(outer.0, outer.1);
-            for definition in definitions.get(&index).into_iter().flatten() {
-                let rate = if definition.term.negative { -rates[index] } else { rates[index] };
-                if rate.term != zero.term && definition.name.quantity.step().is_some() {
-                    self.name(Name { by: Some(by), ..definition.name }, rate);
-                }
-            }
+    /// What has been written so far.
+    pub(crate) fn snapshot(&self) -> Snapshot {
+        let written = &mut self.state.borrow_mut().written;
+        let len = written.graph.len();
+        written.births.resize_with(len, || None);
+        Snapshot {
+            nodes: written.graph.nodes().map(|(_, node)| node).collect(),
+            births: written.births.clone(),
+            definitions: written.definitions.clone(),
         }
-        let rate_of = |symbol: &Symbol<'s>| {
-            let rate = rates[symbol.term.node.index()];
-            if symbol.term.negative { -rate } else { rate }
-        };
-        of.iter().map(rate_of).collect()
+    }
+
+    /// A term as a symbol.
+    pub(crate) fn symbol(&self, term: Term) -> Symbol<'_> {
+        let causes = self.state.borrow_mut().arithmetic();
+        Symbol { sheet: self, term, causes }
+    }
+
+    /// Writes what belongs where something else was born.
+    pub(crate) fn at_birth<R>(&self, birth: Option<Birth>, formula: impl FnOnce() -> R) -> R {
+        let outer = self.enter(birth.map(|birth| birth.place), birth.and_then(|birth| birth.component.axis()));
+        let value = formula();
+        self.enter(outer.0, outer.1);
+        value
     }
 
     /// Sets the component that the next operations belong to.
@@ -406,20 +362,6 @@ impl State {
         self.written.ledger.enter(place, operation, fate);
         self.record_birth();
     }
-}
-
-/// Which nodes some symbols depend on.
-fn live(nodes: &[Node], of: &[Symbol<'_>]) -> Vec<bool> {
-    let mut live = vec![false; nodes.len()];
-    for symbol in of {
-        live[symbol.term.node.index()] = true;
-    }
-    for index in (0..nodes.len()).rev() {
-        if live[index] {
-            nodes[index].operands().for_each(|operand| live[operand.index()] = true);
-        }
-    }
-    live
 }
 
 /// The lines of one joint: each gives a quantity of the lecture its value.

@@ -11,8 +11,9 @@ use super::table::angle;
 use super::text::returned;
 use crate::function::{Form, Function};
 use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
+use crate::name::{By, Name};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
-use crate::quantity::{By, Component, Name, Quantity, Step};
+use crate::quantity::{Component, Quantity, Step};
 
 /// Width of a comment.
 const WIDTH: usize = 100;

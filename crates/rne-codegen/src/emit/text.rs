@@ -10,9 +10,10 @@ use super::evidence::evidence;
 use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
 use super::table::{convention, dh_table};
-use crate::function::Layout;
+use crate::layout::Layout;
+use crate::name::Name;
 use crate::program::Program;
-use crate::quantity::{Name, Quantity};
+use crate::quantity::Quantity;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]

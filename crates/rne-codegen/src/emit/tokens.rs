@@ -7,10 +7,10 @@ use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
-use crate::function::Record;
 use crate::latency::{self, Latency};
+use crate::layout::Record;
+use crate::name::Name;
 use crate::program::{Expression, Program, Statement};
-use crate::quantity::Name;
 
 /// The body of a program's function: everything between its braces.
 ///

@@ -17,7 +17,8 @@ use super::pseudo_inertia::PseudoInertia;
 use super::regroup::{group_start, is_parallel};
 use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
 use crate::exact::Number;
-use crate::quantity::{By, Name, Quantity};
+use crate::name::{By, Name};
+use crate::quantity::Quantity;
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -10,7 +10,7 @@ use super::sheet::{Cost, Dag, Identity, Ref, Sheet};
 use super::way::{self, Way};
 use super::writer::{Angle, Writer};
 use crate::function::Function;
-use crate::quantity::Name;
+use crate::name::Name;
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]

@@ -12,8 +12,9 @@ use std::fmt::Write;
 
 use super::evaluator::Frame;
 use super::numbers::{Numbers, Source};
+use super::point::Point;
 use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
-use super::writer::{Angle, Point};
+use super::writer::Angle;
 use crate::exact::Number;
 
 /// A graph as text, when the first `given` of its numbers are those of its plan.

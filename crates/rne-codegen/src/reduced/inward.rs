@@ -15,7 +15,8 @@ use super::regroup::is_parallel;
 use super::rows::Row;
 use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
 use crate::exact::Number;
-use crate::quantity::{Axis, Name, Quantity};
+use crate::name::Name;
+use crate::quantity::{Axis, Quantity};
 
 /// A force, times μ, and a moment about the origin of a frame.
 #[derive(Clone, Copy)]

@@ -15,7 +15,8 @@ use super::regroup::{Parameters, group_start, is_parallel};
 use super::rows::{Row, Table};
 use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
 use crate::exact::Number;
-use crate::quantity::{Axis, Name, Quantity};
+use crate::name::Name;
+use crate::quantity::{Axis, Quantity};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]

@@ -14,9 +14,10 @@ use crate::exact::{Image, Number, Turn};
 use crate::function::{Form, Function};
 use crate::graph::{Graph, NodeId, Term};
 use crate::ledger::{Cause, Causes, Place};
+use crate::name::Name;
 use crate::program::Program;
 use crate::proof::{self, Exactly};
-use crate::quantity::{Axis, Component, Name, Quantity, Step};
+use crate::quantity::{Axis, Component, Quantity, Step};
 use crate::schedule;
 use crate::worksheet::{Birth, Definition, Written};
 

@@ -10,7 +10,8 @@ use super::writer::{Symbol, Writer};
 use crate::elimination;
 use crate::exact::Number;
 use crate::function::Function;
-use crate::quantity::{By, Name, Quantity};
+use crate::name::{By, Name};
+use crate::quantity::Quantity;
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,84 +1,18 @@
 //! Symbols, vectors and rotations for the formulas of the reduced form, and the sheet on which they are written.
 
 use std::cell::{Cell, RefCell};
-use std::collections::HashMap;
 use std::ops::{Add, Mul, Neg, Sub};
 
+use super::point::Point;
 use super::pseudo_inertia::Triple;
 use super::rows::Row;
-use super::sheet::{Identity, Leaf, Op, Ref, Sheet, mark_live};
+use super::sheet::{Identity, Leaf, Ref, Sheet};
 use crate::exact::{Image, Number, Reading, Turn};
 use crate::function::{Argument, Function};
 use crate::ledger::Place;
-use crate::quantity::{Axis, By, Component, Name, Quantity};
+use crate::name::{By, Name};
+use crate::quantity::{Axis, Component, Quantity};
 use rne_model::QuarterTurns;
-
-/// Random values for all arguments: what a function of the robot is compared at.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Point {
-    reading: Reading,
-    index: u64,
-}
-
-impl Point {
-    pub(crate) const fn new(reading: Reading, index: u64) -> Self {
-        Self { reading, index }
-    }
-
-    fn random(&self, kind: u64, joint: usize) -> Image {
-        self.reading.random(kind ^ (self.index << 8), joint as u64)
-    }
-
-    pub(crate) fn position(&self, joint: usize) -> Image {
-        self.random(1, joint)
-    }
-
-    pub(crate) fn rate(&self, joint: usize) -> Image {
-        self.random(2, joint)
-    }
-
-    pub(crate) fn rate_dot(&self, joint: usize) -> Image {
-        self.random(3, joint)
-    }
-
-    pub(crate) fn force(&self, axis: usize) -> Image {
-        self.random(4, axis)
-    }
-
-    pub(crate) fn moment(&self, axis: usize) -> Image {
-        self.random(5, axis)
-    }
-
-    pub(crate) fn torque(&self, joint: usize) -> Image {
-        self.random(7, joint)
-    }
-
-    /// An argument of any function; positions of revolute joints are no numbers of the field by themselves, but random ones
-    /// serve where only their sines and cosines matter.
-    pub(crate) fn argument(&self, name: Name) -> Image {
-        let index = name.joint.wrapping_sub(1);
-        match (name.quantity, name.component) {
-            (Quantity::JointForce, Component::Vector(axis)) => self.force(axis as usize),
-            (Quantity::JointMoment, Component::Vector(axis)) => self.moment(axis as usize),
-            (Quantity::Omega, Component::Vector(axis)) => self.random(8, axis as usize),
-            (Quantity::OmegaDot, Component::Vector(axis)) => self.random(9, axis as usize),
-            (Quantity::Acceleration, Component::Vector(axis)) => self.random(10, axis as usize),
-            (Quantity::Gravity, Component::Vector(axis)) => self.random(11, axis as usize),
-            (Quantity::Parameter, _) => self.random(12, index),
-            (Quantity::Position, _) => self.position(index),
-            (Quantity::Sine, _) => self.turn(index).0,
-            (Quantity::Cosine, _) => self.turn(index).1,
-            (Quantity::Rate, _) => self.rate(index),
-            (Quantity::AppliedTorque, _) => self.torque(index),
-            _ => self.rate_dot(index),
-        }
-    }
-
-    /// Sine and cosine of the position of a joint.
-    pub(crate) fn turn(&self, joint: usize) -> (Image, Image) {
-        self.reading.point(6 ^ (self.index << 8), joint as u64)
-    }
-}
 
 /// The angle by which a joint, or a group of parallel joints, turns: a leaf up to sign and quarter turns.
 #[derive(Clone, Copy, Debug)]
@@ -126,7 +60,7 @@ pub(crate) struct Writer {
     pub(crate) sheet: RefCell<Sheet>,
     pub(crate) naming: Option<RefCell<Naming>>,
     function: Function,
-    point: Point,
+    pub(crate) point: Point,
     /// The one joint that accelerates, while a column of the mass matrix is written; nothing moves then.
     accelerating: Cell<Option<usize>>,
     /// The variable of the derivatives that are being written.
@@ -167,11 +101,11 @@ impl Writer {
         Vector(v.map(|x| self.number(x)))
     }
 
-    fn symbol(&self, at: Ref) -> Symbol<'_> {
+    pub(crate) fn symbol(&self, at: Ref) -> Symbol<'_> {
         Symbol { writer: self, at }
     }
 
-    fn leaf(&self, leaf: Leaf, image: Image) -> Symbol<'_> {
+    pub(crate) fn leaf(&self, leaf: Leaf, image: Image) -> Symbol<'_> {
         self.symbol(self.sheet.borrow_mut().leaf(leaf, image))
     }
 
@@ -211,90 +145,6 @@ impl Writer {
     /// τ of an actuator.
     pub(crate) fn torque(&self, joint: usize) -> Symbol<'_> {
         self.leaf(Leaf::Torque(byte(joint)), self.point.torque(joint))
-    }
-
-    /// The partial derivatives of some symbols by a variable, in the places of what they are derivatives of.
-    pub(crate) fn derivatives<'s>(&'s self, rows: &[Row], of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
-        let (ops, births, definitions) = {
-            let sheet = self.sheet.borrow();
-            let ops: Vec<Op> = sheet.nodes.iter().map(|node| node.op).collect();
-            let mut births = vec![None; ops.len()];
-            let mut definitions: HashMap<usize, Vec<(Name, bool)>> = HashMap::new();
-            if let Some(naming) = &self.naming {
-                let mut naming = naming.borrow_mut();
-                naming.births.resize(ops.len(), None);
-                births.clone_from(&naming.births);
-                for (name, at) in naming.definitions.iter().filter(|(name, _)| name.by.is_none()) {
-                    definitions.entry(at.index()).or_default().push((*name, at.is_negative()));
-                }
-            }
-            (ops, births, definitions)
-        };
-        let outputs: Vec<Ref> = of.iter().map(|symbol| symbol.at).collect();
-        let mut live = Vec::new();
-        mark_live(&self.sheet.borrow().nodes, &outputs, &mut live);
-        let zero = self.zero();
-        let mut rates: Vec<Symbol<'s>> = vec![zero; ops.len()];
-        for (index, op) in ops.iter().enumerate().filter(|(index, _)| live[*index]) {
-            let rate = |at: Ref| {
-                let rate = rates[at.index()];
-                if at.is_negative() { -rate } else { rate }
-            };
-            let value = |at: Ref| self.symbol(at);
-            let rate = match *op {
-                Op::Constant(_) => zero,
-                Op::Leaf(leaf) => self.leaf_rate(rows, leaf, by),
-                Op::Sum(a, b) => rate(a) + rate(b),
-                Op::Product(a, b) => rate(a) * value(b) + value(a) * rate(b),
-                Op::Inverse(a) => {
-                    let inverse = value(Ref::new(index));
-                    -(inverse * inverse * rate(a))
-                }
-            };
-            rates[index] = rate;
-            if let Some(naming) = &self.naming {
-                let mut naming = naming.borrow_mut();
-                let birth = births[index].map(|(place, component)| (Place { by: Some(by), ..place }, component));
-                let len = self.sheet.borrow().nodes.len();
-                naming.births.resize(len, birth);
-                for (name, negative) in definitions.get(&index).into_iter().flatten().filter(|_| !rate.is_zero()) {
-                    if name.quantity.step().is_some() {
-                        naming.definitions.push((Name { by: Some(by), ..*name }, rate.signed(*negative).at));
-                    }
-                }
-            }
-        }
-        of.iter()
-            .map(|symbol| {
-                rates[symbol.at.index()].signed(symbol.at.is_negative() && !rates[symbol.at.index()].is_zero())
-            })
-            .collect()
-    }
-
-    /// The derivative of an argument, or of the sine or cosine of a sum of positions.
-    fn leaf_rate<'s>(&'s self, rows: &[Row], leaf: Leaf, by: By) -> Symbol<'s> {
-        let (zero, one) = (self.zero(), self.number(Number::ONE));
-        let is = |joint: u8, at: usize| usize::from(joint) + 1 == at;
-        match (leaf, by) {
-            (Leaf::Position(joint), By::Position(at)) | (Leaf::Rate(joint), By::Rate(at)) if is(joint, at) => one,
-            (Leaf::RateDot(joint), By::RateDot(at)) if is(joint, at) => one,
-            (Leaf::Sine(first, last) | Leaf::Cosine(first, last), By::Position(at)) => {
-                let (first, last, joint) = (usize::from(first), usize::from(last), at - 1);
-                if !(first..=last).contains(&joint) {
-                    return zero;
-                }
-                // counted with the sign of the first joint
-                let same = rows[joint].reversed == rows[first].reversed;
-                let (sine, cosine) = Angle::of(rows, first, last).image(rows, &self.point);
-                let (from, to) = (byte(first), byte(last));
-                if let Leaf::Sine(..) = leaf {
-                    self.leaf(Leaf::Cosine(from, to), cosine).signed(!same)
-                } else {
-                    self.leaf(Leaf::Sine(from, to), sine).signed(same)
-                }
-            }
-            _ => zero,
-        }
     }
 
     /// Force and moment at the tip, if the function has them.
@@ -383,7 +233,7 @@ impl Writer {
 }
 
 /// Joints are at most 64.
-fn byte(joint: usize) -> u8 {
+pub(crate) fn byte(joint: usize) -> u8 {
     u8::try_from(joint).unwrap_or(u8::MAX)
 }
 
@@ -399,7 +249,7 @@ impl Symbol<'_> {
         self.at == Sheet::zero()
     }
 
-    fn signed(self, negative: bool) -> Self {
+    pub(crate) fn signed(self, negative: bool) -> Self {
         Self { at: self.at.signed(negative), ..self }
     }
 
