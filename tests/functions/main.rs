@@ -15,4 +15,5 @@ mod peers;
 mod published;
 #[path = "../random/robots.rs"]
 mod robots;
+mod single_precision;
 mod wrenches;
