@@ -22,7 +22,7 @@ fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<(
 }
 
 #[test]
-fn every_way_is_the_function() {
+fn all_ways_are_the_seven_steps() {
     for name in SEVERAL.into_iter().chain(["spherical_rrp", "gantry_ppp", "puma560_mdh", "ur5e"]) {
         let robot = robot(name);
         let plan = default_plan(&robot, &[]);
@@ -38,7 +38,7 @@ fn every_way_is_the_function() {
 }
 
 #[test]
-fn every_way_is_the_function_under_random_plans() {
+fn all_ways_under_random_plans_are_the_seven_steps() {
     for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
         let robot = robot(name);
         let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
