@@ -34,6 +34,8 @@ pub(crate) struct Composite<'s> {
     h: Vector<'s>,
     /// S11, S22, S33, S12, S13, S23
     s: [Symbol<'s>; 6],
+    /// S11 + S22, which a turn about z leaves alone, where it has been turned so.
+    around: Option<Symbol<'s>>,
 }
 
 /// Rz S Rzᵀ of a symmetric matrix: xx, yy, zz, xy, xz, yz.
@@ -64,21 +66,31 @@ impl<'s> Composite<'s> {
     pub(crate) fn of(writer: &'s Writer, matter: &PseudoInertia) -> Self {
         let s = matter.s;
         let s = [s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]].map(|x| writer.number(x));
-        Self { mass: matter.mass, h: writer.vector(matter.h), s }
+        Self { mass: matter.mass, h: writer.vector(matter.h), s, around: None }
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
-        Self { mass: self.mass + other.mass, h: self.h + other.h, s: std::array::from_fn(|k| self.s[k] + other.s[k]) }
+        Self {
+            mass: self.mass + other.mass,
+            h: self.h + other.h,
+            s: std::array::from_fn(|k| self.s[k] + other.s[k]),
+            around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
+        }
+    }
+
+    /// S11 + S22: the inertia about z.
+    pub(crate) fn around(&self) -> Symbol<'s> {
+        self.around.unwrap_or_else(|| self.s[0] + self.s[1])
     }
 
     /// Rz P Rzᵀ
     pub(crate) fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        Self { mass: self.mass, h: turn.about_z(self.h), s: turned_about_z(self.s, turn) }
+        Self { mass: self.mass, h: turn.about_z(self.h), s: turned_about_z(self.s, turn), around: Some(self.around()) }
     }
 
     /// Rx P Rxᵀ
     pub(crate) fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        Self { mass: self.mass, h: turn.about_x(self.h), s: turned_about_x(self.s, turn) }
+        Self { mass: self.mass, h: turn.about_x(self.h), s: turned_about_x(self.s, turn), around: None }
     }
 
     /// The same matter about a point from which the old one is at t.
@@ -87,12 +99,14 @@ impl<'s> Composite<'s> {
         let m = writer.number(self.mass);
         let [xx, yy, zz, xy, xz, yz] = self.s;
         let ([mx, my, mz], twice) = ([x * m, y * m, z * m], |a: Symbol<'s>| a + a);
+        let (dx, dy) = (x * (twice(hx) + mx), y * (twice(hy) + my));
         Self {
             mass: self.mass,
             h: Vector([hx + mx, hy + my, hz + mz]),
+            around: self.around.map(|around| around + (dx + dy)),
             s: [
-                xx + x * (twice(hx) + mx),
-                yy + y * (twice(hy) + my),
+                xx + dx,
+                yy + dy,
                 zz + z * (twice(hz) + mz),
                 xy + (x * hy + y * (hx + mx)),
                 xz + (x * hz + z * (hx + mx)),
@@ -108,15 +122,15 @@ impl<'s> Composite<'s> {
         let momentum = Vector([
             (yy + zz) * x - (xy * y + xz * z),
             (xx + zz) * y - (xy * x + yz * z),
-            (xx + yy) * z - (xz * x + yz * y),
+            self.around() * z - (xz * x + yz * y),
         ]);
         Wrench { force: b * writer.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
     /// What accelerates it about the z axis with 1 rad/s².
     pub(crate) fn turning(&self, writer: &'s Writer) -> Wrench<'s> {
-        let ([hx, hy, _], [xx, yy, _, _, xz, yz]) = (self.h.0, self.s);
-        Wrench { force: Vector([-hy, hx, writer.zero()]), moment: Vector([-xz, -yz, xx + yy]) }
+        let ([hx, hy, _], [_, _, _, _, xz, yz]) = (self.h.0, self.s);
+        Wrench { force: Vector([-hy, hx, writer.zero()]), moment: Vector([-xz, -yz, self.around()]) }
     }
 
     /// What accelerates it along u with 1 m/s².

@@ -69,6 +69,8 @@ struct Behind<'s> {
     body: Composite<'s>,
     /// Times the factor of the velocities.
     moment: Moment<'s>,
+    /// G11 + G22, which a turn about z leaves alone, where it has been turned so.
+    around: Option<Symbol<'s>>,
     momentum: Vector<'s>,
     wrench: Wrench<'s>,
 }
@@ -97,9 +99,23 @@ impl<'s> Behind<'s> {
         Self {
             body: self.body.plus(other.body),
             moment,
+            around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
             momentum: self.momentum + other.momentum,
             wrench: self.wrench.plus(other.wrench),
         }
+    }
+
+    fn around(&self) -> Symbol<'s> {
+        self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
+    }
+
+    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
+        let around = Some(self.around());
+        Self { around, ..self.turned(|body| body.about_z(turn), |v| turn.about_z(v)) }
+    }
+
+    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
+        self.turned(|body| body.about_x(turn), |v| turn.about_x(v))
     }
 
     /// Everything turned by a rotation of vectors.
@@ -110,6 +126,7 @@ impl<'s> Behind<'s> {
         Self {
             body: body(self.body),
             moment: [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])),
+            around: None,
             momentum: turn(self.momentum),
             wrench: self.wrench.map(&turn),
         }
@@ -117,7 +134,9 @@ impl<'s> Behind<'s> {
 
     fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
         let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + t.0[i] * self.momentum.0[j]));
-        Self { body: self.body.moved(t, writer), moment, wrench: self.wrench.about(t), ..self }
+        let ([x, y, _], [px, py, _]) = (t.0, self.momentum.0);
+        let around = self.around.map(|around| around + (x * px + y * py));
+        Self { body: self.body.moved(t, writer), moment, around, wrench: self.wrench.about(t), ..self }
     }
 
     /// 2 Ω × velocity, for a doubled velocity.
@@ -127,7 +146,7 @@ impl<'s> Behind<'s> {
         let moment = Vector([
             (g[1][1] + g[2][2]) * x - (g[1][0] * y + g[2][0] * z),
             (g[0][0] + g[2][2]) * y - (g[0][1] * x + g[2][1] * z),
-            (g[0][0] + g[1][1]) * z - (g[0][2] * x + g[1][2] * y),
+            self.around() * z - (g[0][2] * x + g[1][2] * y),
         ]);
         Wrench { force: by.cross(self.momentum), moment }
     }
@@ -157,7 +176,7 @@ impl<'s> Column<'s> {
 impl<'s> Carried<'s> {
     fn turned_about_z(self, turn: SymbolicTurn<'s>) -> Self {
         Self {
-            behind: self.behind.map(|behind| behind.turned(|body| body.about_z(turn), |v| turn.about_z(v))),
+            behind: self.behind.map(|behind| behind.about_z(turn)),
             columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_z(v))).collect(),
             unturned: self.unturned,
         }
@@ -165,7 +184,7 @@ impl<'s> Carried<'s> {
 
     fn turned_about_x(self, turn: SymbolicTurn<'s>) -> Self {
         Self {
-            behind: self.behind.map(|behind| behind.turned(|body| body.about_x(turn), |v| turn.about_x(v))),
+            behind: self.behind.map(|behind| behind.about_x(turn)),
             columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_x(v))).collect(),
             unturned: self.unturned,
         }
@@ -227,7 +246,7 @@ pub(crate) fn sensitivity<'s>(
         let turn = station.turn;
         // everything in frame N of this joint
         let here = if carried.unturned {
-            let own = own.turned(|body| body.about_z(turn), |v| turn.about_z(v));
+            let own = own.about_z(turn);
             let behind = carried.behind.map_or(own, |behind| own.plus(behind));
             Carried { behind: Some(behind), ..carried }
         } else {
@@ -373,6 +392,7 @@ fn own<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>) -> B
     Behind {
         body: Composite::of(writer, matter),
         moment,
+        around: None,
         momentum: motion.twice_velocity * m + motion.twice_omega.cross(h),
         wrench: Wrench {
             force: motion.acceleration * m + gradient.of(h),
@@ -439,7 +459,7 @@ fn column<'s>(
         Revolute => {
             let quarter = |v: Vector<'s>| Vector([-v.0[1], v.0[0], zero]);
             let around = Wrench { force: quarter(force), moment: quarter(moment) };
-            let both = g[0][0] + g[1][1];
+            let both = behind.around();
             let [px, py, _] = behind.momentum.0;
             let turned = Wrench { force: Vector([-py, px, zero]), moment: Vector([-g[2][0], -g[2][1], both]) };
             Column {
