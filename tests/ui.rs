@@ -16,7 +16,7 @@ fn mistakes_and_their_messages() {
 }
 
 /// File, and what the one message has in it.
-const BY_RUSTC: [(&str, &[&str]); 4] = [
+const BY_RUSTC: [(&str, &[&str]); 5] = [
     ("array_length", &["error[E0308]", "array_length.rs:8:49", "size of 2", "size of 3"]),
     (
         "batch_alone",
@@ -28,6 +28,10 @@ const BY_RUSTC: [(&str, &[&str]); 4] = [
         ],
     ),
     ("crate_is_elsewhere", &["error[E0433]", "crate_is_elsewhere.rs:4:48", "`dynamics`"]),
+    (
+        "field_of_text",
+        &["error[E0277]", "field_of_text.rs:6:5", "`String` can be no number of a robot", "`#[robot(skip)]`"],
+    ),
     ("without_the_trait", &["error[E0599]", "without_the_trait.rs:6:29", "`inverse_dynamics`", "InverseDynamics"]),
 ];
 

@@ -193,6 +193,11 @@ impl Program {
         statements.chain(self.outputs.iter().map(|output| &output.value)).any(Expression::chooses_by_sign)
     }
 
+    /// Whether it is written by composite or articulated bodies, which its first choice says.
+    pub(crate) fn is_of_bodies(&self) -> bool {
+        self.choices.first().is_some_and(|way| way.contains(" bodies, "))
+    }
+
     /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then the fewest
     /// instructions are the fastest.
     #[must_use]

@@ -116,7 +116,7 @@ impl Target<'_> {
                 } = base;
             }
         });
-        let parameters = parameters.read(&scalar);
+        let parameters = parameters.read(krate);
         let dof = Literal::usize_unsuffixed(program.dof);
         let documentation = description::method(program);
         let method = self.signature(function, &quote!(#dof), &quote!(#wrench #base #parameters #body));

@@ -159,7 +159,7 @@ use rne_codegen::Capability;
 /// # Run-time parameters
 ///
 /// A name under `parameters:` of the robot file that is also a field of the struct stays free until run time; everything else is
-/// folded. The field is `f32`, `f64`, or a type that converts into `f64`. All derives read it.
+/// folded. The field is `f32` or `f64`. All derives read it.
 ///
 /// ```
 /// use rne::InverseDynamics;
@@ -250,8 +250,10 @@ pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `MassMatrix` for a struct: the mass matrix M(q).
 ///
-/// Symmetric by construction: each element off the diagonal is computed once. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `MASS_MATRIX_OPERATIONS` and so on.
+/// Symmetric by construction: each element off the diagonal is computed once.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `MASS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(MassMatrix, attributes(robot))]
 pub fn derive_mass_matrix(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MassMatrix, input.into()).into()
@@ -259,8 +261,10 @@ pub fn derive_mass_matrix(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `CoriolisMatrix` for a struct: the Coriolis matrix C(q, q̇) of Christoffel.
 ///
-/// Ṁ - 2C is skew. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `CORIOLIS_MATRIX_OPERATIONS` and so on.
+/// Ṁ - 2C is skew.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `CORIOLIS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(CoriolisMatrix, attributes(robot))]
 pub fn derive_coriolis_matrix(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CoriolisMatrix, input.into()).into()
@@ -268,8 +272,10 @@ pub fn derive_coriolis_matrix(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `ForwardDynamics` for a struct: accelerations from torques.
 ///
-/// A singular mass matrix gives numbers that are not finite, never a panic. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `FORWARD_DYNAMICS_OPERATIONS` and so on.
+/// A singular mass matrix gives numbers that are not finite, never a panic.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `FORWARD_DYNAMICS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(ForwardDynamics, attributes(robot))]
 pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ForwardDynamics, input.into()).into()
@@ -277,8 +283,10 @@ pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `Kinematics` for a struct: tip pose, link poses, Jacobian and J̇ q̇.
 ///
-/// `base` and `tool` of the robot file included. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `FORWARD_KINEMATICS_OPERATIONS` and so on.
+/// `base` and `tool` of the robot file included.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `FORWARD_KINEMATICS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(Kinematics, attributes(robot))]
 pub fn derive_kinematics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Kinematics, input.into()).into()
@@ -286,8 +294,10 @@ pub fn derive_kinematics(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `Energy` for a struct: kinetic and potential energy.
 ///
-/// Links alone, without rotors. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `KINETIC_ENERGY_OPERATIONS` and so on.
+/// Links alone, without rotors.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `KINETIC_ENERGY_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(Energy, attributes(robot))]
 pub fn derive_energy(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Energy, input.into()).into()
@@ -295,8 +305,10 @@ pub fn derive_energy(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `Regressor` for a struct: torques per inertial parameter, τ = Y π.
 ///
-/// Ten parameters per link; the masses of the file have no part in it. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `REGRESSOR_OPERATIONS` and so on.
+/// Ten parameters per link; the masses of the file have no part in it.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `REGRESSOR_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(Regressor, attributes(robot))]
 pub fn derive_regressor(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Regressor, input.into()).into()
@@ -304,8 +316,11 @@ pub fn derive_regressor(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `InverseDynamicsDerivatives` for a struct: ∂τ/∂q and ∂τ/∂q̇.
 ///
-/// By differentiation of the expression graph, which shares what the torques compute. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS` and so on.
+/// In the seven steps by the product rule on the graph of the torques, which they share; in the reduced form that or composite
+/// bodies, whatever takes fewer operations.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(InverseDynamicsDerivatives, attributes(robot))]
 pub fn derive_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::InverseDynamicsDerivatives, input.into()).into()
@@ -313,8 +328,10 @@ pub fn derive_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `JointWrenches` for a struct: the force and moment that each link exerts on the next.
 ///
-/// Bearing loads; always in the seven steps, whose forces have a meaning. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `JOINT_WRENCHES_OPERATIONS` and so on.
+/// Bearing loads; always in the seven steps, whose forces have a meaning.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `JOINT_WRENCHES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(JointWrenches, attributes(robot))]
 pub fn derive_joint_wrenches(input: TokenStream) -> TokenStream {
     expand::capability(Capability::JointWrenches, input.into()).into()
@@ -322,8 +339,10 @@ pub fn derive_joint_wrenches(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `MovingBase` for a struct: torques on a base that moves.
 ///
-/// Ω₀, ω̇₀, c̈₀ and gravity are arguments. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `INVERSE_DYNAMICS_ON_MOVING_BASE_OPERATIONS` and so on.
+/// Its motion (ω₀, ω̇₀, c̈₀) and gravity are arguments.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `INVERSE_DYNAMICS_ON_MOVING_BASE_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(MovingBase, attributes(robot))]
 pub fn derive_moving_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MovingBase, input.into()).into()
@@ -331,8 +350,10 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `Actuation` for a struct: what rotors behind gears and friction add to the torques.
 ///
-/// The robot file needs a `motor` at one joint at least. The attribute is that of [`InverseDynamics`](macro@InverseDynamics), and so are its keys `path`, `yaml`,
-/// `form` and `crate`. The type gets a constant with the operations of each method, `ACTUATOR_TORQUES_OPERATIONS` and so on.
+/// The robot file needs a `motor` at one joint at least.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `ACTUATOR_TORQUES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
 #[proc_macro_derive(Actuation, attributes(robot))]
 pub fn derive_actuation(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Actuation, input.into()).into()

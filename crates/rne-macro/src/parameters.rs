@@ -1,8 +1,9 @@
 //! Run-time parameters: fields of the struct that are parameters of the robot file.
 
 use proc_macro2::{Literal, TokenStream};
-use quote::{ToTokens, format_ident, quote};
-use syn::{Data, DeriveInput, Ident, Type};
+use quote::{format_ident, quote, quote_spanned};
+use syn::spanned::Spanned;
+use syn::{Data, DeriveInput, Ident, Path, Type};
 
 use crate::error::Errors;
 
@@ -65,16 +66,13 @@ impl Parameters {
     }
 
     /// Reads the fields into an array `parameters`, as the body of a method expects it.
-    pub(crate) fn read(&self, scalar: &TokenStream) -> TokenStream {
+    pub(crate) fn read(&self, krate: &Path) -> TokenStream {
         if self.fields.is_empty() {
             return TokenStream::new();
         }
         let values = self.fields.iter().map(|Field { ident, kind }| {
-            if kind.to_token_stream().to_string() == "f32" {
-                quote!(#scalar::from_f32(self.#ident))
-            } else {
-                quote!(#scalar::from_f64(::core::convert::Into::into(self.#ident)))
-            }
+            let span = kind.span();
+            quote_spanned!(span=> #krate::Constant::to::<T>(self.#ident))
         });
         let (parameters, count) = (format_ident!("parameters"), Literal::usize_unsuffixed(self.fields.len()));
         quote!(let #parameters: &[T; #count] = &[#(#values),*];)

@@ -171,6 +171,12 @@ fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
 }
 
 /// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` can be no number of a robot",
+    label = "`f64` or `f32` is needed",
+    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes says \
+            `#[robot(skip)]`"
+)]
 pub trait Constant: Scalar + sealed::Sealed {
     /// This constant in the scalar of a computation.
     #[must_use]

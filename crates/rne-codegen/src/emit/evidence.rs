@@ -10,7 +10,11 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
         Form::Rewritten => {
             "Rewritten form: fewest operations, algebra without a recursion; torques are those of the seven steps."
         }
-        _ => "Reduced form: fewest operations; only the torques keep a physical meaning.",
+        _ if program.function.returns_torques() && !program.choices.is_empty() => {
+            "Reduced form: fewest operations; only the torques keep a physical meaning."
+        }
+        _ if !program.choices.is_empty() => "Reduced form: fewest operations; only what is returned keeps a meaning.",
+        _ => "Reduced form: the plain formulas, every value computed once however it comes about.",
     };
     let (what, largest) =
         if program.function.returns_torques() { ("all torques", "torque") } else { ("all results", "result") };

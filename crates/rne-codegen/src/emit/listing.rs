@@ -193,6 +193,7 @@ fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, st
     let _ = writeln!(text, "    // {}", step_title(program, joint, step));
     let formulas = match recursion(program) {
         Form::SevenSteps => formulas(step, kind, joint),
+        _ if program.is_of_bodies() => Vec::new(),
         _ => reduced_formulas(step, kind, joint),
     };
     for formula in formulas {
