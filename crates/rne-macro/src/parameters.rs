@@ -72,7 +72,7 @@ impl Parameters {
         }
         let values = self.fields.iter().map(|Field { ident, kind }| {
             let span = kind.span();
-            quote_spanned!(span=> #krate::Constant::to::<T>(self.#ident))
+            quote_spanned!(span=> #krate::RunTimeParameter::to::<T>(self.#ident))
         });
         let (parameters, count) = (format_ident!("parameters"), Literal::usize_unsuffixed(self.fields.len()));
         quote!(let #parameters: &[T; #count] = &[#(#values),*];)

@@ -57,6 +57,6 @@ pub use dyn_arm::{DynArm, DynTrace};
 pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use operations::Operations;
 pub use pose::Pose;
-pub use scalar::{Constant, Scalar};
+pub use scalar::{Constant, RunTimeParameter, Scalar};
 pub use trace::{LinkTrace, Trace};
 pub use wrench::Wrench;

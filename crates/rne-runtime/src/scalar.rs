@@ -171,12 +171,6 @@ fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
 }
 
 /// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without it.
-#[diagnostic::on_unimplemented(
-    message = "`{Self}` can be no number of a robot",
-    label = "`f64` or `f32` is needed",
-    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes says \
-            `#[robot(skip)]`"
-)]
 pub trait Constant: Scalar + sealed::Sealed {
     /// This constant in the scalar of a computation.
     #[must_use]
@@ -191,6 +185,33 @@ impl Constant for f64 {
 }
 
 impl Constant for f32 {
+    #[inline]
+    fn to<T: Scalar>(self) -> T {
+        T::from_f32(self)
+    }
+}
+
+/// A field of a robot's type that is a parameter of its file: `f64` or `f32`. Only derived code uses it.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` can be no run-time parameter",
+    label = "`f64` or `f32` is needed",
+    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes says \
+            `#[robot(skip)]`"
+)]
+pub trait RunTimeParameter {
+    /// This number in the scalar of a computation.
+    #[must_use]
+    fn to<T: Scalar>(self) -> T;
+}
+
+impl RunTimeParameter for f64 {
+    #[inline]
+    fn to<T: Scalar>(self) -> T {
+        T::from_f64(self)
+    }
+}
+
+impl RunTimeParameter for f32 {
     #[inline]
     fn to<T: Scalar>(self) -> T {
         T::from_f32(self)
