@@ -174,11 +174,9 @@ fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
         format!("joint {} ({name})", index + 1)
     };
     if function == Function::ForwardDynamics {
-        return format!(
-            "the acceleration of {} is not finite: the mass matrix is singular (a joint that moves no mass), or the \
-             state is too large",
-            joint(index)
-        );
+        return "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), or the state is too \
+                large"
+            .to_owned();
     }
     if function.returns_torques() || function == Function::ActuatorTorques {
         return format!("the torque of {} overflows: the state is too large", joint(index));

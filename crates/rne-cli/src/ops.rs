@@ -28,7 +28,7 @@ Example:
 A subtraction counts as an addition, a negation is free, x·x is one multiplication, and sincos counts the
 angles whose sine or cosine is used; divisions have a column where there are any, and are not in the total.
 Before folding: the recursion as a loop over 3-vectors performs it. actuator_torques is listed where the robot
-has motors, forward_dynamics where every joint moves a mass.")]
+has motors.")]
 pub(crate) struct Arguments {
     /// Robot files
     #[arg(required = true, value_name = "FILE")]

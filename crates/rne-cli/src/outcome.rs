@@ -4,7 +4,6 @@ use rne_codegen::CompileError;
 use rne_model::Report;
 use serde::Serialize;
 
-use crate::functions;
 use crate::terminal::ERROR;
 
 /// Exit status when the input is at fault.
@@ -60,12 +59,6 @@ impl Failure {
 
     /// The robot is valid but cannot be compiled.
     pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
-        if functions::is_singular(error) {
-            return Self::input(format_args!(
-                "{file}: the mass matrix is singular in every position, for a joint moves no mass; accelerations do not \
-                 follow from torques"
-            ));
-        }
         Self::input(format_args!("{file}: {error}"))
     }
 }
