@@ -244,6 +244,14 @@ pub enum Quantity {
     TurnedForce,
     /// n of the next joint there.
     TurnedMoment,
+    /// First moment of all bodies behind a joint.
+    CompositeFirstMoment,
+    /// Their second moment.
+    CompositeSecondMoment,
+    /// Force for a unit acceleration of one joint.
+    UnitForce,
+    /// Moment for it.
+    UnitMoment,
     // Step 7.
     /// τ: torque of a revolute, force of a prismatic joint.
     Torque,
@@ -324,6 +332,10 @@ impl Quantity {
             | Self::ReducedMoment
             | Self::TurnedForce
             | Self::TurnedMoment
+            | Self::CompositeFirstMoment
+            | Self::CompositeSecondMoment
+            | Self::UnitForce
+            | Self::UnitMoment
             | Self::JointForce
             | Self::JointMoment => Some(Step::Wrenches),
             Self::Torque => Some(Step::Torque),
@@ -443,6 +455,10 @@ impl Quantity {
             Self::RotorInertia => "jm",
             Self::ViscousFriction => "bv",
             Self::CoulombFriction => "tc",
+            Self::CompositeFirstMoment => "hc",
+            Self::CompositeSecondMoment => "pc",
+            Self::UnitForce => "fu",
+            Self::UnitMoment => "nu",
             Self::Partial => "x",
             Self::FrameRotation => "frame",
             Self::FrameOrigin => "origin",
@@ -483,6 +499,7 @@ impl Quantity {
             | Self::SecondMoment
             | Self::Gradient
             | Self::FrameRotation
+            | Self::CompositeSecondMoment
             | Self::GradientUnturned => format!("{prefix}i_xy"),
             Self::Position
             | Self::Rate
@@ -576,6 +593,10 @@ impl Quantity {
             Self::JointForce => "force exerted by link h = i - 1 on link i",
             Self::JointMoment => "moment exerted by link h = i - 1 on link i, about joint i",
             Self::Torque => "τ: joint torque (force, for a prismatic joint)",
+            Self::CompositeFirstMoment => "first moment of all links from i on, as one body",
+            Self::CompositeSecondMoment => "their second moment ∫ r rᵀ dm",
+            Self::UnitForce => "force on link i and all behind it, for q̈ = 1 of one joint",
+            Self::UnitMoment => "moment on them",
             Self::AppliedTorque => "τ of the actuator",
             Self::Parameter => "a parameter of the robot file that is given at run time",
             Self::One => "the number 1",

@@ -210,6 +210,9 @@ fn recursion(program: &Program) -> Form {
 }
 
 fn step_title(program: &Program, joint: usize, step: Step) -> String {
+    if program.is_of_bodies() && step == Step::Wrenches {
+        return format!("joint {joint}: the links from here on, as one body");
+    }
     let title = match (recursion(program), step) {
         (Form::SevenSteps, _) => step.title(),
         (_, Step::Acceleration) => "acceleration of the frame's origin",

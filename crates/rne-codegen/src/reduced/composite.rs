@@ -18,6 +18,7 @@ use super::regroup::{group_start, is_parallel};
 use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
 use crate::exact::Number;
 use crate::name::{By, Name};
+use crate::quantity::Axis::{self, X, Y, Z};
 use crate::quantity::Quantity;
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
@@ -75,6 +76,15 @@ impl<'s> Composite<'s> {
             h: self.h + other.h,
             s: std::array::from_fn(|k| self.s[k] + other.s[k]),
             around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
+        }
+    }
+
+    /// Names what is there, in frame N of a joint.
+    pub(crate) fn name(&self, writer: &'s Writer, joint: usize) {
+        writer.name(Quantity::CompositeFirstMoment, joint, self.h);
+        let elements = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];
+        for ((row, column), element) in elements.into_iter().zip(self.s) {
+            writer.define(Name::matrix(Quantity::CompositeSecondMoment, joint, row, column), element);
         }
     }
 
@@ -161,6 +171,19 @@ impl<'s> Carried<'s> {
         }
     }
 
+    fn name(&self, writer: &'s Writer, joint: usize) {
+        if let Some(composite) = &self.composite {
+            composite.name(writer, joint);
+        }
+        for (column, Wrench { force, moment }) in &self.columns {
+            for (axis, (f, n)) in Axis::ALL.into_iter().zip(force.0.into_iter().zip(moment.0)) {
+                let by = Some(By::RateDot(column + 1));
+                writer.define(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
+                writer.define(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
+            }
+        }
+    }
+
     fn turned_about_z(self, turn: SymbolicTurn<'s>, unturned: bool) -> Self {
         self.map(unturned, |body| body.about_z(turn), |wrench| wrench.map(|v| turn.about_z(v)))
     }
@@ -216,6 +239,7 @@ pub(crate) fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gath
                 matrix[index][index] = column.moment.0[2];
                 let mut next = Carried { composite: Some(whole), columns: rest.columns, unturned: true };
                 next.columns.push((index, column));
+                next.name(writer, index + 1);
                 let along = |x: Number| Vector([writer.zero(), writer.zero(), writer.number(x)]);
                 carried = if index == 0 {
                     next

@@ -255,6 +255,7 @@ pub(crate) fn sensitivity<'s>(
             if row.kind == Revolute { whole.turned_about_z(turn) } else { whole }
         };
         let Some(behind) = here.behind else { break };
+        behind.body.name(writer, index + 1);
         let column = column(writer, arm, index, station, &behind);
         for other in here.columns.iter().chain([&column]) {
             meet(writer, arm, index, station, other, &mut found);
