@@ -255,7 +255,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
 }
 
 /// Elements of an n × n matrix by rows.
-fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Symbol<'s>)) -> Outputs<'s> {
+pub(crate) fn square<S>(dof: usize, element: impl Fn(usize, usize) -> (Name, S)) -> Vec<(Name, S)> {
     (0..dof)
         .flat_map(|row| (0..dof).map(move |column| (row, column)))
         .map(|(row, column)| element(row, column))

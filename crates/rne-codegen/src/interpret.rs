@@ -67,29 +67,22 @@ pub trait Real:
     fn by_sign(self, positive: Self, negative: Self) -> Self;
 }
 
-impl Real for f64 {
-    fn by_sign(self, positive: Self, negative: Self) -> Self {
-        if self > 0.0 {
-            positive
-        } else if self < 0.0 {
-            negative
-        } else {
-            0.0
+macro_rules! real {
+    ($($float:ty),*) => {$(
+        impl Real for $float {
+            fn by_sign(self, positive: Self, negative: Self) -> Self {
+                if self > 0.0 {
+                    positive
+                } else if self < 0.0 {
+                    negative
+                } else {
+                    0.0
+                }
+            }
         }
-    }
+    )*};
 }
-
-impl Real for f32 {
-    fn by_sign(self, positive: Self, negative: Self) -> Self {
-        if self > 0.0 {
-            positive
-        } else if self < 0.0 {
-            negative
-        } else {
-            0.0
-        }
-    }
-}
+real!(f32, f64);
 
 impl Interpreter {
     /// Resolves the names of a program.

@@ -51,16 +51,11 @@ pub(crate) fn turned_about_z<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>
     [u + yy, xx - u, zz, turned_xy, cosine * xz - sine * yz, sine * xz + cosine * yz]
 }
 
-/// Rx S Rxᵀ
+/// Rx S Rxᵀ: the same with y, z, x in the places of x, y, z.
 pub(crate) fn turned_about_x<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>) -> [Symbol<'s>; 6] {
-    let SymbolicTurn { s: sine, c: cosine } = turn;
     let [xx, yy, zz, xy, xz, yz] = matrix;
-    let difference = yy - zz;
-    let twice = yz + yz;
-    let (both, square) = (cosine * sine, cosine * cosine);
-    let u = square * difference - both * twice;
-    let turned_yz = both * difference + (square * twice - yz);
-    [xx, u + zz, yy - u, cosine * xy - sine * xz, sine * xy + cosine * xz, turned_yz]
+    let [yy, zz, xx, yz, xy, xz] = turned_about_z([yy, zz, xx, yz, xy, xz], turn);
+    [xx, yy, zz, xy, xz, yz]
 }
 
 impl<'s> Composite<'s> {

@@ -7,6 +7,7 @@ use super::outward::{Arm, motions};
 use super::rows::Table;
 use super::sensitivity::sensitivity;
 use super::writer::{Symbol, Writer};
+use crate::derivation::square;
 use crate::elimination;
 use crate::exact::Number;
 use crate::function::Function;
@@ -166,13 +167,6 @@ fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, way: Way) -> Vec<Vec<Symbo
         }
     }
     rows
-}
-
-fn square<'s>(dof: usize, element: impl Fn(usize, usize) -> (Name, Symbol<'s>)) -> Vec<(Name, Symbol<'s>)> {
-    (0..dof)
-        .flat_map(|row| (0..dof).map(move |column| (row, column)))
-        .map(|(row, column)| element(row, column))
-        .collect()
 }
 
 /// The sheet on which M x = b is solved.
