@@ -123,7 +123,9 @@ impl<T: SimdRealField + Copy> Scalar for T {
         (sine, cosine)
     }
 
-    #[inline]
+    // Firmware calls nothing: compilers for small processors would rather share one copy.
+    #[cfg_attr(feature = "std", inline)]
+    #[cfg_attr(not(feature = "std"), allow(clippy::inline_always), inline(always))]
     fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
         let (mut sines, mut cosines) = (angles, angles);
         let results: (&mut dyn Any, &mut dyn Any) = (&mut sines, &mut cosines);

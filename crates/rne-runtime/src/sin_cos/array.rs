@@ -14,6 +14,16 @@ pub(crate) fn sin_cos<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T;
     sin_cos_lanes(angles, sines, cosines);
 }
 
+/// The kernel for the next sixteen angles, or as many as there are, written out: compilers for small processors would make a loop
+/// of them, and so a branch.
+macro_rules! one_by_one {
+    ($angles:ident, $sines:ident, $cosines:ident, $start:ident: $($index:literal)*) => {$(
+        if $start + $index < N {
+            ($sines[$start + $index], $cosines[$start + $index]) = kernel($angles[$start + $index]);
+        }
+    )*};
+}
+
 /// The same one by one, for a single angle and where there are no registers.
 #[inline(always)]
 pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T; N], cosines: &mut [T; N]) {
@@ -22,8 +32,10 @@ pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &m
         (*sines, *cosines) = beyond_limit(*angles);
         return;
     }
-    for ((angle, sine), cosine) in angles.iter().zip(sines).zip(cosines) {
-        (*sine, *cosine) = kernel(*angle);
+    let mut start = 0;
+    while start < N {
+        one_by_one!(angles, sines, cosines, start: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
+        start += 16;
     }
 }
 
