@@ -146,7 +146,7 @@ mod tests {
         for (index, unit) in VectorUnit::all().enumerate() {
             let mut tau = [f64::NAN];
             run(&SquareAndSum, unit, [&q], [&qd], [&[0.0]], [&mut tau]).expect("arrays of one length");
-            let is_fused = index > 0 || crate::sin_cos::FUSED;
+            let is_fused = index > 0 || crate::sin_cos::FUSED_F64;
             assert_eq!(tau, [if is_fused { f64::EPSILON * f64::EPSILON } else { 0.0 }], "{unit}");
         }
     }

@@ -2,7 +2,7 @@
 
 use core::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::{FUSED, Float};
+use super::{FUSED_F32, FUSED_F64, Float};
 
 /// `f64`, `f32` and, with `std`, the SIMD registers of them.
 pub trait Lanes:
@@ -41,11 +41,11 @@ pub trait Lanes:
 }
 
 macro_rules! number {
-    ($type:ident, sign: $SIGN:literal) => {
+    ($type:ident, fused: $FUSED:ident, sign: $SIGN:literal) => {
         impl Lanes for $type {
             type Element = $type;
 
-            const FUSED: bool = FUSED;
+            const FUSED: bool = $FUSED;
 
             #[inline(always)]
             fn splat(element: $type) -> Self {
@@ -55,19 +55,19 @@ macro_rules! number {
             #[inline(always)]
             fn plus_product(self, a: Self, b: Self) -> Self {
                 #[cfg(feature = "std")]
-                if FUSED {
+                if $FUSED {
                     return a.mul_add(b, self);
+                }
+                #[cfg(all(feature = "core_float_math", not(feature = "std")))]
+                if $FUSED {
+                    return core::$type::math::mul_add(a, b, self);
                 }
                 self + a * b
             }
 
             #[inline(always)]
             fn minus_product(self, a: Self, b: Self) -> Self {
-                #[cfg(feature = "std")]
-                if FUSED {
-                    return (-a).mul_add(b, self);
-                }
-                self - a * b
+                if $FUSED { self.plus_product(-a, b) } else { self - a * b }
             }
 
             #[inline(always)]
@@ -82,5 +82,5 @@ macro_rules! number {
         }
     };
 }
-number!(f64, sign: 63);
-number!(f32, sign: 31);
+number!(f64, fused: FUSED_F64, sign: 63);
+number!(f32, fused: FUSED_F32, sign: 31);

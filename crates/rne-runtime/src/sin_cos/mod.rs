@@ -38,12 +38,25 @@ use core::fmt::Debug;
 
 use reduction::Reduced;
 
-/// Whether the target this is compiled for multiplies and adds in one instruction, and `std` is there to ask for it: `core`
-/// has no such operation yet.
-pub(crate) const FUSED: bool = cfg!(all(
-    feature = "std",
-    any(all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"), target_arch = "aarch64")
-));
+/// Whether there is a fused multiply-add to ask for: in `std`, or in a `core` that has it.
+const IS_THERE: bool = cfg!(any(feature = "std", feature = "core_float_math"));
+
+/// Whether it is one instruction for `f32` on the target this is compiled for. Cortex-M with registers for numbers (`eabihf`) has
+/// it in single precision.
+pub(crate) const FUSED_F32: bool = FUSED_F64
+    || IS_THERE
+        && cfg!(any(
+            all(target_arch = "arm", target_feature = "mclass", target_abi = "eabihf"),
+            all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "f"),
+        ));
+
+/// The same for `f64`.
+pub(crate) const FUSED_F64: bool = IS_THERE
+    && cfg!(any(
+        all(any(target_arch = "x86", target_arch = "x86_64"), target_feature = "fma"),
+        target_arch = "aarch64",
+        all(any(target_arch = "riscv32", target_arch = "riscv64"), target_feature = "d"),
+    ));
 
 /// `f32` and `f64`: constants and the step that differs.
 pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {

@@ -4,7 +4,9 @@
 
 use bytemuck::cast;
 
-use super::{FUSED, Lanes};
+use super::Lanes;
+// registers are of x86 and AArch64, which fuse both types or none
+use super::FUSED_F64 as FUSED;
 
 /// Lanes that are filled from an array and written to one.
 pub trait Register: Lanes {
