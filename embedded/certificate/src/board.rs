@@ -1,0 +1,141 @@
+//! A board: its image is built, read, run and judged.
+
+use std::path::Path;
+
+use anyhow::{Result, bail, ensure};
+
+use crate::functions::{self, Method, Robot};
+use crate::image::{Figures, Image};
+use crate::listing::Fault;
+use crate::log::Log;
+use crate::table::Row;
+use crate::tools::{self, Build};
+
+/// A processor and how code for it is compiled.
+pub(crate) struct Board {
+    /// QEMU's name of a board with this processor.
+    pub(crate) machine: &'static str,
+    /// Flags of the compiler for this processor.
+    pub(crate) flags: &'static [&'static str],
+    /// With fused multiply-add.
+    pub(crate) is_fused: bool,
+}
+
+/// What was found out about a board.
+pub(crate) struct Examined {
+    image: Image,
+    log: Log,
+}
+
+/// Ticks of the timer (25 MHz) while an instruction is executed, which takes 1024 ns.
+const TICKS: f64 = 25.6;
+
+impl Board {
+    /// Builds, lists and runs the image. Fails if a function that is faulty on purpose passes.
+    pub(crate) fn examine(&self, workspace: &Path) -> Result<Examined> {
+        // No function stands in for another that is the same, so each has figures of its own.
+        let mut flags = vec!["-Zemit-stack-sizes", "-Zmerge-functions=disabled"];
+        flags.extend(self.flags);
+        let folder = if self.is_fused { format!("{}-fused", self.machine) } else { self.machine.to_owned() };
+        let features: &[&str] = if self.is_fused { &["--features", "core_float_math"] } else { &[] };
+        let build = Build {
+            target: "thumbv7em-none-eabihf",
+            linker: "arm-none-eabi-ld",
+            flags: &flags,
+            folder: &folder,
+            package: "board",
+            arguments: features,
+        };
+        let elf = build.run(workspace)?.join("board");
+        let image = Image::read(&elf)?;
+        let log = Log::read(&tools::qemu(self.machine, &elf)?)?;
+        let examined = Examined { image, log };
+        examined.gate_closes()?;
+        Ok(examined)
+    }
+}
+
+impl Examined {
+    /// Every function that is faulty on purpose must be refused, for its reason.
+    fn gate_closes(&self) -> Result<()> {
+        let reasons: [(&str, fn(&Fault) -> bool); 4] = [
+            ("panics", |fault| matches!(fault, Fault::Calls(line) if line.contains("panic"))),
+            ("branches", |fault| matches!(fault, Fault::Branches(_))),
+            ("doubles", |fault| matches!(fault, Fault::Calls(_) | Fault::Doubles(_))),
+            ("calls", |fault| matches!(fault, Fault::Calls(_))),
+        ];
+        for (name, is_reason) in reasons {
+            let figures = self.image.figures(&format!("board::faulty::{name}"))?;
+            ensure!(
+                figures.is_err_and(|faults| faults.iter().any(is_reason)),
+                "the gate is open: the faulty function `{name}` passes"
+            );
+        }
+        Ok(())
+    }
+
+    /// `inverse_dynamics` of every robot in both forms. Fails if an instruction count that the timer measures is not the one
+    /// that is read in the image.
+    pub(crate) fn robots(&self, expected: &Log) -> Result<Vec<Row>> {
+        let row = |robot: Robot| {
+            let Robot { name, form, dof } = robot;
+            let figures = self.image.straight(&format!("robots::torques::{name}::{form}::inverse_dynamics"))?;
+            let measured = self.measured(&format!("{name} {form}"), dof)?;
+            #[allow(clippy::cast_precision_loss)]
+            let difference = measured - figures.instructions as f64;
+            ensure!(
+                difference.abs() < 0.5,
+                "{name} {form}: {} instructions are read in the image, {measured:.2} are measured by the timer",
+                figures.instructions
+            );
+            let results = self.log.agreement(expected, &format!("torques {name} {form}"))?;
+            Ok(Row { name: name.to_owned(), form: form.to_owned(), figures, results: results.to_string() })
+        };
+        functions::robots().into_iter().map(row).collect()
+    }
+
+    /// All that the PUMA 560 can compute besides.
+    pub(crate) fn methods(&self, expected: &Log) -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        for Method { name, form } in functions::methods() {
+            // a long method is not inlined into the function that calls it
+            let [start, end] = [format!("<robots::puma560::{form}::Robot as "), format!(">::{name}::<f32>")];
+            let function = format!("robots::puma560::{form}::{name}");
+            let function = self.image.find(&start, &end).unwrap_or(&function);
+            let results = self.log.agreement(expected, &format!("method {form} {name}"))?;
+            if self.only_moves_memory(function)? {
+                continue;
+            }
+            let figures = self.image.straight(function)?;
+            rows.push(Row { name: name.to_owned(), form: form.to_owned(), figures, results: results.to_string() });
+        }
+        Ok(rows)
+    }
+
+    /// Whether all that keeps a function from being straight are calls that clear or copy a known number of bytes: so the
+    /// compiler writes large arrays of zeros.
+    fn only_moves_memory(&self, function: &str) -> Result<bool> {
+        let moves = |fault: &Fault| matches!(fault, Fault::Calls(line) if line.contains("<__aeabi_mem"));
+        Ok(self.image.figures(function)?.is_err_and(|faults| faults.iter().all(moves)))
+    }
+
+    /// Instructions of one call, by the timer. What a call costs besides, a function of known length tells.
+    pub(crate) fn measured(&self, function: &str, dof: usize) -> Result<f64> {
+        let Figures { instructions, .. } = self.image.straight(&format!("board::echo::echo::<{dof}>"))?;
+        let ticks = |function: &str| Ok::<_, anyhow::Error>(f64::from(self.log.ticks(function)?));
+        #[allow(clippy::cast_precision_loss)]
+        let known = instructions as f64;
+        Ok((ticks(function)? - ticks(&format!("echo {dof}"))?) / TICKS + known)
+    }
+
+    /// How far the loop over a baked-in table is from the generated code, as the log says it.
+    pub(crate) fn runtime_agrees(&self) -> Result<()> {
+        // the loop computes the bits of the seven steps; a zero's sign is free
+        let expected = self.log.renamed("torques puma560 seven_steps 0", "torques puma560 runtime 0");
+        let agreement = self.log.agreement_at(&expected, "torques puma560 runtime", [0])?;
+        if agreement != crate::log::Agreement::Identical {
+            bail!("the loop over a baked-in table has other results than the seven steps: {agreement}");
+        }
+        Ok(())
+    }
+}

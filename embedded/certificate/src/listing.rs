@@ -1,0 +1,212 @@
+//! Machine code as `objdump` lists it, and whether a function is straight: one path, from its first instruction to its return.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use anyhow::{Context, Result};
+
+/// An instruction, or data between instructions.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Line {
+    address: u64,
+    mnemonic: String,
+    operands: String,
+}
+
+/// Why a function is not straight.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    Calls(String),
+    Branches(String),
+    Doubles(String),
+    Traps(String),
+    ReturnsElsewhere,
+}
+
+/// What a straight function is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Count {
+    /// Every one is executed, once.
+    pub(crate) instructions: u64,
+    /// Bytes of constants between them; what aligns those is code.
+    pub(crate) constants: u64,
+}
+
+/// The functions of an image, by their symbols.
+pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
+    let mut functions: BTreeMap<String, Vec<Line>> = BTreeMap::new();
+    let mut current = None;
+    for line in objdump.lines() {
+        if let Some(symbol) = line.strip_suffix(">:").and_then(|line| line.split_once(" <")) {
+            current = Some(functions.entry(symbol.1.to_owned()).or_default());
+        } else if let (Some(function), Some((address, rest))) = (current.as_mut(), line.trim_start().split_once(":\t")) {
+            let address = u64::from_str_radix(address, 16).with_context(|| format!("no address: {line}"))?;
+            let (mnemonic, operands) = rest.split_once('\t').unwrap_or((rest, ""));
+            let operands = operands.split(['@', ';']).next().unwrap_or_default();
+            let [mnemonic, operands] = [mnemonic, operands].map(|text| text.trim().to_owned());
+            function.push(Line { address, mnemonic, operands });
+        }
+    }
+    Ok(functions)
+}
+
+/// The count of a straight function, or all that is wrong with it.
+pub(crate) fn judge(function: &[Line]) -> Result<Count, Vec<Fault>> {
+    let mut count = Count::default();
+    let mut faults = Vec::new();
+    let last = function.iter().rposition(|line| line.data() == 0 && !line.is_padding());
+    let mut target = 0;
+    for (index, line) in function.iter().enumerate() {
+        if line.data() > 0 || Some(index) > last || line.address < target && line.is_padding() {
+            count.constants += line.data();
+            continue;
+        }
+        count.instructions += 1;
+        target = line.target().unwrap_or(target);
+        match line.fault(&function[index + 1..]) {
+            Some(fault) => faults.push(fault),
+            None if line.is_return() != (Some(index) == last) => faults.push(Fault::ReturnsElsewhere),
+            None => {}
+        }
+    }
+    if faults.is_empty() { Ok(count) } else { Err(faults) }
+}
+
+const CONDITIONS: [&str; 16] =
+    ["eq", "ne", "cs", "cc", "hs", "lo", "mi", "pl", "vs", "vc", "hi", "ls", "ge", "lt", "gt", "le"];
+
+impl Line {
+    /// The mnemonic without the width of its encoding.
+    fn name(&self) -> &str {
+        self.mnemonic.strip_suffix(".n").or_else(|| self.mnemonic.strip_suffix(".w")).unwrap_or(&self.mnemonic)
+    }
+
+    /// Bytes of data; none in an instruction.
+    fn data(&self) -> u64 {
+        match self.mnemonic.as_str() {
+            ".word" => 4,
+            ".short" => 2,
+            ".byte" => 1,
+            _ => 0,
+        }
+    }
+
+    /// What fills up to the next function.
+    fn is_padding(&self) -> bool {
+        self.name() == "nop" || self.mnemonic == "..." || self.mnemonic == "movs" && self.operands == "r0, r0"
+    }
+
+    fn is_return(&self) -> bool {
+        match self.name() {
+            "bx" => self.operands == "lr",
+            "pop" | "ldmia" => self.operands.ends_with("pc}"),
+            _ => false,
+        }
+    }
+
+    /// What is wrong with an instruction, `next` following it.
+    fn fault(&self, next: &[Self]) -> Option<Fault> {
+        let name = self.name();
+        let text = || format!("{} {}", self.mnemonic, self.operands);
+        let is_on_condition = |stem: &str| name.strip_prefix(stem).is_some_and(|rest| CONDITIONS.contains(&rest));
+        if self.mnemonic.contains(".f64") {
+            return Some(Fault::Doubles(text()));
+        }
+        if matches!(name, "cbz" | "cbnz" | "tbb" | "tbh") || is_on_condition("b") || is_on_condition("bx") {
+            return Some(Fault::Branches(text()));
+        }
+        if matches!(name, "bl" | "blx") || is_on_condition("bl") || is_on_condition("blx") {
+            return Some(Fault::Calls(text()));
+        }
+        if matches!(name, "udf" | "bkpt" | "svc") {
+            return Some(Fault::Traps(text()));
+        }
+        if name == "b" {
+            return (!self.skips_data(next)).then(|| Fault::Branches(text()));
+        }
+        let writes_pc = name == "bx" || self.operands.starts_with("pc,") || self.operands.contains("pc}");
+        (writes_pc && !self.is_return()).then(|| Fault::Branches(text()))
+    }
+
+    /// Where a jump leads.
+    fn target(&self) -> Option<u64> {
+        let target = self.operands.split(' ').next().filter(|_| self.name() == "b")?;
+        u64::from_str_radix(target, 16).ok()
+    }
+
+    /// Whether a jump leads over nothing but data, and what aligns it, to the next instruction.
+    fn skips_data(&self, next: &[Self]) -> bool {
+        let is_skipped = |line: &Self| line.data() > 0 || line.is_padding();
+        let target = self.target();
+        let over = next.iter().take_while(|line| Some(line.address) != target);
+        target > Some(self.address) && next.iter().any(|line| Some(line.address) == target) && over.into_iter().all(is_skipped)
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Calls(line) => write!(f, "a call: {line}"),
+            Self::Branches(line) => write!(f, "a branch: {line}"),
+            Self::Doubles(line) => write!(f, "double precision: {line}"),
+            Self::Traps(line) => write!(f, "a trap: {line}"),
+            Self::ReturnsElsewhere => write!(f, "a return that is not the last instruction, or none"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Count, Fault, functions, judge};
+
+    fn judged(listing: &str) -> Result<Count, Vec<Fault>> {
+        let functions = functions(&format!("00000100 <f>:\n{listing}")).expect("a listing");
+        judge(&functions["f"])
+    }
+
+    #[test]
+    fn a_jump_over_constants_is_no_branch() {
+        let listing = "     100:\tvldr\ts0, [pc, #4]\t@ 108 <f+0x8>\n     104:\tb.n\t10c <f+0xc>\n     106:\tnop\n     \
+                       108:\t.word\t0x3f800000\n     10c:\tnop\n     10e:\tbx\tlr\n";
+        // of the two that do nothing, the first is skipped
+        assert_eq!(judged(listing), Ok(Count { instructions: 4, constants: 4 }));
+    }
+
+    #[test]
+    fn a_jump_anywhere_else_is_one() {
+        for target in ["100", "106", "200"] {
+            let listing = format!("     100:\tvldr\ts0, [r0]\n     104:\tb.n\t{target} <f>\n     106:\tmovs\tr0, #1\n     108:\tbx\tlr\n");
+            let is_next = target == "106";
+            assert_eq!(judged(&listing).is_ok(), is_next, "{target}");
+        }
+    }
+
+    #[test]
+    fn faults_are_found() {
+        for (line, what) in [
+            ("bl\t200 <g>", "a call"),
+            ("blx\tr3", "a call"),
+            ("beq.n\t100 <f>", "a branch"),
+            ("ble.w\t100 <f>", "a branch"),
+            ("cbz\tr0, 100 <f>", "a branch"),
+            ("tbb\t[pc, r0]", "a branch"),
+            ("ldr\tpc, [r0]", "a return"),
+            ("mov\tpc, r0", "a branch"),
+            ("bxls\tlr", "a branch"),
+            ("popeq\t{r4, pc}", "a branch"),
+            ("vadd.f64\td0, d0, d1", "double precision"),
+            ("udf\t#254", "a trap"),
+            ("bx\tlr", "a return"),
+        ] {
+            let found = judged(&format!("     100:\t{line}\n     104:\tbx\tlr\n")).expect_err(line);
+            let told = found[0].to_string();
+            let as_expected = told.starts_with(what) || what == "a return" && told.starts_with("a branch");
+            assert!(as_expected, "{line}: {told}");
+        }
+    }
+
+    #[test]
+    fn a_return_must_come() {
+        assert_eq!(judged("     100:\tmovs\tr0, #1\n"), Err(vec![Fault::ReturnsElsewhere]));
+    }
+}

@@ -1,0 +1,106 @@
+//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU for ARM,
+//! QEMU.
+
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use anyhow::{Context, Result, ensure};
+
+/// Debian's compiler, beside whatever rustup has installed.
+const RUSTC: &str = "/usr/bin/rustc";
+const CARGO: &str = "/usr/bin/cargo";
+
+/// What is built, and for what.
+pub(crate) struct Build<'a> {
+    /// The target's triple.
+    pub(crate) target: &'a str,
+    /// The linker.
+    pub(crate) linker: &'a str,
+    /// Flags of the compiler.
+    pub(crate) flags: &'a [&'a str],
+    /// The folder of the results, below the target folder of the workspace.
+    pub(crate) folder: &'a str,
+    /// The package.
+    pub(crate) package: &'a str,
+    /// More arguments of cargo.
+    pub(crate) arguments: &'a [&'a str],
+}
+
+impl Build<'_> {
+    /// Builds in release mode, with `core`, and returns the folder of the results.
+    pub(crate) fn run(&self, workspace: &Path) -> Result<PathBuf> {
+        let folder = workspace.join("target").join(self.folder);
+        let linker = format!("CARGO_TARGET_{}_LINKER", self.target.to_uppercase().replace('-', "_"));
+        run(Command::new(CARGO)
+            .current_dir(workspace)
+            .env("RUSTC", RUSTC)
+            // unstable: core from its sources, the sizes of stack frames
+            .env("RUSTC_BOOTSTRAP", "1")
+            .env("RUSTFLAGS", self.flags.join(" "))
+            .env(linker, self.linker)
+            .env("CARGO_TARGET_DIR", &folder)
+            .args(["rustc", "--release", "--locked", "--quiet", "-Zbuild-std=core", "--target", self.target])
+            .args(["--package", self.package])
+            .args(self.arguments))?;
+        Ok(folder.join(self.target).join("release"))
+    }
+}
+
+/// The version of Debian's compiler.
+pub(crate) fn rustc_version() -> Result<String> {
+    first_line(Command::new(RUSTC).arg("--version"))
+}
+
+/// The version of the C compiler for ARM.
+pub(crate) fn gcc_version() -> Result<String> {
+    first_line(Command::new("arm-none-eabi-gcc").arg("--version"))
+}
+
+/// The version of QEMU.
+pub(crate) fn qemu_version() -> Result<String> {
+    first_line(Command::new("qemu-system-arm").arg("--version"))
+}
+
+/// The instructions of an image for ARM.
+pub(crate) fn objdump(elf: &Path) -> Result<String> {
+    text(Command::new("arm-none-eabi-objdump").args(["--disassemble", "--no-show-raw-insn"]).arg(elf))
+}
+
+/// Compiles and links with the C compiler for ARM.
+pub(crate) fn gcc<A: AsRef<OsStr>>(folder: &Path, arguments: impl IntoIterator<Item = A>) -> Result<()> {
+    run(Command::new("arm-none-eabi-gcc").current_dir(folder).args(arguments)).map(drop)
+}
+
+/// What an image prints on a board. An instruction takes 1024 ns there.
+pub(crate) fn qemu(machine: &str, elf: &Path) -> Result<String> {
+    let semihosting = "enable=on,target=native";
+    text(
+        Command::new("timeout")
+            .args(["120", "qemu-system-arm", "-M", machine, "-nographic", "-monitor", "none", "-serial", "null"])
+            .args(["-semihosting-config", semihosting, "-icount", "shift=10", "-kernel"])
+            .arg(elf),
+    )
+}
+
+/// What a command prints.
+pub(crate) fn text(command: &mut Command) -> Result<String> {
+    let output = run(command)?;
+    String::from_utf8(output.stdout).with_context(|| format!("{command:?} prints no text"))
+}
+
+fn first_line(command: &mut Command) -> Result<String> {
+    Ok(text(command)?.lines().next().unwrap_or_default().trim().to_owned())
+}
+
+fn run(command: &mut Command) -> Result<Output> {
+    let output = command.output().with_context(|| format!("{command:?} cannot be started"))?;
+    ensure!(
+        output.status.success(),
+        "{command:?} failed, {}\n{}{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    Ok(output)
+}

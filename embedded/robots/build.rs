@@ -1,0 +1,18 @@
+//! The table of the PUMA 560 as a constant: what a firmware bakes in that carries the generic recursion.
+
+use std::path::Path;
+use std::{env, fs};
+
+use rne_model::Robot;
+
+fn main() {
+    let file = "../../robots/puma560.yaml";
+    println!("cargo::rerun-if-changed={file}");
+    let text = fs::read_to_string(file).expect("the robot file");
+    let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
+    let model = robot.model::<6>().expect("six joints").to_f32();
+    // Plain data prints as it is written.
+    let constant = format!("/// The table of `{file}`.\npub const PUMA560: Model<6, f32> = {model:?};\n");
+    let folder = env::var_os("OUT_DIR").expect("cargo says where");
+    fs::write(Path::new(&folder).join("puma560.rs"), constant).expect("a file of our own");
+}

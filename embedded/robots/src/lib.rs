@@ -1,0 +1,15 @@
+//! The functions that are certified.
+//!
+//! Each is a function of its own, never inlined, so that its instructions can be read and counted: `robots::NAME::FORM::FUNCTION`,
+//! in `f32`.
+#![no_std]
+
+mod numbers;
+pub mod puma560;
+pub mod runtime;
+mod states;
+mod torques;
+
+pub use numbers::Numbers;
+pub use states::{STATES, State};
+pub use torques::{Torques, Visitor, each};

@@ -1,0 +1,42 @@
+//! What a function returns, number by number.
+
+use rne::{Pose, TorqueDerivatives, Wrench};
+
+/// Numbers in a shape.
+pub trait Numbers {
+    /// Each of them, in order.
+    fn each(&self, act: &mut impl FnMut(f32));
+}
+
+impl Numbers for f32 {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        act(*self);
+    }
+}
+
+impl<N: Numbers, const LENGTH: usize> Numbers for [N; LENGTH] {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.iter().for_each(|numbers| numbers.each(act));
+    }
+}
+
+impl Numbers for Pose<f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.rotation.each(act);
+        self.translation.each(act);
+    }
+}
+
+impl Numbers for Wrench<f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.force.each(act);
+        self.moment.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for TorqueDerivatives<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.dq.each(act);
+        self.dqd.each(act);
+    }
+}

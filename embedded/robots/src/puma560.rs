@@ -1,0 +1,96 @@
+//! All that the PUMA 560 can compute besides `inverse_dynamics`.
+
+use rne::{BaseMotion, Pose, Scalar, TorqueDerivatives, Wrench};
+
+use crate::numbers::Numbers;
+use crate::states::State;
+
+/// What is done with each function.
+pub trait Visitor {
+    /// `form` and `function` name the function of [`each`] that is called.
+    fn visit<N: Numbers>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N);
+}
+
+/// An argument of every name.
+pub struct Arguments {
+    q: [f32; 6],
+    qd: [f32; 6],
+    qdd: [f32; 6],
+    sin: [f32; 6],
+    cos: [f32; 6],
+    tau: [f32; 6],
+    wrench: Wrench<f32>,
+    base: BaseMotion<f32>,
+}
+
+impl Arguments {
+    /// At a state; the torques are as large as the accelerations, tip and base as they happen to be.
+    #[must_use]
+    pub fn at(State { q, qd, qdd }: State<6>) -> Self {
+        let (sin, cos) = f32::sin_cos_array(q);
+        let wrench = Wrench { force: [1.0, -2.0, 3.0], moment: [0.5, 0.25, -0.125] };
+        let mut base = BaseMotion::fixed([0.0, 0.0, -9.81]);
+        base.omega = [0.1, -0.2, 0.3];
+        Self { q, qd, qdd, sin, cos, tau: qdd, wrench, base }
+    }
+}
+
+/// A module per form with a function per method, and [`each`].
+macro_rules! methods {
+    ($($capability:ident: $function:ident($($argument:ident: $type:ty),*) -> $returned:ty;)*) => {
+        methods!(seven_steps, "seven_steps": $($capability $function($($argument: $type),*) $returned)*);
+        methods!(reduced, "reduced": $($capability $function($($argument: $type),*) $returned)*);
+
+        /// Shows every function to a visitor.
+        pub fn each(visitor: &mut impl Visitor) {
+            $(
+                visitor.visit("seven_steps", stringify!($function), |a| seven_steps::$function($(&a.$argument),*));
+                visitor.visit("reduced", stringify!($function), |a| reduced::$function($(&a.$argument),*));
+            )*
+        }
+    };
+    ($form:ident, $name:literal: $($capability:ident $function:ident($($argument:ident: $type:ty),*) $returned:ty)*) => {
+        #[doc = concat!("The form `", $name, "`.")]
+        pub mod $form {
+            use super::{BaseMotion, Pose, TorqueDerivatives, Wrench};
+
+            #[derive(
+                rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
+                rne::Energy, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches, rne::MovingBase,
+                rne::Actuation,
+            )]
+            #[robot(path = "../../../robots/puma560.yaml", form = $name)]
+            struct Robot;
+
+            $(
+                /// The method of this name.
+                #[inline(never)]
+                #[must_use]
+                pub fn $function($($argument: &$type),*) -> $returned {
+                    rne::$capability::$function(&Robot, $($argument),*)
+                }
+            )*
+        }
+    };
+}
+
+methods! {
+    InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>) -> [f32; 6];
+    InverseDynamics: inverse_dynamics_sc(sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
+    InverseDynamics: gravity_torques(q: [f32; 6]) -> [f32; 6];
+    InverseDynamics: bias_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
+    MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
+    CoriolisMatrix: coriolis_matrix(q: [f32; 6], qd: [f32; 6]) -> [[f32; 6]; 6];
+    ForwardDynamics: forward_dynamics(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> [f32; 6];
+    Kinematics: forward_kinematics(q: [f32; 6]) -> Pose<f32>;
+    Kinematics: link_poses(q: [f32; 6]) -> [Pose<f32>; 6];
+    Kinematics: jacobian(q: [f32; 6]) -> [[f32; 6]; 6];
+    Kinematics: jacobian_rate_times_velocity(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
+    Energy: kinetic_energy(q: [f32; 6], qd: [f32; 6]) -> f32;
+    Energy: potential_energy(q: [f32; 6]) -> f32;
+    Regressor: regressor(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [[[f32; 10]; 6]; 6];
+    InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> TorqueDerivatives<6, f32>;
+    JointWrenches: joint_wrenches(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [Wrench<f32>; 6];
+    MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>) -> [f32; 6];
+    Actuation: actuator_torques(qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
+}

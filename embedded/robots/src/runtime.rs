@@ -1,0 +1,21 @@
+//! The generic recursion over a table that is baked in: what the generated code is compared with.
+
+use rne::model::{
+    Angle, Convention::Standard, Dh, Inertia, JointKind::Revolute, Link, Model, QuarterTurns::*, Row, Transform,
+};
+use rne::{Arm, InverseDynamics};
+
+include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+
+/// The PUMA 560 as loops over its links.
+#[must_use]
+pub fn arm() -> Arm<6, f32> {
+    Arm::new(PUMA560)
+}
+
+/// Torques.
+#[inline(never)]
+#[must_use]
+pub fn inverse_dynamics(arm: &Arm<6, f32>, q: &[f32; 6], qd: &[f32; 6], qdd: &[f32; 6]) -> [f32; 6] {
+    arm.inverse_dynamics(q, qd, qdd)
+}
