@@ -5,12 +5,14 @@ mod expression;
 mod formula;
 mod listing;
 mod signature;
+mod syntax;
 mod table;
 mod text;
 mod tokens;
 
 pub use evidence::evidence;
 pub use listing::{Listing, listing};
+pub use syntax::Precision;
 pub use table::{angle, convention, dh_table};
 pub use text::rust_file;
 pub use tokens::Body;
