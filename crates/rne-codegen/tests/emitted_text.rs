@@ -2,6 +2,7 @@
 
 mod common;
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use quote::quote;
@@ -122,6 +123,24 @@ fn operators_in_the_text_are_what_the_counts_say() {
             );
             let statements = function.block.stmts.len();
             assert!(statements > counted.statements, "arguments, constants and the result come on top");
+        }
+    }
+}
+
+/// A name that is given twice hides the first value from the statements behind the second: the compiler of Rust does not mind, and
+/// the interpreter, which knows names by more than their text, does not see it.
+#[test]
+fn no_name_of_a_function_is_given_twice() {
+    for (robot, programs) in emitted() {
+        for program in programs {
+            let turns = program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
+            let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
+            let constants = program.constants.iter().map(|constant| constant.name);
+            let names = program.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
+            let mut known = BTreeSet::new();
+            for name in names {
+                assert!(known.insert(name.to_string()), "{name} in {} of {}", program.function, robot.name);
+            }
         }
     }
 }
