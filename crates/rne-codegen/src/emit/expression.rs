@@ -65,9 +65,9 @@ pub(super) fn line(syntax: Syntax, expression: &Expression) -> String {
     }
 }
 
-/// `LEFT = EXPRESSION;`, broken where it is too long, as rustfmt does.
-pub(super) fn assignment(syntax: Syntax, indent: &str, left: &str, expression: &Expression) -> String {
-    let start = format!("{indent}{left} = ");
+/// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long, as rustfmt does.
+pub(super) fn statement(syntax: Syntax, indent: &str, start: &str, expression: &Expression) -> String {
+    let start = format!("{indent}{start} ");
     let one_line = format!("{start}{};", line(syntax, expression));
     if one_line.chars().count() <= WIDTH {
         return one_line;

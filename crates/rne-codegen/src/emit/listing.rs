@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use rne_model::{JointKind, Robot};
 
-use super::expression::assignment;
+use super::expression::statement as written;
 use super::formula::{formulas, reduced_formulas};
 use super::syntax::Syntax;
 use super::table::angle;
@@ -247,7 +247,7 @@ fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
 
 /// One statement, on a line or several.
 pub(super) fn statement_line(syntax: Syntax, statement: &Statement) -> String {
-    assignment(syntax, "    ", &format!("{} {}", syntax.declaration(), statement.name), &statement.value)
+    written(syntax, "    ", &format!("{} {} =", syntax.declaration(), statement.name), &statement.value)
 }
 
 fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step, most: Option<usize>) {

@@ -1,5 +1,6 @@
 //! Renderers of programs: tokens for the macro, text for people.
 
+mod c;
 mod evidence;
 mod expression;
 mod formula;
@@ -10,6 +11,7 @@ mod table;
 mod text;
 mod tokens;
 
+pub use c::{BadPrefix, CCode, ConstantTooLarge, Prefix, c_code};
 pub use evidence::evidence;
 pub use listing::{Listing, listing};
 pub use syntax::Precision;
