@@ -93,8 +93,8 @@ fn contract(file: &File) -> String {
     if file.turns() {
         paragraph("");
         paragraph(&format!(
-            "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad; beyond that \
-             results mean nothing. To use others, from a CORDIC unit perhaps, compile with -DRNE_SIN_COS=name, the name of a \
+            "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad, the sums of those \
+             of parallel joints included; beyond that results mean nothing. To use others, from a CORDIC unit perhaps, compile with -DRNE_SIN_COS=name, the name of a \
              function void name({real} angle, {real} *sine, {real} *cosine)."
         ));
     }
