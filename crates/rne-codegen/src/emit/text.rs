@@ -128,6 +128,9 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     }
     doc("}");
     doc("```");
+    doc("");
+    doc("`core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take");
+    doc("`inverse_dynamics_sc`, whose sines and cosines are arguments, and which never calls it.");
     text
 }
 
