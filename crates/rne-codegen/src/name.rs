@@ -55,6 +55,20 @@ impl Name {
         Self { quantity, joint, component: Component::Vector(axis), part: 0, by: None }
     }
 
+    /// Whether its text has the joint in it: of what there is one of, it has not.
+    pub(crate) const fn tells_joint(&self) -> bool {
+        !matches!(
+            self.quantity,
+            Quantity::Two
+                | Quantity::One
+                | Quantity::Half
+                | Quantity::KineticEnergy
+                | Quantity::PotentialEnergy
+                | Quantity::Constant
+                | Quantity::Term
+        )
+    }
+
     /// An element of a matrix.
     #[must_use]
     pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
@@ -66,13 +80,7 @@ impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
         match self.quantity {
-            Quantity::Two
-            | Quantity::One
-            | Quantity::Half
-            | Quantity::KineticEnergy
-            | Quantity::PotentialEnergy
-            | Quantity::Constant
-            | Quantity::Term => {}
+            _ if !self.tells_joint() => {}
             Quantity::GroupPosition
             | Quantity::GroupTheta
             | Quantity::GroupAngle

@@ -181,7 +181,9 @@ impl<'w> Schedule<'w> {
                 part: 0,
                 by: birth.place.by,
             });
-            let part = parts.entry(base).or_default();
+            // counted among those that look alike: of some quantities a name does not tell the joint
+            let part =
+                parts.entry(Name { joint: if base.tells_joint() { base.joint } else { 0 }, ..base }).or_default();
             *part += 1;
             // with the sign that needs no minus; operands have their names, for they are older
             let negative = !is_constant && self.operation(id).0;

@@ -2,6 +2,11 @@
 
 mod common;
 
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
 use std::sync::OnceLock;
 
 use quote::quote;
@@ -126,6 +131,24 @@ fn operators_in_the_text_are_what_the_counts_say() {
     }
 }
 
+/// A name that is given twice hides the first value from the statements behind the second: the compiler of Rust does not mind, and
+/// the interpreter, which knows names by more than their text, does not see it.
+#[test]
+fn no_name_of_a_function_is_given_twice() {
+    for (robot, programs) in emitted() {
+        for program in programs {
+            let turns = program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
+            let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
+            let constants = program.constants.iter().map(|constant| constant.name);
+            let names = program.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
+            let mut known = BTreeSet::new();
+            for name in names {
+                assert!(known.insert(name.to_string()), "{name} in {} of {}", program.function, robot.name);
+            }
+        }
+    }
+}
+
 #[test]
 fn the_same_file_gives_the_same_bytes() {
     for robot in common::all() {
@@ -185,4 +208,27 @@ fn every_reduced_form_tells_its_proof() {
         let text = emit::rust_file(robot, programs);
         assert!(text.contains("Proved identical to the seven steps"), "{text}");
     }
+}
+
+/// The emitted file is all that a crate without `std`, allocator and dependencies needs.
+#[test]
+fn emitted_files_build_alone_without_std() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("without_std");
+    fs::create_dir_all(&folder).expect("a folder");
+    let mut library = "#![no_std]\n#![deny(warnings)]\n".to_owned();
+    for (robot, programs) in emitted().iter().filter(|(_, programs)| programs.len() == Function::ALL.len()) {
+        let module = format!("{}_{}", robot.name, programs[0].form);
+        fs::write(folder.join(format!("{module}.rs")), emit::rust_file(robot, programs)).expect("written");
+        let _ = writeln!(library, "pub mod {module};");
+    }
+    assert_eq!(library.matches("pub mod ").count(), 30, "15 robots in two forms");
+    fs::write(folder.join("lib.rs"), library).expect("written");
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    let built = Command::new(rustc)
+        .args(["--edition", "2024", "--crate-type", "lib", "--crate-name", "arms", "--emit", "metadata", "lib.rs"])
+        .current_dir(&folder)
+        .output()
+        .expect("rustc starts");
+    let complaint: String = String::from_utf8_lossy(&built.stderr).chars().take(3000).collect();
+    assert!(built.status.success() && complaint.is_empty(), "{complaint}");
 }

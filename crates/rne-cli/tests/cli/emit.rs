@@ -189,7 +189,7 @@ fn functions_are_chosen() {
     assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
     assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 18, "no motors");
     fails(1, &["emit", ROBOT, "--function", "actuator_torques"], &["planar2 has no motors", ROBOT]);
-    fails(2, &["emit", ROBOT, "--lang", "c"], &["rust"]);
+    fails(2, &["emit", ROBOT, "--lang", "fortran"], &["rust", "c"]);
     fails(2, &["emit", ROBOT, "--function", "torques"], &["gravity_torques"]);
 }
 

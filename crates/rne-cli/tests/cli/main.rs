@@ -3,6 +3,7 @@
 mod call;
 mod check;
 mod emit;
+mod emit_c;
 mod eval;
 mod search;
 mod show;

@@ -5,8 +5,9 @@ use std::fmt::Write;
 
 use rne_model::{JointKind, Robot};
 
-use super::expression::let_statement;
+use super::expression::statement as written;
 use super::formula::{formulas, reduced_formulas};
+use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
 use crate::function::{Form, Function};
@@ -34,11 +35,16 @@ pub struct Listing {
 /// The statements of a program as Rust text with a comment per joint and step.
 #[must_use]
 pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
+    listing_in(Syntax::Rust, robot, program, what)
+}
+
+/// The statements of a program as text of a language.
+pub(super) fn listing_in(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> String {
     // only what returns torques keeps to joints and steps
     if program.form != Form::SevenSteps
         || !(program.function.returns_torques() || program.function == Function::JointWrenches)
     {
-        return in_order(robot, program, what);
+        return in_order(syntax, robot, program, what);
     }
     let mut text = String::new();
     for (joint, step) in sections(program.dof) {
@@ -54,10 +60,10 @@ pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
         }
         heading(&mut text, robot, program, joint, step);
         for turn in turns {
-            let _ = writeln!(text, "    // {}", turn_line(turn));
+            let _ = writeln!(text, "    // {}", turn_line(syntax, turn));
         }
         for statement in statements {
-            let _ = writeln!(text, "{}", statement_line(statement));
+            let _ = writeln!(text, "{}", statement_line(syntax, statement));
         }
         if what.explain {
             explain(&mut text, robot, program, joint, step, what.reasons);
@@ -76,7 +82,7 @@ impl Listing {
 }
 
 /// A program whose statements do not keep to joints and steps, in the order in which they are computed.
-fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
+fn in_order(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> String {
     let mut text = String::new();
     if what.explain && what.joint.is_none() && what.step.is_none() {
         // numbers that stand in no table
@@ -84,10 +90,10 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
             let _ = writeln!(text, "    let {} = {:?};", constant.name, constant.value);
         }
         for statement in &program.angles {
-            let _ = writeln!(text, "{}", statement_line(statement));
+            let _ = writeln!(text, "{}", statement_line(syntax, statement));
         }
         for turn in &program.turns {
-            let _ = writeln!(text, "    // {}", turn_line(turn));
+            let _ = writeln!(text, "    // {}", turn_line(syntax, turn));
         }
         text.push('\n');
     }
@@ -114,7 +120,7 @@ fn in_order(robot: &Robot, program: &Program, what: Listing) -> String {
             }
             section = Some(title);
         }
-        let _ = writeln!(text, "{}", statement_line(statement));
+        let _ = writeln!(text, "{}", statement_line(syntax, statement));
     }
     let is_whole = what.explain && what.joint.is_none() && what.step.is_none();
     let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;
@@ -223,13 +229,13 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
 }
 
 /// Which sine and cosine stand at the head of the function.
-fn turn_line(turn: &Turn) -> String {
+fn turn_line(syntax: Syntax, turn: &Turn) -> String {
     let names: Vec<(String, &str)> = [(turn.sine, "sine"), (turn.cosine, "cosine")]
         .into_iter()
         .filter_map(|(name, what)| Some((name?.to_string(), what)))
         .collect();
     let (names, what): (Vec<String>, Vec<&str>) = names.into_iter().unzip();
-    format!("{}: {} of {}", names.join(", "), what.join(" and "), super::expression::line(&turn.angle))
+    format!("{}: {} of {}", names.join(", "), what.join(" and "), super::expression::line(syntax, &turn.angle))
 }
 
 /// Joints and steps in the order of the recursion: out with steps 1 to 5, back with 6 and 7.
@@ -239,9 +245,9 @@ fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
     outward.chain(inward)
 }
 
-/// One statement as a line of Rust.
-pub(super) fn statement_line(statement: &Statement) -> String {
-    let_statement("    ", &statement.name.to_string(), &statement.value)
+/// One statement, on a line or several.
+pub(super) fn statement_line(syntax: Syntax, statement: &Statement) -> String {
+    written(syntax, "    ", &format!("{} {} =", syntax.declaration(), statement.name), &statement.value)
 }
 
 fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step, most: Option<usize>) {

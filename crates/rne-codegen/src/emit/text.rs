@@ -9,6 +9,7 @@ use rne_model::Robot;
 use super::evidence::evidence;
 use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
+use super::syntax::Syntax;
 use super::table::{convention, dh_table};
 use crate::layout::Layout;
 use crate::name::Name;
@@ -127,11 +128,14 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     }
     doc("}");
     doc("```");
+    doc("");
+    doc("`core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take");
+    doc("`inverse_dynamics_sc`, whose sines and cosines are arguments, and which never calls it.");
     text
 }
 
 /// Every kind of name that occurs, with its meaning.
-fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
+pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     let mut names = BTreeSet::new();
     for program in programs {
         names.extend(program.constants.iter().map(|constant| constant.name));
@@ -183,7 +187,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     if !program.turns.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
-            let _ = writeln!(text, "{}", statement_line(statement));
+            let _ = writeln!(text, "{}", statement_line(Syntax::Rust, statement));
         }
         let _ = writeln!(text, "{}", turns(program));
     }
@@ -200,7 +204,8 @@ fn function(robot: &Robot, program: &Program) -> String {
 
 /// What a function returns, for a line that is indented by four.
 pub(super) fn returned(program: &Program) -> Option<String> {
-    let mut outputs = program.outputs.iter().map(|output| Piece::Number(super::expression::line(&output.value)));
+    let mut outputs =
+        program.outputs.iter().map(|output| Piece::Number(super::expression::line(Syntax::Rust, &output.value)));
     let array = |elements| Piece::List('[', ']', elements);
     let record = |_, parts| Piece::List('(', ')', parts);
     let layout = program.function.layout(program.dof);
@@ -283,7 +288,8 @@ fn turns(program: &Program) -> String {
     let name = |name: Option<Name>| name.map_or_else(|| "_".to_owned(), |name| name.to_string());
     let sines: Vec<String> = program.turns.iter().map(|turn| name(turn.sine)).collect();
     let cosines: Vec<String> = program.turns.iter().map(|turn| name(turn.cosine)).collect();
-    let angles: Vec<String> = program.turns.iter().map(|turn| super::expression::line(&turn.angle)).collect();
+    let angles: Vec<String> =
+        program.turns.iter().map(|turn| super::expression::line(Syntax::Rust, &turn.angle)).collect();
     let [sines, cosines, angles] = [sines, cosines, angles].map(|list| list.join(", "));
     if program.turns.len() == 1 {
         return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");

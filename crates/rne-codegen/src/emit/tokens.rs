@@ -7,6 +7,7 @@ use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
+use super::syntax::Syntax;
 use crate::latency::{self, Latency};
 use crate::layout::Record;
 use crate::name::Name;
@@ -226,7 +227,7 @@ impl Writing<'_> {
         let operand = |operand: &Expression, position| {
             let tokens = inner(operand);
             let is_call = self.fused(operand, rest_of_operand).is_some();
-            if !is_call && needs_parentheses(operand, position) { quote!((#tokens)) } else { tokens }
+            if !is_call && needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
         };
         let minus = |expression: &Expression| {
             let tokens = operand(expression, Position::Negated);

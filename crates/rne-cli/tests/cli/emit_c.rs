@@ -1,0 +1,148 @@
+//! `rne emit --lang c`: two files or one, which a compiler of C takes as they are.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use crate::call::{ROOT, fails, fine, folder, rne};
+
+const ROBOT: &str = "robots/planar2.yaml";
+
+/// A path in `folder` as text.
+fn path(folder: &Path, name: &str) -> String {
+    folder.join(name).to_str().expect("UTF-8").to_owned()
+}
+
+fn read(folder: &Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name)).expect("it was written")
+}
+
+/// Compiles files and runs what they make; nothing where there is no compiler.
+fn printed(folder: &Path, files: &[&str], options: &[&str]) -> Option<String> {
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    if Command::new(&compiler).arg("--version").output().is_err() {
+        println!("not compiled: there is no compiler of C called `{compiler}`; CC names another");
+        return None;
+    }
+    let flags = ["-std=c99", "-O2", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "-ffp-contract=off"];
+    let compiled = Command::new(compiler)
+        .current_dir(folder)
+        .args(flags.iter().chain(options).chain(files).chain(&["-o", "program"]))
+        .output()
+        .expect("it starts");
+    assert!(compiled.status.success(), "{}", String::from_utf8_lossy(&compiled.stderr));
+    let computed = Command::new(folder.join("program")).output().expect("it starts");
+    Some(String::from_utf8(computed.stdout).expect("text"))
+}
+
+#[test]
+fn standard_output_is_one_file_that_compiles_alone() {
+    let folder = folder("c_one_file");
+    let code = fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "arm"]);
+    assert_eq!(code, fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "arm", "-o", "-"]));
+    let includes: Vec<&str> = code.lines().filter(|line| line.starts_with("#include")).collect();
+    assert_eq!(includes, ["#include <stdint.h>"], "no library, and not itself");
+    let main = "#include <stdio.h>\nint main(void)\n{\n    const double q[] = {0.6, -1.1}, qd[] = {1.3, -0.4}, \
+                qdd[] = {-0.7, 2.1};\n    double tau[ARM_DOF];\n    arm_inverse_dynamics(q, qd, qdd, tau);\n    \
+                printf(\"%.17g %.17g\", tau[0], tau[1]);\n    return 0;\n}\n";
+    fs::write(folder.join("main.c"), code + main).expect("written");
+    let Some(printed) = printed(&folder, &["main.c"], &[]) else { return };
+    let eval = ["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1", "--json"];
+    let json: serde_json::Value = serde_json::from_str(&fine(&eval)).expect("JSON");
+    let expected: Vec<f64> = serde_json::from_value(json["result"].clone()).expect("numbers");
+    let found: Vec<f64> = printed.split(' ').map(|word| word.parse().expect("a number")).collect();
+    assert_eq!(found, expected, "in every bit");
+}
+
+#[test]
+fn a_source_has_its_header_beside_it() {
+    let folder = folder("c_two_files");
+    let out = path(&folder, "arm.c");
+    let emit = ["emit", ROBOT, "--lang", "c", "--function", "all", "-o", &out];
+    let written = rne(&emit);
+    assert_eq!((written.status, written.out.as_str()), (0, ""), "{written:?}");
+    assert!(written.err.contains("arm.c") && written.err.contains("arm.h"), "{written:?}");
+    let (source, header) = (read(&folder, "arm.c"), read(&folder, "arm.h"));
+    assert!(source.contains("#include \"arm.h\"") && header.contains("#ifndef PLANAR2_H"), "{header}");
+    assert!(rne(&emit).err.matches("up to date").count() == 2, "written once");
+
+    let checked = ["emit", ROBOT, "--lang", "c", "--function", "all", "--check", &out];
+    assert_eq!(rne(&checked).status, 0);
+    let refresh = format!("rne emit {ROBOT} --lang c --function all -o {out}");
+    fs::write(folder.join("arm.h"), header.replace("DOF 2u", "DOF 3u")).expect("changed");
+    fails(1, &checked, &["arm.h is stale: line ", "DOF 3u", &refresh]);
+    fs::remove_file(folder.join("arm.h")).expect("removed");
+    fails(1, &checked, &["there is no file", "arm.h", &refresh]);
+    fs::write(folder.join("arm.h"), &header).expect("as it was");
+    fs::write(folder.join("arm.c"), source.replace("0.25f", "0.26f")).expect("changed");
+    fails(1, &checked, &["arm.c is stale: line ", &refresh]);
+    let typed = ["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "my_arm", "--check", &out];
+    fails(1, &typed, &["--lang c --real double --prefix my_arm -o"]);
+
+    // a sine of one's own, and the header from C++ as well as from C
+    fs::write(folder.join("arm.c"), source).expect("as it was");
+    let main = "#include <stdio.h>\n#include \"arm.h\"\n#include \"arm.h\"\n\
+                void cordic(float angle, float *sine, float *cosine);\n\
+                void cordic(float angle, float *sine, float *cosine) { (void)angle; *sine = 0.0f; *cosine = 1.0f; }\n\
+                int main(void)\n{\n    const float q[PLANAR2_DOF] = {0.5f, 0.25f};\n    planar2_pose tip;\n    \
+                planar2_forward_kinematics(q, &tip);\n    printf(\"%g\", (double)tip.translation[0]);\n    return 0;\n}\n";
+    fs::write(folder.join("main.c"), main).expect("written");
+    let Some(stretched) = printed(&folder, &["main.c", "arm.c"], &["-DRNE_SIN_COS=cordic"]) else { return };
+    assert_eq!(stretched, "0.9", "0.5 m and 0.4 m, however the joints stand");
+}
+
+#[test]
+fn nothing_is_written_where_one_file_is_not_ours() {
+    let folder = folder("c_overwriting");
+    for (mine, other) in [("arm.h", "arm.c"), ("arm.c", "arm.h")] {
+        fs::write(folder.join(mine), "int mine;\n").expect("written");
+        let out = path(&folder, "arm.c");
+        let message = format!("{mine} was not generated by rne");
+        fails(2, &["emit", ROBOT, "--lang", "c", "-o", &out], &[&message, "--force"]);
+        assert_eq!(read(&folder, mine), "int mine;\n");
+        assert!(!folder.join(other).exists(), "{other}");
+        fails(1, &["emit", ROBOT, "--lang", "c", "--check", &out], &["--force"]);
+        assert_eq!(rne(&["emit", ROBOT, "--lang", "c", "-o", &out, "--force"]).status, 0);
+        fs::remove_file(folder.join("arm.c")).expect("written");
+        fs::remove_file(folder.join("arm.h")).expect("written");
+    }
+    let header = path(&folder, "arm.h");
+    fails(2, &["emit", ROBOT, "--lang", "c", "-o", &header], &["the name of a header", "arm.c"]);
+    fails(2, &["emit", ROBOT, "--lang", "c", "--check", &header], &["the name of a header", "arm.c"]);
+    // a header that would be the robot file: nobody calls it so, and nothing is lost
+    let robot = path(&folder, "robot.h");
+    fs::copy(format!("{ROOT}/{ROBOT}"), &robot).expect("a copy");
+    let out = path(&folder, "robot.c");
+    fails(2, &["emit", &robot, "--lang", "c", "-o", &out, "--force"], &["the robot file itself"]);
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn options_of_c_belong_to_c() {
+    fails(2, &["emit", ROBOT, "--real", "float"], &["--real", "generic", "--lang c"]);
+    fails(2, &["emit", ROBOT, "--lang", "rust", "--prefix", "arm"], &["--prefix", "--lang c"]);
+    for bad in ["2arm", "my-arm", "_arm", ""] {
+        fails(2, &["emit", ROBOT, "--lang", "c", "--prefix", bad], &["--prefix", "my_arm"]);
+    }
+    fails(2, &["emit", ROBOT, "--lang", "c", "--real", "half"], &["float", "double"]);
+}
+
+#[test]
+fn a_constant_that_no_float_holds_is_named() {
+    let folder = folder("c_overflow");
+    let robot = path(&folder, "heavy.yaml");
+    let text = fs::read_to_string(format!("{ROOT}/{ROBOT}")).expect("a robot");
+    let heavy = text.replace("m2: 1.5,", "m2: 1.5e39,");
+    fs::write(&robot, heavy).expect("written");
+    let gravity = ["emit", &robot, "--lang", "c", "--function", "gravity_torques"];
+    fails(1, &gravity, &["heavy.yaml", "`gravity_torques` needs the constant m2 (mass, of link 2)", "--real double"]);
+    let code = fine(&[&gravity[..], &["--real", "double"]].concat());
+    assert!(code.contains("const double m2 = 1.5e39;"), "{code}");
+}
+
+#[test]
+fn the_code_of_two_links() {
+    let all = "inverse_dynamics,mass_matrix,forward_kinematics,kinetic_energy";
+    insta::assert_snapshot!(fine(&["emit", ROBOT, "--lang", "c", "--function", all]));
+    insta::assert_snapshot!(fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--form", "reduced"]));
+}

@@ -1,0 +1,155 @@
+//! Programs as C99 without a library: a header that says what the functions do, and the source.
+
+mod documentation;
+mod header;
+mod prefix;
+mod signature;
+mod source;
+
+use std::fmt;
+
+use rne_model::Robot;
+
+use super::syntax::{Precision, Syntax};
+use crate::function::Function;
+use crate::name::Name;
+use crate::program::Program;
+
+pub use prefix::{BadPrefix, Prefix};
+
+/// Width of a line.
+const WIDTH: usize = 100;
+
+/// The code of one robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CCode {
+    title: String,
+    header: String,
+    body: String,
+}
+
+impl CCode {
+    /// The header.
+    #[must_use]
+    pub fn header(&self) -> &str {
+        &self.header
+    }
+
+    /// The source, which includes the header by the name of its file.
+    #[must_use]
+    pub fn source(&self, header: &str) -> String {
+        format!("{}\n#include \"{header}\"\n\n{}", self.title, self.body)
+    }
+
+    /// Both as one file that includes neither.
+    #[must_use]
+    pub fn one_file(&self) -> String {
+        format!("{}\n{}", self.header, self.body)
+    }
+}
+
+/// The given programs of one robot as functions of C.
+///
+/// # Errors
+/// When a constant is too large for the number type.
+pub fn c_code(
+    robot: &Robot,
+    programs: &[Program],
+    precision: Precision,
+    prefix: &Prefix,
+) -> Result<CCode, ConstantTooLarge> {
+    let file = File { robot, programs, precision, prefix: prefix.as_str() };
+    Ok(CCode { title: header::title(&file), header: header::header(&file), body: source::body(&file)? })
+}
+
+/// What is written, and how.
+struct File<'a> {
+    robot: &'a Robot,
+    programs: &'a [Program],
+    precision: Precision,
+    prefix: &'a str,
+}
+
+impl<'a> File<'a> {
+    fn syntax(&self) -> Syntax<'a> {
+        Syntax::C { precision: self.precision, prefix: self.prefix }
+    }
+
+    /// Whether sines and cosines are needed.
+    fn turns(&self) -> bool {
+        self.programs.iter().any(|program| !program.turns.is_empty())
+    }
+
+    fn chooses_by_sign(&self) -> bool {
+        self.programs.iter().any(Program::chooses_by_sign)
+    }
+}
+
+/// A constant that the number type cannot hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantTooLarge {
+    /// Its name in the code.
+    pub name: Name,
+    /// Its value.
+    pub value: f64,
+    /// The function that needs it.
+    pub function: Function,
+}
+
+impl fmt::Display for ConstantTooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, value, function } = self;
+        write!(f, "`{function}` needs the constant {name} ({}", name.quantity.meaning())?;
+        if name.joint > 0 {
+            write!(f, ", of link {}", name.joint)?;
+        }
+        write!(f, "), which is {value:e}: too large for `float`, whose largest number is {:e}", f32::MAX)
+    }
+}
+
+impl std::error::Error for ConstantTooLarge {}
+
+/// Words in lines of at most the [width](WIDTH), each behind `start`.
+fn comment(start: &str, text: &str) -> String {
+    let mut comment = String::new();
+    let mut line = start.to_owned();
+    for word in harmless(text).split(' ') {
+        if line.len() > start.len() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            comment.push_str(line.trim_end());
+            comment.push('\n');
+            start.clone_into(&mut line);
+        }
+        line.push(' ');
+        line.push_str(word);
+    }
+    comment + line.trim_end() + "\n"
+}
+
+/// Text of a robot file in a `//` comment: a backslash at its end would make the next line a comment too, and so would `??/`,
+/// which is one in C99.
+fn harmless(text: &str) -> String {
+    text.replace('\\', "/").replace("??", "?")
+}
+
+/// Items with commas between them, in lines of at most the [width](WIDTH): the first behind `start`, `end` behind the last, further
+/// lines indented.
+fn filled(start: &str, items: &[String], end: &str, indent: usize) -> String {
+    let mut text = start.to_owned();
+    let mut column = start.lines().last().unwrap_or_default().chars().count();
+    for (index, item) in items.iter().enumerate() {
+        let (gap, mark) = (usize::from(index > 0), if index + 1 < items.len() { "," } else { end });
+        let width = item.chars().count() + mark.chars().count();
+        if column > indent && column + gap + width > WIDTH {
+            text.push('\n');
+            text.push_str(&" ".repeat(indent));
+            column = indent;
+        } else if gap > 0 {
+            text.push(' ');
+            column += 1;
+        }
+        text.push_str(item);
+        text.push_str(mark);
+        column += width;
+    }
+    text
+}

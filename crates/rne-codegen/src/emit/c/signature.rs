@@ -1,0 +1,138 @@
+//! The functions as C declares them: arrays in, then what is returned.
+
+use super::{File, WIDTH, filled};
+use crate::emit::signature::{ArgumentArray, arguments};
+use crate::function::Function;
+use crate::layout::{Layout, Record};
+use crate::program::Program;
+
+/// The argument arrays of a function, by names that are no functions of the C library.
+pub(super) fn inputs(program: &Program) -> Vec<ArgumentArray> {
+    let mut arrays = arguments(program);
+    for array in &mut arrays {
+        array.name = match array.name {
+            "sin" => "sine",
+            "cos" => "cosine",
+            name => name,
+        };
+    }
+    arrays
+}
+
+/// The name of the argument behind which the result is written. A single number is returned.
+pub(super) const fn output(function: Function) -> &'static str {
+    match function {
+        Function::InverseDynamics
+        | Function::InverseDynamicsWithWrench
+        | Function::InverseDynamicsSc
+        | Function::GravityTorques
+        | Function::BiasTorques
+        | Function::InverseDynamicsOnMovingBase
+        | Function::ActuatorTorques => "tau",
+        Function::MassMatrix => "mass",
+        Function::CoriolisMatrix => "coriolis",
+        Function::ForwardDynamics => "qdd",
+        Function::ForwardKinematics => "tip",
+        Function::LinkPoses => "poses",
+        Function::Jacobian => "jacobian",
+        Function::JacobianRateTimesVelocity => "acceleration",
+        Function::KineticEnergy | Function::PotentialEnergy => "energy",
+        Function::Regressor => "regressor",
+        Function::InverseDynamicsDerivatives => "derivatives",
+        Function::JointWrenches => "wrenches",
+    }
+}
+
+/// A function's head, without what follows its parentheses.
+pub(super) fn head(file: &File, program: &Program) -> String {
+    let real = file.precision.c_type();
+    let layout = program.function.layout(program.dof);
+    let mut parameters: Vec<String> = inputs(program)
+        .iter()
+        .map(|ArgumentArray { name, elements }| format!("const {real} {name}[{}]", elements.len()))
+        .collect();
+    let returned = if layout == Layout::Number { real } else { "void" };
+    if layout != Layout::Number {
+        parameters.push(declared(file, &layout, output(program.function)));
+    }
+    let start = format!("{returned} {}_{}(", file.prefix, program.function);
+    let line = format!("{start}{})", parameters.join(", "));
+    // one column is for the semicolon
+    if line.chars().count() < WIDTH { line } else { filled(&format!("{start}\n    "), &parameters, ")", 4) }
+}
+
+/// A parameter through which a result is written: a record by its address, arrays as what they are.
+fn declared(file: &File, layout: &Layout, name: &str) -> String {
+    let mut lengths = String::new();
+    let mut of = layout;
+    while let Layout::Array(length, element) = of {
+        lengths += &format!("[{length}]");
+        of = element;
+    }
+    match of {
+        Layout::Record(record, _) if lengths.is_empty() => format!("{} *{name}", record_type(file, *record)),
+        Layout::Record(record, _) => format!("{} {name}{lengths}", record_type(file, *record)),
+        _ => format!("{} {name}{lengths}", file.precision.c_type()),
+    }
+}
+
+/// The name of a record's type.
+pub(super) fn record_type(file: &File, record: Record) -> String {
+    let name = match record {
+        Record::Pose => "pose",
+        Record::Wrench => "wrench",
+        Record::TorqueDerivatives => "torque_derivatives",
+    };
+    format!("{}_{name}", file.prefix)
+}
+
+/// The fields of a record as they are declared.
+pub(super) fn fields(file: &File, record: Record, parts: &[Layout]) -> Vec<String> {
+    record.fields().iter().zip(parts).map(|(name, part)| declared(file, part, name)).collect()
+}
+
+/// Every record that the functions return, once.
+pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
+    let mut records: Vec<(Record, Vec<Layout>)> = Vec::new();
+    for program in file.programs {
+        let mut layout = program.function.layout(program.dof);
+        while let Layout::Array(_, of) = layout {
+            layout = *of;
+        }
+        if let Layout::Record(record, parts) = layout
+            && records.iter().all(|(other, _)| *other != record)
+        {
+            records.push((record, parts));
+        }
+    }
+    records
+}
+
+/// Where the numbers of a result are written, in their order.
+pub(super) fn places(program: &Program) -> Vec<String> {
+    let (layout, name) = (program.function.layout(program.dof), output(program.function));
+    let mut places = Vec::new();
+    match &layout {
+        // by its address
+        Layout::Record(record, parts) => {
+            for (field, part) in record.fields().iter().zip(parts) {
+                elements(part, &format!("{name}->{field}"), &mut places);
+            }
+        }
+        layout => elements(layout, name, &mut places),
+    }
+    places
+}
+
+fn elements(layout: &Layout, name: &str, places: &mut Vec<String>) {
+    match layout {
+        Layout::Number => places.push(name.to_owned()),
+        Layout::Array(length, of) => {
+            (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), places));
+        }
+        Layout::Record(record, parts) => {
+            let fields = record.fields().into_iter().zip(parts);
+            fields.for_each(|(field, part)| elements(part, &format!("{name}.{field}"), places));
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The source: sine and cosine, and every function.
+
+use std::fmt::Write;
+
+use super::header::columns;
+use super::signature::{head, inputs, places};
+use super::{ConstantTooLarge, File, filled};
+use crate::emit::expression::{line, statement};
+use crate::emit::listing::{Listing, listing_in, statement_line};
+use crate::emit::signature::ArgumentArray;
+use crate::emit::syntax::Precision;
+use crate::emit::text::legend;
+use crate::layout::Layout;
+use crate::program::Program;
+
+/// Sine and cosine in C; PREFIX stands for the prefix.
+const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_cos_double.c")];
+
+/// What follows the inclusion of the header.
+pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
+    let mut text = String::new();
+    if file.turns() {
+        text.push_str("#include <stdint.h>\n\n");
+    }
+    text.push_str("// Names, for link or joint i and axis x, in frame i at joint i, fixed to link i:\n//\n");
+    let names: Vec<_> = legend(file.programs).into_iter().map(|(name, meaning)| [name, meaning.to_owned()]).collect();
+    text.push_str(&columns(&names));
+    if file.turns() {
+        let [float, double] = SIN_COS;
+        let kernel = match file.precision {
+            Precision::Single => float,
+            Precision::Double => double,
+        };
+        let _ = write!(text, "\n{}", kernel.replace("PREFIX", file.prefix));
+    }
+    if file.chooses_by_sign() {
+        let _ = write!(text, "\n{}", by_sign(file));
+    }
+    for program in file.programs {
+        let _ = write!(text, "\n{}", function(file, program)?);
+    }
+    Ok(text)
+}
+
+fn by_sign(file: &File) -> String {
+    let (real, prefix, zero) = (file.precision.c_type(), file.prefix, file.syntax().zero());
+    format!(
+        "// `positive` where x is above 0, `negative` where it is below, else 0.\n\
+         static {real} {prefix}_by_sign({real} x, {real} positive, {real} negative)\n{{\n    \
+         return (x > {zero}) ? positive : ((x < {zero}) ? negative : {zero});\n}}\n"
+    )
+}
+
+fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> {
+    let syntax = file.syntax();
+    let mut text = format!("{}\n{{\n", head(file, program));
+    text.push_str(&arguments(file, program));
+    if !program.constants.is_empty() {
+        text.push_str("\n    // constants\n");
+    }
+    for constant in &program.constants {
+        let literal = file.precision.literal(constant.value).ok_or(ConstantTooLarge {
+            name: constant.name,
+            value: constant.value,
+            function: program.function,
+        })?;
+        let _ = writeln!(text, "    {} {} = {literal};", syntax.declaration(), constant.name);
+    }
+    if !program.turns.is_empty() {
+        text.push_str("\n    // sines and cosines of all angles\n");
+        for statement in &program.angles {
+            let _ = writeln!(text, "{}", statement_line(syntax, statement));
+        }
+        text.push_str(&turns(file, program));
+    }
+    let statements = listing_in(syntax, file.robot, program, Listing::default());
+    if !statements.trim().is_empty() {
+        let _ = write!(text, "\n{statements}");
+    }
+    text.push('\n');
+    text.push_str(&result(file, program));
+    text.push_str("}\n");
+    Ok(text)
+}
+
+/// The elements that are used, by their names; a line or more for each array.
+fn arguments(file: &File, program: &Program) -> String {
+    let mut text = String::new();
+    for ArgumentArray { name: array, elements } in inputs(program) {
+        let named = elements.iter().enumerate().filter_map(|(index, name)| Some((index, (*name)?)));
+        let named: Vec<String> = named.map(|(index, name)| format!("{name} = {array}[{index}]")).collect();
+        if named.is_empty() {
+            let _ = writeln!(text, "    (void){array};");
+        } else {
+            let start = format!("    {} ", file.syntax().declaration());
+            let _ = writeln!(text, "{}", filled(&start, &named, ";", 8));
+        }
+    }
+    text
+}
+
+/// One call for each angle.
+fn turns(file: &File, program: &Program) -> String {
+    const UNUSED: &str = "unused";
+    let (real, prefix) = (file.precision.c_type(), file.prefix);
+    let mut names: Vec<String> = Vec::new();
+    let mut calls = String::new();
+    for turn in &program.turns {
+        let [sine, cosine] =
+            [turn.sine, turn.cosine].map(|name| name.map_or(UNUSED.to_owned(), |name| name.to_string()));
+        let _ = writeln!(calls, "    {prefix}_sin_cos({}, &{sine}, &{cosine});", line(file.syntax(), &turn.angle));
+        for name in [sine, cosine] {
+            // several angles share the place for what none of them needs
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    format!("{}\n{calls}", filled(&format!("    {real} "), &names, ";", 8))
+}
+
+fn result(file: &File, program: &Program) -> String {
+    let syntax = file.syntax();
+    let values = program.outputs.iter().map(|output| &output.value);
+    if program.function.layout(program.dof) == Layout::Number {
+        return values.take(1).map(|value| statement(syntax, "    ", "return", value) + "\n").collect();
+    }
+    let places = places(program);
+    let lines = places.iter().zip(values);
+    lines.map(|(place, value)| statement(syntax, "    ", &format!("{place} ="), value) + "\n").collect()
+}

@@ -1,0 +1,199 @@
+//! Every shipped robot with everything derived, and its functions by their names.
+
+use rne::{
+    BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
+};
+use rne_codegen::{Form, Function};
+
+use crate::states::Numbers;
+
+/// A derived robot.
+pub(crate) trait Derived: Send + Sync {
+    /// All numbers that a function returns, in their order.
+    fn single(&self, function: Function, given: &Numbers<f32>) -> Vec<f32>;
+    fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64>;
+}
+
+/// Motors, of those robots that have them.
+trait Motors<const DOF: usize> {
+    fn motors<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF];
+}
+
+trait Everything<const DOF: usize>:
+    InverseDynamics<DOF>
+    + MassMatrix<DOF>
+    + CoriolisMatrix<DOF>
+    + ForwardDynamics<DOF>
+    + Kinematics<DOF>
+    + Energy<DOF>
+    + Regressor<DOF>
+    + InverseDynamicsDerivatives<DOF>
+    + JointWrenches<DOF>
+    + MovingBase<DOF>
+    + Motors<DOF>
+{
+}
+
+fn flat<const ROWS: usize, const COLUMNS: usize, T: Copy>(rows: [[T; COLUMNS]; ROWS]) -> Vec<T> {
+    rows.as_flattened().to_vec()
+}
+
+fn pose<T: Scalar>(pose: &Pose<T>) -> Vec<T> {
+    [flat(pose.rotation), pose.translation.to_vec()].concat()
+}
+
+fn numbers<const DOF: usize, T: Scalar>(
+    robot: &impl Everything<DOF>,
+    function: Function,
+    given: &Numbers<T>,
+) -> Vec<T> {
+    let array = |numbers: &Vec<T>| -> [T; DOF] { numbers.as_slice().try_into().expect("one per joint") };
+    let [q, qd, qdd, tau] = given.joints.each_ref().map(array);
+    let [ref q, ref qd, ref qdd, ref tau] = [q, qd, qdd, tau];
+    let [force, moment, omega, omega_dot, acceleration, gravity] = given.vectors;
+    let base = BaseMotion { omega, omega_dot, velocity: [T::zero(); 3], acceleration, gravity };
+    match function {
+        Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
+        Function::InverseDynamicsWithWrench => {
+            robot.inverse_dynamics_with_wrench(q, qd, qdd, &Wrench { force, moment }).to_vec()
+        }
+        Function::InverseDynamicsSc => {
+            robot.inverse_dynamics_sc(&array(&given.sine), &array(&given.cosine), q, qd, qdd).to_vec()
+        }
+        Function::GravityTorques => robot.gravity_torques(q).to_vec(),
+        Function::BiasTorques => robot.bias_torques(q, qd).to_vec(),
+        Function::MassMatrix => flat(robot.mass_matrix(q)),
+        Function::CoriolisMatrix => flat(robot.coriolis_matrix(q, qd)),
+        Function::ForwardDynamics => robot.forward_dynamics(q, qd, tau).to_vec(),
+        Function::ForwardKinematics => pose(&robot.forward_kinematics(q)),
+        Function::LinkPoses => robot.link_poses(q).iter().flat_map(pose).collect(),
+        Function::Jacobian => flat(robot.jacobian(q)),
+        Function::JacobianRateTimesVelocity => robot.jacobian_rate_times_velocity(q, qd).to_vec(),
+        Function::KineticEnergy => vec![robot.kinetic_energy(q, qd)],
+        Function::PotentialEnergy => vec![robot.potential_energy(q)],
+        Function::Regressor => robot.regressor(q, qd, qdd).into_iter().flat_map(flat).collect(),
+        Function::InverseDynamicsDerivatives => {
+            let derivatives = robot.inverse_dynamics_derivatives(q, qd, qdd);
+            [flat(derivatives.dq), flat(derivatives.dqd)].concat()
+        }
+        Function::JointWrenches => {
+            let wrenches = robot.joint_wrenches(q, qd, qdd);
+            wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()
+        }
+        Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
+        Function::ActuatorTorques => robot.motors(qd, qdd).to_vec(),
+    }
+}
+
+/// Of the rewritten form, which has this one function.
+fn torques<const DOF: usize, T: Scalar>(robot: &impl InverseDynamics<DOF>, given: &Numbers<T>) -> Vec<T> {
+    let [q, qd, qdd, _] = given.joints.each_ref().map(|array| array.as_slice().try_into().expect("one per joint"));
+    robot.inverse_dynamics(q, qd, qdd).to_vec()
+}
+
+macro_rules! robot {
+    ($robot:ident $dof:literal $path:literal $form:literal $($motors:ident)?) => {
+        #[derive(
+            rne::InverseDynamics,
+            rne::MassMatrix,
+            rne::CoriolisMatrix,
+            rne::ForwardDynamics,
+            rne::Kinematics,
+            rne::Energy,
+            rne::Regressor,
+            rne::InverseDynamicsDerivatives,
+            rne::JointWrenches,
+            rne::MovingBase,
+            $(rne::$motors,)?
+        )]
+        #[robot(path = $path, form = $form)]
+        pub(super) struct $robot;
+
+        impl super::Motors<$dof> for $robot {
+            robot!(motors $dof $($motors)?);
+        }
+
+        impl super::Everything<$dof> for $robot {}
+
+        impl super::Derived for $robot {
+            fn single(&self, function: super::Function, given: &super::Numbers<f32>) -> Vec<f32> {
+                super::numbers(self, function, given)
+            }
+
+            fn double(&self, function: super::Function, given: &super::Numbers<f64>) -> Vec<f64> {
+                super::numbers(self, function, given)
+            }
+        }
+    };
+    (motors $dof:literal) => {
+        fn motors<T: rne::Scalar>(&self, _: &[T; $dof], _: &[T; $dof]) -> [T; $dof] {
+            unreachable!("it has none")
+        }
+    };
+    (motors $dof:literal $motors:ident) => {
+        fn motors<T: rne::Scalar>(&self, qd: &[T; $dof], qdd: &[T; $dof]) -> [T; $dof] {
+            rne::Actuation::actuator_torques(self, qd, qdd)
+        }
+    };
+}
+
+macro_rules! robots {
+    ($($robot:ident $dof:literal $path:literal $($motors:ident)?;)*) => {
+        mod seven_steps {
+            $(robot!($robot $dof $path "seven_steps" $($motors)?);)*
+        }
+
+        mod reduced {
+            $(robot!($robot $dof $path "reduced" $($motors)?);)*
+        }
+
+        mod rewritten {
+            $(
+                #[derive(rne::InverseDynamics)]
+                #[robot(path = $path, form = "rewritten")]
+                pub(super) struct $robot;
+
+                impl super::Derived for $robot {
+                    fn single(&self, _: super::Function, given: &super::Numbers<f32>) -> Vec<f32> {
+                        super::torques(self, given)
+                    }
+
+                    fn double(&self, _: super::Function, given: &super::Numbers<f64>) -> Vec<f64> {
+                        super::torques(self, given)
+                    }
+                }
+            )*
+        }
+
+        /// Names of robots, with their forms.
+        pub(crate) fn all() -> Vec<(&'static str, Vec<(Form, Box<dyn Derived>)>)> {
+            vec![$((
+                seven_steps::$robot::NAME,
+                vec![
+                    (Form::SevenSteps, Box::new(seven_steps::$robot) as Box<dyn Derived>),
+                    (Form::Reduced, Box::new(reduced::$robot)),
+                    (Form::Rewritten, Box::new(rewritten::$robot)),
+                ],
+            )),*]
+        }
+    };
+}
+
+robots! {
+    Panda 7 "../../robots/panda.yaml";
+    Wam7 7 "../../robots/wam7.yaml";
+    Iiwa14 7 "../../robots/iiwa14.yaml";
+    Puma560 6 "../../robots/puma560.yaml" Actuation;
+    Puma560Mdh 6 "../../robots/puma560_mdh.yaml" Actuation;
+    Stanford 6 "../../robots/stanford.yaml" Actuation;
+    Ur5 6 "../../robots/ur5.yaml";
+    Ur5e 6 "../../robots/ur5e.yaml";
+    ScaraCobra600 4 "../../robots/scara_cobra600.yaml" Actuation;
+    CylindricalRpp 3 "../../robots/cylindrical_rpp.yaml";
+    GantryPpp 3 "../../robots/gantry_ppp.yaml";
+    Planar3 3 "../../robots/planar3.yaml";
+    SphericalRrp 3 "../../robots/spherical_rrp.yaml";
+    Planar2 2 "../../robots/planar2.yaml";
+    Planar1 1 "../../robots/planar1.yaml";
+}

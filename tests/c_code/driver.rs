@@ -1,0 +1,175 @@
+//! A program in C that calls every function of a robot.
+
+use std::fmt::Write;
+
+use rne_codegen::emit::{self, Precision};
+use rne_codegen::{Form, Function, Program};
+use rne_model::Robot;
+
+use crate::compiler::Compiler;
+use crate::states::State;
+
+/// One emitted file.
+pub(crate) struct Unit {
+    prefix: String,
+    precision: Precision,
+    functions: Vec<Function>,
+    code: String,
+}
+
+impl Unit {
+    pub(crate) fn new(robot: &Robot, programs: &[Program], form: Form, precision: Precision) -> Self {
+        // several files in one, with names that differ
+        let prefix = format!("{form}_{}", precision.c_type());
+        let name = prefix.parse().expect("an identifier");
+        let code = emit::c_code(robot, programs, precision, &name).unwrap_or_else(|error| panic!("{error}"));
+        let functions = programs.iter().map(|program| program.function).collect();
+        Self { prefix, precision, functions, code: code.one_file() }
+    }
+}
+
+/// The program of one robot.
+pub(crate) struct Driver<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) units: &'a [Unit],
+    pub(crate) dof: usize,
+}
+
+/// Words in, words out; of both number types.
+pub(crate) fn words(precision: Precision) -> String {
+    let (real, bits, format) = match precision {
+        Precision::Single => ("float", "uint32_t", "PRIx32"),
+        Precision::Double => ("double", "uint64_t", "PRIx64"),
+    };
+    format!(
+        "static int read_{real}({real} *numbers, unsigned count)\n{{\n    \
+             unsigned i;\n    \
+             for (i = 0u; i < count; ++i) {{\n        \
+                 uint64_t word;\n        \
+                 union {{ {real} number; {bits} bits; }} read;\n        \
+                 if (scanf(\"%\" SCNx64, &word) != 1) {{ return 0; }}\n        \
+                 read.bits = ({bits})word;\n        \
+                 numbers[i] = read.number;\n    \
+             }}\n    \
+             return 1;\n\
+         }}\n\n\
+         static void print_{real}(const {real} *numbers, unsigned count)\n{{\n    \
+             unsigned i;\n    \
+             for (i = 0u; i < count; ++i) {{\n        \
+                 union {{ {real} number; {bits} bits; }} written;\n        \
+                 written.number = numbers[i];\n        \
+                 printf(\"%\" {format} \"\\n\", written.bits);\n    \
+             }}\n\
+         }}\n\n"
+    )
+}
+
+/// What stands in front of the emitted code: it includes what it needs.
+pub(crate) const INCLUDES: &str = "#include <inttypes.h>\n#include <stdio.h>\n\n";
+
+impl Driver<'_> {
+    /// The words of all results: by state, form, number type and function.
+    pub(crate) fn run(&self, compiler: &Compiler, states: &[State]) -> Vec<u64> {
+        // the small ones are optimised as users do; the others would take five times as long
+        let optimisation = if self.dof <= 4 { "-O2" } else { "-O0" };
+        let input: Vec<u64> = states.iter().flat_map(words_of).collect();
+        compiler.run(self.name, optimisation, &self.source(), &input)
+    }
+
+    fn source(&self) -> String {
+        let dof = self.dof;
+        let mut text = INCLUDES.to_owned();
+        self.units.iter().for_each(|unit| text.push_str(&unit.code));
+        Precision::ALL.into_iter().for_each(|precision| text.push_str(&words(precision)));
+        for unit in self.units {
+            let _ = writeln!(text, "{}", self.calls(unit));
+        }
+        text.push_str("int main(void)\n{\n");
+        for precision in Precision::ALL {
+            let real = precision.c_type();
+            let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 18);
+        }
+        let count = 6 * dof + 18;
+        let _ = writeln!(text, "    while (read_float(floats, {count}u) && read_double(doubles, {count}u)) {{");
+        for Unit { prefix, precision, .. } in self.units {
+            let _ = writeln!(text, "        {prefix}_all({}s);", precision.c_type());
+        }
+        text.push_str("    }\n    return 0;\n}\n");
+        text
+    }
+
+    /// A function that calls all functions of a unit and prints what they return.
+    fn calls(&self, unit: &Unit) -> String {
+        let (Unit { prefix, precision, functions, .. }, n) = (unit, self.dof);
+        let real = precision.c_type();
+        let mut text = format!("static void {prefix}_all(const {real} *given)\n{{\n");
+        let joints = ["q", "qd", "qdd", "tau", "sine", "cosine"];
+        for (index, name) in joints.iter().enumerate() {
+            let _ = writeln!(text, "    const {real} *{name} = &given[{}];", index * n);
+        }
+        let vectors = ["force", "moment", "omega", "omega_dot", "acceleration", "gravity"];
+        for (index, name) in vectors.iter().enumerate() {
+            let _ = writeln!(text, "    const {real} *{name} = &given[{}];", joints.len() * n + 3 * index);
+        }
+        for name in joints.iter().chain(&vectors) {
+            let _ = writeln!(text, "    (void){name};");
+        }
+        for function in functions {
+            let arguments = match function {
+                Function::InverseDynamics
+                | Function::Regressor
+                | Function::InverseDynamicsDerivatives
+                | Function::JointWrenches => "q, qd, qdd",
+                Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
+                Function::InverseDynamicsSc => "sine, cosine, q, qd, qdd",
+                Function::GravityTorques
+                | Function::MassMatrix
+                | Function::ForwardKinematics
+                | Function::LinkPoses
+                | Function::Jacobian
+                | Function::PotentialEnergy => "q",
+                Function::BiasTorques
+                | Function::CoriolisMatrix
+                | Function::JacobianRateTimesVelocity
+                | Function::KineticEnergy => "q, qd",
+                Function::ForwardDynamics => "q, qd, tau",
+                Function::InverseDynamicsOnMovingBase => "q, qd, qdd, omega, omega_dot, acceleration, gravity",
+                Function::ActuatorTorques => "qd, qdd",
+            };
+            let (result, address) = match function {
+                Function::KineticEnergy | Function::PotentialEnergy => {
+                    let _ =
+                        writeln!(text, "    {{ {real} x = {prefix}_{function}({arguments}); print_{real}(&x, 1u); }}");
+                    continue;
+                }
+                Function::MassMatrix | Function::CoriolisMatrix => (format!("{real} x[{n}][{n}]"), "x"),
+                Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
+                Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
+                Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
+                Function::JacobianRateTimesVelocity => (format!("{real} x[6]"), "x"),
+                Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
+                Function::InverseDynamicsDerivatives => (format!("{prefix}_torque_derivatives x"), "&x"),
+                Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
+                _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
+            };
+            let _ = writeln!(
+                text,
+                "    {{ {result}; {prefix}_{function}({arguments}, {address});\n      \
+                 print_{real}((const {real} *){address}, (unsigned)(sizeof(x) / (sizeof({real})))); }}"
+            );
+        }
+        text.push_str("}\n");
+        text
+    }
+}
+
+/// A state in the order in which the program reads it.
+fn words_of(state: &State) -> Vec<u64> {
+    let (single, double) = (state.single(), state.double());
+    let mut words = Vec::new();
+    let singles = single.joints.iter().chain([&single.sine, &single.cosine]).flatten();
+    words.extend(singles.chain(single.vectors.as_flattened()).map(|x| u64::from(x.to_bits())));
+    let doubles = double.joints.iter().chain([&double.sine, &double.cosine]).flatten();
+    words.extend(doubles.chain(double.vectors.as_flattened()).map(|x| x.to_bits()));
+    words
+}

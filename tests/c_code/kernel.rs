@@ -1,0 +1,68 @@
+//! Sine and cosine in C against those of the runtime, at many angles.
+
+use fastrand::Rng;
+use rne::Scalar;
+use rne_codegen::emit::{self, Precision};
+use rne_codegen::{Form, Function, compile};
+use rne_model::Robot;
+
+use crate::compiler::Compiler;
+use crate::driver::{INCLUDES, words};
+use crate::{ROOT, read};
+
+const ANGLES: usize = 100_000;
+
+/// Angles of every magnitude up to 10⁵, and those at which a quadrant ends.
+fn angles(rng: &mut Rng) -> Vec<f64> {
+    let limit = |angle: f64| angle.clamp(-1e5, 1e5);
+    let mut angles = vec![0.0, -0.0, 1e5, -1e5, f64::MIN_POSITIVE, f64::from(f32::MIN_POSITIVE)];
+    while angles.len() < ANGLES {
+        let sign = if rng.bool() { 1.0 } else { -1.0 };
+        let bound = f64::from(rng.u32(..127_000)) * std::f64::consts::FRAC_PI_4;
+        angles.extend([
+            limit(sign * rng.f64() * 1e5),
+            limit(sign * 10_f64.powf(rng.f64() * 13.0 - 8.0)),
+            limit(sign * bound),
+            limit(sign * bound * (1.0 + (rng.f64() - 0.5) * 1e-6)),
+        ]);
+    }
+    angles
+}
+
+#[test]
+#[allow(clippy::cast_possible_truncation)]
+fn sine_and_cosine_have_the_bits_of_the_runtime() {
+    let Some(compiler) = Compiler::found() else { return };
+    let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/planar1.yaml"))).expect("a robot");
+    let program = compile(&robot, Function::GravityTorques, Form::SevenSteps).expect("finite constants");
+    let angles = angles(&mut Rng::with_seed(7));
+    for precision in Precision::ALL {
+        let real = precision.c_type();
+        let prefix = "arm".parse().expect("an identifier");
+        let code = emit::c_code(&robot, &[program.clone()], precision, &prefix).expect("small constants");
+        let source = format!(
+            "{INCLUDES}{}{}int main(void)\n{{\n    {real} x[3];\n    \
+             while (read_{real}(x, 1u)) {{ arm_sin_cos(x[0], &x[1], &x[2]); print_{real}(&x[1], 2u); }}\n    \
+             return 0;\n}}\n",
+            code.one_file(),
+            words(precision)
+        );
+        let (input, expected): (Vec<u64>, Vec<[u64; 2]>) = match precision {
+            Precision::Single => {
+                let of = |angle: f32| <[f32; 2]>::from(Scalar::sin_cos(angle)).map(|x| x.to_bits().into());
+                angles.iter().map(|&angle| (u64::from((angle as f32).to_bits()), of(angle as f32))).unzip()
+            }
+            Precision::Double => {
+                let of = |angle: f64| <[f64; 2]>::from(Scalar::sin_cos(angle)).map(f64::to_bits);
+                angles.iter().map(|&angle| (angle.to_bits(), of(angle))).unzip()
+            }
+        };
+        let found = compiler.run(&format!("sin_cos_{real}"), "-O2", &source, &input);
+        assert_eq!(found.len(), 2 * expected.len());
+        for ((found, expected), angle) in found.chunks(2).zip(&expected).zip(&angles) {
+            // every bit, a zero's sign as well
+            assert_eq!(found, expected, "sine and cosine of {angle:e} in {real}");
+        }
+    }
+    println!("{} angles, every bit of sine and cosine, float and double", angles.len());
+}
