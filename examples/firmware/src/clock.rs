@@ -1,4 +1,4 @@
-//! SysTick, the timer that every Cortex-M has. First it counts instructions, then it wakes the control loop.
+//! `SysTick`, the timer that every Cortex-M has. First it counts instructions, then it wakes the control loop.
 
 use core::hint::black_box;
 use core::sync::atomic::{AtomicU32, Ordering};
@@ -36,7 +36,7 @@ impl Clock {
     /// Takes the timer and finds out how many instructions a tick is.
     ///
     /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. There is no pipeline and no
-    /// flash with wait states: these are not cycles. DWT_CYCCNT, which counts cycles on your board, reads 0 in QEMU.
+    /// flash with wait states: these are not cycles. `DWT_CYCCNT`, which counts those on your board, reads 0 here.
     pub fn new(mut timer: SYST) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         let mut clock = Self { timer, instructions_per_tick: 0.0, period: 0 };
@@ -51,7 +51,7 @@ impl Clock {
         self.instructions_per_tick * TICKS_PER_PERIOD as f32
     }
 
-    /// Instructions of one call, on average: a tick may be longer than an instruction.
+    /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several instructions.
     pub fn instructions(&mut self, call: impl Fn()) -> f32 {
         const CALLS: u8 = 100;
         let calls = self.ticks(|| (0..CALLS).for_each(|_| call()));
@@ -103,9 +103,9 @@ impl Clock {
             }
         }
     }
+}
 
-    /// The share of this period that is over.
-    pub fn used(&self) -> f32 {
-        1.0 - SYST::get_current() as f32 / TICKS_PER_PERIOD as f32
-    }
+/// The share of the running period that is over.
+pub fn used() -> f32 {
+    1.0 - SYST::get_current() as f32 / TICKS_PER_PERIOD as f32
 }

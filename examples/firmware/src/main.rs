@@ -26,7 +26,7 @@ struct Puma560;
 #[robot(path = "../../../robots/panda.yaml", form = "reduced")]
 struct Panda;
 
-/// The error e of every joint of every arm obeys ë + DAMPING ė + STIFFNESS e = 0: gone after half a second, without a swing.
+/// The error e of every joint, whatever the arm, obeys ë + DAMPING ė + STIFFNESS e = 0: it vanishes without a swing.
 const STIFFNESS: f32 = 256.0; // 1/s²
 const DAMPING: f32 = 32.0; // 1/s
 
@@ -91,11 +91,11 @@ where
         report.missed += clock.wait();
         let wanted = reference(home, PERIOD * f32::from(period));
         let torques = black_box(computed_torque(arm, &wanted, &state)); // to your drives
-        let control = clock.used();
+        let control = clock::used();
 
         let error = (0..DOF).map(|i| (wanted.q[i] - state.q[i]).abs()).fold(0.0, f32::max);
         simulate(arm, black_box(&mut state), &torques); // black boxes: not before the clock was read
-        report.add(period, Row { error, torques }, control, clock.used());
+        report.add(period, Row { error, torques }, control, clock::used());
     }
     clock.stop();
     report.stack = cortex_m_stack::stack_size() - cortex_m_stack::stack_painted();
