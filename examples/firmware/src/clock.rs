@@ -1,0 +1,111 @@
+//! `SysTick`, the timer that every Cortex-M has. First it counts instructions, then it wakes the control loop.
+
+use core::hint::black_box;
+use core::sync::atomic::{AtomicU32, Ordering};
+
+use cortex_m::asm::{delay, wfi};
+use cortex_m::interrupt;
+use cortex_m::peripheral::SYST;
+use cortex_m::peripheral::syst::SystClkSource;
+use cortex_m_rt::exception;
+
+/// Of the processor of the MPS2 boards; for another board, this is the line to change.
+const HERTZ: u32 = 25_000_000;
+/// Of the control loop.
+const PERIODS_PER_SECOND: u32 = 1000;
+const TICKS_PER_PERIOD: u32 = HERTZ / PERIODS_PER_SECOND;
+/// One period, in s.
+pub const PERIOD: f32 = 1.0 / PERIODS_PER_SECOND as f32;
+
+/// Periods that have begun.
+static PERIODS: AtomicU32 = AtomicU32::new(0);
+
+#[exception]
+fn SysTick() {
+    PERIODS.fetch_add(1, Ordering::Relaxed);
+}
+
+/// The timer.
+pub struct Clock {
+    timer: SYST,
+    instructions_per_tick: f32,
+    period: u32,
+}
+
+impl Clock {
+    /// Takes the timer and finds out how many instructions a tick is.
+    ///
+    /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. There is no pipeline and no
+    /// flash with wait states: these are not cycles. `DWT_CYCCNT`, which counts those on your board, reads 0 here.
+    pub fn new(mut timer: SYST) -> Self {
+        timer.set_clock_source(SystClkSource::Core);
+        let mut clock = Self { timer, instructions_per_tick: 0.0, period: 0 };
+        // `delay` is a loop of two instructions.
+        let ticks = clock.ticks(|| delay(100_000)) - clock.ticks(|| delay(0));
+        clock.instructions_per_tick = 200_000.0 / ticks as f32;
+        clock
+    }
+
+    /// Instructions that fit into one period.
+    pub fn instructions_per_period(&self) -> f32 {
+        self.instructions_per_tick * TICKS_PER_PERIOD as f32
+    }
+
+    /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several instructions.
+    pub fn instructions(&mut self, call: impl Fn()) -> f32 {
+        const CALLS: u8 = 100;
+        let calls = self.ticks(|| (0..CALLS).for_each(|_| call()));
+        let loop_alone = self.ticks(|| (0..CALLS).for_each(|_| black_box(())));
+        self.instructions_per_tick * (calls - loop_alone) as f32 / f32::from(CALLS)
+    }
+
+    fn ticks(&mut self, work: impl Fn()) -> u32 {
+        const ALL_BITS: u32 = 0x00FF_FFFF; // 24
+        self.timer.set_reload(ALL_BITS);
+        self.timer.clear_current();
+        self.timer.enable_counter();
+        let start = SYST::get_current();
+        work();
+        let ticks = start.wrapping_sub(SYST::get_current()) & ALL_BITS; // it counts down
+        self.timer.disable_counter();
+        ticks
+    }
+
+    /// Begins the first period, and from then on a new one every `PERIOD`.
+    pub fn start(&mut self) {
+        self.timer.set_reload(TICKS_PER_PERIOD - 1);
+        self.timer.clear_current();
+        self.timer.enable_interrupt();
+        self.timer.enable_counter();
+        self.period = PERIODS.load(Ordering::Relaxed);
+    }
+
+    /// No further periods.
+    pub fn stop(&mut self) {
+        self.timer.disable_counter();
+        self.timer.disable_interrupt();
+    }
+
+    /// Sleeps until the next period begins; how many have gone by unseen.
+    pub fn wait(&mut self) -> u32 {
+        loop {
+            // An interrupt between the look and `wfi` would be slept through; held back, it still ends `wfi`.
+            let begun = interrupt::free(|_| {
+                let begun = PERIODS.load(Ordering::Relaxed).wrapping_sub(self.period);
+                if begun == 0 {
+                    wfi();
+                }
+                begun
+            });
+            if begun > 0 {
+                self.period = self.period.wrapping_add(begun);
+                return begun - 1;
+            }
+        }
+    }
+}
+
+/// The share of the running period that is over.
+pub fn used() -> f32 {
+    1.0 - SYST::get_current() as f32 / TICKS_PER_PERIOD as f32
+}

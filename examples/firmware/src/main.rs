@@ -1,0 +1,132 @@
+//! Computed-torque control of two robot arms at 1 kHz, in `f32`, on a Cortex-M without an operating system: `./run`
+//!
+//! There is no arm on QEMU's board, so the same processor simulates one after the other. Each starts 0.2 rad off its
+//! trajectory, and has to find it.
+#![no_std]
+#![no_main]
+
+mod clock;
+mod report;
+
+use core::array;
+use core::hint::black_box;
+
+use clock::{Clock, PERIOD};
+use cortex_m_rt::entry;
+use cortex_m_semihosting::{debug, hprintln};
+use panic_semihosting as _;
+use report::{Report, Row};
+use rne::{ForwardDynamics, InverseDynamics, Scalar};
+
+#[derive(InverseDynamics, ForwardDynamics)]
+#[robot(path = "../../../robots/puma560.yaml", form = "reduced")] // relative to this source file
+struct Puma560;
+
+#[derive(InverseDynamics, ForwardDynamics)]
+#[robot(path = "../../../robots/panda.yaml", form = "reduced")]
+struct Panda;
+
+/// The error e of every joint, whatever the arm, obeys ë + DAMPING ė + STIFFNESS e = 0: it vanishes without a swing.
+const STIFFNESS: f32 = 256.0; // 1/s²
+const DAMPING: f32 = 32.0; // 1/s
+
+/// What the encoders say.
+#[derive(Clone, Copy)]
+struct State<const DOF: usize> {
+    q: [f32; DOF],
+    qd: [f32; DOF],
+}
+
+/// Where the arm should be.
+struct Reference<const DOF: usize> {
+    q: [f32; DOF],
+    qd: [f32; DOF],
+    qdd: [f32; DOF],
+}
+
+/// Every joint swings about its home position, once in two seconds.
+fn reference<const DOF: usize>(home: &[f32; DOF], time: f32) -> Reference<DOF> {
+    const AMPLITUDE: f32 = 0.3; // rad
+    const OMEGA: f32 = core::f32::consts::PI; // rad/s
+    let (sine, cosine) = (OMEGA * time).sin_cos(); // of rne::Scalar; `core` has none
+    Reference {
+        q: home.map(|home| home + AMPLITUDE * sine),
+        qd: [AMPLITUDE * OMEGA * cosine; DOF],
+        qdd: [-AMPLITUDE * OMEGA * OMEGA * sine; DOF],
+    }
+}
+
+/// The torques of the acceleration that is wanted, corrected by the error.
+fn computed_torque<R: InverseDynamics<DOF>, const DOF: usize>(
+    arm: &R,
+    reference: &Reference<DOF>,
+    State { q, qd }: &State<DOF>,
+) -> [f32; DOF] {
+    let qdd = array::from_fn(|i| {
+        reference.qdd[i] + DAMPING * (reference.qd[i] - qd[i]) + STIFFNESS * (reference.q[i] - q[i])
+    });
+    arm.inverse_dynamics(q, qd, &qdd)
+}
+
+/// What an arm does in one period: semi-implicit Euler. Your arm does this by itself.
+fn simulate<R: ForwardDynamics<DOF>, const DOF: usize>(arm: &R, state: &mut State<DOF>, torques: &[f32; DOF]) {
+    let qdd = arm.forward_dynamics(&state.q, &state.qd, torques);
+    for (i, qdd) in qdd.into_iter().enumerate() {
+        state.qd[i] += PERIOD * qdd;
+        state.q[i] += PERIOD * state.qd[i];
+    }
+}
+
+/// The control loop, for one second.
+fn control<R, const DOF: usize>(clock: &mut Clock, arm: &R, home: &[f32; DOF]) -> Report<DOF>
+where
+    R: InverseDynamics<DOF> + ForwardDynamics<DOF>,
+{
+    let mut report = Report::new();
+    let mut state = State { q: home.map(|home| home + report::INITIAL_ERROR), qd: [0.0; DOF] };
+
+    cortex_m_stack::repaint_stack();
+    clock.start();
+    for period in 0..report::PERIODS {
+        report.missed += clock.wait();
+        let wanted = reference(home, PERIOD * f32::from(period));
+        let torques = black_box(computed_torque(arm, &wanted, &state)); // to your drives
+        let control = clock::used();
+
+        let error = (0..DOF).map(|i| (wanted.q[i] - state.q[i]).abs()).fold(0.0, f32::max);
+        simulate(arm, black_box(&mut state), &torques); // black boxes: not before the clock was read
+        report.add(period, Row { error, torques }, control, clock::used());
+    }
+    clock.stop();
+    report.stack = cortex_m_stack::stack_size() - cortex_m_stack::stack_painted();
+    report
+}
+
+/// Whether one arm was tracked, and everything there is to say about it.
+fn demonstrate<R, const DOF: usize>(clock: &mut Clock, name: &str, arm: &R, home: &[f32; DOF]) -> bool
+where
+    R: InverseDynamics<DOF> + ForwardDynamics<DOF>,
+{
+    let motion = [*home, [1.0; DOF], [1.0; DOF]];
+    let instructions = clock.instructions(|| {
+        let [q, qd, qdd] = black_box(&motion);
+        black_box(arm.inverse_dynamics(q, qd, qdd));
+    });
+    hprintln!("{name}: {instructions:.0} instructions (QEMU) per call of inverse_dynamics");
+    let report = control(clock, arm, home);
+    report.print();
+    report.is_good()
+}
+
+#[entry]
+fn main() -> ! {
+    let peripherals = cortex_m::Peripherals::take().expect("taken once");
+    let mut clock = Clock::new(peripherals.SYST);
+    hprintln!("1 kHz: a period of {:.0} instructions (QEMU)\n", clock.instructions_per_period());
+    let tracked = [
+        demonstrate(&mut clock, "Unimate PUMA 560", &Puma560, &[0.0, 0.8, -2.4, 0.0, 0.5, 0.0]),
+        demonstrate(&mut clock, "Franka Emika Panda", &Panda, &[0.0, -0.4, 0.0, -2.0, 0.0, 1.6, 0.8]),
+    ];
+    debug::exit(if tracked == [true; 2] { debug::EXIT_SUCCESS } else { debug::EXIT_FAILURE });
+    panic!("only a debugger, or QEMU, ends a firmware")
+}
