@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::{Context, Result, bail};
 use object::{Object, ObjectSection, ObjectSymbol, SymbolKind};
 
 use crate::listing::{self, Count, Fault, Line};
@@ -19,7 +19,7 @@ pub(crate) struct Figures {
     pub(crate) code: u64,
     /// Bytes of constants.
     pub(crate) constants: u64,
-    /// Bytes of stack, of what is saved and of what is spilled; nothing is called, so this is all.
+    /// Bytes of stack, of what is saved and of what is spilled.
     pub(crate) stack: u64,
 }
 
@@ -58,26 +58,50 @@ impl Image {
         Ok(Self { functions })
     }
 
-    /// The figures of a function that is straight, or what is wrong with it.
-    pub(crate) fn figures(&self, name: &str) -> Result<Result<Figures, Vec<Fault>>> {
-        let function = self.functions.get(name).with_context(|| format!("the image has no function {name}"))?;
-        Ok(match listing::judge(&function.lines) {
-            Ok(Count { instructions, constants }) => Ok(Figures {
-                instructions,
-                code: function.size - constants,
-                constants,
-                stack: function.stack.ok_or_else(|| anyhow!("the image does not say how much stack {name} uses"))?,
-            }),
-            Err(faults) => Err(faults),
-        })
+    /// The same with the stack frames of functions that the image says nothing about.
+    pub(crate) fn with_frames(mut self, frame: impl Fn(&str) -> Option<u64>) -> Self {
+        for (name, function) in &mut self.functions {
+            function.stack = function.stack.or_else(|| frame(name));
+        }
+        self
+    }
+
+    /// What keeps a function from being straight.
+    pub(crate) fn faults(&self, name: &str) -> Result<Vec<Fault>> {
+        Ok(listing::judge(&self.function(name)?.lines).1)
     }
 
     /// The figures of a function that must be straight; an error lists its faults.
     pub(crate) fn straight(&self, name: &str) -> Result<Figures> {
-        self.figures(name)?.map_err(|faults| {
+        self.straight_but_for(name, |_| false)
+    }
+
+    /// The figures of a function that may call some others, which must be straight; theirs are included.
+    pub(crate) fn straight_but_for(&self, name: &str, may_be_called: impl Fn(&str) -> bool) -> Result<Figures> {
+        let function = self.function(name)?;
+        let (Count { instructions, constants }, faults) = listing::judge(&function.lines);
+        let stack = function.stack.with_context(|| format!("nothing says how much stack {name} uses"))?;
+        let mut figures = Figures { instructions, code: function.size - constants, constants, stack };
+        let (calls, faults): (Vec<Fault>, Vec<Fault>) =
+            faults.into_iter().partition(|fault| fault.callee().is_some_and(&may_be_called));
+        if !faults.is_empty() {
             let faults: Vec<String> = faults.iter().map(|fault| format!("  {fault}")).collect();
-            anyhow!("{name} is not straight:\n{}", faults.join("\n"))
-        })
+            bail!("{name} is not straight:\n{}", faults.join("\n"));
+        }
+        let mut callees: BTreeMap<&str, Figures> = BTreeMap::new();
+        for callee in calls.iter().filter_map(Fault::callee) {
+            let called = self.straight(callee)?;
+            figures.instructions += called.instructions;
+            callees.insert(callee, called);
+        }
+        figures.code += callees.values().map(|called| called.code).sum::<u64>();
+        figures.constants += callees.values().map(|called| called.constants).sum::<u64>();
+        figures.stack += callees.values().map(|called| called.stack).max().unwrap_or(0);
+        Ok(figures)
+    }
+
+    fn function(&self, name: &str) -> Result<&Function> {
+        self.functions.get(name).with_context(|| format!("the image has no function {name}"))
     }
 
     /// The one function whose name begins and ends so.

@@ -26,7 +26,7 @@ pub(crate) enum Fault {
 /// What a straight function is made of.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Count {
-    /// Every one is executed, once.
+    /// In a straight function every one is executed, once.
     pub(crate) instructions: u64,
     /// Bytes of constants between them; what aligns those is code.
     pub(crate) constants: u64,
@@ -50,8 +50,8 @@ pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
     Ok(functions)
 }
 
-/// The count of a straight function, or all that is wrong with it.
-pub(crate) fn judge(function: &[Line]) -> Result<Count, Vec<Fault>> {
+/// What a function is made of, and all that keeps it from being straight.
+pub(crate) fn judge(function: &[Line]) -> (Count, Vec<Fault>) {
     let mut count = Count::default();
     let mut faults = Vec::new();
     let last = function.iter().rposition(|line| line.data() == 0 && !line.is_padding());
@@ -69,7 +69,7 @@ pub(crate) fn judge(function: &[Line]) -> Result<Count, Vec<Fault>> {
             None => {}
         }
     }
-    if faults.is_empty() { Ok(count) } else { Err(faults) }
+    (count, faults)
 }
 
 const CONDITIONS: [&str; 16] =
@@ -143,6 +143,14 @@ impl Line {
     }
 }
 
+impl Fault {
+    /// The function that is called, if that is what is wrong.
+    pub(crate) fn callee(&self) -> Option<&str> {
+        let Self::Calls(line) = self else { return None };
+        line.split_once('<')?.1.strip_suffix('>')
+    }
+}
+
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -161,7 +169,8 @@ mod tests {
 
     fn judged(listing: &str) -> Result<Count, Vec<Fault>> {
         let functions = functions(&format!("00000100 <f>:\n{listing}")).expect("a listing");
-        judge(&functions["f"])
+        let (count, faults) = judge(&functions["f"]);
+        if faults.is_empty() { Ok(count) } else { Err(faults) }
     }
 
     #[test]

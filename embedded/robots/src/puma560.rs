@@ -16,8 +16,9 @@ pub struct Arguments {
     q: [f32; 6],
     qd: [f32; 6],
     qdd: [f32; 6],
-    sin: [f32; 6],
-    cos: [f32; 6],
+    /// Sines and cosines of `q`.
+    pub sin: [f32; 6],
+    pub cos: [f32; 6],
     tau: [f32; 6],
     wrench: Wrench<f32>,
     base: BaseMotion<f32>,

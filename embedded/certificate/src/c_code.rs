@@ -1,0 +1,218 @@
+//! Generated C: compiled for the board by GCC, read, run and compared with Rust.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, ensure};
+use rne_codegen::emit::{Precision, Prefix, c_code};
+use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Argument, Form, Function, Layout};
+use rne_model::Robot;
+use robots::puma560::Arguments;
+use robots::{STATES, State};
+
+use crate::functions::{self, Method};
+use crate::image::Image;
+use crate::log::{Agreement, Log};
+use crate::table::Row;
+use crate::tools;
+
+/// As strict as a project may be, and with the sums and products of the source.
+const FLAGS: [&str; 15] = [
+    "-std=c99",
+    "-pedantic",
+    "-Wall",
+    "-Wextra",
+    "-Wconversion",
+    "-Wdouble-promotion",
+    "-Wshadow",
+    "-Werror",
+    "-O2",
+    "-ffp-contract=off",
+    "-ffunction-sections",
+    "-mcpu=cortex-m4",
+    "-mthumb",
+    "-mfpu=fpv4-sp-d16",
+    "-mfloat-abi=hard",
+];
+
+/// A robot's C code in a form.
+struct Source {
+    prefix: String,
+    dof: usize,
+    functions: Vec<Function>,
+}
+
+/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's in
+/// a bit: of these and of every function of the PUMA 560.
+pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
+    let folder = workspace.join("target/c");
+    fs::create_dir_all(&folder)?;
+    let mut sources = Vec::new();
+    for robot in functions::robots() {
+        sources.push(write_source(workspace, &folder, robot)?);
+    }
+    fs::write(folder.join("cases.c"), cases(&sources)?)?;
+    let board = workspace.join("c");
+    let include = format!("-I{}", board.display());
+    let mut files: Vec<String> = sources.iter().map(|source| format!("{}.c", source.prefix)).collect();
+    files.push("cases.c".to_owned());
+    let arguments = FLAGS.iter().map(|&flag| flag.to_owned());
+    tools::gcc(&folder, arguments.clone().chain(["-fstack-usage".to_owned(), "-c".to_owned(), include]).chain(files))?;
+    let mut objects: Vec<String> = sources.iter().map(|source| format!("{}.o", source.prefix)).collect();
+    objects.push("cases.o".to_owned());
+    // the board's own file is GNU C
+    let link = ["-std=gnu99", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld", "board.c", "-o"];
+    let link = link.map(|word| if word.starts_with("board") { board.join(word).display().to_string() } else { word.to_owned() });
+    let elf = folder.join("board.elf");
+    tools::gcc(&folder, arguments.chain(link).chain([elf.display().to_string()]).chain(objects))?;
+
+    let log = Log::read(&tools::qemu("mps2-an386", &elf)?)?;
+    for Method { name, form } in functions::methods() {
+        agrees(&log, expected, &format!("method {form} {name}"))?;
+    }
+    let image = Image::read(&elf)?.with_frames(|name| frame(&folder, name));
+    let row = |robot: functions::Robot| {
+        let functions::Robot { name, form, .. } = robot;
+        let results = agrees(&log, expected, &format!("torques {name} {form}"))?;
+        let function = format!("{name}_{form}_inverse_dynamics");
+        let figures = image.straight_but_for(&function, |callee| callee.ends_with("_sin_cos"))?;
+        Ok(Row { name: name.to_owned(), form: form.to_owned(), figures, results })
+    };
+    functions::robots().into_iter().map(row).collect()
+}
+
+/// All bits must be the same.
+fn agrees(log: &Log, expected: &Log, function: &str) -> Result<String> {
+    let agreement = log.agreement(expected, function)?;
+    ensure!(agreement == Agreement::Identical, "{function}: the results of C are {agreement}, not those of Rust");
+    Ok(agreement.to_string())
+}
+
+/// The bytes of stack of a function, which GCC writes beside the object file.
+fn frame(folder: &Path, function: &str) -> Option<u64> {
+    let robot = functions::robots().into_iter().map(|robot| format!("{}_{}", robot.name, robot.form));
+    let prefix = robot.filter(|prefix| function.starts_with(&format!("{prefix}_"))).max_by_key(String::len)?;
+    let usage = fs::read_to_string(folder.join(format!("{prefix}.su"))).ok()?;
+    usage.lines().find_map(|line| {
+        let (place, rest) = line.split_once('\t')?;
+        let (bytes, _) = rest.split_once('\t')?;
+        place.ends_with(&format!(":{function}")).then(|| bytes.parse().ok())?
+    })
+}
+
+/// Writes header and source of a robot in a form: `inverse_dynamics`, and of the PUMA 560 all it has.
+fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Result<Source> {
+    let functions::Robot { name, form, dof } = robot;
+    let file = workspace.join(format!("../robots/{name}.yaml"));
+    let robot = Robot::from_yaml(&fs::read_to_string(&file)?).map_err(|report| anyhow!("{report}"))?;
+    let plan = file.with_extension("plan.yaml");
+    let plan = PlanFile::read(&plan.display().to_string(), &fs::read_to_string(&plan)?, &robot);
+    let choice = Choice::from(plan.map_err(|report| anyhow!("{report}"))?);
+    let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
+    let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
+    let programs: Result<Vec<_>, _> = all.iter().map(|&function| choice.compile(&robot, function, kind)).collect();
+    let prefix = format!("{name}_{form}");
+    let code = c_code(&robot, &programs?, Precision::Float, &prefix.parse::<Prefix>()?)?;
+    fs::write(folder.join(format!("{prefix}.h")), code.header())?;
+    fs::write(folder.join(format!("{prefix}.c")), code.source(&format!("{prefix}.h")))?;
+    Ok(Source { prefix, dof, functions: all.to_vec() })
+}
+
+/// A C file that calls every function and prints what it returns.
+fn cases(sources: &[Source]) -> Result<String> {
+    let mut text = "#include \"board.h\"\n".to_owned();
+    for Source { prefix, .. } in sources {
+        let _ = writeln!(text, "#include \"{prefix}.h\"");
+    }
+    // of the PUMA 560, as Rust computes them
+    let arguments: Vec<Arguments> = (0..STATES).map(|number| Arguments::at(State::new(number))).collect();
+    text.push_str(&constant("sines", arguments.iter().map(|arguments| arguments.sin)));
+    text.push_str(&constant("cosines", arguments.iter().map(|arguments| arguments.cos)));
+    text.push_str("\nvoid run_cases(uint32_t number)\n{\n    struct state s;\n");
+    for argument in ARGUMENTS {
+        let _ = writeln!(text, "    {argument}");
+    }
+    for Source { prefix, dof, functions } in sources {
+        let _ = writeln!(text, "    s = state_of(number, {dof}u);");
+        for &function in functions {
+            text.push_str(&case(prefix, *dof, function)?);
+        }
+    }
+    text.push_str("}\n");
+    Ok(text)
+}
+
+/// As in ../robots/src/puma560.rs.
+const ARGUMENTS: [&str; 3] = [
+    "const float force[3] = {1.0f, -2.0f, 3.0f}, moment[3] = {0.5f, 0.25f, -0.125f};",
+    "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
+    "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
+];
+
+/// The call of a function and the line that it prints.
+fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
+    let (robot, form) = ["seven_steps", "reduced"]
+        .into_iter()
+        .find_map(|form| Some((prefix.strip_suffix(form)?.strip_suffix('_')?, form)))
+        .context("a robot and a form")?;
+    let what = match function {
+        Function::InverseDynamics => format!("torques {robot} {form}"),
+        _ => format!("method {form} {function}"),
+    };
+    let arguments = function.arguments().iter().map(|argument| match argument {
+        Argument::Sines => "sines[number]",
+        Argument::Cosines => "cosines[number]",
+        Argument::Positions => "s.q",
+        Argument::Rates => "s.qd",
+        Argument::Accelerations | Argument::Torques => "s.qdd",
+        Argument::Wrench => "force, moment",
+        Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
+    });
+    let arguments = arguments.collect::<Vec<_>>().join(", ");
+    let layout = function.layout(dof);
+    let count = layout.len();
+    Ok(match &layout {
+        Layout::Number => format!(
+            "    {{\n        const float out = {prefix}_{function}({arguments});\n        \
+             print_results(\"{what}\", number, &out, {count}u);\n    }}\n"
+        ),
+        layout => {
+            let (kind, lengths) = declaration(prefix, layout);
+            let address = if lengths.is_empty() { "&" } else { "" };
+            format!(
+                "    {{\n        {kind} out{lengths};\n        {prefix}_{function}({arguments}, {address}out);\n        \
+                 print_results(\"{what}\", number, (const float *)&out, {count}u);\n    }}\n"
+            )
+        }
+    })
+}
+
+/// Six numbers for each state.
+fn constant(name: &str, rows: impl Iterator<Item = [f32; 6]>) -> String {
+    let mut text = format!("\nstatic const float {name}[{STATES}][6] = {{\n");
+    for row in rows {
+        let row: Vec<String> = row.iter().map(|number| format!("{number:?}f")).collect();
+        let _ = writeln!(text, "    {{{}}},", row.join(", "));
+    }
+    text + "};\n"
+}
+
+/// The type of a result, and the lengths of its arrays.
+fn declaration(prefix: &str, layout: &Layout) -> (String, String) {
+    match layout {
+        Layout::Number => ("float".to_owned(), String::new()),
+        Layout::Array(length, of) => {
+            let (kind, lengths) = declaration(prefix, of);
+            (kind, format!("[{length}]{lengths}"))
+        }
+        Layout::Record(record, _) => {
+            let name = record.name().chars().enumerate().fold(String::new(), |name, (index, letter)| {
+                let gap = if index > 0 && letter.is_uppercase() { "_" } else { "" };
+                format!("{name}{gap}{}", letter.to_lowercase())
+            });
+            (format!("{prefix}_{name}"), String::new())
+        }
+    }
+}
