@@ -31,7 +31,6 @@ const STIFFNESS: f32 = 256.0; // 1/s²
 const DAMPING: f32 = 32.0; // 1/s
 
 /// What the encoders say.
-#[derive(Clone, Copy)]
 struct State<const DOF: usize> {
     q: [f32; DOF],
     qd: [f32; DOF],
@@ -94,7 +93,7 @@ where
         let control = clock::used();
 
         let error = (0..DOF).map(|i| (wanted.q[i] - state.q[i]).abs()).fold(0.0, f32::max);
-        simulate(arm, black_box(&mut state), &torques); // black boxes: not before the clock was read
+        simulate(arm, black_box(&mut state), &torques); // the black boxes keep it behind the clock
         report.add(period, Row { error, torques }, control, clock::used());
     }
     clock.stop();
