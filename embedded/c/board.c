@@ -30,16 +30,40 @@ struct state state_of(uint32_t number, uint32_t dof)
 }
 
 // Semihosting: QEMU does what the registers say.
-static void semihosting(uint32_t operation, const void *argument)
+static uint32_t semihosting(uint32_t operation, const void *argument)
 {
     register uint32_t r0 __asm__("r0") = operation;
     register const void *r1 __asm__("r1") = argument;
     __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+    return r0;
+}
+
+// Set before it is used: nothing else clears it.
+static uint32_t standard_output;
+
+static void open_standard_output(void)
+{
+    static const char name[] = ":tt";
+    const uint32_t arguments[3] = {(uint32_t)name, 4u, sizeof name - 1u}; // 4: for writing
+    standard_output = semihosting(1u, arguments);
 }
 
 static void put(const char *text)
 {
-    semihosting(4u, text);
+    uint32_t length = 0;
+    while (text[length] != '\0') {
+        length++;
+    }
+    const uint32_t arguments[3] = {standard_output, (uint32_t)text, length};
+    (void)semihosting(5u, arguments);
+}
+
+__attribute__((noreturn)) static void end(uint32_t code)
+{
+    const uint32_t arguments[2] = {0x20026u, code}; // ADP_Stopped_ApplicationExit
+    (void)semihosting(0x20u, arguments);
+    for (;;) {
+    }
 }
 
 static void put_number(uint32_t number)
@@ -77,13 +101,11 @@ void print_results(const char *what, uint32_t state, const float *numbers, uint3
 
 int main(void)
 {
+    open_standard_output();
     for (uint32_t number = 0; number < STATES; number++) {
         run_cases(number);
     }
-    const uint32_t exit_with[2] = {0x20026u, 0u}; // ADP_Stopped_ApplicationExit
-    semihosting(0x20u, exit_with);
-    for (;;) {
-    }
+    end(0u);
 }
 
 extern uint32_t stack_start[];
@@ -96,15 +118,11 @@ __attribute__((naked)) void reset(void)
 
 static void fault(void)
 {
-    put("a fault\n");
-    const uint32_t exit_with[2] = {0x20026u, 1u};
-    semihosting(0x20u, exit_with);
-    for (;;) {
-    }
+    end(1u);
 }
 
-typedef void (*handler)(void);
-
-__attribute__((section(".vectors"), used)) static const handler vectors[] = {
-    (handler)stack_start, reset, fault, fault, fault, fault, fault,
-};
+// What the processor reads first: where the stack starts, then what it does at reset and at each fault.
+__attribute__((section(".vectors"), used)) static const struct {
+    uint32_t *stack;
+    void (*handlers[6])(void);
+} vectors = {stack_start, {reset, fault, fault, fault, fault, fault}};

@@ -114,7 +114,7 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
     let programs: Result<Vec<_>, _> = all.iter().map(|&function| choice.compile(&robot, function, kind)).collect();
     let prefix = format!("{name}_{form}");
-    let code = c_code(&robot, &programs?, Precision::Float, &prefix.parse::<Prefix>()?)?;
+    let code = c_code(&robot, &programs?, Precision::Single, &prefix.parse::<Prefix>()?)?;
     fs::write(folder.join(format!("{prefix}.h")), code.header())?;
     fs::write(folder.join(format!("{prefix}.c")), code.source(&format!("{prefix}.h")))?;
     Ok(Source { prefix, dof, functions: all.to_vec() })

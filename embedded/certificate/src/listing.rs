@@ -100,6 +100,7 @@ impl Line {
         match self.name() {
             "bx" => self.operands == "lr",
             "pop" | "ldmia" => self.operands.ends_with("pc}"),
+            "ldr" => self.operands == "pc, [sp], #4",
             _ => false,
         }
     }
