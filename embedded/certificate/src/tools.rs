@@ -2,6 +2,7 @@
 //! QEMU.
 
 use std::ffi::OsStr;
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -81,6 +82,27 @@ pub(crate) fn qemu(machine: &str, elf: &Path) -> Result<String> {
             .args(["-semihosting-config", semihosting, "-icount", "shift=10", "-kernel"])
             .arg(elf),
     )
+}
+
+/// The instructions of an object file for RISC-V.
+pub(crate) fn riscv_objdump(object: &Path) -> Result<String> {
+    text(Command::new("riscv64-unknown-elf-objdump").args(["--disassemble", "--no-show-raw-insn"]).arg(object))
+}
+
+/// Links a WebAssembly module that exports these symbols.
+pub(crate) fn wasm_ld<'a>(object: &Path, module: &Path, exports: impl Iterator<Item = &'a str>) -> Result<()> {
+    let exports = exports.map(|symbol| format!("--export={symbol}"));
+    run(Command::new("wasm-ld").arg("--no-entry").args(exports).arg(object).arg("-o").arg(module)).map(drop)
+}
+
+/// Whether WebAssembly can be run.
+pub(crate) fn has_node() -> bool {
+    Command::new("node").arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+/// What a script of Node prints, from a module and a file as its input.
+pub(crate) fn node(script: &Path, module: &Path, input: &Path) -> Result<String> {
+    text(Command::new("node").arg(script).arg(module).stdin(fs::File::open(input)?))
 }
 
 /// What a command prints.

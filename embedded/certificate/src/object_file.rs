@@ -1,0 +1,33 @@
+//! The object file of the certified functions for a target on which no board is at hand.
+
+use std::path::{Path, PathBuf};
+use std::time::SystemTime;
+use std::{fs, io};
+
+use anyhow::{Context, Result};
+
+use crate::tools::Build;
+
+/// Compiles the robots for a target; nothing is linked.
+pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str]) -> Result<PathBuf> {
+    let arguments = ["--", "--emit=obj"];
+    let build = Build { target, linker: "false", flags, folder: target, package: "robots", arguments: &arguments };
+    let folder = build.run(workspace)?.join("deps");
+    newest(&folder)?.with_context(|| format!("cargo left no object file in {}", folder.display()))
+}
+
+/// The object file that was written last; older ones are of other flags.
+fn newest(folder: &Path) -> io::Result<Option<PathBuf>> {
+    let mut newest: Option<(SystemTime, PathBuf)> = None;
+    for entry in fs::read_dir(folder)? {
+        let entry = entry?;
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if name.starts_with("robots-") && name.ends_with(".o") {
+            let modified = entry.metadata()?.modified()?;
+            if newest.as_ref().is_none_or(|(time, _)| *time <= modified) {
+                newest = Some((modified, entry.path()));
+            }
+        }
+    }
+    Ok(newest.map(|(_, path)| path))
+}

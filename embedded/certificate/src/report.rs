@@ -1,0 +1,123 @@
+//! `docs/embedded.md`: what was found out, and what it means.
+
+use crate::image::Figures;
+use crate::log::Agreement;
+use crate::riscv;
+use crate::table::{Row, Table};
+
+/// Everything that was found out.
+pub(crate) struct Report {
+    /// Versions.
+    pub(crate) rustc: String,
+    pub(crate) gcc: String,
+    pub(crate) qemu: String,
+    /// The tables: robots on the boards, functions of the PUMA 560, C.
+    pub(crate) tables: Vec<Table>,
+    /// Instructions of the loop over a baked-in table, and its agreement.
+    pub(crate) runtime: (f64, Agreement),
+    pub(crate) riscv: riscv::Counts,
+    /// Numbers that WebAssembly and the host computed alike; `None` where it was left out.
+    pub(crate) wasm: Option<usize>,
+}
+
+/// The headings of the tables, by which they are found again.
+pub(crate) const M4F: &str = "Cortex-M4F";
+pub(crate) const M7F: &str = "Cortex-M7F";
+pub(crate) const FUSED: &str = "Cortex-M4F with fused multiply-add";
+pub(crate) const METHODS: &str = "Every function of the PUMA 560 on the Cortex-M4F";
+pub(crate) const C: &str = "C on the Cortex-M4F";
+
+impl Report {
+    /// The document.
+    pub(crate) fn document(&self) -> String {
+        let mut text = HEAD.replace("{qemu}", &self.qemu);
+        for table in &self.tables {
+            text.push_str(&table.markdown());
+            text.push('\n');
+        }
+        text.push_str(&self.comparison());
+        text.push_str(&self.others());
+        text
+    }
+
+    /// The rows of the PUMA 560, seven steps and reduced.
+    pub(crate) fn puma560(&self, title: &str) -> Option<[Figures; 2]> {
+        let table = self.tables.iter().find(|table| table.title == title)?;
+        let row = |form: &str| table.rows.iter().find(|row: &&Row| row.name == "puma560" && row.form == form);
+        Some([row("seven_steps")?.figures, row("reduced")?.figures])
+    }
+
+    fn comparison(&self) -> String {
+        let (instructions, agreement) = self.runtime;
+        let mut text = LOOP.replace("{agreement}", &agreement.to_string());
+        text.push_str("| PUMA 560, one call | instructions | factor |\n|---|---:|---:|\n");
+        text.push_str(&format!("| `rne::Arm`, a loop over a table in flash | {instructions:.0} | 1 |\n"));
+        for (form, figures) in ["seven_steps", "reduced"].iter().zip(self.puma560(M4F).into_iter().flatten()) {
+            #[allow(clippy::cast_precision_loss)]
+            let factor = instructions / figures.instructions as f64;
+            text.push_str(&format!("| derived, `{form}` | {} | {factor:.1} |\n", figures.instructions));
+        }
+        text
+    }
+
+    fn others(&self) -> String {
+        let [seven_steps, reduced] = self.riscv.puma560;
+        let mut text = format!(
+            "\n## RISC-V and WebAssembly\n\n\
+             - `riscv32imafc-unknown-none-elf`: {} functions are built, and none calls, branches or computes in double precision. \
+             PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. They are read, not run.\n",
+            self.riscv.functions
+        );
+        text.push_str(&match self.wasm {
+            Some(numbers) => format!(
+                "- `wasm32-unknown-unknown`, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`, have the \
+                 bits of the host.\n"
+            ),
+            None => "- `wasm32-unknown-unknown`: left out, there was no Node.\n".to_owned(),
+        });
+        text
+    }
+}
+
+const HEAD: &str = "\
+# Generated code on microcontrollers
+
+Written by `scripts/embedded-certificate --update`; `scripts/embedded-certificate` builds, reads and runs everything again and fails if
+something below is no longer so.
+
+Every shipped robot, in `f32`, sines and cosines included. The image is built for a board, its instructions are read by `objdump`, and it
+runs on that board in QEMU ({qemu}).
+
+| certified of each function | how |
+|---|---|
+| no call: no panic, no allocator, no formatting, no library | no instruction calls; four functions that are faulty on purpose (an index that can panic, a loop, an `f64`, a call) are in the image and must be refused |
+| no branch | no instruction branches, but for jumps over the constants that stand between the instructions |
+| no double precision | no instruction of the M4F has it, and software would be a call |
+| instructions | read; where there is no branch, each is executed once. SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
+| bytes of code and constants | the function's symbol; constants are the literal pools in it |
+| bytes of stack | the compiler's own record of the frame (`-Z emit-stack-sizes`); as nothing is called, it is all |
+| results | at eight states, against the same code on an x86-64 host, bit by bit; where they differ, in units in the last place of the largest torque of the state |
+| growth | more than 2 % over this document in instructions, size or stack fails, for the same compiler |
+
+## Worst case
+
+There is one path, so the count is the worst case, for any input: NaN, infinities, subnormal numbers. It does not hold
+
+- for time: QEMU counts instructions, not what they take. Flash without a cache makes the processor wait for code and constants; the M7
+  executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take three cycles where `vmul` and `vadd` take one each
+  (Arm, Cortex-M4 Technical Reference Manual, FPU instruction set): with `-C target-cpu=cortex-m4` the compiler writes them apart, which is
+  more instructions and may be less time. Measure on your board; DWT's cycle counter is there for that, in silicon, not in QEMU.
+- for your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The kernel that is counted here is that of the crate, `f32`
+  alone, for angles up to 10⁵ rad; beyond, results mean nothing, and take as long.
+- for the dev profile: a panic is linked there, by the checks for overflow. Build with `--release`; `opt-level` 2, 3, `s` and `z` will do.
+- for more than sixteen angles: their sines and cosines are a loop of sixteen at a time.
+
+";
+
+const LOOP: &str = "\
+## Compared with a loop over a baked-in table
+
+The same recursion, in the same image: `rne::Arm` without `std`, its table a constant in `f32` in flash. Its torques are {agreement} of those of
+the seven steps: what the compiler computes of the table in double precision and rounds once, the loop computes in `f32`.
+
+";

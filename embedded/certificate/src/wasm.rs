@@ -1,0 +1,87 @@
+//! The generated code as WebAssembly, run by Node.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result, ensure};
+use object::{Object, ObjectSymbol};
+use robots::{STATES, State, Torques};
+
+use crate::functions;
+use crate::log::{Agreement, Log};
+use crate::{object_file, tools};
+
+const TARGET: &str = "wasm32-unknown-unknown";
+
+/// Fails if a torque of a robot in a form, in single or double precision, differs from the host's in a bit. How many numbers were
+/// compared.
+pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<usize> {
+    let object = object_file::build(workspace, TARGET, &[])?;
+    let symbols = symbols(&object)?;
+    let module = workspace.join("target").join(TARGET).join("robots.wasm");
+    let exports = symbols.iter().map(|(_, symbol)| symbol.as_str()).chain(["__heap_base"]);
+    tools::wasm_ld(&object, &module, exports)?;
+    let mut calls = Calls { symbols: &symbols, text: String::new(), numbers: 0, missing: Vec::new() };
+    robots::each(&mut calls);
+    ensure!(calls.missing.is_empty(), "the module has no {}", calls.missing.join(", "));
+    let file = module.with_extension("calls");
+    fs::write(&file, &calls.text)?;
+    let log = Log::read(&tools::node(&workspace.join("wasm/run.mjs"), &module, &file)?)?;
+    for functions::Robot { name, form, .. } in functions::robots() {
+        for kind in ["torques", "double"] {
+            let agreement = log.agreement(expected, &format!("{kind} {name} {form}"))?;
+            ensure!(agreement == Agreement::Identical, "{kind} {name} {form}: WebAssembly is {agreement} of the host");
+        }
+    }
+    Ok(calls.numbers)
+}
+
+/// The functions that other languages can call, by their paths.
+fn symbols(object: &Path) -> Result<Vec<(String, String)>> {
+    let bytes = fs::read(object).with_context(|| object.display().to_string())?;
+    let file = object::File::parse(&*bytes)?;
+    let names = file.symbols().filter_map(|symbol| symbol.name().ok().map(str::to_owned));
+    let functions = names.map(|name| (format!("{:#}", rustc_demangle::demangle(&name)), name));
+    Ok(functions.filter(|(path, _)| path.contains("::foreign::")).collect())
+}
+
+/// The calls that Node shall make.
+struct Calls<'a> {
+    symbols: &'a [(String, String)],
+    text: String,
+    numbers: usize,
+    missing: Vec<String>,
+}
+
+impl Calls<'_> {
+    fn add(&mut self, what: &str, path: &str, bytes: usize, dof: usize, words: impl Iterator<Item = String>) {
+        let Some((_, symbol)) = self.symbols.iter().find(|(known, _)| known == path) else {
+            self.missing.push(path.to_owned());
+            return;
+        };
+        let words: Vec<String> = words.collect();
+        let _ = writeln!(self.text, "{what}\t{symbol}\t{bytes}\t{dof}\t{}", words.join(" "));
+        self.numbers += dof;
+    }
+}
+
+impl robots::Visitor for Calls<'_> {
+    fn visit<const DOF: usize>(
+        &mut self,
+        robot: &'static str,
+        form: &'static str,
+        _: Torques<DOF>,
+        _: Torques<DOF, f64>,
+    ) {
+        let path = format!("robots::torques::{robot}::{form}::foreign");
+        for number in 0..STATES {
+            let state = State::<DOF>::new(number);
+            let words = [state.q, state.qd, state.qdd].into_iter().flatten().map(|x| format!("{:08x}", x.to_bits()));
+            self.add(&format!("torques {robot} {form} {number}"), &format!("{path}::inverse_dynamics"), 4, DOF, words);
+            let state = state.double();
+            let words = [state.q, state.qd, state.qdd].into_iter().flatten().map(|x| format!("{:016x}", x.to_bits()));
+            self.add(&format!("double {robot} {form} {number}"), &format!("{path}::double"), 8, DOF, words);
+        }
+    }
+}
