@@ -13,6 +13,7 @@ const FLAGS: &[&str] = &[
     "-Wdouble-promotion",
     "-Wfloat-conversion",
     "-Wshadow",
+    "-Wmissing-prototypes",
     "-pedantic",
     "-Werror",
     "-ffp-contract=off",
@@ -46,8 +47,8 @@ impl Compiler {
         let path = |extension: &str| folder.join(format!("{name}.{extension}"));
         let (code, program, words) = (path("c"), path("bin"), path("words"));
         fs::write(&code, source).expect("written");
-        let input: String = input.iter().map(|word| format!("{word:x}\n")).collect();
-        fs::write(&words, input).expect("written");
+        let input: Vec<String> = input.iter().map(|word| format!("{word:x}")).collect();
+        fs::write(&words, input.join("\n")).expect("written");
 
         let compiled =
             Command::new(&self.name).args(FLAGS).arg(optimisation).arg("-o").args([&program, &code]).output();

@@ -79,8 +79,8 @@ impl Driver<'_> {
     fn source(&self) -> String {
         let dof = self.dof;
         let mut text = INCLUDES.to_owned();
-        self.units.iter().for_each(|unit| text.push_str(&unit.code));
-        Precision::ALL.into_iter().for_each(|precision| text.push_str(&words(precision)));
+        text.extend(self.units.iter().map(|unit| unit.code.as_str()));
+        text.extend(Precision::ALL.map(words));
         for unit in self.units {
             let _ = writeln!(text, "{}", self.calls(unit));
         }

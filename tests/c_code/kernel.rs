@@ -1,5 +1,8 @@
 //! Sine and cosine in C against those of the runtime, at many angles.
 
+use std::collections::BTreeSet;
+use std::slice::from_ref;
+
 use fastrand::Rng;
 use rne::Scalar;
 use rne_codegen::emit::{self, Precision};
@@ -26,6 +29,7 @@ fn angles(rng: &mut Rng) -> Vec<f64> {
             limit(sign * bound * (1.0 + (rng.f64() - 0.5) * 1e-6)),
         ]);
     }
+    angles.truncate(ANGLES);
     angles
 }
 
@@ -39,7 +43,7 @@ fn sine_and_cosine_have_the_bits_of_the_runtime() {
     for precision in Precision::ALL {
         let real = precision.c_type();
         let prefix = "arm".parse().expect("an identifier");
-        let code = emit::c_code(&robot, &[program.clone()], precision, &prefix).expect("small constants");
+        let code = emit::c_code(&robot, from_ref(&program), precision, &prefix).expect("small constants");
         let source = format!(
             "{INCLUDES}{}{}int main(void)\n{{\n    {real} x[3];\n    \
              while (read_{real}(x, 1u)) {{ arm_sin_cos(x[0], &x[1], &x[2]); print_{real}(&x[1], 2u); }}\n    \
@@ -65,4 +69,34 @@ fn sine_and_cosine_have_the_bits_of_the_runtime() {
         }
     }
     println!("{} angles, every bit of sine and cosine, float and double", angles.len());
+}
+
+/// The magnitudes of the numbers with a point in source code, comments aside, as they are read in double precision.
+fn constants(code: &str) -> BTreeSet<u64> {
+    let code = code.lines().filter(|line| !line.trim_start().starts_with("//"));
+    let words = code.flat_map(|line| line.split(|c: char| " ()[],;".contains(c)));
+    let number = |word: &str| {
+        let word = word.trim_start_matches('-').trim_end_matches('f').replace('_', "");
+        word.contains('.').then(|| word.parse::<f64>().ok()).flatten()
+    };
+    words.filter_map(number).map(f64::to_bits).collect()
+}
+
+/// The last bit of a coefficient changes the result at one angle of millions: the two copies are compared as text.
+#[test]
+fn the_constants_are_those_of_the_runtime() {
+    let read = |file: &str| read(&format!("{ROOT}/crates/{file}"));
+    let (reduction, polynomial) =
+        (read("rne-runtime/src/sin_cos/reduction.rs"), read("rne-runtime/src/sin_cos/polynomial.rs"));
+    let (double, single) = reduction.split_once("fn single").expect("two functions");
+    let (double_sums, single_sums) = polynomial.split_once("const P_F32").expect("two pairs of polynomials");
+    let single_sums = single_sums.split_once("/// Sine").expect("the end of the constants").0;
+    for (real, parts, sums, inverse) in
+        [("double", double, double_sums, "0.6366197723675814"), ("float", single, single_sums, "0.63661975")]
+    {
+        let c = constants(&read(&format!("rne-codegen/src/emit/c/sin_cos_{real}.c")));
+        assert_eq!(c, constants(&format!("{parts} {sums} 0.5 1.0 {inverse}")), "{real}");
+    }
+    assert_eq!("0.6366197723675814".parse(), Ok(std::f64::consts::FRAC_2_PI));
+    assert_eq!("0.63661975".parse(), Ok(std::f32::consts::FRAC_2_PI));
 }

@@ -13,7 +13,7 @@ use crate::{check, emit, eval, ops, search, show};
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
 #[command(name = "rne", version, styles = HELP_STYLES)]
-#[command(about = "The dynamics compiler for robot arms: a Denavit-Hartenberg table in, straight-line Rust out")]
+#[command(about = "The dynamics compiler for robot arms: a Denavit-Hartenberg table in, straight-line Rust or C out")]
 #[command(after_help = "\
 Without a command, a tour: the PUMA 560 from its table to its torques, computed as it runs.
 
@@ -25,6 +25,7 @@ Examples:
   rne ops robots/*.yaml                            what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself
+  rne emit robots/puma560.yaml --lang c            the same in C99, without a library
   rne search my_arm.yaml --seconds 60              look for a form with fewer operations
 
 Exit status: 0 fine, 1 the input is at fault, 2 the command line is.

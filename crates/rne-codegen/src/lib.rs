@@ -2,8 +2,8 @@
 //!
 //! [`compile`] writes a function of the robot as a graph of sums and products (the seven steps stand once, in
 //! `seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns a [`Program`] of named
-//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as text for people, an
-//! [`Interpreter`] for tests, [`Program::operations`] as counts.
+//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as text for people,
+//! [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! Data in, data out: nothing here opens a file or prints.
 #![forbid(unsafe_code)]

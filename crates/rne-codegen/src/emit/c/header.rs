@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::documentation::details;
 use super::signature::{fields, head, record_type, records};
-use super::{File, comment, harmless};
+use super::{File, TIED, comment, harmless};
 use crate::emit::evidence::evidence;
 use crate::emit::table::{convention, dh_table};
 use crate::layout::Record;
@@ -29,8 +29,8 @@ pub(super) fn header(file: &File) -> String {
     text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
     let _ = writeln!(text, "/// Number of joints.\n#define {upper}_DOF {}u", file.robot.dof());
     for (record, parts) in records(file) {
-        let (about, name) = (about(record), record_type(file, record));
-        let _ = writeln!(text, "\n/// {about}\ntypedef struct {{");
+        let (about, name) = (comment("///", about(record)), record_type(file, record));
+        let _ = writeln!(text, "\n{about}typedef struct {{");
         for field in fields(file, record, &parts) {
             let _ = writeln!(text, "    {field};");
         }
@@ -72,7 +72,8 @@ fn robot(file: &File) -> String {
     if let Some((program, proof)) = proved {
         text.push_str("//\n");
         for line in evidence(program, proof) {
-            text.push_str(&comment("//", &line));
+            // a number stays on its line
+            text.push_str(&comment("//", &line.replace(" - ", &format!("{TIED}-{TIED}"))));
         }
     }
     text
@@ -86,16 +87,21 @@ fn contract(file: &File) -> String {
     paragraph(
         "Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.",
     );
+    paragraph("");
     paragraph(
         "A result may be written over an argument: all arguments are read before the first number is written. No loop, no \
          branch, no memory but the stack, no library.",
     );
+    if file.chooses_by_sign() {
+        paragraph("Friction chooses between numbers by a sign, which a compiler may make a branch.");
+    }
     if file.turns() {
+        let own = format!("void name({real} angle, {real} *sine, {real} *cosine)").replace(' ', TIED);
         paragraph("");
         paragraph(&format!(
             "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad, the sums of those \
-             of parallel joints included; beyond that results mean nothing. To use others, from a CORDIC unit perhaps, compile with -DRNE_SIN_COS=name, the name of a \
-             function void name({real} angle, {real} *sine, {real} *cosine)."
+             of parallel joints included; beyond that results mean nothing. To use others, from a CORDIC unit perhaps, compile \
+             with -DRNE_SIN_COS=name, the name of a function {own}."
         ));
     }
     paragraph("");

@@ -109,6 +109,9 @@ impl fmt::Display for ConstantTooLarge {
 
 impl std::error::Error for ConstantTooLarge {}
 
+/// A blank at which no comment breaks.
+const TIED: &str = "\u{A0}";
+
 /// Words in lines of at most the [width](WIDTH), each behind `start`.
 fn comment(start: &str, text: &str) -> String {
     let mut comment = String::new();
@@ -122,7 +125,7 @@ fn comment(start: &str, text: &str) -> String {
         line.push(' ');
         line.push_str(word);
     }
-    comment + line.trim_end() + "\n"
+    (comment + line.trim_end() + "\n").replace(TIED, " ")
 }
 
 /// Text of a robot file in a `//` comment: a backslash at its end would make the next line a comment too, and so would `??/`,

@@ -1,5 +1,7 @@
 //! The functions as C declares them: arrays in, then what is returned.
 
+use std::fmt::Write;
+
 use super::{File, WIDTH, filled};
 use crate::emit::signature::{ArgumentArray, arguments};
 use crate::function::Function;
@@ -66,7 +68,7 @@ fn declared(file: &File, layout: &Layout, name: &str) -> String {
     let mut lengths = String::new();
     let mut of = layout;
     while let Layout::Array(length, element) = of {
-        lengths += &format!("[{length}]");
+        let _ = write!(lengths, "[{length}]");
         of = element;
     }
     match of {

@@ -1,8 +1,12 @@
 #ifdef RNE_SIN_COS
 
-// Sine and cosine of an angle, from outside.
+// From outside.
 void RNE_SIN_COS(double angle, double *sine, double *cosine);
-#define PREFIX_sin_cos RNE_SIN_COS
+
+static void PREFIX_sin_cos(double angle, double *sine, double *cosine)
+{
+    RNE_SIN_COS(angle, sine, cosine);
+}
 
 #else
 
@@ -10,7 +14,7 @@ void RNE_SIN_COS(double angle, double *sine, double *cosine);
 #error "the sine below needs its sums in the order in which they stand: compile without -ffast-math"
 #endif
 
-// A number and its bits.
+// A number and its bits: C99 defines it, rule 19.2 of MISRA C advises against any union.
 typedef union {
     double number;
     uint64_t bits;
@@ -19,10 +23,10 @@ typedef union {
 // Sine and cosine of an angle up to 1e5 rad, with errors below 1 ulp and without a branch.
 static void PREFIX_sin_cos(double angle, double *sine, double *cosine)
 {
-    // angle = n pi/2 + y - e with the integer n nearest to angle 2/pi, after W. J. Cody and W. Waite.
+    // angle = n pi/2 + y - e, with the integer n nearest to angle 2/pi (W. J. Cody and W. Waite).
     // To add 1.5 * 2^52 rounds to an integer, which then stands in the lowest bits of the sum. The
-    // products of n and all parts of pi/2 but the last are exact; what is rounded away from the
-    // differences is collected in e.
+    // products of n and all parts of pi/2 but the last are exact; what the differences round away
+    // is collected in e.
     const double rounded = 6755399441055744.0 + (angle * 0.6366197723675814);
     const double n = rounded - 6755399441055744.0;
     const double x1 = angle - (n * 1.5707963267341256);
@@ -43,7 +47,9 @@ static void PREFIX_sin_cos(double angle, double *sine, double *cosine)
     const double q = 4.16666666666666e-2 + ((-1.388888888887411e-3 * z) + (zz * q25));
 
     // n mod 4 exchanges and negates the two
-    PREFIX_bits quadrant, s, c;
+    PREFIX_bits quadrant;
+    PREFIX_bits s;
+    PREFIX_bits c;
     uint64_t exchange;
     quadrant.number = rounded;
     s.number = y - ((e * w) - ((z * y) * p));

@@ -1,8 +1,12 @@
 #ifdef RNE_SIN_COS
 
-// Sine and cosine of an angle, from outside.
+// From outside.
 void RNE_SIN_COS(float angle, float *sine, float *cosine);
-#define PREFIX_sin_cos RNE_SIN_COS
+
+static void PREFIX_sin_cos(float angle, float *sine, float *cosine)
+{
+    RNE_SIN_COS(angle, sine, cosine);
+}
 
 #else
 
@@ -10,7 +14,7 @@ void RNE_SIN_COS(float angle, float *sine, float *cosine);
 #error "the sine below needs its sums in the order in which they stand: compile without -ffast-math"
 #endif
 
-// A number and its bits.
+// A number and its bits: C99 defines it, rule 19.2 of MISRA C advises against any union.
 typedef union {
     float number;
     uint32_t bits;
@@ -19,10 +23,10 @@ typedef union {
 // Sine and cosine of an angle up to 1e5 rad, with errors below 1 ulp and without a branch.
 static void PREFIX_sin_cos(float angle, float *sine, float *cosine)
 {
-    // angle = n pi/2 + y - e with the integer n nearest to angle 2/pi, after W. J. Cody and W. Waite.
+    // angle = n pi/2 + y - e, with the integer n nearest to angle 2/pi (W. J. Cody and W. Waite).
     // To add 1.5 * 2^23 rounds to an integer, which then stands in the lowest bits of the sum. The
-    // products of n and all parts of pi/2 but the last are exact; what is rounded away from the
-    // differences is collected in e.
+    // products of n and all parts of pi/2 but the last are exact; what the differences round away
+    // is collected in e.
     const float rounded = 12582912.0f + (angle * 0.63661975f);
     const float n = rounded - 12582912.0f;
     const float x1 = angle - (n * 1.5703125f);
@@ -44,7 +48,9 @@ static void PREFIX_sin_cos(float angle, float *sine, float *cosine)
     const float q = 4.1666646e-2f + ((-1.3887316e-3f * z) + (zz * 2.4433157e-5f));
 
     // n mod 4 exchanges and negates the two
-    PREFIX_bits quadrant, s, c;
+    PREFIX_bits quadrant;
+    PREFIX_bits s;
+    PREFIX_bits c;
     uint32_t exchange;
     quadrant.number = rounded;
     s.number = y - ((e * w) - ((z * y) * p));

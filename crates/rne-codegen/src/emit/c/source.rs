@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::header::columns;
 use super::signature::{head, inputs, places};
-use super::{ConstantTooLarge, File, filled};
+use super::{ConstantTooLarge, File};
 use crate::emit::expression::{line, statement};
 use crate::emit::listing::{Listing, listing_in, statement_line};
 use crate::emit::signature::ArgumentArray;
@@ -83,40 +83,40 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
     Ok(text)
 }
 
-/// The elements that are used, by their names; a line or more for each array.
+/// The elements that are used, by their names.
 fn arguments(file: &File, program: &Program) -> String {
+    let declaration = file.syntax().declaration();
     let mut text = String::new();
     for ArgumentArray { name: array, elements } in inputs(program) {
-        let named = elements.iter().enumerate().filter_map(|(index, name)| Some((index, (*name)?)));
-        let named: Vec<String> = named.map(|(index, name)| format!("{name} = {array}[{index}]")).collect();
-        if named.is_empty() {
+        if elements.iter().all(Option::is_none) {
             let _ = writeln!(text, "    (void){array};");
-        } else {
-            let start = format!("    {} ", file.syntax().declaration());
-            let _ = writeln!(text, "{}", filled(&start, &named, ";", 8));
+        }
+        for (index, name) in elements.iter().enumerate() {
+            if let Some(name) = name {
+                let _ = writeln!(text, "    {declaration} {name} = {array}[{index}];");
+            }
         }
     }
     text
 }
 
-/// One call for each angle.
+/// One call for each angle. Several share the place for what none of them needs.
 fn turns(file: &File, program: &Program) -> String {
     const UNUSED: &str = "unused";
     let (real, prefix) = (file.precision.c_type(), file.prefix);
-    let mut names: Vec<String> = Vec::new();
-    let mut calls = String::new();
+    let (mut places, mut calls) = (String::new(), String::new());
+    if program.turns.iter().any(|turn| turn.sine.is_none() || turn.cosine.is_none()) {
+        let _ = writeln!(places, "    {real} {UNUSED};");
+    }
     for turn in &program.turns {
+        for name in [turn.sine, turn.cosine].into_iter().flatten() {
+            let _ = writeln!(places, "    {real} {name};");
+        }
         let [sine, cosine] =
             [turn.sine, turn.cosine].map(|name| name.map_or(UNUSED.to_owned(), |name| name.to_string()));
         let _ = writeln!(calls, "    {prefix}_sin_cos({}, &{sine}, &{cosine});", line(file.syntax(), &turn.angle));
-        for name in [sine, cosine] {
-            // several angles share the place for what none of them needs
-            if !names.contains(&name) {
-                names.push(name);
-            }
-        }
     }
-    format!("{}\n{calls}", filled(&format!("    {real} "), &names, ";", 8))
+    places + &calls
 }
 
 fn result(file: &File, program: &Program) -> String {
