@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
-#define STATES 8u
+#define STATES 32u
 
 // G. Marsaglia's generator, as in ../robots/src/states.rs.
 static uint32_t xorshift(uint32_t *x)

@@ -20,6 +20,7 @@ use cortex_m::peripheral::SYST;
 use cortex_m::peripheral::syst::SystClkSource;
 use cortex_m_rt::entry;
 use cortex_m_semihosting::{debug, hprint, hprintln};
+#[cfg(feature = "methods")]
 use robots::puma560::{self, Arguments};
 use robots::{Numbers, STATES, State, Torques, runtime};
 
@@ -37,6 +38,7 @@ fn main() -> ! {
         None => debug::exit(debug::EXIT_FAILURE),
     }
     robots::each(&mut Board);
+    #[cfg(feature = "methods")]
     puma560::each(&mut Board);
     echo::each(|dof, ticks| hprintln!("ticks echo {} {}", dof, ticks));
     let arm = black_box(runtime::arm());
@@ -83,13 +85,7 @@ fn print(numbers: &impl Numbers) {
 struct Board;
 
 impl robots::Visitor for Board {
-    fn visit<const DOF: usize>(
-        &mut self,
-        robot: &'static str,
-        form: &'static str,
-        function: Torques<DOF>,
-        _: Torques<DOF, f64>,
-    ) {
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, function: Torques<DOF>) {
         for number in 0..STATES {
             let State { q, qd, qdd } = State::new(number);
             hprint!("torques {} {} {}", robot, form, number);
@@ -99,6 +95,7 @@ impl robots::Visitor for Board {
     }
 }
 
+#[cfg(feature = "methods")]
 impl puma560::Visitor for Board {
     fn visit<N: Numbers>(&mut self, form: &'static str, function: &'static str, call: impl Fn(&Arguments) -> N) {
         for number in 0..STATES {

@@ -17,8 +17,8 @@ pub(crate) struct Board<'a> {
     pub(crate) machine: &'static str,
     /// Flags of the compiler for this processor.
     pub(crate) flags: &'a [&'a str],
-    /// With fused multiply-add.
-    pub(crate) is_fused: bool,
+    /// Features of the board's image.
+    pub(crate) features: &'a [&'a str],
 }
 
 /// What was found out about a board.
@@ -36,15 +36,13 @@ impl Board<'_> {
         // No function stands in for another that is the same, so each has figures of its own.
         let mut flags = vec!["-Zemit-stack-sizes", "-Zmerge-functions=disabled"];
         flags.extend(self.flags);
-        let folder = if self.is_fused { format!("{}-fused", self.machine) } else { self.machine.to_owned() };
-        let features: &[&str] = if self.is_fused { &["--features", "core_float_math"] } else { &[] };
+        let arguments: Vec<&str> = self.features.iter().flat_map(|feature| ["--features", *feature]).collect();
         let build = Build {
             target: "thumbv7em-none-eabihf",
             linker: "arm-none-eabi-ld",
             flags: &flags,
-            folder: &folder,
             package: "board",
-            arguments: features,
+            arguments: &arguments,
         };
         let elf = build.run(workspace)?.join("board");
         let image = Image::read(&elf)?;
@@ -58,7 +56,8 @@ impl Board<'_> {
 impl Examined {
     /// Every function that is faulty on purpose must be refused, for its reason.
     fn gate_closes(&self) -> Result<()> {
-        let reasons: [(&str, fn(&Fault) -> bool); 4] = [
+        type Reason = fn(&Fault) -> bool;
+        let reasons: [(&str, Reason); 4] = [
             ("panics", |fault| matches!(fault, Fault::Calls(line) if line.contains("panic"))),
             ("branches", |fault| matches!(fault, Fault::Branches(_))),
             ("doubles", |fault| matches!(fault, Fault::Calls(_) | Fault::Doubles(_))),

@@ -47,7 +47,7 @@ struct Source {
 /// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's in
 /// a bit: of these and of every function of the PUMA 560.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
-    let folder = workspace.join("target/c");
+    let folder = tools::target_folder(workspace).join("c");
     fs::create_dir_all(&folder)?;
     let mut sources = Vec::new();
     for robot in functions::robots() {
@@ -64,7 +64,8 @@ pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
     objects.push("cases.o".to_owned());
     // the board's own file is GNU C
     let link = ["-std=gnu99", "-nostartfiles", "-Wl,--gc-sections", "-T", "board.ld", "board.c", "-o"];
-    let link = link.map(|word| if word.starts_with("board") { board.join(word).display().to_string() } else { word.to_owned() });
+    let link = link
+        .map(|word| if word.starts_with("board") { board.join(word).display().to_string() } else { word.to_owned() });
     let elf = folder.join("board.elf");
     tools::gcc(&folder, arguments.chain(link).chain([elf.display().to_string()]).chain(objects))?;
 

@@ -22,13 +22,7 @@ pub(crate) struct Method {
 pub(crate) fn robots() -> Vec<Robot> {
     struct Names(Vec<Robot>);
     impl robots::Visitor for Names {
-        fn visit<const DOF: usize>(
-            &mut self,
-            name: &'static str,
-            form: &'static str,
-            _: Torques<DOF>,
-            _: Torques<DOF, f64>,
-        ) {
+        fn visit<const DOF: usize>(&mut self, name: &'static str, form: &'static str, _: Torques<DOF>) {
             self.0.push(Robot { name, form, dof: DOF });
         }
     }

@@ -39,7 +39,8 @@ pub(crate) fn functions(objdump: &str) -> Result<BTreeMap<String, Vec<Line>>> {
     for line in objdump.lines() {
         if let Some(symbol) = line.strip_suffix(">:").and_then(|line| line.split_once(" <")) {
             current = Some(functions.entry(symbol.1.to_owned()).or_default());
-        } else if let (Some(function), Some((address, rest))) = (current.as_mut(), line.trim_start().split_once(":\t")) {
+        } else if let (Some(function), Some((address, rest))) = (current.as_mut(), line.trim_start().split_once(":\t"))
+        {
             let address = u64::from_str_radix(address, 16).with_context(|| format!("no address: {line}"))?;
             let (mnemonic, operands) = rest.split_once('\t').unwrap_or((rest, ""));
             let operands = operands.split(['@', ';']).next().unwrap_or_default();
@@ -140,7 +141,9 @@ impl Line {
         let is_skipped = |line: &Self| line.data() > 0 || line.is_padding();
         let target = self.target();
         let over = next.iter().take_while(|line| Some(line.address) != target);
-        target > Some(self.address) && next.iter().any(|line| Some(line.address) == target) && over.into_iter().all(is_skipped)
+        target > Some(self.address)
+            && next.iter().any(|line| Some(line.address) == target)
+            && over.into_iter().all(is_skipped)
     }
 }
 
@@ -185,7 +188,9 @@ mod tests {
     #[test]
     fn a_jump_anywhere_else_is_one() {
         for target in ["100", "106", "200"] {
-            let listing = format!("     100:\tvldr\ts0, [r0]\n     104:\tb.n\t{target} <f>\n     106:\tmovs\tr0, #1\n     108:\tbx\tlr\n");
+            let listing = format!(
+                "     100:\tvldr\ts0, [r0]\n     104:\tb.n\t{target} <f>\n     106:\tmovs\tr0, #1\n     108:\tbx\tlr\n"
+            );
             let is_next = target == "106";
             assert_eq!(judged(&listing).is_ok(), is_next, "{target}");
         }

@@ -61,6 +61,7 @@ impl Log {
     pub(crate) fn of_host() -> Self {
         let mut log = Self::default();
         robots::each(&mut log);
+        robots::each_double(&mut log);
         puma560::each(&mut log);
         log
     }
@@ -151,24 +152,26 @@ impl fmt::Display for Agreement {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Identical => f.write_str("bit-identical"),
-            Self::Within(units) => write!(f, "within {units:.1} ulp"),
+            // rounded up
+            Self::Within(units) => write!(f, "within {:.1} ulp", (10.0 * units).ceil() / 10.0),
         }
     }
 }
 
 impl robots::Visitor for Log {
-    fn visit<const DOF: usize>(
-        &mut self,
-        robot: &'static str,
-        form: &'static str,
-        single: Torques<DOF>,
-        double: Torques<DOF, f64>,
-    ) {
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, function: Torques<DOF>) {
         for number in 0..STATES {
-            let state = State::new(number);
-            self.insert(format!("torques {robot} {form} {number}"), &single(&state.q, &state.qd, &state.qdd));
-            let State { q, qd, qdd } = state.double();
-            let numbers = double(&q, &qd, &qdd).map(Number::Double).to_vec();
+            let State { q, qd, qdd } = State::new(number);
+            self.insert(format!("torques {robot} {form} {number}"), &function(&q, &qd, &qdd));
+        }
+    }
+}
+
+impl robots::Visitor<f64> for Log {
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, function: Torques<DOF, f64>) {
+        for number in 0..STATES {
+            let State { q, qd, qdd } = State::new(number).double();
+            let numbers = function(&q, &qd, &qdd).map(Number::Double).to_vec();
             self.results.insert(format!("double {robot} {form} {number}"), numbers);
         }
     }

@@ -9,9 +9,10 @@ use anyhow::{Context, Result};
 use crate::tools::Build;
 
 /// Compiles the robots for a target; nothing is linked.
-pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str]) -> Result<PathBuf> {
-    let arguments = ["--", "--emit=obj"];
-    let build = Build { target, linker: "false", flags, folder: target, package: "robots", arguments: &arguments };
+pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str], features: &[&str]) -> Result<PathBuf> {
+    // with link-time optimisation the file would hold no machine code
+    let arguments = [features, &["--config=profile.release.lto=\"off\"", "--", "--emit=obj"]].concat();
+    let build = Build { target, linker: "false", flags, package: "robots", arguments: &arguments };
     let folder = build.run(workspace)?.join("deps");
     newest(&folder)?.with_context(|| format!("cargo left no object file in {}", folder.display()))
 }
@@ -21,11 +22,12 @@ fn newest(folder: &Path) -> io::Result<Option<PathBuf>> {
     let mut newest: Option<(SystemTime, PathBuf)> = None;
     for entry in fs::read_dir(folder)? {
         let entry = entry?;
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name.starts_with("robots-") && name.ends_with(".o") {
+        let path = entry.path();
+        let is_ours = entry.file_name().to_string_lossy().starts_with("robots-");
+        if is_ours && path.extension().is_some_and(|extension| extension == "o") {
             let modified = entry.metadata()?.modified()?;
             if newest.as_ref().is_none_or(|(time, _)| *time <= modified) {
-                newest = Some((modified, entry.path()));
+                newest = Some((modified, path));
             }
         }
     }

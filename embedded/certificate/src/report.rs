@@ -1,5 +1,7 @@
 //! `docs/embedded.md`: what was found out, and what it means.
 
+use std::fmt::Write as _;
+
 use crate::image::Figures;
 use crate::log::Agreement;
 use crate::riscv;
@@ -7,9 +9,7 @@ use crate::table::{Row, Table};
 
 /// Everything that was found out.
 pub(crate) struct Report {
-    /// Versions.
-    pub(crate) rustc: String,
-    pub(crate) gcc: String,
+    /// The version of QEMU.
     pub(crate) qemu: String,
     /// The tables: robots on the boards, functions of the PUMA 560, C.
     pub(crate) tables: Vec<Table>,
@@ -30,7 +30,7 @@ pub(crate) const C: &str = "C on the Cortex-M4F";
 impl Report {
     /// The document.
     pub(crate) fn document(&self) -> String {
-        let mut text = HEAD.replace("{qemu}", &self.qemu);
+        let mut text = HEAD.replace("{qemu}", &self.qemu).replace("{states}", &robots::STATES.to_string());
         for table in &self.tables {
             text.push_str(&table.markdown());
             text.push('\n');
@@ -51,11 +51,11 @@ impl Report {
         let (instructions, agreement) = self.runtime;
         let mut text = LOOP.replace("{agreement}", &agreement.to_string());
         text.push_str("| PUMA 560, one call | instructions | factor |\n|---|---:|---:|\n");
-        text.push_str(&format!("| `rne::Arm`, a loop over a table in flash | {instructions:.0} | 1 |\n"));
+        let _ = writeln!(text, "| `rne::Arm`, a loop over a table in flash | {instructions:.0} | 1 |");
         for (form, figures) in ["seven_steps", "reduced"].iter().zip(self.puma560(M4F).into_iter().flatten()) {
             #[allow(clippy::cast_precision_loss)]
             let factor = instructions / figures.instructions as f64;
-            text.push_str(&format!("| derived, `{form}` | {} | {factor:.1} |\n", figures.instructions));
+            let _ = writeln!(text, "| derived, `{form}` | {} | {factor:.1} |", figures.instructions);
         }
         text
     }
@@ -68,13 +68,14 @@ impl Report {
              PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. They are read, not run.\n",
             self.riscv.functions
         );
-        text.push_str(&match self.wasm {
-            Some(numbers) => format!(
+        let _ = match self.wasm {
+            Some(numbers) => writeln!(
+                text,
                 "- `wasm32-unknown-unknown`, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`, have the \
-                 bits of the host.\n"
+                 bits of the host."
             ),
-            None => "- `wasm32-unknown-unknown`: left out, there was no Node.\n".to_owned(),
-        });
+            None => writeln!(text, "- `wasm32-unknown-unknown`: left out, there was no Node."),
+        };
         text
     }
 }
@@ -96,7 +97,7 @@ runs on that board in QEMU ({qemu}).
 | instructions | read; where there is no branch, each is executed once. SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
 | bytes of code and constants | the function's symbol; constants are the literal pools in it |
 | bytes of stack | the compiler's own record of the frame (`-Z emit-stack-sizes`); as nothing is called, it is all |
-| results | at eight states, against the same code on an x86-64 host, bit by bit; where they differ, in units in the last place of the largest torque of the state |
+| results | at {states} states, against the same code on an x86-64 host, bit by bit; where they differ, in units in the last place of the largest torque of the state |
 | growth | more than 2 % over this document in instructions, size or stack fails, for the same compiler |
 
 ## Worst case

@@ -45,7 +45,11 @@ impl Table {
     /// As a section in Markdown.
     pub(crate) fn markdown(&self) -> String {
         let mut text = format!("## {}\n\n{}\n\nCompiler: {}\n\n", self.title, self.about, self.compiler);
-        let _ = writeln!(text, "| {} | form | instructions | code, bytes | constants, bytes | stack, bytes | results |", self.of);
+        let _ = writeln!(
+            text,
+            "| {} | form | instructions | code, bytes | constants, bytes | stack, bytes | results |",
+            self.of
+        );
         text.push_str("|---|---|---:|---:|---:|---:|---|\n");
         for Row { name, form, figures, results } in &self.rows {
             let Figures { instructions, code, constants, stack } = figures;

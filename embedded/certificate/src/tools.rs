@@ -1,6 +1,7 @@
 //! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU for ARM,
 //! QEMU.
 
+use std::env;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -20,8 +21,6 @@ pub(crate) struct Build<'a> {
     pub(crate) linker: &'a str,
     /// Flags of the compiler.
     pub(crate) flags: &'a [&'a str],
-    /// The folder of the results, below the target folder of the workspace.
-    pub(crate) folder: &'a str,
     /// The package.
     pub(crate) package: &'a str,
     /// More arguments of cargo.
@@ -31,7 +30,7 @@ pub(crate) struct Build<'a> {
 impl Build<'_> {
     /// Builds in release mode, with `core`, and returns the folder of the results.
     pub(crate) fn run(&self, workspace: &Path) -> Result<PathBuf> {
-        let folder = workspace.join("target").join(self.folder);
+        let folder = target_folder(workspace);
         let linker = format!("CARGO_TARGET_{}_LINKER", self.target.to_uppercase().replace('-', "_"));
         run(Command::new(CARGO)
             .current_dir(workspace)
@@ -40,12 +39,17 @@ impl Build<'_> {
             .env("RUSTC_BOOTSTRAP", "1")
             .env("RUSTFLAGS", self.flags.join(" "))
             .env(linker, self.linker)
-            .env("CARGO_TARGET_DIR", &folder)
+            .env("CARGO_TARGET_DIR", &folder) // the same for all, so that they share the macro
             .args(["rustc", "--release", "--locked", "--quiet", "-Zbuild-std=core", "--target", self.target])
             .args(["--package", self.package])
             .args(self.arguments))?;
         Ok(folder.join(self.target).join("release"))
     }
+}
+
+/// Where everything is built.
+pub(crate) fn target_folder(workspace: &Path) -> PathBuf {
+    env::var_os("CARGO_TARGET_DIR").map_or_else(|| workspace.join("target"), PathBuf::from)
 }
 
 /// The version of Debian's compiler.

@@ -17,13 +17,14 @@ const TARGET: &str = "wasm32-unknown-unknown";
 /// Fails if a torque of a robot in a form, in single or double precision, differs from the host's in a bit. How many numbers were
 /// compared.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<usize> {
-    let object = object_file::build(workspace, TARGET, &[])?;
+    let object = object_file::build(workspace, TARGET, &[], &["--features", "double"])?;
     let symbols = symbols(&object)?;
-    let module = workspace.join("target").join(TARGET).join("robots.wasm");
+    let module = tools::target_folder(workspace).join(TARGET).join("robots.wasm");
     let exports = symbols.iter().map(|(_, symbol)| symbol.as_str()).chain(["__heap_base"]);
     tools::wasm_ld(&object, &module, exports)?;
     let mut calls = Calls { symbols: &symbols, text: String::new(), numbers: 0, missing: Vec::new() };
     robots::each(&mut calls);
+    robots::each_double(&mut calls);
     ensure!(calls.missing.is_empty(), "the module has no {}", calls.missing.join(", "));
     let file = module.with_extension("calls");
     fs::write(&file, &calls.text)?;
@@ -55,33 +56,48 @@ struct Calls<'a> {
 }
 
 impl Calls<'_> {
-    fn add(&mut self, what: &str, path: &str, bytes: usize, dof: usize, words: impl Iterator<Item = String>) {
-        let Some((_, symbol)) = self.symbols.iter().find(|(known, _)| known == path) else {
-            self.missing.push(path.to_owned());
+    fn add(&mut self, call: &Call, words: &[String]) {
+        let Call { kind, robot, form, state, function, bytes } = call;
+        let path = format!("robots::torques::{robot}::{form}::foreign::{function}");
+        let Some((_, symbol)) = self.symbols.iter().find(|(known, _)| *known == path) else {
+            self.missing.push(path);
             return;
         };
-        let words: Vec<String> = words.collect();
-        let _ = writeln!(self.text, "{what}\t{symbol}\t{bytes}\t{dof}\t{}", words.join(" "));
+        let dof = words.len() / 3;
+        let words = words.join(" ");
+        let _ = writeln!(self.text, "{kind} {robot} {form} {state}\t{symbol}\t{bytes}\t{dof}\t{words}");
         self.numbers += dof;
     }
 }
 
+/// A call of a function at a state.
+struct Call {
+    kind: &'static str,
+    robot: &'static str,
+    form: &'static str,
+    state: u32,
+    function: &'static str,
+    bytes: usize,
+}
+
 impl robots::Visitor for Calls<'_> {
-    fn visit<const DOF: usize>(
-        &mut self,
-        robot: &'static str,
-        form: &'static str,
-        _: Torques<DOF>,
-        _: Torques<DOF, f64>,
-    ) {
-        let path = format!("robots::torques::{robot}::{form}::foreign");
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, _: Torques<DOF>) {
         for number in 0..STATES {
-            let state = State::<DOF>::new(number);
-            let words = [state.q, state.qd, state.qdd].into_iter().flatten().map(|x| format!("{:08x}", x.to_bits()));
-            self.add(&format!("torques {robot} {form} {number}"), &format!("{path}::inverse_dynamics"), 4, DOF, words);
-            let state = state.double();
-            let words = [state.q, state.qd, state.qdd].into_iter().flatten().map(|x| format!("{:016x}", x.to_bits()));
-            self.add(&format!("double {robot} {form} {number}"), &format!("{path}::double"), 8, DOF, words);
+            let State { q, qd, qdd } = State::<DOF>::new(number);
+            let words = [q, qd, qdd].into_iter().flatten().map(|x| format!("{:08x}", x.to_bits()));
+            let call = Call { kind: "torques", robot, form, state: number, function: "inverse_dynamics", bytes: 4 };
+            self.add(&call, &words.collect::<Vec<_>>());
+        }
+    }
+}
+
+impl robots::Visitor<f64> for Calls<'_> {
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, _: Torques<DOF, f64>) {
+        for number in 0..STATES {
+            let State { q, qd, qdd } = State::<DOF>::new(number).double();
+            let words = [q, qd, qdd].into_iter().flatten().map(|x| format!("{:016x}", x.to_bits()));
+            let call = Call { kind: "double", robot, form, state: number, function: "double", bytes: 8 };
+            self.add(&call, &words.collect::<Vec<_>>());
         }
     }
 }

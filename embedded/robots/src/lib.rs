@@ -5,11 +5,14 @@
 #![no_std]
 
 mod numbers;
+#[cfg(feature = "methods")]
 pub mod puma560;
 pub mod runtime;
 mod states;
-mod torques;
+pub mod torques;
 
 pub use numbers::Numbers;
 pub use states::{STATES, State};
+#[cfg(feature = "double")]
+pub use torques::each_double;
 pub use torques::{Torques, Visitor, each};

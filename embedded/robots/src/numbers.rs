@@ -16,7 +16,9 @@ impl Numbers for f32 {
 
 impl<N: Numbers, const LENGTH: usize> Numbers for [N; LENGTH] {
     fn each(&self, act: &mut impl FnMut(f32)) {
-        self.iter().for_each(|numbers| numbers.each(act));
+        for numbers in self {
+            numbers.each(act);
+        }
     }
 }
 

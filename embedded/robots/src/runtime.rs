@@ -1,11 +1,19 @@
 //! The generic recursion over a table that is baked in: what the generated code is compared with.
 
-use rne::model::{
-    Angle, Convention::Standard, Dh, Inertia, JointKind::Revolute, Link, Model, QuarterTurns::*, Row, Transform,
-};
 use rne::{Arm, InverseDynamics};
 
-include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+use table::PUMA560;
+
+/// Written by the build script.
+#[allow(clippy::enum_glob_use, clippy::unreadable_literal)]
+mod table {
+    use rne::model::Convention::*;
+    use rne::model::JointKind::*;
+    use rne::model::QuarterTurns::*;
+    use rne::model::{Angle, Dh, Inertia, Link, Model, Row, Transform};
+
+    include!(concat!(env!("OUT_DIR"), "/puma560.rs"));
+}
 
 /// The PUMA 560 as loops over its links.
 #[must_use]

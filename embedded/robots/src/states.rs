@@ -1,7 +1,7 @@
 //! States at which results are compared.
 
 /// How many there are.
-pub const STATES: u32 = 8;
+pub const STATES: u32 = 32;
 
 /// Positions, velocities and accelerations between -3 and 3, the same on every machine.
 #[derive(Clone, Copy, Debug, PartialEq)]

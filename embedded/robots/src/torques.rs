@@ -4,15 +4,9 @@
 pub type Torques<const DOF: usize, T = f32> = fn(&[T; DOF], &[T; DOF], &[T; DOF]) -> [T; DOF];
 
 /// What is done with each function.
-pub trait Visitor {
-    /// `robot` and `form` name the functions of [`each`], in single and in double precision.
-    fn visit<const DOF: usize>(
-        &mut self,
-        robot: &'static str,
-        form: &'static str,
-        single: Torques<DOF>,
-        double: Torques<DOF, f64>,
-    );
+pub trait Visitor<T = f32> {
+    /// `robot` and `form` name the function of [`each`].
+    fn visit<const DOF: usize>(&mut self, robot: &'static str, form: &'static str, function: Torques<DOF, T>);
 }
 
 /// A module per robot and form, and [`each`].
@@ -29,10 +23,17 @@ macro_rules! robots {
         /// Shows every function to a visitor.
         pub fn each(visitor: &mut impl Visitor) {
             $(
-                let (single, double) = ($robot::seven_steps::inverse_dynamics, $robot::seven_steps::double);
-                visitor.visit(stringify!($robot), "seven_steps", single, double);
-                let (single, double) = ($robot::reduced::inverse_dynamics, $robot::reduced::double);
-                visitor.visit(stringify!($robot), "reduced", single, double);
+                visitor.visit(stringify!($robot), "seven_steps", $robot::seven_steps::inverse_dynamics);
+                visitor.visit(stringify!($robot), "reduced", $robot::reduced::inverse_dynamics);
+            )*
+        }
+
+        /// The same in double precision.
+        #[cfg(feature = "double")]
+        pub fn each_double(visitor: &mut impl Visitor<f64>) {
+            $(
+                visitor.visit(stringify!($robot), "seven_steps", $robot::seven_steps::double);
+                visitor.visit(stringify!($robot), "reduced", $robot::reduced::double);
             )*
         }
     };
@@ -51,6 +52,7 @@ macro_rules! robots {
             }
 
             /// The same in double precision.
+            #[cfg(feature = "double")]
             #[inline(never)]
             #[must_use]
             pub fn double(q: &[f64; $dof], qd: &[f64; $dof], qdd: &[f64; $dof]) -> [f64; $dof] {
@@ -58,7 +60,7 @@ macro_rules! robots {
             }
 
             /// As functions that other languages can call.
-            #[cfg(target_family = "wasm")]
+            #[cfg(all(feature = "double", target_family = "wasm"))]
             pub mod foreign {
                 /// Torques.
                 pub extern "C" fn inverse_dynamics(
