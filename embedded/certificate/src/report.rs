@@ -110,7 +110,7 @@ There is one path, so the count is the worst case, for any input: NaN, infinitie
   more instructions and may be less time. Measure on your board; DWT's cycle counter is there for that, in silicon, not in QEMU.
 - for your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The kernel that is counted here is that of the crate, `f32`
   alone, for angles up to 10⁵ rad; beyond, results mean nothing, and take as long.
-- for the dev profile: a panic is linked there, by the checks for overflow. Build with `--release`; `opt-level` 2, 3, `s` and `z` will do.
+- for the dev profile, whose code has the calls and the checks that an optimiser removes. This is `--release`, with `opt-level` 3.
 - for more than sixteen angles: their sines and cosines are a loop of sixteen at a time.
 
 ";
