@@ -66,6 +66,7 @@ fn block(name: &str) -> String {
         "functions" => functions(),
         "operations" => operations(),
         "tricks" => tricks(),
+        "embedded" => embedded(),
         name => panic!("no block is called `{name}`"),
     }
 }
@@ -107,6 +108,26 @@ fn robots() -> String {
             reduced.sincos
         );
     }
+    text
+}
+
+/// The PUMA 560 on the Cortex-M4F, by the first table of docs/embedded.md, and the loop that it is compared with there.
+fn embedded() -> String {
+    let document = read(&root().join("docs/embedded.md"));
+    let rows = || document.lines().map(|line| line.split(" | ").collect::<Vec<_>>());
+    let mut text = String::from(
+        "| PUMA 560 on a Cortex-M4F, `f32` | instructions of a call | bytes of code and constants | bytes of stack |\n\
+         |---|---:|---:|---:|\n",
+    );
+    for form in ["seven_steps", "reduced"] {
+        let row = rows().find(|row| row.starts_with(&["| puma560", form])).expect("a row of the table");
+        let [instructions, code, constants, stack] =
+            [2, 3, 4, 5].map(|column| row[column].parse::<usize>().expect("a number"));
+        let bytes = code + constants;
+        let _ = writeln!(text, "| derived, `{form}` | {instructions} | {bytes} | {stack} |");
+    }
+    let row = rows().find(|row| row[0].starts_with("| `rne::Arm`")).expect("the loop");
+    let _ = writeln!(text, "| `rne::Arm`, a loop over a table in flash | {} | | |", row[1]);
     text
 }
 
