@@ -88,7 +88,7 @@
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
 //! | `rayon` | batches on all cores |
-//! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler |
+//! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler (a stable one says E0554) |
 //!
 //! # Without `std`
 //!

@@ -74,6 +74,13 @@ impl Language {
         }
     }
 
+    const fn title(self) -> &'static str {
+        match self {
+            Self::Rust => "Rust",
+            Self::C => "C",
+        }
+    }
+
     const fn extension(self) -> &'static str {
         match self {
             Self::Rust => "rs",
@@ -112,6 +119,7 @@ struct Generated {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     only_of_c(arguments)?;
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
+    out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let robot = robot_file::robot(&arguments.file)?;
     let programs = programs(arguments, &robot)?;
@@ -130,6 +138,30 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(out) => check(arguments, out, &files),
         None => write(arguments, &files),
     }
+}
+
+/// A file whose name says that it is in another language.
+fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let (is_other, other) = match lang {
+        Language::Rust => (matches!(extension.as_str(), "c" | "h" | "cc" | "cpp" | "cxx" | "hpp"), Language::C),
+        Language::C => (matches!(extension.as_str(), "rs" | "cc" | "cpp" | "cxx" | "hpp"), Language::Rust),
+    };
+    if !is_other {
+        return Ok(());
+    }
+    let right = out.with_extension(lang.extension());
+    let instead = if extension == other.extension() {
+        format!(", or ask for {TYPED}--lang {}{TYPED:#}", other.name())
+    } else {
+        String::new()
+    };
+    Err(Failure::usage(format_args!(
+        "{} is no name for a file in {}; name it {TYPED}{}{TYPED:#}{instead}",
+        out.display(),
+        lang.title(),
+        right.display()
+    )))
 }
 
 fn only_of_c(arguments: &Arguments) -> Result<(), Failure> {
@@ -205,8 +237,10 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
     functions.into_iter().map(|function| compiler.compile(function, arguments.form)).collect()
 }
 
+/// The title before the mark may take several lines.
 fn is_ours(text: &str) -> bool {
-    text.lines().take(3).any(|line| MARKS.iter().any(|mark| line.starts_with(mark)))
+    let mut heading = text.lines().take_while(|line| line.starts_with("//"));
+    heading.any(|line| MARKS.iter().any(|mark| line.starts_with(mark)))
 }
 
 /// Writes all files, or none if one of them is another's.
@@ -231,7 +265,17 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
         return Err(Failure::usage(message));
     }
     match output_file::existing(out) {
-        Existing::Nothing => Ok(()),
+        Existing::Nothing => {
+            let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+            match folder.filter(|folder| !folder.exists()) {
+                Some(folder) => Err(Failure::input(format_args!(
+                    "{} cannot be written: there is no folder {}",
+                    out.display(),
+                    folder.display()
+                ))),
+                None => Ok(()),
+            }
+        }
         Existing::Text(text) if is_ours(&text) || arguments.force => Ok(()),
         Existing::Other if arguments.force => Ok(()),
         Existing::Text(_) | Existing::Other => Err(Failure::usage(format_args!(

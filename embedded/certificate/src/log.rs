@@ -20,8 +20,8 @@ enum Number {
     Double(f64),
 }
 
-/// How far results are from those of the host.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// How far results are from those of the host; the farther, the greater.
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(crate) enum Agreement {
     /// All bits are the same.
     Identical,

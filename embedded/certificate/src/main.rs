@@ -23,7 +23,7 @@ use clap::Parser;
 
 use crate::board::Board;
 use crate::image::Figures;
-use crate::log::Log;
+use crate::log::{Agreement, Log};
 use crate::report::Report;
 use crate::table::{Baseline, Table};
 
@@ -99,17 +99,17 @@ fn examine(workspace: &Path) -> Result<Report> {
     let m4 = Board { machine: "mps2-an386", flags: &flags, features: &["methods"] };
     let m4 = step("Cortex-M4F", || m4.examine(workspace))?;
     let compiler = format!("{rustc}, `{}`", flags.join(" "));
-    table(report::M4F, M4F, compiler.clone(), "robot", m4.robots(&expected)?);
+    table(report::M4F, M4F, compiler.clone(), "robot", m4.robots(&expected, Agreement::Identical)?);
 
     let m7_flags = ["-Ctarget-cpu=cortex-m7"];
     let m7 = Board { machine: "mps2-an500", flags: &m7_flags, features: &[] };
     let m7 = step("Cortex-M7F", || m7.examine(workspace))?;
     let m7_compiler = format!("{rustc}, `{}`", m7_flags.join(" "));
-    table(report::M7F, M7F, m7_compiler, "robot", m7.robots(&expected)?);
+    table(report::M7F, M7F, m7_compiler, "robot", m7.robots(&expected, Agreement::Identical)?);
 
     let fused = Board { machine: "mps2-an386", flags: &flags, features: &["core_float_math"] };
     let fused = step("Cortex-M4F with fused multiply-add", || fused.examine(workspace))?;
-    table(report::FUSED, FUSED, compiler.clone(), "robot", fused.robots(&expected)?);
+    table(report::FUSED, FUSED, compiler.clone(), "robot", fused.robots(&expected, board::ROUNDING)?);
     table(report::METHODS, METHODS, compiler, "function", m4.methods(&expected)?);
 
     let c = step("C", || c_code::examine(workspace, &expected))?;
@@ -158,23 +158,24 @@ fn summary(report: &Report) -> Result<()> {
 }
 
 const M4F: &str = "\
-The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the compiler takes `vmla.f32`, which \
-rounds both.";
+The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the compiler takes
+`vmla.f32`, which rounds both.";
 
 const M7F: &str = "\
 The processor has double precision; the code has none. Built for this processor, the compiler schedules for it.";
 
 const FUSED: &str = "\
-The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone, inline assembly refuses \
-the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds once, and so do sines and cosines of both forms: \
-results are more precise in the last place and differ there from the host, which has no such instruction in its base set. What it saves is \
-little: without it the compiler takes `vmla.f32`, as short and as slow. It is no default for that reason.";
+The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone, inline assembly refuses
+the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds once, and so do sines and cosines of both
+forms. That the host, whose base set of instructions has no such one, rounds otherwise is why results differ; the unit is that of the
+largest torque of the state, whose terms cancel. What it saves is little: without it the compiler takes `vmla.f32`, as short and as slow.
+So it is no default.";
 
 const METHODS: &str = "\
-`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them zero, by calls that clear \
-and copy memory, and nothing else keeps it from being straight. Its results are compared like those of the others.";
+`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them zero, by calls that
+clear and copy memory, and nothing else keeps it from being straight. Its results are compared like those of the others.";
 
 const C: &str = "\
-`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one function here, which is \
-called for each angle: instructions are those of all calls, bytes those of one copy. The functions of the PUMA 560 in the table before are compared in \
-the same way and agree in every bit, with their sines and cosines given (`inverse_dynamics_sc`) or not.";
+`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one function here, which
+is called for each angle: instructions are those of all calls, bytes those of one copy. The functions of the PUMA 560 in the table before
+are compared in the same way and agree in every bit, with their sines and cosines given (`inverse_dynamics_sc`) or not.";

@@ -97,7 +97,7 @@ runs on that board in QEMU ({qemu}).
 | instructions | read; where there is no branch, each is executed once. SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
 | bytes of code and constants | the function's symbol; constants are the literal pools in it |
 | bytes of stack | the compiler's own record of the frame (`-Z emit-stack-sizes`); as nothing is called, it is all |
-| results | at {states} states, against the same code on an x86-64 host, bit by bit; where they differ, in units in the last place of the largest torque of the state |
+| results | at {states} states, against the same code on an x86-64 host: identical, bit by bit, but with fused multiply-add, where the difference is in units in the last place of the largest torque of the state |
 | growth | more than 2 % over this document in instructions, size or stack fails, for the same compiler |
 
 ## Worst case

@@ -41,7 +41,7 @@ fn standard_output_is_one_file_that_compiles_alone() {
     let code = fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "arm"]);
     assert_eq!(code, fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--prefix", "arm", "-o", "-"]));
     let includes: Vec<&str> = code.lines().filter(|line| line.starts_with("#include")).collect();
-    assert_eq!(includes, ["#include <stdint.h>"], "no library, and not itself");
+    assert_eq!(includes, ["#include <float.h>", "#include <stdint.h>"], "no library, and not itself");
     let main = "#include <stdio.h>\nint main(void)\n{\n    const double q[] = {0.6, -1.1}, qd[] = {1.3, -0.4}, \
                 qdd[] = {-0.7, 2.1};\n    double tau[ARM_DOF];\n    arm_inverse_dynamics(q, qd, qdd, tau);\n    \
                 printf(\"%.17g %.17g\", tau[0], tau[1]);\n    return 0;\n}\n";
@@ -145,4 +145,72 @@ fn the_code_of_two_links() {
     let all = "inverse_dynamics,mass_matrix,forward_kinematics,kinetic_energy";
     insta::assert_snapshot!(fine(&["emit", ROBOT, "--lang", "c", "--function", all]));
     insta::assert_snapshot!(fine(&["emit", ROBOT, "--lang", "c", "--real", "double", "--form", "reduced"]));
+}
+
+#[test]
+fn a_file_of_its_own_is_written_again_however_long_the_title() {
+    let folder = folder("c_again");
+    let robot = fs::read_to_string(Path::new(ROOT).join(ROBOT)).expect("it is shipped");
+    for words in [1, 20, 80] {
+        let title = format!("title: {}\n", "A title of many words ".repeat(words).trim_end());
+        let lines: Vec<&str> = robot.lines().filter(|line| !line.starts_with("title:")).collect();
+        let named = lines.join("\n").replacen("format: 1\n", &format!("format: 1\n{title}"), 1);
+        assert!(named.contains(&title), "the file begins as it did");
+        fs::write(folder.join("arm.yaml"), named).expect("written");
+        let (arm, out) = (path(&folder, "arm.yaml"), path(&folder, &format!("arm{words}.c")));
+        written(&["emit", &arm, "--lang", "c", "-o", &out]);
+        fails(1, &["emit", &arm, "--lang", "c", "--real", "double", "--check", &out], &["is stale"]);
+        written(&["emit", &arm, "--lang", "c", "--real", "double", "-o", &out]);
+        fails(1, &["emit", &arm, "--lang", "c", "--check", &out], &["is stale"]);
+    }
+}
+
+#[test]
+fn settings_that_spoil_the_sine_are_refused() {
+    let folder = folder("c_settings");
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    if Command::new(&compiler).arg("--version").output().is_err() {
+        println!("not compiled: there is no compiler of C called `{compiler}`; CC names another");
+        return;
+    }
+    for real in ["float", "double"] {
+        let name = format!("{real}.c");
+        written(&["emit", ROBOT, "--lang", "c", "--real", real, "-o", &path(&folder, &name)]);
+        let says = |flags: &[&str]| {
+            let mut command = Command::new(&compiler);
+            let output =
+                command.current_dir(&folder).args(flags).args(["-O2", "-c", &name]).output().expect("it starts");
+            String::from_utf8_lossy(&output.stderr).into_owned()
+        };
+        assert_eq!(says(&[]), "", "{real}");
+        assert!(says(&["-ffast-math"]).contains("the sine needs"), "{real}");
+        assert_eq!(says(&["-ffast-math", "-DRNE_SIN_COS=sincos_of_the_board"]), "", "{real}");
+        let is_gcc = says(&["-v"]).contains("gcc version");
+        if is_gcc {
+            assert!(says(&["-funsafe-math-optimizations"]).contains("the sine needs its sums"), "{real}");
+        }
+        if is_gcc && cfg!(target_arch = "x86_64") {
+            assert!(says(&["-mfpmath=387"]).contains("the sine needs every number rounded"), "{real}");
+        }
+    }
+}
+
+#[test]
+fn a_file_has_a_name_of_its_language() {
+    let folder = folder("c_names");
+    fails(2, &["emit", ROBOT, "-o", &path(&folder, "arm.c")], &["no name for a file in Rust", "arm.rs", "--lang c"]);
+    fails(
+        2,
+        &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "arm.rs")],
+        &["no name for a file in C", "--lang rust"],
+    );
+    fails(2, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "arm.cpp")], &["no name for a file in C", "arm.c"]);
+    fails(1, &["emit", ROBOT, "--lang", "c", "-o", &path(&folder, "none/arm.c")], &["there is no folder", "none"]);
+    assert!(fs::read_dir(&folder).expect("a folder").next().is_none(), "nothing was written");
+}
+
+/// A call that writes files and says so.
+fn written(arguments: &[&str]) {
+    let called = rne(arguments);
+    assert_eq!(called.status, 0, "{arguments:?}: {}", called.err);
 }

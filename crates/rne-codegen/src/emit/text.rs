@@ -112,6 +112,8 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     doc("| name | meaning |");
     doc("|---|---|");
     for (pattern, meaning) in legend(programs) {
+        // a bar would end the cell, brackets would be a link
+        let meaning = meaning.replace('|', "\\|").replace('[', "\\[");
         doc(&format!("| `{pattern}` | {meaning} |"));
     }
     doc("");

@@ -106,8 +106,9 @@ fn contract(file: &File) -> String {
     }
     paragraph("");
     paragraph(
-        "Sums and products are rounded in the order in which they are written, so not with -ffast-math. With -ffp-contract=off \
-         the results are those of the Rust code built without fused multiply-add, bit for bit.",
+        "Sums and products are rounded in the order in which they are written: with -ffast-math, -funsafe-math-optimizations or \
+         -mfpmath=387 the source does not compile, unless its sine comes from outside. With -ffp-contract=off the results are \
+         those of the Rust code built without fused multiply-add, bit for bit.",
     );
     text
 }

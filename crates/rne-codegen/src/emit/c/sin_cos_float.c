@@ -10,8 +10,12 @@ static void PREFIX_sin_cos(float angle, float *sine, float *cosine)
 
 #else
 
-#ifdef __FAST_MATH__
-#error "the sine below needs its sums in the order in which they stand: compile without -ffast-math"
+// Settings under which a compiler computes other numbers than stand here.
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || defined(_M_FP_FAST)
+#error "the sine needs its sums in the order in which they stand: compile without -ffast-math and its like"
+#endif
+#if (FLT_EVAL_METHOD < 0) || (FLT_EVAL_METHOD == 1) || (FLT_EVAL_METHOD == 2)
+#error "the sine needs every number rounded to float: compile without -mfpmath=387 and its like"
 #endif
 
 // A number and its bits: C99 defines it, rule 19.2 of MISRA C advises against any union.

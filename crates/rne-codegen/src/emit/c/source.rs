@@ -20,7 +20,7 @@ const SIN_COS: [&str; 2] = [include_str!("sin_cos_float.c"), include_str!("sin_c
 pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     let mut text = String::new();
     if file.turns() {
-        text.push_str("#include <stdint.h>\n\n");
+        text.push_str("#include <float.h>\n#include <stdint.h>\n\n");
     }
     text.push_str("// Names, for link or joint i and axis x, in frame i at joint i, fixed to link i:\n//\n");
     let names: Vec<_> = legend(file.programs).into_iter().map(|(name, meaning)| [name, meaning.to_owned()]).collect();
