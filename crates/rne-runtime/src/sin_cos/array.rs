@@ -96,10 +96,12 @@ mod tests {
     #[test]
     fn an_angle_has_the_same_bits_in_an_array_and_in_registers() {
         for start in (-100..100).map(f64::from) {
-            let angles = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0].map(|lane| start * 0.37 + start * start * lane);
-            let (mut sines, mut cosines) = ([0.0; 8], [0.0; 8]);
+            // more than are written out at once
+            let angles: [f64; 20] =
+                core::array::from_fn(|lane| start * 0.37 + start * start * f64::from(u8::try_from(lane).expect("few")));
+            let (mut sines, mut cosines) = ([0.0; 20], [0.0; 20]);
             sin_cos_lanes(&angles, &mut sines, &mut cosines);
-            let (mut in_registers, mut cosines_in_registers) = ([0.0; 8], [0.0; 8]);
+            let (mut in_registers, mut cosines_in_registers) = ([0.0; 20], [0.0; 20]);
             super::sin_cos(&angles, &mut in_registers, &mut cosines_in_registers);
             assert_eq!((sines, cosines), (in_registers, cosines_in_registers));
         }
