@@ -41,8 +41,11 @@ pub(crate) fn are_all(folder: &Path) -> Result<()> {
     let certified: BTreeSet<String> = robots().iter().map(|robot| robot.name.to_owned()).collect();
     let mut shipped = BTreeSet::new();
     for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let name = entry?.file_name().to_string_lossy().into_owned();
-        shipped.extend(name.strip_suffix(".yaml").filter(|name| !name.ends_with(".plan")).map(str::to_owned));
+        let file = entry?.path();
+        let is_yaml = file.extension().is_some_and(|extension| extension == "yaml");
+        // `puma560.plan.yaml` is no robot
+        let name = file.file_stem().map(Path::new).filter(|name| is_yaml && name.extension().is_none());
+        shipped.extend(name.map(|name| name.display().to_string()));
     }
     ensure!(
         shipped == certified,
