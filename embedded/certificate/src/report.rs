@@ -94,7 +94,7 @@ runs on that board in QEMU ({qemu}).
 | no call: no panic, no allocator, no formatting, no library | no instruction calls; four functions that are faulty on purpose (an index that can panic, a loop, an `f64`, a call) are in the image and must be refused |
 | no branch | no instruction branches, but for jumps over the constants that stand between the instructions |
 | no double precision | no instruction of the M4F has it, and software would be a call |
-| instructions | read; where there is no branch, each is executed once. SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
+| instructions | read; where there is no branch, each is executed once. For `inverse_dynamics`, SysTick in QEMU, one instruction lasting 1024 ns, must count the same, to the instruction |
 | bytes of code and constants | the function's symbol; constants are the literal pools in it |
 | bytes of stack | the compiler's own record of the frame (`-Z emit-stack-sizes`); as nothing is called, it is all |
 | results | at {states} states, against the same code on an x86-64 host: identical, bit by bit, but with fused multiply-add, where the difference is in units in the last place of the largest torque of the state |
