@@ -287,7 +287,7 @@ fn the_page_of_mutations_is_the_script_s() {
     let mut mutations = 0;
     for line in script.lines().filter(|line| line.starts_with("mutate '")) {
         let [_, what, file, old, ..] = line.split('\'').collect::<Vec<_>>()[..] else { panic!("{line}") };
-        let source = read(&root().join("crates/rne-codegen/src").join(file.trim()));
+        let source = read(&root().join("rne-codegen/src").join(file.trim()));
         assert_eq!(source.matches(old).count(), 1, "scripts/mutate: {what}: `{old}` must occur once in {file}");
         let row = page.lines().find_map(|row| row.strip_prefix(&format!("| {what} | ")));
         assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: scripts/mutate '{what}'");

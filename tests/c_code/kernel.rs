@@ -85,7 +85,7 @@ fn constants(code: &str) -> BTreeSet<u64> {
 /// The last bit of a coefficient changes the result at one angle of millions: the two copies are compared as text.
 #[test]
 fn the_constants_are_those_of_the_runtime() {
-    let read = |file: &str| read(&format!("{ROOT}/crates/{file}"));
+    let read = |file: &str| read(&format!("{ROOT}/{file}"));
     let (reduction, polynomial) =
         (read("rne-runtime/src/sin_cos/reduction.rs"), read("rne-runtime/src/sin_cos/polynomial.rs"));
     let (double, single) = reduction.split_once("fn single").expect("two functions");

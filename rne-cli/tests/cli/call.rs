@@ -1,0 +1,68 @@
+//! Calling `rne` as a user does: from the root of the project, as a process of its own.
+
+use std::fs;
+use std::io::Write as _;
+use std::path::PathBuf;
+use std::process::{Command, Output, Stdio};
+
+/// The root of the project, where `robots/` is.
+pub(crate) const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+
+/// What a call printed, and its exit status.
+#[derive(Debug)]
+pub(crate) struct Called {
+    pub(crate) out: String,
+    pub(crate) err: String,
+    pub(crate) status: i32,
+}
+
+pub(crate) fn command(arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rne"));
+    command.current_dir(ROOT).args(arguments).stdin(Stdio::null()).env_remove("CLICOLOR_FORCE");
+    command
+}
+
+pub(crate) fn rne(arguments: &[&str]) -> Called {
+    called(command(arguments).output().expect("rne starts"))
+}
+
+fn called(output: Output) -> Called {
+    let Output { status, stdout, stderr } = output;
+    let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
+    Called { out: text(stdout), err: text(stderr), status: status.code().expect("no signal") }
+}
+
+/// A call that reads this text from standard input.
+pub(crate) fn rne_reading(arguments: &[&str], text: &str) -> Called {
+    let mut command = command(arguments);
+    let mut child =
+        command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("rne starts");
+    // a call that refuses its arguments need not read
+    let _ = child.stdin.take().expect("a pipe").write_all(text.as_bytes());
+    called(child.wait_with_output().expect("rne ends"))
+}
+
+/// A call that succeeds and says nothing on standard error.
+pub(crate) fn fine(arguments: &[&str]) -> String {
+    let called = rne(arguments);
+    assert_eq!((called.status, called.err.as_str()), (0, ""), "{arguments:?}: {called:?}");
+    called.out
+}
+
+/// A call that fails with `status` and has every one of `parts` in its message.
+pub(crate) fn fails(status: i32, arguments: &[&str], parts: &[&str]) {
+    let called = rne(arguments);
+    assert_eq!(called.status, status, "{arguments:?}: {called:?}");
+    assert_eq!(called.out, "", "{arguments:?}: an error is no answer");
+    for part in parts {
+        assert!(called.err.contains(part), "{arguments:?}: no `{part}` in {}", called.err);
+    }
+}
+
+/// An empty folder for one test.
+pub(crate) fn folder(name: &str) -> PathBuf {
+    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).expect("a folder");
+    folder
+}

@@ -1,0 +1,81 @@
+//! The shipped robots, for the tests of the compiler.
+
+use std::sync::OnceLock;
+
+use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::{Form, Function, Program, compile};
+use rne_model::Robot;
+
+/// Every robot of `robots/`, in the order of their names.
+pub(crate) fn shipped() -> Vec<Robot> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots");
+    let mut paths: Vec<_> = std::fs::read_dir(folder)
+        .expect("the folder of robots")
+        .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
+        .filter(|path| !path.to_string_lossy().ends_with(".plan.yaml"))
+        .collect();
+    paths.sort();
+    assert_eq!(paths.len(), 15, "the shipped robots");
+    let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
+    paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))).collect()
+}
+
+/// The robots of the other tests as well: dense and random ones.
+pub(crate) fn all() -> Vec<Robot> {
+    let mut robots = shipped();
+    for folder in ["tests/dense", "tests/random/files"] {
+        let folder = format!("{}/../{folder}", env!("CARGO_MANIFEST_DIR"));
+        let entries = std::fs::read_dir(folder).expect("the folder of robots");
+        let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
+        paths.retain(|path| path.extension().is_some_and(|extension| extension == "yaml"));
+        paths.retain(|path| !path.to_string_lossy().ends_with(".plan.yaml"));
+        paths.sort();
+        let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
+        robots.extend(paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))));
+    }
+    robots
+}
+
+/// All functions of a robot that is shipped, those of the trait `InverseDynamics` of another.
+pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
+    static SHIPPED: OnceLock<Vec<String>> = OnceLock::new();
+    let names = SHIPPED.get_or_init(|| shipped().into_iter().map(|robot| robot.name).collect());
+    let functions = if names.contains(&robot.name) { &Function::ALL[..] } else { &Function::TORQUES };
+    functions.iter().map(|&function| compile(robot, function, Form::SevenSteps).expect("finite constants")).collect()
+}
+
+/// The plan file of a shipped robot.
+#[allow(dead_code)] // not every test needs it
+pub(crate) fn choice(robot: &Robot) -> Choice {
+    let path = format!("{}/../robots/{}.plan.yaml", env!("CARGO_MANIFEST_DIR"), robot.name);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let plan = PlanFile::read(&path, &text, robot).unwrap_or_else(|report| panic!("{report}"));
+    Choice::from(plan)
+}
+
+/// All functions of a shipped robot in the reduced form of its plan, and `inverse_dynamics` rewritten.
+#[allow(dead_code)] // not every test needs them
+pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
+    let choice = choice(robot);
+    let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
+    let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
+    programs.push(compiled(Function::InverseDynamics, Form::Rewritten));
+    programs
+}
+
+/// Every robot with its programs: the seven steps of all, and the reduced forms of those that are shipped.
+#[allow(dead_code)] // not every test needs them
+pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
+    let faithful = all().into_iter().map(|robot| {
+        let programs = programs(&robot);
+        (robot, programs)
+    });
+    let reduced = shipped().into_iter().flat_map(|robot| {
+        let programs = reduced_programs(&robot);
+        let (reduced, rewritten) = programs.split_at(Function::ALL.len());
+        // functions of one name are in different files
+        [(robot.clone(), reduced.to_vec()), (robot, rewritten.to_vec())]
+    });
+    faithful.chain(reduced).collect()
+}

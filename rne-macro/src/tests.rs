@@ -1,0 +1,65 @@
+//! The expansion itself, away from the compiler.
+
+use std::time::{Duration, Instant};
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use rne_codegen::Capability;
+
+fn inverse_dynamics(input: TokenStream) -> TokenStream {
+    crate::expand::capability(Capability::InverseDynamics, input)
+}
+
+/// Formatted as rustfmt would, nearly.
+fn pretty(expansion: TokenStream) -> String {
+    let file = syn::parse2(expansion).expect("the expansion is a list of items");
+    // Where this checkout lies is nobody's business.
+    prettyplease::unparse(&file).replace(env!("CARGO_MANIFEST_DIR"), "…")
+}
+
+#[test]
+fn the_one_link_robot_of_the_lecture() {
+    let expansion = inverse_dynamics(quote! {
+        #[robot(path = "../robots/planar1.yaml")]
+        pub struct OneLink;
+    });
+    insta::assert_snapshot!(pretty(expansion));
+}
+
+#[test]
+fn what_stands_in_for_an_unknown_robot() {
+    let expansion = inverse_dynamics(quote! {
+        #[robot(yaml = "joints: [{dh: 1}, {dh: 2}]", crate = crate::dynamics)]
+        struct Arm<'a, T>(&'a T) where T: Copy;
+    });
+    let code = pretty(expansion);
+    let (_, stub) = code.split_once("#[automatically_derived]").expect("an implementation behind the message");
+    insta::assert_snapshot!(stub);
+}
+
+/// The seven-joint arm with the longest code, as every build of a user's crate does it, without optimization.
+#[test]
+fn an_expansion_takes_no_time() {
+    let input = quote! {
+        #[robot(path = "../robots/panda.yaml")]
+        pub struct Panda;
+    };
+    let start = Instant::now();
+    let expansion = inverse_dynamics(input);
+    let elapsed = start.elapsed();
+    println!("expansion of panda.yaml: {:.1} ms", elapsed.as_secs_f64() * 1e3);
+    assert!(!expansion.to_string().contains("compile_error"));
+    assert!(elapsed < Duration::from_millis(300), "{elapsed:?}");
+}
+
+#[test]
+fn every_mistake_of_an_attribute_is_reported() {
+    let expansion = inverse_dynamics(quote! {
+        #[robot(pfad = "x.yaml", form = 7, max_ops = -1, crate = 3, yaml = "", path)]
+        struct Arm;
+    });
+    let code = pretty(expansion);
+    let (messages, _) = code.split_once("#[automatically_derived]").expect("an implementation behind the messages");
+    insta::assert_snapshot!(messages);
+}

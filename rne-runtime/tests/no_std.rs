@@ -1,0 +1,26 @@
+//! The runtime builds into a library that has neither `std` nor an allocator.
+
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+#[test]
+fn a_static_library_without_std() {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let library = here.join("tests/no_std");
+    // The versions that are at hand, since they built this test: the build below needs no network.
+    fs::copy(here.join("../Cargo.lock"), library.join("Cargo.lock")).expect("the workspace's lock file");
+
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
+    let output = Command::new(env!("CARGO"))
+        .args(["build", "--offline", "--manifest-path"])
+        .arg(library.join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(&target)
+        // Flags of the calling build (coverage, sanitizers) may need `std`.
+        .env_remove("RUSTFLAGS")
+        .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .output()
+        .expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+}
