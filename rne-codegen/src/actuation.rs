@@ -2,30 +2,30 @@
 
 use rne_model::{Entry, Robot};
 
+use crate::ir::Builder;
+use crate::ir::Symbol;
 use crate::ledger::Cause;
 use crate::links::number;
 use crate::name::Name;
 use crate::quantity::Quantity;
 use crate::seven_steps::JointState;
-use crate::symbol::Symbol;
-use crate::worksheet::Worksheet;
 
 /// The torques of the motors, base to tip; zero where a joint has none.
-pub(crate) fn torques<'s>(sheet: &'s Worksheet, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {
+pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {
     let torque = |(index, state): (usize, &JointState<'s>)| {
         let joint = index + 1;
         let Some(motor) = robot.joints.get(index).and_then(|joint| joint.motor) else {
-            return sheet.constant(0.0, Cause::Arithmetic);
+            return builder.constant(0.0, Cause::Arithmetic);
         };
-        let number = |entry, value| number(sheet, robot, entry, value);
+        let number = |entry, value| number(builder, robot, entry, value);
         let ratio = number(Entry::GearRatio(index), motor.gear_ratio);
         let squared = ratio * ratio;
         let magnitude = match robot.run_time.formula(Entry::GearRatio(index)) {
-            Some(_) => sheet.by_sign(ratio, ratio, -ratio),
+            Some(_) => builder.by_sign(ratio, ratio, -ratio),
             None if motor.gear_ratio < 0.0 => -ratio,
             None => ratio,
         };
-        let named = |name, symbol| sheet.name(name, symbol);
+        let named = |name, symbol| builder.name(name, symbol);
         let inertia = squared * number(Entry::MotorInertia(index), motor.inertia);
         let inertia = named(Name::scalar(Quantity::RotorInertia, joint), inertia);
         let viscous = squared * number(Entry::Viscous(index), motor.viscous);
@@ -35,10 +35,10 @@ pub(crate) fn torques<'s>(sheet: &'s Worksheet, robot: &Robot, states: &[JointSt
             let name = Name { part: side + 1, ..Name::scalar(Quantity::CoulombFriction, joint) };
             named(name, magnitude * number(entries[side], motor.coulomb[side]))
         });
-        let value = sheet.joint(joint).within(Quantity::ActuatorTorque, || {
-            inertia * state.qdd + viscous * state.qd + sheet.by_sign(state.qd, positive, negative)
+        let value = builder.joint(joint).within(Quantity::ActuatorTorque, || {
+            inertia * state.qdd + viscous * state.qd + builder.by_sign(state.qd, positive, negative)
         });
-        sheet.name(Name::scalar(Quantity::ActuatorTorque, joint), value)
+        builder.name(Name::scalar(Quantity::ActuatorTorque, joint), value)
     };
     states.iter().enumerate().map(torque).collect()
 }

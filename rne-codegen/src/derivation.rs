@@ -1,4 +1,4 @@
-//! Which formulas a function of a robot is made of: the seven steps and what stands beside them, written on a sheet.
+//! Which formulas a function of a robot is made of: the seven steps and what stands beside them, written on a builder.
 
 use rne_model::Robot;
 
@@ -6,7 +6,7 @@ use crate::actuation;
 use crate::elimination;
 use crate::energy;
 use crate::function::{Argument, Function};
-use crate::graph::Term;
+use crate::ir::{Builder, Ref, Symbol, Vector};
 use crate::kinematics::{self, Frame};
 use crate::ledger::Cause;
 use crate::links::Arm;
@@ -15,13 +15,11 @@ use crate::name::{By, Name};
 use crate::quantity::{Axis, Quantity};
 use crate::regressor;
 use crate::seven_steps::{self, Base, JointState, Load, Wrench};
-use crate::symbol::{Symbol, Vector};
-use crate::worksheet::Worksheet;
 
 /// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before anything
 /// is folded.
-pub(crate) fn outputs(sheet: &Worksheet, robot: &Robot, function: Function) -> Vec<(Name, Term)> {
-    let derivation = Derivation::new(sheet, robot, function);
+pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> Vec<(Name, Ref)> {
+    let derivation = Derivation::new(builder, robot, function);
     let outputs = match function {
         Function::InverseDynamics
         | Function::InverseDynamicsWithWrench
@@ -43,14 +41,14 @@ pub(crate) fn outputs(sheet: &Worksheet, robot: &Robot, function: Function) -> V
         Function::JointWrenches => derivation.joint_wrenches(),
         Function::ActuatorTorques => derivation.actuator_torques(),
     };
-    outputs.into_iter().map(|(name, symbol)| (name, symbol.term)).collect()
+    outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
 }
 
 type Outputs<'s> = Vec<(Name, Symbol<'s>)>;
 
 /// A function being written.
 struct Derivation<'s, 'r> {
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     robot: &'r Robot,
     arm: Arm<'s>,
     states: Vec<JointState<'s>>,
@@ -59,12 +57,12 @@ struct Derivation<'s, 'r> {
 }
 
 impl<'s, 'r> Derivation<'s, 'r> {
-    fn new(sheet: &'s Worksheet, robot: &'r Robot, function: Function) -> Self {
-        let arm = Arm::new(sheet, robot);
+    fn new(builder: &'s Builder, robot: &'r Robot, function: Function) -> Self {
+        let arm = Arm::new(builder, robot);
         let dof = robot.dof();
-        let of_joint = |quantity, joint| sheet.argument(Name::scalar(quantity, joint));
+        let of_joint = |quantity, joint| builder.argument(Name::scalar(quantity, joint));
         let vector =
-            |quantity, joint| Vector(Axis::ALL.map(|axis| sheet.argument(Name::vector(quantity, joint, axis))));
+            |quantity, joint| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
         let state = |joint| JointState {
             q: of_joint(Quantity::Position, joint),
             turn: function
@@ -73,19 +71,19 @@ impl<'s, 'r> Derivation<'s, 'r> {
             qd: if function.takes(Argument::Rates) {
                 of_joint(Quantity::Rate, joint)
             } else {
-                sheet.constant(0.0, Cause::AtRest)
+                builder.constant(0.0, Cause::AtRest)
             },
             qdd: if function.takes(Argument::Accelerations) {
                 of_joint(Quantity::RateDot, joint)
             } else {
-                sheet.constant(0.0, Cause::NoAcceleration)
+                builder.constant(0.0, Cause::NoAcceleration)
             },
         };
         let states = (1..=dof).map(state).collect();
         let tip = if function.takes(Argument::Wrench) {
             Wrench { force: vector(Quantity::JointForce, dof + 1), moment: vector(Quantity::JointMoment, dof + 1) }
         } else {
-            Wrench { force: sheet.zeros(Cause::FreeTip), moment: sheet.zeros(Cause::FreeTip) }
+            Wrench { force: builder.zeros(Cause::FreeTip), moment: builder.zeros(Cause::FreeTip) }
         };
         let base = if function.takes(Argument::Base) {
             Base {
@@ -96,21 +94,21 @@ impl<'s, 'r> Derivation<'s, 'r> {
                 lever: arm.base_lever,
             }
         } else {
-            Base::fixed(sheet, arm.gravity)
+            Base::fixed(builder, arm.gravity)
         };
-        Self { sheet, robot, arm, states, base, tip }
+        Self { builder, robot, arm, states, base, tip }
     }
 
     fn loads(&self) -> Vec<Load<'s>> {
-        seven_steps::inverse_dynamics(self.sheet, &self.arm, &self.states, &self.base, self.tip)
+        seven_steps::inverse_dynamics(self.builder, &self.arm, &self.states, &self.base, self.tip)
     }
 
     fn motions(&self) -> Vec<seven_steps::Motion<'s>> {
-        seven_steps::forward(self.sheet, &self.arm, &self.states, &self.base)
+        seven_steps::forward(self.builder, &self.arm, &self.states, &self.base)
     }
 
     fn frames(&self) -> kinematics::Frames<'s> {
-        kinematics::frames(self.sheet, &self.arm, &self.states, kinematics::base(&self.arm))
+        kinematics::frames(self.builder, &self.arm, &self.states, kinematics::base(&self.arm))
     }
 
     fn torques(&self) -> Outputs<'s> {
@@ -119,7 +117,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn mass_matrix(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(self.sheet, &self.arm, &self.states);
+        let upper = mass_matrix::upper_half(self.builder, &self.arm, &self.states);
         square(self.states.len(), |row, column| {
             let (row, column) = (row.min(column), row.max(column));
             let name = Name { by: Some(By::RateDot(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
@@ -131,27 +129,27 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn coriolis_matrix(&self) -> Outputs<'s> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
-        let half = self.sheet.entry(Name::scalar(Quantity::Half, 0), 0.5);
-        let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.sheet.derivatives(&torques, By::Rate(joint))).collect();
+        let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
+        let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.builder.derivatives(&torques, By::Rate(joint))).collect();
         square(dof, |row, column| {
             let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
-            let line = self.sheet.joint(row + 1);
+            let line = self.builder.joint(row + 1);
             let value = line.within(Quantity::CoriolisElement, || columns[column][row] * half);
-            (name, self.sheet.name(name, value))
+            (name, self.builder.name(name, value))
         })
     }
 
     fn forward_dynamics(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(self.sheet, &self.arm, &self.states);
+        let upper = mass_matrix::upper_half(self.builder, &self.arm, &self.states);
         let loads = self.loads().into_iter().enumerate();
         let rest: Vec<_> = loads
             .map(|(index, load)| {
                 let joint = index + 1;
-                let applied = self.sheet.argument(Name::scalar(Quantity::AppliedTorque, joint));
-                self.sheet.joint(joint).within(Quantity::Reduced, || applied - load.torque)
+                let applied = self.builder.argument(Name::scalar(Quantity::AppliedTorque, joint));
+                self.builder.joint(joint).within(Quantity::Reduced, || applied - load.torque)
             })
             .collect();
-        let accelerations = elimination::solved(&Solving { sheet: self.sheet }, &upper, &rest);
+        let accelerations = elimination::solved(self.builder, &upper, &rest);
         let accelerations = accelerations.into_iter().enumerate();
         accelerations.map(|(index, value)| (Name::scalar(Quantity::RateDot, index + 1), value)).collect()
     }
@@ -165,7 +163,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn jacobian(&self) -> Outputs<'s> {
-        let columns = kinematics::jacobian(self.sheet, &self.arm, &self.frames());
+        let columns = kinematics::jacobian(self.builder, &self.arm, &self.frames());
         let halves = [Quantity::JacobianLinear, Quantity::JacobianAngular].into_iter().enumerate();
         halves
             .flat_map(|(half, quantity)| Axis::ALL.map(|axis| (half, quantity, axis)))
@@ -180,7 +178,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn tip_acceleration(&self) -> Outputs<'s> {
         let frames = self.frames();
         let motions = self.motions();
-        let Some(parts) = kinematics::tip_acceleration(self.sheet, &self.arm, &frames, &motions) else {
+        let Some(parts) = kinematics::tip_acceleration(self.builder, &self.arm, &frames, &motions) else {
             return Vec::new();
         };
         let tip = self.states.len() + 1;
@@ -195,21 +193,21 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {
-        let energy = energy::kinetic(self.sheet, &self.arm, &self.motions());
+        let energy = energy::kinetic(self.builder, &self.arm, &self.motions());
         vec![(Name::scalar(Quantity::KineticEnergy, 0), energy)]
     }
 
     fn potential_energy(&self) -> Outputs<'s> {
         let zero_frame =
-            Frame { rotation: crate::links::identity(self.sheet), origin: self.sheet.zeros(Cause::FirstFrame) };
-        let frames = kinematics::frames(self.sheet, &self.arm, &self.states, zero_frame);
+            Frame { rotation: crate::links::identity(self.builder), origin: self.builder.zeros(Cause::FirstFrame) };
+        let frames = kinematics::frames(self.builder, &self.arm, &self.states, zero_frame);
         let centres: Vec<_> = self.motions().iter().map(|motion| motion.d).collect();
-        let energy = energy::potential(self.sheet, &self.arm, &frames, &centres);
+        let energy = energy::potential(self.builder, &self.arm, &frames, &centres);
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
     }
 
     fn regressor(&self) -> Outputs<'s> {
-        let rows = regressor::regressor(self.sheet, &self.arm, &self.states, &self.motions());
+        let rows = regressor::regressor(self.builder, &self.arm, &self.states, &self.motions());
         let element = |joint: usize, link: usize, parameter: usize| Name {
             part: (link + 1) * 100 + parameter + 1,
             ..Name::scalar(Quantity::RegressorElement, joint + 1)
@@ -227,7 +225,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let by = |kind: fn(usize) -> By| {
-            let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.sheet.derivatives(&torques, kind(joint))).collect();
+            let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.builder.derivatives(&torques, kind(joint))).collect();
             square(dof, |row, column| {
                 let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                 (name, columns[column][row])
@@ -249,7 +247,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn actuator_torques(&self) -> Outputs<'s> {
-        let torques = actuation::torques(self.sheet, self.robot, &self.states).into_iter().enumerate();
+        let torques = actuation::torques(self.builder, self.robot, &self.states).into_iter().enumerate();
         torques.map(|(index, torque)| (Name::scalar(Quantity::ActuatorTorque, index + 1), torque)).collect()
     }
 }
@@ -270,22 +268,4 @@ fn pose<'s>(joint: usize, frame: &Frame<'s>) -> Outputs<'s> {
     let translation =
         Axis::ALL.map(|axis| (Name::vector(Quantity::FrameOrigin, joint, axis), frame.origin.0[axis as usize]));
     rotation.chain(translation).collect()
-}
-
-/// The sheet on which M x = b is solved.
-struct Solving<'s> {
-    sheet: &'s Worksheet,
-}
-
-impl<'s> elimination::Sheet<Symbol<'s>> for Solving<'s> {
-    fn inverse(&self, a: Symbol<'s>) -> Symbol<'s> {
-        let one = self.sheet.entry(Name::scalar(Quantity::One, 0), 1.0);
-        self.sheet.quotient(one, a)
-    }
-
-    fn within(&self, name: Name, value: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
-        let line = self.sheet.joint(name.joint);
-        let value = line.within(name.quantity, value);
-        self.sheet.name(name, value)
-    }
 }

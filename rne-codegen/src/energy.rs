@@ -2,44 +2,44 @@
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i);   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
 
+use crate::ir::Builder;
+use crate::ir::Symbol;
 use crate::kinematics::Frames;
 use crate::ledger::Cause;
 use crate::links::Arm;
 use crate::name::Name;
 use crate::quantity::Quantity;
 use crate::seven_steps::Motion;
-use crate::symbol::Symbol;
-use crate::worksheet::Worksheet;
 
-pub(crate) fn kinetic<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
-    let mut twice = sheet.constant(0.0, Cause::Arithmetic);
+pub(crate) fn kinetic<'s>(builder: &'s Builder, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
+    let mut twice = builder.constant(0.0, Cause::Arithmetic);
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         twice = line.within(Quantity::KineticEnergy, || {
             let momentum = link.inertia * motion.omega;
             let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + motion.omega.dot(momentum);
             twice + of_link
         });
     }
-    let half = sheet.entry(Name::scalar(Quantity::Half, 0), 0.5);
-    let line = sheet.joint(motions.len());
+    let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
+    let line = builder.joint(motions.len());
     let energy = line.within(Quantity::KineticEnergy, || twice * half);
-    sheet.name(Name::scalar(Quantity::KineticEnergy, 0), energy)
+    builder.name(Name::scalar(Quantity::KineticEnergy, 0), energy)
 }
 
 /// `frames` in frame 0, where gravity is given.
 pub(crate) fn potential<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     frames: &Frames<'s>,
-    centres: &[crate::symbol::Vector<'s>],
+    centres: &[crate::ir::Vector<'s>],
 ) -> Symbol<'s> {
-    let mut lost = sheet.constant(0.0, Cause::Arithmetic);
+    let mut lost = builder.constant(0.0, Cause::Arithmetic);
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         let centre = line.within(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
-        let centre = sheet.entry_vector(Quantity::ComPosition, index + 1, centre);
+        let centre = builder.name_vector(Quantity::ComPosition, index + 1, centre);
         lost = line.within(Quantity::PotentialEnergy, || lost + arm.gravity.dot(centre) * link.mass);
     }
-    sheet.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
+    builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
 }

@@ -10,11 +10,11 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::Builder;
+use crate::ir::{Matrix, Symbol, Vector};
 use crate::links::Arm;
 use crate::quantity::{Axis, Quantity};
 use crate::seven_steps::{JointState, Motion, rotation};
-use crate::symbol::{Matrix, Symbol, Vector};
-use crate::worksheet::Worksheet;
 
 /// A frame in the world.
 #[derive(Clone, Copy)]
@@ -34,34 +34,34 @@ pub(crate) struct Frames<'s> {
 
 /// The frames from the world, or from frame 0 if `start` is that.
 pub(crate) fn frames<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     start: Frame<'s>,
 ) -> Frames<'s> {
     let dof = states.len();
-    let first = sheet.joint(1);
+    let first = builder.joint(1);
     let mut before = start;
     before.origin = first.within(Quantity::FrameOrigin, || start.rotation * arm.base_lever + start.origin);
     let mut joints = Vec::with_capacity(dof);
     let mut links = Vec::with_capacity(dof);
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
-        let line = sheet.joint(index + 1);
-        let own = rotation(line, sheet, index + 1, link, state.q, state.turn);
+        let line = builder.joint(index + 1);
+        let own = rotation(line, builder, index + 1, link, state.q, state.turn);
         let axes = line.within(Quantity::FrameRotation, || before.rotation * own);
         let origin =
             line.within(Quantity::FrameOrigin, || axes * offset(link.offset, link.kind, state.q) + before.origin);
         let table = line.within(Quantity::FrameRotation, || axes * link.table_axes);
-        sheet.entry_matrix(Quantity::FrameRotation, index + 1, table);
-        sheet.entry_vector(Quantity::FrameOrigin, index + 1, origin);
+        builder.name_matrix(Quantity::FrameRotation, index + 1, table);
+        builder.name_vector(Quantity::FrameOrigin, index + 1, origin);
         joints.push(Frame { rotation: axes, origin: before.origin });
         links.push(Frame { rotation: table, origin });
         before = Frame { rotation: axes, origin: line.within(Quantity::FrameOrigin, || axes * link.lever + origin) };
     }
-    let line = sheet.joint(dof);
+    let line = builder.joint(dof);
     let rotation = line.within(Quantity::FrameRotation, || before.rotation * arm.tip);
-    sheet.entry_matrix(Quantity::FrameRotation, dof + 1, rotation);
-    sheet.entry_vector(Quantity::FrameOrigin, dof + 1, before.origin);
+    builder.name_matrix(Quantity::FrameRotation, dof + 1, rotation);
+    builder.name_vector(Quantity::FrameOrigin, dof + 1, before.origin);
     Frames { joints, links, tip: Frame { rotation, origin: before.origin } }
 }
 
@@ -80,19 +80,19 @@ pub(crate) fn offset<'s>(offset: Vector<'s>, kind: rne_model::JointKind, q: Symb
 }
 
 /// The columns of the Jacobian: linear and angular part.
-pub(crate) fn jacobian<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
+pub(crate) fn jacobian<'s>(builder: &'s Builder, arm: &Arm<'s>, frames: &Frames<'s>) -> Vec<[Vector<'s>; 2]> {
     let columns = arm.links.iter().zip(&frames.joints).enumerate().map(|(index, (link, frame))| {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         let axis = Vector(frame.rotation.0.map(Vector::z));
         let (linear, angular) = match link.kind {
             Revolute => {
                 let lever = line.within(Quantity::JacobianLinear, || frames.tip.origin - frame.origin);
                 (line.within(Quantity::JacobianLinear, || axis.cross(lever)), axis)
             }
-            Prismatic => (axis, sheet.zeros(crate::ledger::Cause::JointAxis)),
+            Prismatic => (axis, builder.zeros(crate::ledger::Cause::JointAxis)),
         };
-        let linear = sheet.entry_vector(Quantity::JacobianLinear, index + 1, linear);
-        let angular = sheet.entry_vector(Quantity::JacobianAngular, index + 1, angular);
+        let linear = builder.name_vector(Quantity::JacobianLinear, index + 1, linear);
+        let angular = builder.name_vector(Quantity::JacobianAngular, index + 1, angular);
         [linear, angular]
     });
     columns.collect()
@@ -100,14 +100,14 @@ pub(crate) fn jacobian<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, frames: &Frames<
 
 /// Linear and angular acceleration of the tip in world axes, from the motion of the last link.
 pub(crate) fn tip_acceleration<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     frames: &Frames<'s>,
     motions: &[Motion<'s>],
 ) -> Option<[Vector<'s>; 2]> {
     let (motion, link) = motions.last().zip(arm.links.last())?;
     let axes = frames.joints.last()?.rotation;
-    let line = sheet.joint(motions.len());
+    let line = builder.joint(motions.len());
     let Motion { omega, omega_dot, c_ddot, .. } = *motion;
     let linear = line.within(Quantity::TipAcceleration, || {
         let at_tip = c_ddot + omega_dot.cross(link.r) + omega.cross(omega.cross(link.r));
@@ -115,10 +115,10 @@ pub(crate) fn tip_acceleration<'s>(
     });
     let angular = line.within(Quantity::TipAcceleration, || axes * omega_dot);
     let tip = motions.len() + 1;
-    let linear = sheet.entry_vector(Quantity::TipAcceleration, tip, linear);
+    let linear = builder.name_vector(Quantity::TipAcceleration, tip, linear);
     let name = |axis: Axis, x| {
         let name = crate::name::Name::vector(Quantity::TipAcceleration, tip, axis);
-        sheet.name(crate::name::Name { part: 1, ..name }, x)
+        builder.name(crate::name::Name { part: 1, ..name }, x)
     };
     Some([linear, angular.map(name)])
 }

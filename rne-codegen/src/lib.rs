@@ -13,20 +13,19 @@
 mod actuation;
 mod capability;
 mod derivation;
-mod differentiation;
 mod elimination;
 pub mod emit;
 mod energy;
-mod exact;
 mod function;
 pub mod fusion;
-mod graph;
 mod interpret;
+mod ir;
 mod kinematics;
 mod latency;
 mod layout;
 mod ledger;
 mod links;
+mod lower;
 mod mass_matrix;
 mod name;
 mod program;
@@ -34,10 +33,7 @@ mod proof;
 mod quantity;
 pub mod reduced;
 mod regressor;
-mod schedule;
 mod seven_steps;
-mod symbol;
-mod worksheet;
 
 use std::fmt;
 
@@ -52,7 +48,7 @@ pub use name::{By, Name};
 pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
 pub use quantity::{Axis, Component, Quantity, Step};
 
-use crate::worksheet::Worksheet;
+use crate::ir::{Builder, Policy, Reading};
 
 /// Compiles one function of a robot.
 ///
@@ -77,18 +73,16 @@ pub fn compile_keeping(
     if form != Form::SevenSteps {
         return reduced::Choice::default_of(robot).compile(robot, function, form);
     }
-    let sheet = Worksheet::default();
-    let dof = robot.dof();
-    let mut outputs = derivation::outputs(&sheet, robot, function);
-    let written = sheet.finish();
-    let of_a_link = |name: &Name| (1..=dof).contains(&name.joint);
-    let kept = written
-        .definitions
-        .iter()
-        .filter(|definition| keep.contains(&definition.name.quantity) && of_a_link(&definition.name));
-    outputs.extend(kept.map(|definition| (definition.name, definition.term)));
-    let heading = schedule::Heading { robot: &robot.name, dof, parameters: robot.run_time.names.len(), function, form };
-    schedule::program(&heading, written, &outputs)
+    let builder = Builder::traced(Policy::Structure, Reading::default(), function);
+    let (mut names, outputs): (Vec<Name>, Vec<_>) = derivation::outputs(&builder, robot, function).into_iter().unzip();
+    let mut written = builder.finish(outputs);
+    for definition in &written.trace.definitions {
+        if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {
+            names.push(definition.name);
+            written.graph.outputs.push(definition.at);
+        }
+    }
+    Ok(lower::lower(&lower::Heading { robot, function, form }, written, &names)?.0)
 }
 
 /// Why a robot cannot be compiled.

@@ -10,11 +10,11 @@
 
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
 
+use crate::ir::Builder;
+use crate::ir::{Matrix, Symbol, Vector};
 use crate::ledger::Cause;
 use crate::name::Name;
 use crate::quantity::{Axis, Quantity};
-use crate::symbol::{Matrix, Symbol, Vector};
-use crate::worksheet::Worksheet;
 
 /// The constants of one link and of the joint that moves it.
 pub(crate) struct Link<'s> {
@@ -52,34 +52,34 @@ pub(crate) struct Arm<'s> {
 }
 
 impl<'s> Arm<'s> {
-    pub(crate) fn new(sheet: &'s Worksheet, robot: &Robot) -> Self {
+    pub(crate) fn new(builder: &'s Builder, robot: &Robot) -> Self {
         let dof = robot.dof();
         let rows: Vec<_> = robot.rows().collect();
-        let zero = || sheet.constant(0.0, Cause::Arithmetic);
-        let number = |entry: Entry, value: f64| number(sheet, robot, entry, value);
+        let zero = || builder.constant(0.0, Cause::Arithmetic);
+        let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let along_x = |index: usize, length: f64| Vector([number(Entry::A(index), length), zero(), zero()]);
-        let tool = Placement::tool(sheet, robot);
+        let tool = Placement::tool(builder, robot);
 
         let turns: Vec<_> =
-            rows.iter().enumerate().map(|(index, row)| turn_about_x(sheet, index + 1, &row.dh.alpha)).collect();
+            rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, index + 1, &row.dh.alpha)).collect();
         let mut tip = tool.rotation;
         let mut links = Vec::with_capacity(dof);
         for (index, row) in rows.iter().enumerate() {
             let joint = index + 1;
             let written_com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
-            let written_inertia = inertia(sheet, robot, index);
+            let written_inertia = inertia(builder, robot, index);
             let is_last = joint == dof;
             let (twist, offset, com, mut r, inertia, mut lever, table_axes);
             match robot.convention {
                 Convention::Standard => {
                     // the twist before joint i stands in row i-1
                     let own = turns[index];
-                    twist = index.checked_sub(1).map_or_else(|| identity(sheet), |previous| turns[previous]);
+                    twist = index.checked_sub(1).map_or_else(|| identity(builder), |previous| turns[previous]);
                     offset = [number(Entry::A(index), row.dh.a), zero(), number(Entry::D(index), row.dh.d)];
                     com = own * written_com;
                     inertia = (own * written_inertia) * own.transpose();
                     r = -com;
-                    lever = sheet.zeros(Cause::Arithmetic);
+                    lever = builder.zeros(Cause::Arithmetic);
                     table_axes = own;
                     if is_last {
                         lever = own * tool.translation;
@@ -92,7 +92,7 @@ impl<'s> Arm<'s> {
                     offset = [zero(), zero(), number(Entry::D(index), row.dh.d)];
                     com = written_com;
                     inertia = written_inertia;
-                    table_axes = identity(sheet);
+                    table_axes = identity(builder);
                     (lever, r) = match rows.get(index + 1) {
                         Some(next) => {
                             let lever = along_x(joint, next.dh.a);
@@ -108,7 +108,7 @@ impl<'s> Arm<'s> {
                 theta: row.dh.theta,
                 offset: Vector(offset),
                 com,
-                r: sheet.entry_vector(Quantity::R, joint, r),
+                r: builder.name_vector(Quantity::R, joint, r),
                 lever,
                 table_axes,
                 mass: {
@@ -116,23 +116,23 @@ impl<'s> Arm<'s> {
                     let is_fixed = robot.run_time.formula(Entry::Mass(index)).is_none();
                     // a constant says of itself which one it is
                     if is_fixed {
-                        sheet.entry(name, row.link.mass)
+                        builder.entry(name, row.link.mass)
                     } else {
-                        sheet.name(name, number(Entry::Mass(index), row.link.mass))
+                        builder.name(name, number(Entry::Mass(index), row.link.mass))
                     }
                 },
-                inertia: sheet.entry_matrix(Quantity::Inertia, joint, inertia),
+                inertia: builder.name_matrix(Quantity::Inertia, joint, inertia),
             });
         }
         Self {
             links,
-            tip: sheet.entry_matrix(Quantity::TipRotation, dof + 1, tip),
-            gravity: gravity(sheet, robot),
+            tip: builder.name_matrix(Quantity::TipRotation, dof + 1, tip),
+            gravity: gravity(builder, robot),
             base_lever: match (robot.convention, rows.first()) {
                 (Convention::Modified, Some(first)) => along_x(0, first.dh.a),
-                _ => sheet.zeros(Cause::FirstFrame),
+                _ => builder.zeros(Cause::FirstFrame),
             },
-            base: Placement::base(sheet, robot),
+            base: Placement::base(builder, robot),
         }
     }
 }
@@ -146,10 +146,10 @@ pub(crate) struct Placement<'s> {
 
 impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
-    fn new(sheet: &'s Worksheet, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
-        let number = |value: f64| sheet.constant(value, Cause::Arithmetic);
+    fn new(builder: &'s Builder, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
+        let number = |value: f64| builder.constant(value, Cause::Arithmetic);
         let (zero, one) = (number(0.0), number(1.0));
-        let [roll, pitch, yaw] = rpy.map(|angle| sheet.constant_turn(&angle, Cause::Arithmetic));
+        let [roll, pitch, yaw] = rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let about_x = {
             let (s, c) = roll;
             Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
@@ -165,48 +165,48 @@ impl<'s> Placement<'s> {
         Self { rotation: (about_z * about_y) * about_x, translation: Vector(translation) }
     }
 
-    fn tool(sheet: &'s Worksheet, robot: &Robot) -> Self {
-        let xyz = [0, 1, 2].map(|axis| number(sheet, robot, Entry::ToolXyz(axis), robot.tool.xyz[axis]));
-        Self::new(sheet, robot.tool.rpy, xyz)
+    fn tool(builder: &'s Builder, robot: &Robot) -> Self {
+        let xyz = [0, 1, 2].map(|axis| number(builder, robot, Entry::ToolXyz(axis), robot.tool.xyz[axis]));
+        Self::new(builder, robot.tool.rpy, xyz)
     }
 
-    fn base(sheet: &'s Worksheet, robot: &Robot) -> Self {
-        let xyz = [0, 1, 2].map(|axis| number(sheet, robot, Entry::BaseXyz(axis), robot.base.xyz[axis]));
-        Self::new(sheet, robot.base.rpy, xyz)
+    fn base(builder: &'s Builder, robot: &Robot) -> Self {
+        let xyz = [0, 1, 2].map(|axis| number(builder, robot, Entry::BaseXyz(axis), robot.base.xyz[axis]));
+        Self::new(builder, robot.base.rpy, xyz)
     }
 }
 
 /// A number of the table: a constant, or a formula over what is known at run time only.
-pub(crate) fn number<'s>(sheet: &'s Worksheet, robot: &Robot, entry: Entry, value: f64) -> Symbol<'s> {
+pub(crate) fn number<'s>(builder: &'s Builder, robot: &Robot, entry: Entry, value: f64) -> Symbol<'s> {
     match robot.run_time.formula(entry) {
-        Some(written) => formula(sheet, written),
-        None => sheet.constant(value, Cause::Arithmetic),
+        Some(written) => formula(builder, written),
+        None => builder.constant(value, Cause::Arithmetic),
     }
 }
 
-fn formula<'s>(sheet: &'s Worksheet, written: &Formula) -> Symbol<'s> {
-    let of = |written: &Formula| formula(sheet, written);
+fn formula<'s>(builder: &'s Builder, written: &Formula) -> Symbol<'s> {
+    let of = |written: &Formula| formula(builder, written);
     match written {
-        Formula::Number(value) => sheet.constant(*value, Cause::Arithmetic),
-        Formula::Parameter(index) => sheet.argument(Name::scalar(Quantity::Parameter, index + 1)),
+        Formula::Number(value) => builder.constant(*value, Cause::Arithmetic),
+        Formula::Parameter(index) => builder.argument(Name::scalar(Quantity::Parameter, index + 1)),
         Formula::Negative(a) => -of(a),
         Formula::Sum(a, b) => of(a) + of(b),
         Formula::Difference(a, b) => of(a) - of(b),
         Formula::Product(a, b) => of(a) * of(b),
         Formula::Quotient(a, b) => {
             let (a, b) = (of(a), of(b));
-            sheet.quotient(a, b)
+            builder.quotient(a, b)
         }
     }
 }
 
 /// The inertia of a link about its centre of mass.
-fn inertia<'s>(sheet: &'s Worksheet, robot: &Robot, index: usize) -> Matrix<'s> {
+fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> {
     use InertiaElement::{Xx, Xy, Xz, Yy, Yz, Zz};
-    let Matrix(fixed) = sheet.inertia(&robot.joints[index]);
+    let Matrix(fixed) = builder.inertia(&robot.joints[index]);
     let element = |row: usize, column: usize, element: InertiaElement| {
         let written = robot.run_time.formula(Entry::Inertia(index, element));
-        written.map_or(fixed[row].0[column], |written| formula(sheet, written))
+        written.map_or(fixed[row].0[column], |written| formula(builder, written))
     };
     let [xx, yy, zz] = [element(0, 0, Xx), element(1, 1, Yy), element(2, 2, Zz)];
     let [xy, xz, yz] = [element(0, 1, Xy), element(0, 2, Xz), element(1, 2, Yz)];
@@ -214,28 +214,30 @@ fn inertia<'s>(sheet: &'s Worksheet, robot: &Robot, index: usize) -> Matrix<'s> 
 }
 
 /// Rx(α) of a row of the table.
-fn turn_about_x<'s>(sheet: &'s Worksheet, row: usize, alpha: &Angle) -> Matrix<'s> {
-    let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutX), sheet.constant(1.0, Cause::TurnAboutX));
-    let (s, c) = sheet.constant_turn(alpha, Cause::Arithmetic);
-    let s = sheet.name(Name::scalar(Quantity::TwistSine, row), s);
-    let c = sheet.name(Name::scalar(Quantity::TwistCosine, row), c);
+fn turn_about_x<'s>(builder: &'s Builder, row: usize, alpha: &Angle) -> Matrix<'s> {
+    let (zero, one) = (builder.constant(0.0, Cause::TurnAboutX), builder.constant(1.0, Cause::TurnAboutX));
+    let (s, c) = builder.constant_turn(alpha, Cause::Arithmetic);
+    let s = builder.name(Name::scalar(Quantity::TwistSine, row), s);
+    let c = builder.name(Name::scalar(Quantity::TwistCosine, row), c);
     Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
 }
 
 /// α_0 of a standard table is 0.
-pub(crate) fn identity(sheet: &Worksheet) -> Matrix<'_> {
-    let (zero, one) = (sheet.constant(0.0, Cause::FirstFrame), sheet.constant(1.0, Cause::FirstFrame));
+pub(crate) fn identity(builder: &Builder) -> Matrix<'_> {
+    let (zero, one) = (builder.constant(0.0, Cause::FirstFrame), builder.constant(1.0, Cause::FirstFrame));
     Matrix::from_rows([[one, zero, zero], [zero, one, zero], [zero, zero, one]])
 }
 
 /// Gravity in frame 0; a component that is zero says so.
-fn gravity<'s>(sheet: &'s Worksheet, robot: &Robot) -> Vector<'s> {
+fn gravity<'s>(builder: &'s Builder, robot: &Robot) -> Vector<'s> {
     let [x, y, z] = robot.gravity;
     let component = |axis: Axis, value| {
         let written = robot.run_time.formula(Entry::Gravity(axis as usize));
-        let symbol = written
-            .map_or_else(|| sheet.constant(value, Cause::GravityDirection(axis)), |written| formula(sheet, written));
-        sheet.name(Name::vector(Quantity::Gravity, 0, axis), symbol)
+        let symbol = written.map_or_else(
+            || builder.constant(value, Cause::GravityDirection(axis)),
+            |written| formula(builder, written),
+        );
+        builder.name(Name::vector(Quantity::Gravity, 0, axis), symbol)
     };
     Vector([component(Axis::X, x), component(Axis::Y, y), component(Axis::Z, z)])
 }

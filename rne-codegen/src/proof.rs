@@ -4,21 +4,18 @@
 //! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants were
 //! rounded, so both are run in double precision at random states as well.
 
-use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use rne_model::{JointKind, Robot};
 
 use crate::derivation;
-use crate::exact::{Image, Number, Reading, Turn};
 use crate::function::{Form, Function};
-use crate::graph::{Graph, Node, Term};
 use crate::interpret::{Arguments, Interpreter, Real};
+use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref};
+use crate::lower::Exactly;
 use crate::name::Name;
 use crate::program::{Program, Proof};
 use crate::quantity::{Axis, Quantity};
-use crate::reduced::Point;
-use crate::worksheet::Worksheet;
 use crate::{CompileError, compile};
 
 /// Points of the fields at which torques are compared.
@@ -42,9 +39,6 @@ const fn largest_rounding(function: Function) -> f64 {
         _ => LARGEST_ROUNDING,
     }
 }
-
-/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<Turn>)>;
 
 /// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
 /// torques at least.
@@ -97,39 +91,35 @@ pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     let reading = Reading::default();
     let plain = Plain::new(robot, function, reading);
     let images = plain.images(&Point::new(reading, 1));
-    plain.graph.nodes().any(|(_, node)| matches!(node, Node::Quotient(_, b) if images[b.index()].is_zero()))
+    plain.0.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if images[b.index()].is_zero()))
 }
 
-/// The plain formulas with exact constants.
-struct Plain {
-    graph: Graph,
-    outputs: Vec<Term>,
-}
+/// The plain formulas, as they are written.
+struct Plain(Graph);
 
 impl Plain {
     fn new(robot: &Robot, function: Function, reading: Reading) -> Self {
-        let sheet = Worksheet::exact(reading);
-        let outputs = derivation::outputs(&sheet, robot, function).into_iter().map(|(_, term)| term).collect();
-        Self { graph: sheet.finish().graph, outputs }
+        let builder = Builder::untraced(Policy::Structure, reading, function);
+        let outputs = derivation::outputs(&builder, robot, function).into_iter().map(|(_, at)| at).collect();
+        Self(builder.finish(outputs).graph)
     }
 
     /// By node.
     fn images(&self, point: &Point) -> Vec<Image> {
-        let mut images: Vec<Image> = Vec::with_capacity(self.graph.len());
-        for (id, node) in self.graph.nodes() {
-            let number = self.graph.number(Term { node: id, negative: false });
-            images.push(self.graph.image(node, number, &images, point));
+        let mut images: Vec<Image> = Vec::with_capacity(self.0.len());
+        for (_, op) in self.0.nodes() {
+            images.push(self.0.image_at(op, &images, point));
         }
         images
     }
 
     fn outputs(&self, point: &Point) -> Vec<Image> {
         let images = self.images(point);
-        let image = |term: &Term| {
-            let image = images[term.node.index()];
-            if term.negative { -image } else { image }
+        let image = |at: &Ref| {
+            let image = images[at.index()];
+            if at.is_negative() { -image } else { image }
         };
-        self.outputs.iter().map(image).collect()
+        self.0.outputs.iter().map(image).collect()
     }
 }
 
@@ -191,9 +181,9 @@ impl Div for Value {
 }
 
 impl Real for Value {
-    /// No rational function: nothing is said of it, here as on the other side.
-    fn by_sign(self, _: Self, _: Self) -> Self {
-        Self::number(Image::ZERO)
+    /// No rational function: an unknown, the same for the same operands.
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        Self::number(Image::by_sign([self, positive, negative].map(|value| value.number)))
     }
 }
 
@@ -209,9 +199,9 @@ fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
     let kind = || robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.row.kind);
     if name.quantity == Quantity::Position && kind() == Some(JointKind::Revolute) {
         let index = name.joint - 1;
-        return Value { number: point.position(index), turn: point.turn(index) };
+        return Value { number: point.argument(Input::new(name)), turn: point.turn(index) };
     }
-    Value::number(point.argument(name))
+    Value::number(point.argument(Input::new(name)))
 }
 
 /// What a program returns at a point.
@@ -224,7 +214,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
     let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
     let tau = joints(Quantity::AppliedTorque);
     let parameters: Vec<_> = (1..=robot.run_time.names.len())
-        .map(|index| Value::number(point.argument(Name::scalar(Quantity::Parameter, index))))
+        .map(|index| Value::number(point.argument(Input::new(Name::scalar(Quantity::Parameter, index)))))
         .collect();
     let arguments = Arguments {
         force: vector(Quantity::JointForce, dof + 1),

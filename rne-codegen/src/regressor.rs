@@ -8,36 +8,38 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ir::Builder;
+use crate::ir::{Matrix, Symbol, Vector};
 use crate::kinematics::offset;
 use crate::ledger::Cause;
 use crate::links::Arm;
 use crate::name::Name;
 use crate::quantity::Quantity;
 use crate::seven_steps::{JointState, Motion};
-use crate::symbol::{Matrix, Symbol, Vector};
-use crate::worksheet::Worksheet;
 
 /// Parameters of a link.
 pub(crate) const PARAMETERS: usize = 10;
 
 /// Y by torque, link and parameter; zero where a link is nearer to the base than the joint.
 pub(crate) fn regressor<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     motions: &[Motion<'s>],
 ) -> Vec<Vec<[Symbol<'s>; PARAMETERS]>> {
     let dof = states.len();
-    let zero = sheet.constant(0.0, Cause::Arithmetic);
-    let (zeros, e) =
-        (sheet.zeros(Cause::JointAxis), Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis))));
+    let zero = builder.constant(0.0, Cause::Arithmetic);
+    let (zeros, e) = (
+        builder.zeros(Cause::JointAxis),
+        Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis))),
+    );
     let mut rows = vec![vec![[zero; PARAMETERS]; dof]; dof];
     // acceleration of the joint's point less gravity, in the axes of the link before
     let mut point = -arm.gravity;
     // (u, v) at the joint's point of every joint so far, in the axes of the link before
     let mut twists: Vec<[Vector<'s>; 2]> = Vec::with_capacity(dof);
     for (index, ((link, state), motion)) in arm.links.iter().zip(states).zip(motions).enumerate() {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         let back = motion.rotation.transpose();
         let Motion { omega, omega_dot, .. } = *motion;
         let reach = line.within(Quantity::Partial, || offset(link.offset, link.kind, state.q));
@@ -47,7 +49,7 @@ pub(crate) fn regressor<'s>(
             let sliding = match link.kind {
                 Revolute => at_joint,
                 Prismatic => {
-                    let twice = sheet.entry(Name::scalar(Quantity::Two, 0), 2.0) * state.qd;
+                    let twice = builder.entry(Name::scalar(Quantity::Two, 0), 2.0) * state.qd;
                     at_joint + e * state.qdd + omega.cross(e) * twice
                 }
             };
@@ -74,7 +76,7 @@ pub(crate) fn regressor<'s>(
             rows[joint][index] = elements.map(|element| {
                 parameter += 1;
                 let part = (index + 1) * 100 + parameter;
-                sheet.name(Name { part, ..Name::scalar(Quantity::RegressorElement, joint + 1) }, element)
+                builder.name(Name { part, ..Name::scalar(Quantity::RegressorElement, joint + 1) }, element)
             });
             *v = line.within(Quantity::Partial, || at_origin + u.cross(link.lever));
         }

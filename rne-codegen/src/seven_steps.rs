@@ -7,12 +7,12 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::QuarterTurns;
 
+use crate::ir::{Builder, JointLines};
+use crate::ir::{Matrix, Symbol, Vector};
 use crate::ledger::Cause;
 use crate::links::{Arm, Link};
 use crate::name::Name;
 use crate::quantity::Quantity;
-use crate::symbol::{Matrix, Symbol, Vector};
-use crate::worksheet::{JointLines, Worksheet};
 
 /// Position, rate and acceleration of one joint.
 #[derive(Clone, Copy)]
@@ -44,8 +44,8 @@ pub(crate) struct Base<'s> {
 
 impl<'s> Base<'s> {
     /// A base that stands still.
-    pub(crate) fn fixed(sheet: &'s Worksheet, gravity: Vector<'s>) -> Self {
-        let at_rest = sheet.zeros(Cause::FixedBase);
+    pub(crate) fn fixed(builder: &'s Builder, gravity: Vector<'s>) -> Self {
+        let at_rest = builder.zeros(Cause::FixedBase);
         Self { omega: at_rest, omega_dot: at_rest, acceleration: at_rest, gravity, lever: at_rest }
     }
 }
@@ -71,34 +71,34 @@ pub(crate) struct Load<'s> {
 
 /// What the actuators of all joints deliver, base to tip, when the last link exerts `tip` on its environment.
 pub(crate) fn inverse_dynamics<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     base: &Base<'s>,
     tip: Wrench<'s>,
 ) -> Vec<Load<'s>> {
-    let motions = forward(sheet, arm, states, base);
-    backward(sheet, arm, &motions, tip)
+    let motions = forward(builder, arm, states, base);
+    backward(builder, arm, &motions, tip)
 }
 
 /// Forward, i = 1 … n: the motion of each link from that of the link before it.
 pub(crate) fn forward<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     base: &Base<'s>,
 ) -> Vec<Motion<'s>> {
-    let e = Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)));
+    let e = Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis)));
     let (mut omega, mut omega_dot) = (base.omega, base.omega_dot);
     // no function asks how fast the base itself moves
-    let (mut c_dot, mut c_ddot) = (sheet.zeros(Cause::FixedBase), base.acceleration);
+    let (mut c_dot, mut c_ddot) = (builder.zeros(Cause::FixedBase), base.acceleration);
     let mut r = base.lever;
     let mut gravity = base.gravity;
     let mut motions = Vec::with_capacity(arm.links.len());
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         let JointState { q, qd, qdd, turn } = *state;
-        let rotation = rotation(line, sheet, index + 1, link, q, turn);
+        let rotation = rotation(line, builder, index + 1, link, q, turn);
         let back = rotation.transpose();
         let (omega_before, omega_dot_before) = (omega, omega_dot);
 
@@ -114,7 +114,7 @@ pub(crate) fn forward<'s>(
             Prismatic => back * omega_dot_before,
         });
 
-        let d = centre_of_mass(line, sheet, index + 1, link, q);
+        let d = centre_of_mass(line, builder, index + 1, link, q);
 
         // 3   ċ_i = R_iᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i      (+ q̇_i e)
         let omega_cross_r = line.of_link_before().vector(Quantity::OmegaCrossR, || omega_before.cross(r));
@@ -132,7 +132,7 @@ pub(crate) fn forward<'s>(
         let joint_point = line.vector(Quantity::JointPointAcceleration, || {
             c_ddot + omega_dot_before.cross(r) + omega_before.cross(omega_cross_r)
         });
-        let twice_qd = || line.scalar(Quantity::TwiceRate, || sheet.entry(Name::scalar(Quantity::Two, 0), 2.0) * qd);
+        let twice_qd = || line.scalar(Quantity::TwiceRate, || builder.entry(Name::scalar(Quantity::Two, 0), 2.0) * qd);
         c_ddot = line.vector(Quantity::Acceleration, || {
             let turning = back * joint_point + omega_dot.cross(d) + omega.cross(omega_cross_d);
             match link.kind {
@@ -152,7 +152,7 @@ pub(crate) fn forward<'s>(
 
 /// Backward, i = n … 1: the wrench of each joint from that of the joint after it.
 pub(crate) fn backward<'s>(
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     arm: &Arm<'s>,
     motions: &[Motion<'s>],
     tip: Wrench<'s>,
@@ -161,7 +161,7 @@ pub(crate) fn backward<'s>(
     let mut into_frame = arm.tip;
     let mut loads = Vec::with_capacity(arm.links.len());
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate().rev() {
-        let line = sheet.joint(index + 1);
+        let line = builder.joint(index + 1);
         let Motion { rotation, d, omega, omega_dot, c_ddot, gravity, .. } = *motion;
         let child_force = line.vector(Quantity::ChildForce, || into_frame * child.force);
         let child_moment = line.vector(Quantity::ChildMoment, || into_frame * child.moment);
@@ -196,23 +196,23 @@ pub(crate) fn backward<'s>(
 /// R_i = Rx(α_{i-1}) Rz(θ_i).
 pub(crate) fn rotation<'s>(
     line: JointLines<'s>,
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     joint: usize,
     link: &Link<'s>,
     q: Symbol<'s>,
     turn: Option<(Symbol<'s>, Symbol<'s>)>,
 ) -> Matrix<'s> {
     let (s, c) = match link.kind {
-        Revolute => joint_angle(line, sheet, joint, link, q, turn),
+        Revolute => joint_angle(line, builder, joint, link, q, turn),
         Prismatic => {
-            let (s, c) = sheet.constant_turn(&link.theta, Cause::Arithmetic);
+            let (s, c) = builder.constant_turn(&link.theta, Cause::Arithmetic);
             (
-                sheet.name(Name::scalar(Quantity::ThetaSine, joint), s),
-                sheet.name(Name::scalar(Quantity::ThetaCosine, joint), c),
+                builder.name(Name::scalar(Quantity::ThetaSine, joint), s),
+                builder.name(Name::scalar(Quantity::ThetaCosine, joint), c),
             )
         }
     };
-    let (zero, one) = (sheet.constant(0.0, Cause::TurnAboutZ), sheet.constant(1.0, Cause::TurnAboutZ));
+    let (zero, one) = (builder.constant(0.0, Cause::TurnAboutZ), builder.constant(1.0, Cause::TurnAboutZ));
     let about_z = Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]]);
     line.matrix(Quantity::Rotation, || link.twist * about_z)
 }
@@ -220,7 +220,7 @@ pub(crate) fn rotation<'s>(
 /// Sine and cosine of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
 fn joint_angle<'s>(
     line: JointLines<'s>,
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     joint: usize,
     link: &Link<'s>,
     q: Symbol<'s>,
@@ -231,9 +231,9 @@ fn joint_angle<'s>(
             return by_quarters(turn, turns);
         }
         // the addition theorem
-        let ((s, c), (sin, cos)) = (turn, sheet.constant_turn(&link.theta, Cause::Arithmetic));
-        let sin = sheet.name(Name::scalar(Quantity::ThetaSine, joint), sin);
-        let cos = sheet.name(Name::scalar(Quantity::ThetaCosine, joint), cos);
+        let ((s, c), (sin, cos)) = (turn, builder.constant_turn(&link.theta, Cause::Arithmetic));
+        let sin = builder.name(Name::scalar(Quantity::ThetaSine, joint), sin);
+        let cos = builder.name(Name::scalar(Quantity::ThetaCosine, joint), cos);
         return (
             line.scalar(Quantity::TurnedSine, || s * cos + c * sin),
             line.scalar(Quantity::TurnedCosine, || c * cos - s * sin),
@@ -242,11 +242,11 @@ fn joint_angle<'s>(
     let angle = if link.theta.right.is_some() {
         q
     } else {
-        line.scalar(Quantity::Angle, || sheet.entry(Name::scalar(Quantity::Theta, joint), link.theta.radians) + q)
+        line.scalar(Quantity::Angle, || builder.entry(Name::scalar(Quantity::Theta, joint), link.theta.radians) + q)
     };
-    let (s, c) = sheet.sine_and_cosine(angle);
-    let s = sheet.name(Name::scalar(Quantity::Sine, joint), s);
-    let c = sheet.name(Name::scalar(Quantity::Cosine, joint), c);
+    let (s, c) = builder.sine_and_cosine(angle);
+    let s = builder.name(Name::scalar(Quantity::Sine, joint), s);
+    let c = builder.name(Name::scalar(Quantity::Cosine, joint), c);
     link.theta.right.map_or((s, c), |turns| by_quarters((s, c), turns))
 }
 
@@ -263,13 +263,13 @@ fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Sy
 /// d_i: J_i → C_i, a constant of the table; a prismatic joint moves it along its axis.
 fn centre_of_mass<'s>(
     line: JointLines<'s>,
-    sheet: &'s Worksheet,
+    builder: &'s Builder,
     joint: usize,
     link: &Link<'s>,
     q: Symbol<'s>,
 ) -> Vector<'s> {
     match link.kind {
-        Revolute => sheet.entry_vector(Quantity::D, joint, link.offset + link.com),
+        Revolute => builder.name_vector(Quantity::D, joint, link.offset + link.com),
         Prismatic => line.vector(Quantity::D, || {
             let [x, y, z] = link.offset.0;
             Vector([x, y, z + q]) + link.com

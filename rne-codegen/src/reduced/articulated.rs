@@ -13,13 +13,14 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use super::arguments::SymbolicTurn;
 use super::composite::{Gathering, turned_about_x, turned_about_z};
 use super::inward::{Wrench, antisymmetric_of};
 use super::outward::{Arm, Gradient};
 use super::regroup::is_parallel;
 use super::sensitivity::{Station, matter, stations};
-use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
-use crate::exact::Number;
+
+use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::quantity::Quantity;
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
@@ -122,23 +123,23 @@ impl<'s> Articulated<'s> {
     }
 
     /// Gives way along its joint.
-    fn released(self, writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
+    fn released(self, builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
         let (row, rows) = (&arm.rows()[index], arm.rows());
-        let rate = writer.rate(rows, index);
-        let torque = writer.torque(index);
+        let rate = builder.rate(rows, index);
+        let torque = builder.torque(index);
         let torque = if row.reversed { -torque } else { torque };
-        let zeros = writer.zeros();
+        let zeros = builder.no_vector();
         let omega = station.before.omega;
         let (angular, linear) = (full(self.angular), full(self.linear));
         let (resistance, pivot, rest, drift) = match row.kind {
             Revolute => {
                 let [wx, wy, _] = omega.0;
-                let drift = Vector([rate * wy, -(rate * wx), writer.zero()]);
+                let drift = Vector([rate * wy, -(rate * wx), builder.zero()]);
                 let resistance = [Vector(angular[2]), Vector(self.mixed[2])];
                 (resistance, angular[2][2], torque - self.bias.moment.0[2], [drift, zeros])
             }
             Prismatic => {
-                let u = writer.vector(row.axis);
+                let u = builder.vector(row.axis);
                 let resistance = [of(&self.mixed, u), of(&linear, u)];
                 let drift = omega.cross(u * rate.times(Number::integer(2)));
                 (resistance, u.dot(resistance[1]), torque - u.dot(self.bias.force), [zeros, drift])
@@ -161,12 +162,12 @@ impl<'s> Articulated<'s> {
 }
 
 /// The link alone.
-fn rigid<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Articulated<'s> {
+fn rigid<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Articulated<'s> {
     let matter = matter(arm, index);
-    let s = matter.s.map(|row| row.map(|x| writer.number(x)));
-    let (h, m, zero) = (writer.vector(matter.h), writer.number(matter.mass), writer.zero());
+    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
+    let (h, m, zero) = (builder.vector(matter.h), builder.number(matter.mass), builder.zero());
     let [x, y, z] = h.0;
-    let gradient = Gradient::new(station.own.omega, writer.zeros());
+    let gradient = Gradient::new(station.own.omega, builder.no_vector());
     Articulated {
         // J = tr(S) 1 - S
         angular: [s[1][1] + s[2][2], s[0][0] + s[2][2], s[0][0] + s[1][1], -s[0][1], -s[0][2], -s[1][2]],
@@ -177,29 +178,29 @@ fn rigid<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station<
 }
 
 /// The accelerations of the joints.
-pub(crate) fn forward_dynamics<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
+pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
     let dof = rows.len();
-    let stations = stations(writer, arm, gathering, Number::ONE);
-    let zero = writer.zero();
-    let along = |x: Number| Vector([zero, zero, writer.number(x)]);
+    let stations = stations(builder, arm, gathering, Number::ONE);
+    let zero = builder.zero();
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
     let grouped = |index: usize| is_parallel(rows, index) && gathering == Gathering::Groups;
     let mut pivots = Vec::with_capacity(dof);
     // in the axes of link i or, behind a parallel axis, in N of its group
     let mut behind: Option<Articulated<'s>> = None;
     for index in (0..dof).rev() {
-        writer.at(Quantity::ReducedForce, index + 1);
+        builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let (offset, twist) = (writer.vector(offset), writer.constant_turn(row.alpha));
-        let own = rigid(writer, arm, index, station);
+        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let own = rigid(builder, arm, index, station);
         let is_unturned = index + 1 < dof && grouped(index + 1);
         let here = match (row.kind, behind) {
             (Revolute, Some(behind)) if is_unturned => own.about_z(station.turn).plus(behind),
             (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).about_z(station.turn),
             (Prismatic, behind) => behind.map_or(own, |behind| own.plus(behind)),
         };
-        let (given, pivot) = here.released(writer, arm, index, station);
+        let (given, pivot) = here.released(builder, arm, index, station);
         pivots.push(pivot);
         // the point of link i-1 at this joint's origin moves on to the origin of link i-1
         let omega = station.before.omega;
@@ -211,30 +212,30 @@ pub(crate) fn forward_dynamics<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering:
             }
             Revolute => given.moved(along(d), omega).about_x(twist).moved(offset, stations[index - 1].own.omega),
             Prismatic => {
-                let q = writer.position(rows, index) + writer.number(d);
-                let given = given.moved(writer.vector(row.axis) * q, omega);
+                let q = builder.position(rows, index) + builder.number(d);
+                let given = given.moved(builder.vector(row.axis) * q, omega);
                 let given =
-                    if row.carried { given } else { given.about_z(writer.constant_turn(row.theta)).about_x(twist) };
+                    if row.carried { given } else { given.about_z(builder.fixed_turn(row.theta)).about_x(twist) };
                 given.moved(offset, stations[index - 1].own.omega)
             }
         });
     }
     pivots.reverse();
-    outward(writer, arm, gathering, &stations, &pivots)
+    outward(builder, arm, gathering, &stations, &pivots)
 }
 
 /// The way out: each joint's acceleration from that of the link before it.
 fn outward<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     gathering: Gathering,
     stations: &[Station<'s>],
     pivots: &[Pivot<'s>],
 ) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
-    let zero = writer.zero();
-    let along = |x: Number| Vector([zero, zero, writer.number(x)]);
-    let (mut omega_dot, mut acceleration) = (writer.zeros(), writer.vector(arm.table.gravity.map(|g| -g)));
+    let zero = builder.zero();
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
+    let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.table.gravity.map(|g| -g)));
     let mut unturned = (omega_dot, acceleration);
     let mut accelerations = Vec::with_capacity(rows.len());
     // to a point p of a link that turns with ω
@@ -242,17 +243,17 @@ fn outward<'s>(
         (omega_dot, acceleration + omega_dot.cross(p) + omega.cross(omega.cross(p)))
     };
     for (index, (row, (station, pivot))) in rows.iter().zip(stations.iter().zip(pivots)).enumerate() {
-        writer.at(Quantity::OmegaDot, index + 1);
+        builder.at(Quantity::OmegaDot, index + 1);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let (offset, twist) = (writer.vector(offset), writer.constant_turn(row.alpha));
-        let theta = writer.constant_turn(row.theta);
+        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let theta = builder.fixed_turn(row.theta);
         let before = match row.kind {
             Revolute if is_parallel(rows, index) && gathering == Gathering::Groups => {
                 let turned = stations[index - 1].turn.about_z(offset);
                 at(unturned, turned + along(d), station.before.omega)
             }
             _ => {
-                let own = index.checked_sub(1).map_or(writer.zeros(), |last| stations[last].own.omega);
+                let own = index.checked_sub(1).map_or(builder.no_vector(), |last| stations[last].own.omega);
                 let (omega_dot, acceleration) = at((omega_dot, acceleration), offset, own);
                 let turn = |v: Vector<'s>| match row.kind {
                     Revolute => twist.back_about_x(v),
@@ -261,7 +262,7 @@ fn outward<'s>(
                 };
                 let p = match row.kind {
                     Revolute => along(d),
-                    Prismatic => writer.vector(row.axis) * (writer.position(rows, index) + writer.number(d)),
+                    Prismatic => builder.vector(row.axis) * (builder.position(rows, index) + builder.number(d)),
                 };
                 at((turn(omega_dot), turn(acceleration)), p, station.before.omega)
             }
@@ -278,7 +279,7 @@ fn outward<'s>(
                 acceleration = station.turn.back_about_z(unturned.1);
             }
             Prismatic => {
-                (omega_dot, acceleration) = (angular, linear + writer.vector(row.axis) * own);
+                (omega_dot, acceleration) = (angular, linear + builder.vector(row.axis) * own);
                 unturned = (omega_dot, acceleration);
             }
         }

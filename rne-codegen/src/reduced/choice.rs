@@ -4,18 +4,19 @@ use rne_model::Robot;
 
 use super::evaluator::{self, Frame};
 use super::graph_text;
-use super::merged;
 use super::plan::Plan;
 use super::plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 use super::rewrite::Rewriting;
 use super::search::{Clock, Over, Progress, Search, default_plan};
-use super::sheet::{Cost, Dag};
-use super::transcript::Drawing;
 use super::trick::Trick;
 use super::way::Way;
 use crate::CompileError;
+use crate::derivation;
 use crate::function::{Form, Function};
 use crate::fusion;
+use crate::ir::{Builder, Cost, Graph, Policy, Reading, Traced};
+use crate::lower::{Heading, lower};
+use crate::name::Name;
 use crate::program::Program;
 use crate::proof;
 
@@ -90,13 +91,14 @@ impl Choice {
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 let (plan, way) = self.cheapest(robot, function);
-                let (frame, drawing) = drawn_in(robot, &plan, function, way)?;
-                let program = drawing.program(robot, &frame, function, form, arranged)?;
+                let (frame, names, written) = written_in(robot, &plan, function, way)?;
+                let heading = Heading { robot, function, form };
+                let program = proved(&heading, written, &names, frame.table.reading, arranged)?;
                 let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
                 Ok(Program { choices, ..program })
             }
             _ => {
-                let merged = merged::program(robot, function, arranged)?;
+                let merged = merged(robot, function, arranged)?;
                 let plain = crate::compile(robot, function, Form::SevenSteps)?;
                 // a value that is found where it is not used otherwise costs what it takes there
                 Ok(if plain.operations().total() < merged.operations().total() { plain } else { merged })
@@ -128,11 +130,34 @@ impl Choice {
             )));
         };
         let function = Function::InverseDynamics;
-        let (frame, drawing) = drawn(robot, plan, function)?;
-        let dag = graph_text::read(graph, &frame, &drawing.dag.sheet.numbers)
-            .map_err(|(line, message)| misread(robot, line, &message))?;
-        drawing.with(dag).program(robot, &frame, function, Form::Rewritten, arranged)
+        let (frame, names, written) = rewritten_graph(robot, plan, graph)?;
+        let heading = Heading { robot, function, form: Form::Rewritten };
+        proved(&heading, written, &names, frame.table.reading, arranged)
     }
+}
+
+/// Lowers a graph; the program is `arranged` and proved to be that of the seven steps.
+fn proved(
+    heading: &Heading<'_>,
+    written: Traced,
+    names: &[Name],
+    reading: Reading,
+    arranged: fn(Program) -> Program,
+) -> Result<Program, CompileError> {
+    let (program, exactly) = lower(heading, written, names)?;
+    let mut program = arranged(program);
+    program.proof = Some(proof::prove(heading.robot, &program, &exactly, reading)?);
+    Ok(program)
+}
+
+/// The plain formulas of a function with every value computed once, however often and in whatever way the formulas compute
+/// it: the reduced form of what has no recursion of its own.
+fn merged(robot: &Robot, function: Function, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
+    let reading = Reading::default();
+    let builder = Builder::traced(Policy::Value, reading, function);
+    let (names, outputs): (Vec<Name>, Vec<_>) = derivation::outputs(&builder, robot, function).into_iter().unzip();
+    let written = builder.finish(outputs).numbered();
+    proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged)
 }
 
 impl From<PlanFile> for Choice {
@@ -150,12 +175,13 @@ fn misread(robot: &Robot, line: usize, message: &str) -> CompileError {
     ))
 }
 
-/// The recursion of a function.
-fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Result<(Frame, Drawing), CompileError> {
-    drawn_in(robot, plan, function, Way::Recursion)
-}
-
-fn drawn_in(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Result<(Frame, Drawing), CompileError> {
+/// A function written in one of its ways under a plan.
+fn written_in(
+    robot: &Robot,
+    plan: &Plan,
+    function: Function,
+    way: Way,
+) -> Result<(Frame, Vec<Name>, Traced), CompileError> {
     let misfit = || {
         CompileError::Plan(format!(
             "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` writes it anew",
@@ -163,8 +189,21 @@ fn drawn_in(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Result<
         ))
     };
     let frame = evaluator::frame(robot, plan).ok_or_else(misfit)?;
-    let drawing = Drawing::new(&frame, plan, function, way).ok_or_else(misfit)?;
-    Ok((frame, drawing))
+    let (names, written) = frame.written(plan, function, way).ok_or_else(misfit)?;
+    Ok((frame, names, written))
+}
+
+/// The torques by a plan.
+fn torques_by(robot: &Robot, plan: &Plan) -> Result<(Frame, Vec<Name>, Traced), CompileError> {
+    written_in(robot, plan, Function::InverseDynamics, Way::Recursion)
+}
+
+/// A rewritten graph of the torques: values keep the names that they have under its plan.
+fn rewritten_graph(robot: &Robot, plan: &Plan, text: &str) -> Result<(Frame, Vec<Name>, Traced), CompileError> {
+    let (frame, names, plain) = torques_by(robot, plan)?;
+    let read = graph_text::read(text, &frame, &plain.graph.numbers, Function::InverseDynamics)
+        .map_err(|(line, message)| misread(robot, line, &message))?;
+    Ok((frame, names, read.told_by(&plain)))
 }
 
 /// Whether the choices of a plan matter to a function.
@@ -256,15 +295,11 @@ pub fn search(
     let reduced_cost = search.cost(&plan).unwrap_or_default();
     let mut best: Option<(Cost, Rewritten)> = None;
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
-        let (frame, drawing) = drawn(robot, &rewritten.plan, Function::InverseDynamics)?;
-        let read = graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers);
-        let dag = read.map_err(|(line, message)| misread(robot, line, &message))?;
-        {
-            // one that has lost too much precision may be replaced by a dearer one
-            let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
-            if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
-                best = Some((evaluator::cost(&dag, &frame, &mut Vec::new()), rewritten.clone()));
-            }
+        let (_, _, read) = rewritten_graph(robot, &rewritten.plan, &rewritten.graph)?;
+        // one that has lost too much precision may be replaced by a dearer one
+        let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
+        if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
+            best = Some((read.graph.cost(&mut Vec::new()), rewritten.clone()));
         }
     }
     if wanted.rewrite {
@@ -294,20 +329,14 @@ const PRECISION: f64 = 3.0;
 const STATES: usize = 200;
 
 fn is_precise(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
-    let function = Function::InverseDynamics;
-    let plan =
-        if let (Form::Rewritten, Some(rewritten)) = (form, &choice.rewritten) { &rewritten.plan } else { &choice.plan };
-    let (frame, drawing) = drawn(robot, plan, function)?;
-    let drawing = match (form, &choice.rewritten) {
-        (Form::Rewritten, Some(rewritten)) => {
-            match graph_text::read(&rewritten.graph, &frame, &drawing.dag.sheet.numbers) {
-                Ok(dag) => drawing.with(dag),
-                Err(_) => return Ok(false),
-            }
-        }
-        _ => drawing,
+    let (_, names, written) = match (form, &choice.rewritten) {
+        (Form::Rewritten, Some(rewritten)) => match rewritten_graph(robot, &rewritten.plan, &rewritten.graph) {
+            Ok(read) => read,
+            Err(_) => return Ok(false),
+        },
+        _ => torques_by(robot, &choice.plan)?,
     };
-    let (program, _) = drawing.unproved(robot, &frame, function, form)?;
+    let (program, _) = lower(&Heading { robot, function: Function::InverseDynamics, form }, written, &names)?;
     Ok(proof::loss_of_precision(robot, &program, STATES)? <= PRECISION)
 }
 
@@ -347,23 +376,22 @@ fn rewritten(
     candidates.truncate(16);
     let mut candidates: Vec<Plan> = candidates.iter().map(|plan| search.tidied(plan)).collect();
     candidates.dedup();
-    // (cost, plan, graph, numbers given, frame)
-    let mut graphs: Vec<(Cost, Plan, Dag, usize, Frame)> = Vec::new();
+    // (cost, plan, graph, numbers given)
+    let mut graphs: Vec<(Cost, Plan, Graph, usize)> = Vec::new();
     if let Some((cost, known)) = best {
-        let (frame, drawing) = drawn(robot, &known.plan, Function::InverseDynamics)?;
-        let given = drawing.dag.sheet.numbers.len();
+        let (frame, _, plain) = torques_by(robot, &known.plan)?;
+        let given = plain.graph.numbers.len();
         // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
-        let mut dag = drawing.dag.clone();
-        if let Ok(read) = graph_text::read(&known.graph, &frame, &drawing.dag.sheet.numbers) {
-            dag = graph_text::on_numbers_of(&read, &dag);
-        }
-        graphs.push((*cost, known.plan.clone(), dag, given, frame));
+        let read = graph_text::read(&known.graph, &frame, &plain.graph.numbers, Function::InverseDynamics);
+        let graph =
+            read.map_or_else(|_| plain.graph.clone(), |read| graph_text::on_numbers_of(&read.graph, &plain.graph));
+        graphs.push((*cost, known.plan.clone(), graph, given));
     }
     for plan in candidates {
-        let Ok((frame, drawing)) = drawn(robot, &plan, Function::InverseDynamics) else { continue };
-        let cost = evaluator::cost(&drawing.dag, &frame, &mut Vec::new());
-        let given = drawing.dag.sheet.numbers.len();
-        graphs.push((cost, plan, drawing.dag, given, frame));
+        let Ok((_, _, written)) = torques_by(robot, &plan) else { continue };
+        let cost = written.graph.cost(&mut Vec::new());
+        let given = written.graph.numbers.len();
+        graphs.push((cost, plan, written.graph, given));
     }
     let middle = from + (1.0 - from) * 0.5;
     'stages: for (stage, begin, end, hottest, most) in [(0, from, middle, 0.2, usize::MAX), (1, middle, 1.0, 0.22, 4)] {
@@ -371,11 +399,11 @@ fn rewritten(
         graphs.truncate(most);
         #[allow(clippy::cast_precision_loss)] // a handful
         let length = (end - begin) / graphs.len() as f64;
-        for (index, (cost, _, dag, _, frame)) in graphs.iter_mut().enumerate() {
+        for (index, (cost, _, graph, _)) in graphs.iter_mut().enumerate() {
             #[allow(clippy::cast_precision_loss)]
             let start = begin + length * index as f64;
             let seed = seed.wrapping_add(stage * 100 + index as u64);
-            let mut rewriting = Rewriting::new(dag.clone(), seed, |dag, live| evaluator::cost(dag, frame, live));
+            let mut rewriting = Rewriting::new(graph.clone(), seed);
             let mut local = |progress: &Progress| clock(progress).map(|over| ((over - start) / length).clamp(0.0, 1.0));
             let plans = search.plans;
             let least = best.as_ref().map(|(cost, _)| *cost);
@@ -385,7 +413,7 @@ fn rewritten(
                 phase: "rewriting",
             };
             let ended = rewriting.anneal(hottest, report, &mut local);
-            (*cost, *dag) = rewriting.best();
+            (*cost, *graph) = rewriting.best();
             if ended.is_err() {
                 break 'stages;
             }
@@ -393,11 +421,11 @@ fn rewritten(
     }
     graphs.sort_by_key(|(cost, ..)| cost.weight());
     let mut cheapest = None;
-    for (cost, plan, dag, given, _) in graphs {
+    for (cost, plan, graph, given) in graphs {
         if best.as_ref().is_some_and(|(least, _)| cost.weight() >= least.weight()) {
             break;
         }
-        let rewritten = Rewritten { plan, graph: graph_text::written(&dag, given) };
+        let rewritten = Rewritten { plan, graph: graph_text::written(&graph, given) };
         let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
         if is_precise(robot, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));

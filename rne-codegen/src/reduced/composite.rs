@@ -11,12 +11,13 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use super::arguments::SymbolicTurn;
 use super::inward::Wrench;
 use super::outward::Arm;
 use super::pseudo_inertia::PseudoInertia;
 use super::regroup::{group_start, is_parallel};
-use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
-use crate::exact::Number;
+
+use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::name::{By, Name};
 use crate::quantity::Axis::{self, X, Y, Z};
 use crate::quantity::Quantity;
@@ -59,10 +60,10 @@ pub(crate) fn turned_about_x<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>
 }
 
 impl<'s> Composite<'s> {
-    pub(crate) fn of(writer: &'s Writer, matter: &PseudoInertia) -> Self {
+    pub(crate) fn of(builder: &'s Builder, matter: &PseudoInertia) -> Self {
         let s = matter.s;
-        let s = [s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]].map(|x| writer.number(x));
-        Self { mass: matter.mass, h: writer.vector(matter.h), s, around: None }
+        let s = [s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]].map(|x| builder.number(x));
+        Self { mass: matter.mass, h: builder.vector(matter.h), s, around: None }
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
@@ -75,11 +76,11 @@ impl<'s> Composite<'s> {
     }
 
     /// Names what is there, in frame N of a joint.
-    pub(crate) fn name(&self, writer: &'s Writer, joint: usize) {
-        writer.name(Quantity::CompositeFirstMoment, joint, self.h);
+    pub(crate) fn name(&self, builder: &'s Builder, joint: usize) {
+        builder.name_vector(Quantity::CompositeFirstMoment, joint, self.h);
         let elements = [(X, X), (Y, Y), (Z, Z), (X, Y), (X, Z), (Y, Z)];
         for ((row, column), element) in elements.into_iter().zip(self.s) {
-            writer.define(Name::matrix(Quantity::CompositeSecondMoment, joint, row, column), element);
+            builder.name(Name::matrix(Quantity::CompositeSecondMoment, joint, row, column), element);
         }
     }
 
@@ -99,9 +100,9 @@ impl<'s> Composite<'s> {
     }
 
     /// The same matter about a point from which the old one is at t.
-    pub(crate) fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
+    pub(crate) fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
         let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
-        let m = writer.number(self.mass);
+        let m = builder.number(self.mass);
         let [xx, yy, zz, xy, xz, yz] = self.s;
         let ([mx, my, mz], twice) = ([x * m, y * m, z * m], |a: Symbol<'s>| a + a);
         let (dx, dy) = (x * (twice(hx) + mx), y * (twice(hy) + my));
@@ -121,7 +122,7 @@ impl<'s> Composite<'s> {
     }
 
     /// What gives its points the accelerations b + e × r.
-    pub(crate) fn carried(&self, writer: &'s Writer, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
+    pub(crate) fn carried(&self, builder: &'s Builder, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
         // J = tr(S) 1 - S
         let momentum = Vector([
@@ -129,18 +130,18 @@ impl<'s> Composite<'s> {
             (xx + zz) * y - (xy * x + yz * z),
             self.around() * z - (xz * x + yz * y),
         ]);
-        Wrench { force: b * writer.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
+        Wrench { force: b * builder.number(self.mass) + e.cross(self.h), moment: momentum + self.h.cross(b) }
     }
 
     /// What accelerates it about the z axis with 1 rad/s².
-    pub(crate) fn turning(&self, writer: &'s Writer) -> Wrench<'s> {
+    pub(crate) fn turning(&self, builder: &'s Builder) -> Wrench<'s> {
         let ([hx, hy, _], [_, _, _, _, xz, yz]) = (self.h.0, self.s);
-        Wrench { force: Vector([-hy, hx, writer.zero()]), moment: Vector([-xz, -yz, self.around()]) }
+        Wrench { force: Vector([-hy, hx, builder.zero()]), moment: Vector([-xz, -yz, self.around()]) }
     }
 
     /// What accelerates it along u with 1 m/s².
-    pub(crate) fn sliding(&self, u: Vector<'s>, writer: &'s Writer) -> Wrench<'s> {
-        Wrench { force: u * writer.number(self.mass), moment: self.h.cross(u) }
+    pub(crate) fn sliding(&self, u: Vector<'s>, builder: &'s Builder) -> Wrench<'s> {
+        Wrench { force: u * builder.number(self.mass), moment: self.h.cross(u) }
     }
 }
 
@@ -166,15 +167,15 @@ impl<'s> Carried<'s> {
         }
     }
 
-    fn name(&self, writer: &'s Writer, joint: usize) {
+    fn name(&self, builder: &'s Builder, joint: usize) {
         if let Some(composite) = &self.composite {
-            composite.name(writer, joint);
+            composite.name(builder, joint);
         }
         for (column, Wrench { force, moment }) in &self.columns {
             for (axis, (f, n)) in Axis::ALL.into_iter().zip(force.0.into_iter().zip(moment.0)) {
                 let by = Some(By::RateDot(column + 1));
-                writer.define(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
-                writer.define(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
+                builder.name(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
+                builder.name(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
             }
         }
     }
@@ -187,37 +188,37 @@ impl<'s> Carried<'s> {
         self.map(false, |body| body.about_x(turn), |wrench| wrench.map(|v| turn.about_x(v)))
     }
 
-    fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
+    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
         let unturned = self.unturned;
-        self.map(unturned, |body| body.moved(t, writer), |wrench| wrench.about(t))
+        self.map(unturned, |body| body.moved(t, builder), |wrench| wrench.about(t))
     }
 }
 
 /// The upper half of M: row i holds its elements (i, i) to (i, n).
-pub(crate) fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gathering) -> Vec<Vec<Symbol<'s>>> {
+pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Vec<Symbol<'s>>> {
     let rows = arm.rows();
     let dof = rows.len();
-    let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![writer.zero(); dof]; dof];
+    let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
     let mut carried = Carried { composite: None, columns: Vec::new(), unturned: false };
     for index in (0..dof).rev() {
         let row = &rows[index];
-        writer.at(Quantity::ReducedForce, index + 1);
+        builder.at(Quantity::ReducedForce, index + 1);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = writer.constant_turn(row.alpha);
+        let twist = builder.fixed_turn(row.alpha);
         if arm.is_spin(index) {
-            let c = writer.number(arm.parameters.sphere.unwrap_or_default());
+            let c = builder.number(arm.parameters.sphere.unwrap_or_default());
             matrix[index][index] = c;
-            let moment = twist.about_x(Vector([writer.zero(), writer.zero(), c]));
-            carried.columns.push((index, Wrench { force: writer.zeros(), moment }));
+            let moment = twist.about_x(Vector([builder.zero(), builder.zero(), c]));
+            carried.columns.push((index, Wrench { force: builder.no_vector(), moment }));
             continue;
         }
-        let own = Composite::of(writer, &arm.parameters.links[index]);
+        let own = Composite::of(builder, &arm.parameters.links[index]);
         let parallel = is_parallel(rows, index);
         match row.kind {
             Revolute => {
                 let grouped = parallel && gathering == Gathering::Groups;
                 let start = if grouped { group_start(rows, index) } else { index };
-                let turn = writer.turn(rows, start, index);
+                let turn = builder.turn(rows, start, index);
                 for (column, wrench) in &carried.columns {
                     matrix[index][*column] = wrench.moment.0[2];
                 }
@@ -230,40 +231,40 @@ pub(crate) fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gath
                     (whole.about_z(turn), rest)
                 };
                 let whole = rest.composite.map_or(own_unturned, |behind| own_unturned.plus(behind));
-                let column = whole.turning(writer);
+                let column = whole.turning(builder);
                 matrix[index][index] = column.moment.0[2];
                 let mut next = Carried { composite: Some(whole), columns: rest.columns, unturned: true };
                 next.columns.push((index, column));
-                next.name(writer, index + 1);
-                let along = |x: Number| Vector([writer.zero(), writer.zero(), writer.number(x)]);
+                next.name(builder, index + 1);
+                let along = |x: Number| Vector([builder.zero(), builder.zero(), builder.number(x)]);
                 carried = if index == 0 {
                     next
                 } else if grouped {
                     // the frame of the group goes on, but for its origin
-                    let before = writer.turn(rows, start, index - 1);
-                    next.moved(before.about_z(writer.vector(offset)) + along(d), writer)
+                    let before = builder.turn(rows, start, index - 1);
+                    next.moved(before.about_z(builder.vector(offset)) + along(d), builder)
                 } else {
-                    next.moved(along(d), writer).turned_about_x(twist).moved(writer.vector(offset), writer)
+                    next.moved(along(d), builder).turned_about_x(twist).moved(builder.vector(offset), builder)
                 };
             }
             Prismatic => {
-                let u = writer.vector(row.axis);
+                let u = builder.vector(row.axis);
                 for (column, wrench) in &carried.columns {
                     matrix[index][*column] = u.dot(wrench.force);
                 }
                 let whole = carried.composite.map_or(own, |behind| own.plus(behind));
-                let column = whole.sliding(u, writer);
+                let column = whole.sliding(u, builder);
                 matrix[index][index] = u.dot(column.force);
                 let mut next = Carried { composite: Some(whole), columns: carried.columns, unturned: false };
                 next.columns.push((index, column));
-                let q = writer.position(rows, index) + writer.number(d);
-                let next = next.moved(u * q, writer);
+                let q = builder.position(rows, index) + builder.number(d);
+                let next = next.moved(u * q, builder);
                 let next = if row.carried {
                     next
                 } else {
-                    next.turned_about_z(writer.constant_turn(row.theta), false).turned_about_x(twist)
+                    next.turned_about_z(builder.fixed_turn(row.theta), false).turned_about_x(twist)
                 };
-                carried = next.moved(writer.vector(offset), writer);
+                carried = next.moved(builder.vector(offset), builder);
             }
         }
     }
@@ -274,7 +275,7 @@ pub(crate) fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gath
                     let element = matrix[row][column];
                     let element = if rows[row].reversed == rows[column].reversed { element } else { -element };
                     let by = Some(By::RateDot(column + 1));
-                    writer.define(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
+                    builder.name(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
                     element
                 })
                 .collect()
@@ -283,15 +284,15 @@ pub(crate) fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gath
 }
 
 /// Torques against gravity, by the first moments of the composite bodies alone: τ = (h × a)_z.
-pub(crate) fn gravity_torques<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
+pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
     let dof = rows.len();
     // acceleration of the base in the frame N of each joint, or of its group
     let mut fields: Vec<Vector<'s>> = Vec::with_capacity(dof);
-    let mut own = writer.vector(arm.table.gravity.map(|g| -g));
+    let mut own = builder.vector(arm.table.gravity.map(|g| -g));
     for (index, row) in rows.iter().enumerate() {
-        writer.at(Quantity::OriginAcceleration, index + 1);
-        let twist = writer.constant_turn(row.alpha);
+        builder.at(Quantity::OriginAcceleration, index + 1);
+        let twist = builder.fixed_turn(row.alpha);
         let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
         let field = match fields.last() {
             Some(field) if grouped => *field,
@@ -300,62 +301,62 @@ pub(crate) fn gravity_torques<'s>(writer: &'s Writer, arm: &Arm<'_>, gathering: 
         own = match row.kind {
             Revolute => {
                 let start = if grouped { group_start(rows, index) } else { index };
-                writer.turn(rows, start, index).back_about_z(field)
+                builder.turn(rows, start, index).back_about_z(field)
             }
             Prismatic if row.carried => own,
-            Prismatic => writer.constant_turn(row.theta).back_about_z(field),
+            Prismatic => builder.fixed_turn(row.theta).back_about_z(field),
         };
         fields.push(if row.kind == Revolute { field } else { own });
     }
-    let zero = writer.zero();
+    let zero = builder.zero();
     let mut torques = vec![zero; dof];
     // first moment of what is behind, in the axes of link i or in its frame N
-    let (mut h, mut mass, mut unturned) = (writer.zeros(), Number::ZERO, false);
+    let (mut h, mut mass, mut unturned) = (builder.no_vector(), Number::ZERO, false);
     for index in (0..dof).rev() {
         let row = &rows[index];
-        writer.at(Quantity::ReducedMoment, index + 1);
+        builder.at(Quantity::ReducedMoment, index + 1);
         if arm.is_spin(index) {
             continue;
         }
         let matter = &arm.parameters.links[index];
         mass = mass + matter.mass;
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = writer.constant_turn(row.alpha);
-        let own = writer.vector(matter.h);
+        let twist = builder.fixed_turn(row.alpha);
+        let own = builder.vector(matter.h);
         let field = fields[index];
-        let m = writer.number(mass);
+        let m = builder.number(mass);
         let torque = match row.kind {
             Revolute => {
                 let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
                 let start = if grouped { group_start(rows, index) } else { index };
-                let turn = writer.turn(rows, start, index);
+                let turn = builder.turn(rows, start, index);
                 h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
                 let ([hx, hy, _], [ax, ay, _]) = (h.0, field.0);
                 let torque = hx * ay - hy * ax;
-                let along = Vector([zero, zero, writer.number(d)]);
+                let along = Vector([zero, zero, builder.number(d)]);
                 unturned = grouped;
                 if grouped {
-                    let before = writer.turn(rows, start, index - 1);
-                    h = h + (before.about_z(writer.vector(offset)) + along) * m;
+                    let before = builder.turn(rows, start, index - 1);
+                    h = h + (before.about_z(builder.vector(offset)) + along) * m;
                 } else {
-                    h = twist.about_x(h + along * m) + writer.vector(offset) * m;
+                    h = twist.about_x(h + along * m) + builder.vector(offset) * m;
                 }
                 torque
             }
             Prismatic => {
-                let u = writer.vector(row.axis);
+                let u = builder.vector(row.axis);
                 let torque = u.dot(field) * m;
-                let q = writer.position(rows, index) + writer.number(d);
+                let q = builder.position(rows, index) + builder.number(d);
                 h = h + own + u * (q * m);
                 if !row.carried {
-                    h = twist.about_x(writer.constant_turn(row.theta).about_z(h));
+                    h = twist.about_x(builder.fixed_turn(row.theta).about_z(h));
                 }
-                h = h + writer.vector(offset) * m;
+                h = h + builder.vector(offset) * m;
                 torque
             }
         };
         torques[index] = if row.reversed { -torque } else { torque };
-        writer.define(Name::scalar(Quantity::Torque, index + 1), torques[index]);
+        builder.name(Name::scalar(Quantity::Torque, index + 1), torques[index]);
     }
     torques
 }

@@ -6,10 +6,9 @@ use super::outward::Arm;
 use super::plan::Plan;
 use super::regroup::{Offers, Parameters, parameters};
 use super::rows::{Frames, Table};
-use super::sheet::{Cost, Dag, Identity, Ref, Sheet};
 use super::way::{self, Way};
-use super::writer::{Angle, Writer};
 use crate::function::Function;
+use crate::ir::{Builder, Cost, Graph, Policy, Ref, Traced, number_values};
 use crate::name::Name;
 
 /// A table and what it offers.
@@ -23,10 +22,10 @@ pub(crate) struct Frame {
 /// Counts plans of one robot, as many as a search wants.
 pub(crate) struct Evaluator {
     frames: Vec<Frame>,
-    writer: Writer,
-    function: Function,
-    dag: Dag,
+    builder: Builder,
+    numbered: Graph,
     live: Vec<bool>,
+    map: Vec<Ref>,
 }
 
 /// The tables of a robot under every choice of frames that applies to it.
@@ -66,19 +65,18 @@ impl Frame {
     pub(crate) fn parameters(&self, plan: &Plan) -> Option<Parameters> {
         (plan.joints.len() == self.table.rows.len()).then(|| parameters(&self.table, &self.offers, plan))?
     }
-}
 
-/// Writes a function on the writer's sheet.
-pub(crate) fn write(
-    writer: &Writer,
-    frame: &Frame,
-    plan: &Plan,
-    parameters: &Parameters,
-    function: Function,
-    way: Way,
-) -> Vec<(Name, Ref)> {
-    let arm = Arm { table: &frame.table, plan, parameters };
-    way::write(writer, &arm, function, way).into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
+    /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
+    pub(crate) fn written(&self, plan: &Plan, function: Function, way: Way) -> Option<(Vec<Name>, Traced)> {
+        let parameters = self.parameters(plan)?;
+        let builder = Builder::traced(Policy::Value, self.table.reading, function);
+        let arm = Arm { table: &self.table, plan, parameters: &parameters };
+        let (names, outputs): (Vec<Name>, Vec<_>) = way::write(&builder, &arm, function, way)
+            .into_iter()
+            .map(|(name, symbol)| (name, builder.name(name, symbol).at))
+            .unzip();
+        Some((names, builder.finish(outputs).numbered()))
+    }
 }
 
 impl Evaluator {
@@ -87,10 +85,10 @@ impl Evaluator {
         let reading = frames.first().map(|frame| frame.table.reading).unwrap_or_default();
         Self {
             frames,
-            writer: Writer::new(function, reading, false),
-            function,
-            dag: Dag { sheet: Sheet::new(Identity::Value), outputs: Vec::new() },
+            builder: Builder::untraced(Policy::Value, reading, function),
+            numbered: Graph::new(Policy::Numbered, reading),
             live: Vec::new(),
+            map: Vec::new(),
         }
     }
 
@@ -105,18 +103,16 @@ impl Evaluator {
 
     /// What a plan costs when the function is written in one of its ways.
     pub(crate) fn cost_of(&mut self, plan: &Plan, way: Way) -> Option<Cost> {
-        let frame = self.frames.iter().find(|frame| frame.is_of(plan))?;
+        let Self { frames, builder, numbered, live, map } = self;
+        let frame = frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
-        self.writer.restart(frame.table.reading);
+        builder.restart(frame.table.reading);
+        let arm = Arm { table: &frame.table, plan, parameters: &parameters };
         let outputs: Vec<Ref> =
-            write(&self.writer, frame, plan, &parameters, self.function, way).into_iter().map(|(_, at)| at).collect();
-        self.dag.rewrite_from(&self.writer.sheet.borrow(), &outputs, &mut self.live);
-        Some(cost(&self.dag, frame, &mut self.live))
+            way::write(builder, &arm, builder.function, way).into_iter().map(|(_, symbol)| symbol.at).collect();
+        let graph = builder.graph.get_mut();
+        graph.outputs = outputs;
+        number_values(graph, numbered, live, map);
+        Some(numbered.cost(live))
     }
-}
-
-/// Operations of a graph.
-pub(crate) fn cost(dag: &Dag, frame: &Frame, live: &mut Vec<bool>) -> Cost {
-    let rows = &frame.table.rows;
-    dag.cost(live, |first, last| Angle::of(rows, first.into(), last.into()).constant.is_some())
 }

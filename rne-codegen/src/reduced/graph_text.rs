@@ -11,46 +11,65 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use super::evaluator::Frame;
-use super::numbers::{Numbers, Source};
-use super::point::Point;
-use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
-use super::writer::Angle;
-use crate::exact::Number;
+use crate::function::Function;
+use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol, Traced, mark_live_outside_angles};
+use crate::name::Name;
+use crate::quantity::Quantity;
 
 /// A graph as text, when the first `given` of its numbers are those of its plan.
-pub(crate) fn written(dag: &Dag, given: usize) -> String {
-    let mut live = Vec::new();
-    mark_live(&dag.sheet.nodes, &dag.outputs, &mut live);
+pub(crate) fn written(graph: &Graph, given: usize) -> String {
     let mut text = String::new();
-    let mut constants = Constants { numbers: &dag.sheet.numbers, given, names: HashMap::new(), text: String::new() };
-    let mut names: Vec<String> = vec![String::new(); dag.sheet.nodes.len()];
+    let mut constants = Constants { numbers: &graph.numbers, given, names: HashMap::new(), text: String::new() };
+    let mut names: Vec<String> = vec![String::new(); graph.len()];
     let mut terms = 0;
-    for (index, node) in dag.sheet.nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
+    // angles are known by their joints
+    let mut live = Vec::new();
+    mark_live_outside_angles(&graph.nodes, &graph.outputs, &mut live);
+    for (at, op) in graph.nodes().filter(|(at, _)| live[at.index()]) {
         let operand = |at: Ref| format!("{}{}", if at.is_negative() { "-" } else { "" }, names[at.index()]);
-        let line = match node.op {
-            Op::Constant(place) => {
-                names[index] = constants.name(place);
-                continue;
-            }
-            Op::Leaf(leaf) => {
-                names[index] = leaf_name(leaf);
-                continue;
-            }
-            Op::Sum(a, b) if b.is_negative() => format!("{} - {}", operand(a), operand(-b)),
-            Op::Sum(a, b) => format!("{} + {}", operand(a), operand(b)),
-            Op::Product(a, b) => format!("{} * {}", operand(a), operand(b)),
-            // torques divide by nothing
-            Op::Inverse(a) => format!("1 / {}", operand(a)),
+        let line = match op {
+            Op::Constant(place) => Err(constants.name(place)),
+            Op::Input(input) => Err(input.name().to_string()),
+            Op::Sine(angle) => Err(format!("s{}", group(graph, angle))),
+            Op::Cosine(angle) => Err(format!("c{}", group(graph, angle))),
+            Op::Sum(a, b) if b.is_negative() => Ok(format!("{} - {}", operand(a), operand(-b))),
+            Op::Sum(a, b) => Ok(format!("{} + {}", operand(a), operand(b))),
+            Op::Product(a, b) => Ok(format!("{} * {}", operand(a), operand(b))),
+            Op::Quotient(a, b) => Ok(format!("{} / {}", operand(a), operand(b))),
+            // nothing that is rewritten chooses
+            Op::BySign(_) => Err("k0".to_owned()),
         };
-        terms += 1;
-        names[index] = format!("t{terms}");
-        let _ = writeln!(text, "t{terms} = {line}");
+        names[at.index()] = match line {
+            Err(name) => name,
+            Ok(line) => {
+                terms += 1;
+                let _ = writeln!(text, "t{terms} = {line}");
+                format!("t{terms}")
+            }
+        };
     }
-    for (joint, at) in dag.outputs.iter().enumerate() {
+    for (joint, at) in graph.outputs.iter().enumerate() {
         let sign = if at.is_negative() { "-" } else { "" };
         let _ = writeln!(text, "tau{} = {sign}{}", joint + 1, names[at.index()]);
     }
     constants.text + &text
+}
+
+/// The joints whose positions are summed in an angle: `2`, or `2_4` for three of them.
+fn group(graph: &Graph, angle: Ref) -> String {
+    fn joints(graph: &Graph, at: Ref, found: &mut Vec<usize>) {
+        match graph.op(at) {
+            Op::Input(input) => found.push(input.index() + 1),
+            op => op.operands().for_each(|operand| joints(graph, operand, found)),
+        }
+    }
+    let mut found = Vec::new();
+    joints(graph, angle, &mut found);
+    match (found.iter().min(), found.iter().max()) {
+        (Some(first), Some(last)) if first < last => format!("{first}_{last}"),
+        (Some(first), _) => first.to_string(),
+        _ => String::new(),
+    }
 }
 
 /// Names of constants, and the lines that make those that are not given.
@@ -88,41 +107,20 @@ impl Constants<'_> {
     }
 }
 
-fn leaf_name(leaf: Leaf) -> String {
-    let joint = |at: u8| usize::from(at) + 1;
-    let turn = |letter: &str, first: u8, last: u8| {
-        let group = if first == last { String::new() } else { format!("_{}", joint(last)) };
-        format!("{letter}{}{group}", joint(first))
-    };
-    match leaf {
-        Leaf::Position(at) => format!("q{}", joint(at)),
-        Leaf::Rate(at) => format!("qd{}", joint(at)),
-        Leaf::RateDot(at) => format!("qdd{}", joint(at)),
-        Leaf::Torque(at) => format!("tau{}", joint(at)),
-        Leaf::Force(axis) => format!("f{}", joint(axis)),
-        Leaf::Moment(axis) => format!("n{}", joint(axis)),
-        Leaf::GivenSine(at) => turn("s", at, at),
-        Leaf::GivenCosine(at) => turn("c", at, at),
-        Leaf::Sine(first, last) => turn("s", first, last),
-        Leaf::Cosine(first, last) => turn("c", first, last),
-    }
-}
-
 /// The graph of a text; `numbers` are those of the reduced form under the plan.
 ///
 /// # Errors
 /// What is wrong in which line of the text, counted from 1.
-pub(crate) fn read(text: &str, frame: &Frame, numbers: &Numbers) -> Result<Dag, (usize, String)> {
+pub(crate) fn read(
+    text: &str,
+    frame: &Frame,
+    numbers: &Numbers,
+    function: Function,
+) -> Result<Traced, (usize, String)> {
+    let builder = Builder::traced(Policy::Numbered, frame.table.reading, function);
     let given = (0..numbers.len()).filter_map(|place| u32::try_from(place).ok()).map(|place| numbers.get(place).0);
-    let mut reader = Reader {
-        frame,
-        given: given.collect(),
-        sheet: Sheet::new(Identity::Value),
-        known: HashMap::new(),
-        point: Point::new(frame.table.reading, 0),
-    };
-    let dof = frame.table.rows.len();
-    let mut outputs = vec![None; dof];
+    let mut reader = Reader { frame, given: given.collect(), builder: &builder, known: HashMap::new() };
+    let mut outputs = vec![None; frame.table.rows.len()];
     for (index, line) in text.lines().enumerate() {
         let at = index + 1;
         let line = line.trim();
@@ -135,72 +133,59 @@ pub(crate) fn read(text: &str, frame: &Frame, numbers: &Numbers) -> Result<Dag, 
         let (name, value) = (name.trim(), value.trim());
         let term = reader.operation(value).map_err(|message| (at, message))?;
         // a constant is kept without its sign
-        let term = if name.starts_with('d') { term.magnitude() } else { term };
+        let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
         if let Some(joint) = name.strip_prefix("tau").and_then(|joint| joint.parse::<usize>().ok()) {
             let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
-            *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term);
+            *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term.at);
         } else if reader.known.insert(name.to_owned(), term).is_some() {
             return Err((at, format!("`{name}` stands there twice")));
         }
     }
     let outputs: Option<Vec<Ref>> = outputs.into_iter().collect();
     let end = text.lines().count();
-    outputs.map(|outputs| Dag { sheet: reader.sheet, outputs }).ok_or_else(|| (end, "a torque is missing".to_owned()))
+    outputs.map(|outputs| builder.finish(outputs)).ok_or_else(|| (end, "a torque is missing".to_owned()))
 }
 
 /// A graph that was read, with the numbers of its plan in their places and its own behind them.
-pub(crate) fn on_numbers_of(read: &Dag, plan: &Dag) -> Dag {
-    let mut sheet = plan.sheet.clone();
-    sheet.clear_nodes();
-    let mut map: Vec<Ref> = Vec::with_capacity(read.sheet.nodes.len());
+pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
+    let mut graph = plan.clone();
+    graph.clear_nodes();
+    let mut map: Vec<Ref> = Vec::with_capacity(read.len());
     let mut places: HashMap<u32, Ref> = HashMap::new();
-    for node in &read.sheet.nodes {
-        let mapped = |map: &[Ref], at: Ref| map[at.index()].signed(at.is_negative());
+    for node in &read.nodes {
         let at = match node.op {
-            Op::Constant(place) => constant_on(&mut sheet, &read.sheet.numbers, &mut places, place),
-            Op::Leaf(leaf) => sheet.leaf(leaf, node.image),
-            Op::Inverse(a) => {
-                let a = mapped(&map, a);
-                sheet.inverse(a)
-            }
-            Op::Sum(a, b) => {
-                let (a, b) = (mapped(&map, a), mapped(&map, b));
-                sheet.sum(a, b)
-            }
-            Op::Product(a, b) => {
-                let (a, b) = (mapped(&map, a), mapped(&map, b));
-                sheet.product(a, b)
-            }
+            Op::Constant(place) => constant_on(&mut graph, &read.numbers, &mut places, place),
+            op => graph.transcribed(op, node.image, &map),
         };
         map.push(at);
     }
-    let outputs = read.outputs.iter().map(|at| map[at.index()].signed(at.is_negative())).collect();
-    Dag { sheet, outputs }
+    graph.outputs = read.outputs.iter().map(|at| at.mapped(&map)).collect();
+    graph
 }
 
-/// Makes a constant of another sheet from what it was made of there.
-fn constant_on(sheet: &mut Sheet, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
+/// Makes a constant of another graph from what it was made of there.
+fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
     if let Some(&known) = places.get(&place) {
         return known;
     }
     let (number, source) = numbers.get(place);
-    let mut operand = |sheet: &mut Sheet, at: Ref| {
+    let mut operand = |graph: &mut Graph, at: Ref| {
         let place = u32::try_from(at.index()).unwrap_or(u32::MAX);
-        constant_on(sheet, numbers, places, place).signed(at.is_negative())
+        constant_on(graph, numbers, places, place).signed(at.is_negative())
     };
     let at = match source {
-        Source::Given => sheet.constant(number),
+        Source::Given => graph.constant(number),
         Source::Sum(a, b) => {
-            let (a, b) = (operand(sheet, a), operand(sheet, b));
-            sheet.sum(a, b)
+            let (a, b) = (operand(graph, a), operand(graph, b));
+            graph.sum(a, b).0
         }
         Source::Product(a, b) => {
-            let (a, b) = (operand(sheet, a), operand(sheet, b));
-            sheet.product(a, b)
+            let (a, b) = (operand(graph, a), operand(graph, b));
+            graph.product(a, b).0
         }
         Source::Inverse(of) => {
-            let of = operand(sheet, Ref::new(of as usize));
-            sheet.constant_inverse(of).unwrap_or_else(Sheet::zero)
+            let of = operand(graph, Ref::new(of as usize));
+            graph.constant_inverse(of).unwrap_or_else(|| graph.zero())
         }
     };
     // a place holds the magnitude
@@ -209,30 +194,26 @@ fn constant_on(sheet: &mut Sheet, numbers: &Numbers, places: &mut HashMap<u32, R
     at
 }
 
-struct Reader<'a> {
+struct Reader<'a, 's> {
     frame: &'a Frame,
     given: Vec<Number>,
-    sheet: Sheet,
-    known: HashMap<String, Ref>,
-    point: Point,
+    builder: &'s Builder,
+    known: HashMap<String, Symbol<'s>>,
 }
 
-impl Reader<'_> {
-    fn operation(&mut self, text: &str) -> Result<Ref, String> {
+impl<'s> Reader<'_, 's> {
+    fn operation(&mut self, text: &str) -> Result<Symbol<'s>, String> {
         let parts: Vec<&str> = text.split_whitespace().collect();
         match parts[..] {
             [one] => self.operand(one),
             [a, sign, b] => {
                 let (a, b) = (self.operand(a)?, self.operand(b)?);
                 match sign {
-                    "+" => Ok(self.sheet.sum(a, b)),
-                    "-" => Ok(self.sheet.sum(a, -b)),
-                    "*" => Ok(self.sheet.product(a, b)),
-                    "/" => {
-                        let inverse = self.sheet.constant_inverse(b);
-                        let inverse = inverse.ok_or_else(|| format!("`{text}` divides by what is no constant"))?;
-                        Ok(self.sheet.product(a, inverse))
-                    }
+                    "+" => Ok(a + b),
+                    "-" => Ok(a - b),
+                    "*" => Ok(a * b),
+                    "/" if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
+                    "/" => Err(format!("`{text}` divides by what is no constant")),
                     _ => Err(format!("`{sign}` is no operation of a graph")),
                 }
             }
@@ -240,7 +221,7 @@ impl Reader<'_> {
         }
     }
 
-    fn operand(&mut self, text: &str) -> Result<Ref, String> {
+    fn operand(&mut self, text: &str) -> Result<Symbol<'s>, String> {
         let (name, negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
         let term = match self.known.get(name) {
             Some(&known) => known,
@@ -249,33 +230,30 @@ impl Reader<'_> {
         Ok(term.signed(negative))
     }
 
-    fn leaf(&mut self, name: &str) -> Option<Ref> {
+    fn leaf(&mut self, name: &str) -> Option<Symbol<'s>> {
         if name == "1" {
-            return Some(self.sheet.constant(Number::ONE));
+            return Some(self.builder.one());
         }
         let digits = name.find(|c: char| c.is_ascii_digit())?;
         let (letters, digits) = name.split_at(digits);
         let rows = &self.frame.table.rows;
-        let joint = |text: &str| {
-            let at = text.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < rows.len())?;
-            Some((at, u8::try_from(at).ok()?))
-        };
-        let (leaf, image) = match letters {
-            "k" => return Some(self.sheet.constant(*self.given.get(digits.parse::<usize>().ok()?)?)),
-            "q" => joint(digits).map(|(at, byte)| (Leaf::Position(byte), self.point.position(at)))?,
-            "qd" => joint(digits).map(|(at, byte)| (Leaf::Rate(byte), self.point.rate(at)))?,
-            "qdd" => joint(digits).map(|(at, byte)| (Leaf::RateDot(byte), self.point.rate_dot(at)))?,
+        let joint = |text: &str| text.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < rows.len());
+        let argument = |quantity| Some(self.builder.argument(Name::scalar(quantity, joint(digits)? + 1)));
+        match letters {
+            "k" => Some(self.builder.number(*self.given.get(digits.parse::<usize>().ok()?)?)),
+            "q" => argument(Quantity::Position),
+            "qd" => argument(Quantity::Rate),
+            "qdd" => argument(Quantity::RateDot),
             "s" | "c" => {
                 let (first, last) = digits.split_once('_').unwrap_or((digits, digits));
-                let ((first, from), (last, to)) = (joint(first)?, joint(last)?);
+                let (first, last) = (joint(first)?, joint(last)?);
                 if first > last {
                     return None;
                 }
-                let (sine, cosine) = Angle::of(rows, first, last).image(rows, &self.point);
-                if letters == "s" { (Leaf::Sine(from, to), sine) } else { (Leaf::Cosine(from, to), cosine) }
+                let (s, c) = self.builder.turned(rows, first, last).0;
+                Some(if letters == "s" { s } else { c })
             }
-            _ => return None,
-        };
-        Some(self.sheet.leaf(leaf, image))
+            _ => None,
+        }
     }
 }

@@ -8,13 +8,14 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use super::arguments::SymbolicTurn;
 use super::outward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
 use super::plan::{JointPlan, Moment, Side};
 use super::pseudo_inertia::PseudoInertia;
 use super::regroup::is_parallel;
 use super::rows::Row;
-use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
-use crate::exact::Number;
+
+use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::name::Name;
 use crate::quantity::{Axis, Quantity};
 
@@ -26,8 +27,8 @@ pub(crate) struct Wrench<'s> {
 }
 
 impl<'s> Wrench<'s> {
-    fn zero(writer: &'s Writer) -> Self {
-        Self { force: writer.zeros(), moment: writer.zeros() }
+    fn zero(builder: &'s Builder) -> Self {
+        Self { force: builder.no_vector(), moment: builder.no_vector() }
     }
 
     pub(crate) fn plus(self, other: Self) -> Self {
@@ -59,29 +60,29 @@ struct Child<'s> {
 }
 
 /// The torques, base to tip.
-pub(crate) fn torques<'s>(writer: &'s Writer, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
+pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
-    let tip = tip_wrench(writer, arm);
+    let tip = tip_wrench(builder, arm);
     let mut torques = Vec::with_capacity(rows.len());
     let mut child: Option<Child<'s>> = None;
     for index in (0..rows.len()).rev() {
         let link = &moved[index];
-        writer.at(Quantity::ReducedForce, index + 1);
+        builder.at(Quantity::ReducedForce, index + 1);
         let tip = tip.filter(|_| index + 1 == rows.len());
         let (torque, next) = if arm.is_spin(index) {
-            spin(writer, arm, index, link, tip)
+            spin(builder, arm, index, link, tip)
         } else {
-            let (own, unturned) = own_wrench(writer, arm, index, link);
+            let (own, unturned) = own_wrench(builder, arm, index, link);
             let own = tip.map_or(own, |tip| own.plus(tip));
-            let (own, unturned) = with_child(writer, arm, index, link, child, own, unturned);
+            let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
             match rows[index].kind {
-                Prismatic => slide(writer, arm, index, link, own.plus(unturned)),
-                Revolute => turn(writer, arm, index, link, own, unturned),
+                Prismatic => slide(builder, arm, index, link, own.plus(unturned)),
+                Revolute => turn(builder, arm, index, link, own, unturned),
             }
         };
-        writer.at(Quantity::Torque, index + 1);
+        builder.at(Quantity::Torque, index + 1);
         let torque = if rows[index].reversed { -torque } else { torque };
-        writer.define(Name::scalar(Quantity::Torque, index + 1), torque);
+        builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
         torques.push(torque);
         child = next;
     }
@@ -90,19 +91,19 @@ pub(crate) fn torques<'s>(writer: &'s Writer, arm: &Arm<'_>, moved: &[Moved<'s>]
 }
 
 /// What the last link exerts at the tip, about the origin of its frame and in its axes.
-fn tip_wrench<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Option<Wrench<'s>> {
-    let (force, moment) = writer.wrench()?;
+fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
+    let (force, moment) = builder.wrench(arm.rows().len())?;
     let tip = &arm.table.tip;
-    let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| writer.vector(tip.rotation[row]).dot(v)));
+    let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
     let slide = arm.parameters.slides.last().copied().unwrap_or_default();
     let [x, y, z] = tip.translation;
-    let wrench = Wrench { force: turned(force), moment: turned(moment) }.about(writer.vector([x, y, z - slide]));
+    let wrench = Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - slide]));
     Some(Wrench { force: wrench.force.times(arm.parameters.mu), ..wrench })
 }
 
 /// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
 fn spin<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     link: &Moved<'s>,
@@ -110,12 +111,12 @@ fn spin<'s>(
 ) -> (Symbol<'s>, Option<Child<'s>>) {
     let rows = arm.rows();
     let c = arm.parameters.sphere.unwrap_or_default();
-    let (momentum, rate_dot) = (writer.rate(rows, index).times(c), writer.rate_dot(rows, index).times(c));
+    let (momentum, rate_dot) = (builder.rate(rows, index).times(c), builder.rate_dot(rows, index).times(c));
     let ([wx, wy, _], [_, _, dz]) = (link.own.omega.0, link.own.omega_dot.0);
     let torque = dz.times(c) + rate_dot;
     let (offset, d) = arm.lengths(index, length_inward(arm));
     let spin = Wrench {
-        force: writer.zeros(),
+        force: builder.no_vector(),
         moment: link.twist.about_x(Vector([wy * momentum, -(wx * momentum), rate_dot])),
     };
     let Some(tip) = tip else {
@@ -133,30 +134,30 @@ fn length_inward(arm: &Arm<'_>) -> Number {
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
-fn own_wrench<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, link: &Moved<'s>) -> (Wrench<'s>, Wrench<'s>) {
+fn own_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, link: &Moved<'s>) -> (Wrench<'s>, Wrench<'s>) {
     let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
     let matter = &arm.parameters.links[index];
     let is_revolute = arm.rows()[index].kind != Prismatic;
-    name_matter(writer, index + 1, matter);
-    let (mut own, mut unturned) = (Wrench::zero(writer), Wrench::zero(writer));
-    let h = writer.vector(matter.h);
+    name_matter(builder, index + 1, matter);
+    let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
+    let h = builder.vector(matter.h);
     if on.first_moment_unturned && is_revolute {
-        unturned = first_moment(writer, arm, &link.unturned, matter, link.group_turn.about_z(h));
+        unturned = first_moment(builder, arm, &link.unturned, matter, link.group_turn.about_z(h));
     } else {
-        own = first_moment(writer, arm, &link.own, matter, h);
+        own = first_moment(builder, arm, &link.own, matter, h);
     }
     if on.second_moment_unturned && is_revolute {
-        let s = turned_second_moment(writer, matter, link.group_turn);
+        let s = turned_second_moment(builder, matter, link.group_turn);
         unturned.moment = unturned.moment + antisymmetric_of(&link.unturned.gradient, &s);
     } else {
-        own.moment = own.moment + second_moment(writer, matter, &link.own, moment);
+        own.moment = own.moment + second_moment(builder, matter, &link.own, moment);
     }
     (own, unturned)
 }
 
 /// F = m a + U h and h × a.
 fn first_moment<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     motion: &Motion<'s>,
     matter: &PseudoInertia,
@@ -164,7 +165,7 @@ fn first_moment<'s>(
 ) -> Wrench<'s> {
     let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
     let per_length = lambda.inverse().unwrap_or(Number::ONE);
-    let mass = writer.number(matter.mass * mu * per_length);
+    let mass = builder.number(matter.mass * mu * per_length);
     Wrench {
         force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
         moment: h.times(per_length).cross(motion.acceleration),
@@ -172,10 +173,10 @@ fn first_moment<'s>(
 }
 
 /// antisym(U S) in one of three equal forms (section 3.3).
-fn second_moment<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
+fn second_moment<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
     let s = matter.s;
     match form {
-        Moment::Second => antisymmetric_of(&motion.gradient, &s.map(|row| row.map(|x| writer.number(x)))),
+        Moment::Second => antisymmetric_of(&motion.gradient, &s.map(|row| row.map(|x| builder.number(x)))),
         Moment::Diagonal => {
             let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);
             let diagonal = |rate_dot: Symbol<'s>, product: Symbol<'s>, a: Number, b: Number| {
@@ -194,7 +195,7 @@ fn second_moment<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion
             // J = tr(S) 1 - S
             let trace = s[0][0] + s[1][1] + s[2][2];
             let j = [0, 1, 2]
-                .map(|row| writer.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] })));
+                .map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] })));
             let apply = |v: Vector<'s>| Vector(j.map(|row| row.dot(v)));
             apply(motion.omega_dot) + motion.omega.cross(apply(motion.omega))
         }
@@ -214,13 +215,13 @@ pub(crate) fn antisymmetric_of<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]
 
 /// Rz S Rzᵀ (section 5.7).
 fn turned_second_moment<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     matter: &PseudoInertia,
     turn: SymbolicTurn<'s>,
 ) -> [[Symbol<'s>; 3]; 3] {
     let SymbolicTurn { s: sine, c: cosine } = turn;
     let s = matter.s;
-    let number = |x| writer.number(x);
+    let number = |x| builder.number(x);
     let (difference, twice) = (s[0][0] - s[1][1], s[0][1] + s[0][1]);
     let (both, square) = (cosine * sine, cosine * cosine);
     let u = square.times(difference) - both.times(twice);
@@ -232,7 +233,7 @@ fn turned_second_moment<'s>(
 
 /// Adds what the link behind exerts.
 fn with_child<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     link: &Moved<'s>,
@@ -241,7 +242,7 @@ fn with_child<'s>(
     unturned: Wrench<'s>,
 ) -> (Wrench<'s>, Wrench<'s>) {
     let Some(child) = child else { return (own, unturned) };
-    let p = writer.vector(child.arm);
+    let p = builder.vector(child.arm);
     let Wrench { force, moment } = child.wrench;
     let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
     match (child.unturned, to_unturned) {
@@ -261,7 +262,7 @@ fn with_child<'s>(
 
 /// A revolute joint: its torque, and what its link exerts on the one before.
 fn turn<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     link: &Moved<'s>,
@@ -273,8 +274,8 @@ fn turn<'s>(
     let JointPlan { inward_offset, switches: on, .. } = arm.plan.joints[index];
     let (offset, d) = arm.lengths(index, length_inward(arm));
     let parallel = is_parallel(rows, index);
-    writer.name(Quantity::ReducedForce, joint, own.force);
-    writer.name(Quantity::ReducedMoment, joint, own.moment);
+    builder.name_vector(Quantity::ReducedForce, joint, own.force);
+    builder.name_vector(Quantity::ReducedMoment, joint, own.moment);
     let torque = own.moment.0[2] + unturned.moment.0[2];
     if index == 0 {
         return (torque, None);
@@ -299,14 +300,14 @@ fn turn<'s>(
     } else {
         (wrench.map(|v| rotated_inward(row, link, on.scaled_twist_inward, v)), false)
     };
-    writer.name(Quantity::TurnedForce, joint - 1, wrench.force);
-    writer.name(Quantity::TurnedMoment, joint - 1, wrench.moment);
+    builder.name_vector(Quantity::TurnedForce, joint - 1, wrench.force);
+    builder.name_vector(Quantity::TurnedMoment, joint - 1, wrench.moment);
     (torque, Some(Child { wrench, unturned, arm: p }))
 }
 
 /// A prismatic joint.
 fn slide<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     link: &Moved<'s>,
@@ -316,18 +317,18 @@ fn slide<'s>(
     let row = &rows[index];
     let per_force = length_inward(arm);
     let (offset, d) = arm.lengths(index, per_force);
-    writer.name(Quantity::ReducedForce, joint, wrench.force);
-    writer.name(Quantity::ReducedMoment, joint, wrench.moment);
-    let q = writer.position(rows, index).times(per_force) + writer.number(d);
-    let u = writer.vector(row.axis);
+    builder.name_vector(Quantity::ReducedForce, joint, wrench.force);
+    builder.name_vector(Quantity::ReducedMoment, joint, wrench.moment);
+    let q = builder.position(rows, index).times(per_force) + builder.number(d);
+    let u = builder.vector(row.axis);
     let torque = u.dot(wrench.force).times(per_force);
     if row.carried {
-        let wrench = wrench.about(writer.vector(offset) + u * q);
+        let wrench = wrench.about(builder.vector(offset) + u * q);
         return (torque, Some(Child { wrench, unturned: false, arm: [Number::ZERO; 3] }));
     }
     let back = wrench.about(u * q).map(|v| link.twist.about_x(link.turn.about_z(v)));
-    writer.name(Quantity::TurnedForce, joint - 1, back.force);
-    writer.name(Quantity::TurnedMoment, joint - 1, back.moment);
+    builder.name_vector(Quantity::TurnedForce, joint - 1, back.force);
+    builder.name_vector(Quantity::TurnedMoment, joint - 1, back.moment);
     (torque, Some(Child { wrench: back, unturned: false, arm: offset }))
 }
 
@@ -347,17 +348,17 @@ fn rotated_inward<'s>(row: &Row, link: &Moved<'s>, scaled: bool, v: Vector<'s>) 
     }
 }
 
-fn name_matter(writer: &Writer, joint: usize, matter: &PseudoInertia) {
-    if writer.naming.is_none() {
+fn name_matter(builder: &Builder, joint: usize, matter: &PseudoInertia) {
+    if !builder.is_traced() {
         return;
     }
-    writer.define(Name::scalar(Quantity::Mass, joint), writer.number(matter.mass));
+    builder.name(Name::scalar(Quantity::Mass, joint), builder.number(matter.mass));
     for (axis, h) in Axis::ALL.into_iter().zip(matter.h) {
-        writer.define(Name::vector(Quantity::FirstMoment, joint, axis), writer.number(h));
+        builder.name(Name::vector(Quantity::FirstMoment, joint, axis), builder.number(h));
     }
     for (row, values) in Axis::ALL.into_iter().zip(matter.s) {
         for (column, s) in Axis::ALL.into_iter().zip(values).filter(|(column, _)| *column >= row) {
-            writer.define(Name::matrix(Quantity::SecondMoment, joint, row, column), writer.number(s));
+            builder.name(Name::matrix(Quantity::SecondMoment, joint, row, column), builder.number(s));
         }
     }
 }

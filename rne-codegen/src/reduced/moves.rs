@@ -21,7 +21,7 @@ impl Moves {
     /// From the frames of a robot, the plain ones first.
     pub(crate) fn new(frames: &[Frame]) -> Self {
         let plain = frames.first();
-        let rules = |offers: &[(Slide, crate::exact::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
+        let rules = |offers: &[(Slide, crate::ir::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
         let slides = plain.map_or_else(Vec::new, |frame| frame.offers.slides.iter().map(|s| rules(s)).collect());
         let has = |test: fn(&Frame) -> bool| frames.iter().any(test);
         Self {

@@ -10,11 +10,12 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use super::arguments::SymbolicTurn;
 use super::plan::{JointPlan, Plan, Side};
 use super::regroup::{Parameters, group_start, is_parallel};
 use super::rows::{Row, Table};
-use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
-use crate::exact::Number;
+
+use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::name::Name;
 use crate::quantity::{Axis, Quantity};
 
@@ -134,13 +135,13 @@ pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
 }
 
 /// The motion of all links.
-pub(crate) fn motions<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Moved<'s>> {
+pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>> {
     let lambda = arm.parameters.lambda;
-    let zeros = writer.zeros();
+    let zeros = builder.no_vector();
     let at_rest = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: writer.vector(arm.table.gravity.map(|g| -(g * lambda))),
+        acceleration: builder.vector(arm.table.gravity.map(|g| -(g * lambda))),
         gradient: Gradient::new(zeros, zeros),
     };
     let mut before = at_rest;
@@ -148,8 +149,8 @@ pub(crate) fn motions<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Moved<'s>> {
     let mut group = None;
     for index in 0..arm.rows().len() {
         let link = match arm.rows()[index].kind {
-            Revolute => revolute(writer, arm, index, before, &moved, &mut group),
-            Prismatic => prismatic(writer, arm, index, before, &moved),
+            Revolute => revolute(builder, arm, index, before, &moved, &mut group),
+            Prismatic => prismatic(builder, arm, index, before, &moved),
         };
         before = link.own;
         moved.push(link);
@@ -161,16 +162,16 @@ pub(crate) fn motions<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Moved<'s>> {
 ///
 /// It may be formed in the frame N of the link before: then its own part is in N.
 fn joint_point<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     before: Motion<'s>,
     moved: &[Moved<'s>],
     p: [Number; 3],
 ) -> (Vector<'s>, Vector<'s>, bool) {
-    let Some(link) = moved.last() else { return (before.acceleration, writer.zeros(), false) };
+    let Some(link) = moved.last() else { return (before.acceleration, builder.no_vector(), false) };
     let unturned = arm.plan.joints[index - 1].switches.origin_unturned && arm.rows()[index - 1].kind == Revolute;
-    let p = writer.vector(p);
+    let p = builder.vector(p);
     if unturned {
         let part = link.unturned.gradient.of(link.group_turn.about_z(p));
         (link.group_turn.back_about_z(link.unturned.acceleration + part), part, true)
@@ -182,7 +183,7 @@ fn joint_point<'s>(
 
 /// A revolute joint while the motion of its link is written.
 struct Revolving<'s, 'a> {
-    writer: &'s Writer,
+    builder: &'s Builder,
     row: &'a Row,
     /// Counted from 1.
     joint: usize,
@@ -200,7 +201,7 @@ struct Revolving<'s, 'a> {
 type Rates<'s> = (Vector<'s>, Vector<'s>, Gradient<'s>);
 
 fn revolute<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     before: Motion<'s>,
@@ -209,18 +210,18 @@ fn revolute<'s>(
 ) -> Moved<'s> {
     let rows = arm.rows();
     let parallel = is_parallel(rows, index);
-    let turn = writer.turn(rows, index, index);
+    let turn = builder.turn(rows, index, index);
     let link = Revolving {
-        writer,
+        builder,
         row: &rows[index],
         joint: index + 1,
         plan: &arm.plan.joints[index],
         parallel,
-        twist: writer.constant_turn(rows[index].alpha),
+        twist: builder.fixed_turn(rows[index].alpha),
         turn,
-        group_turn: if parallel { writer.turn(rows, group_start(rows, index), index) } else { turn },
-        rate: writer.rate(rows, index),
-        rate_dot: writer.rate_dot(rows, index),
+        group_turn: if parallel { builder.turn(rows, group_start(rows, index), index) } else { turn },
+        rate: builder.rate(rows, index),
+        rate_dot: builder.rate_dot(rows, index),
     };
     if arm.is_spin(index) {
         return link.spin(before);
@@ -229,8 +230,8 @@ fn revolute<'s>(
     let to_parent = link.plan.outward_offset == Side::Parent;
     let p = if to_parent { plus(offset, along_axis(link.row, d)) } else { offset };
 
-    writer.at(Quantity::OriginAcceleration, link.joint);
-    let (point, part, part_unturned) = joint_point(writer, arm, index, before, moved, p);
+    builder.at(Quantity::OriginAcceleration, link.joint);
+    let (point, part, part_unturned) = joint_point(builder, arm, index, before, moved, p);
     let point_unturned = match moved.last() {
         Some(last) if parallel => {
             last.unturned.acceleration + if part_unturned { part } else { last.group_turn.about_z(part) }
@@ -265,13 +266,13 @@ impl<'s> Revolving<'s, '_> {
 
     /// What frame N takes over from before the group, and the rates of the group so far.
     fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
-        self.writer.at(Quantity::OmegaUnturned, self.joint);
+        self.builder.at(Quantity::OmegaUnturned, self.joint);
         let shared = match *group {
             Some(shared) if self.parallel => {
                 Group { rate: shared.rate + self.rate, rate_dot: shared.rate_dot + self.rate_dot, ..shared }
             }
             _ => {
-                let axis = self.writer.vector(along_axis(self.row, Number::ONE));
+                let axis = self.builder.vector(along_axis(self.row, Number::ONE));
                 Group {
                     omega: self.twist.back_about_x(before.omega),
                     omega_dot: self.twist.back_about_x(before.omega_dot),
@@ -300,21 +301,21 @@ impl<'s> Revolving<'s, '_> {
 
     /// ω, ω̇ and U in the link's frame and in N.
     fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> (Rates<'s>, Rates<'s>) {
-        let (writer, joint, on) = (self.writer, self.joint, self.plan.switches);
-        let omega_unturned = writer.name(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
+        let (builder, joint, on) = (self.builder, self.joint, self.plan.switches);
+        let omega_unturned = builder.name_vector(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
         let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
 
         // 1   ω
-        writer.at(Quantity::Omega, joint);
+        builder.at(Quantity::Omega, joint);
         let omega = if self.parallel && on.group_omega {
             self.group_turn.back_about_z(omega_unturned)
         } else {
             self.outward(before.omega).plus_z(self.rate)
         };
-        let omega = writer.name(Quantity::Omega, joint, omega);
+        let omega = builder.name_vector(Quantity::Omega, joint, omega);
 
         // 2   ω̇
-        writer.at(Quantity::OmegaDot, joint);
+        builder.at(Quantity::OmegaDot, joint);
         let mut omega_dot = if on.omega_dot_unturned {
             self.group_turn.back_about_z(omega_dot_unturned)
         } else if self.parallel && on.group_omega_dot {
@@ -327,10 +328,10 @@ impl<'s> Revolving<'s, '_> {
             let ([x, y, z], [u13, u23, _]) = (omega.0, column.0);
             omega_dot = Vector([y * z - u23, u13 - x * z, omega_dot.0[2]]);
         }
-        writer.name(Quantity::OmegaDot, joint, omega_dot);
+        builder.name_vector(Quantity::OmegaDot, joint, omega_dot);
 
         // U
-        writer.at(Quantity::Gradient, joint);
+        builder.at(Quantity::Gradient, joint);
         let (gradient, gradient_unturned) = if on.axis_column {
             (
                 Gradient::with_axis_column(omega, omega_dot.0[2], column),
@@ -339,8 +340,8 @@ impl<'s> Revolving<'s, '_> {
         } else {
             (Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
         };
-        name_gradient(writer, Quantity::Gradient, joint, &gradient);
-        name_gradient(writer, Quantity::GradientUnturned, joint, &gradient_unturned);
+        name_gradient(builder, Quantity::Gradient, joint, &gradient);
+        name_gradient(builder, Quantity::GradientUnturned, joint, &gradient_unturned);
         ((omega, omega_dot, gradient), (omega_unturned, omega_dot_unturned, gradient_unturned))
     }
 
@@ -353,8 +354,8 @@ impl<'s> Revolving<'s, '_> {
         gradient: &Gradient<'s>,
         gradient_unturned: &Gradient<'s>,
     ) -> (Vector<'s>, Vector<'s>) {
-        let (writer, joint, side) = (self.writer, self.joint, self.plan.outward_offset);
-        writer.at(Quantity::OriginAcceleration, joint);
+        let (builder, joint, side) = (self.builder, self.joint, self.plan.outward_offset);
+        builder.at(Quantity::OriginAcceleration, joint);
         let at_joint = !d.is_zero() && side == Side::Joint;
         let lift = gradient_unturned.column_z().times(d);
         let mut unturned = if at_joint { point_unturned + lift } else { point_unturned };
@@ -371,8 +372,8 @@ impl<'s> Revolving<'s, '_> {
             own = own + lift;
             unturned = unturned + self.group_turn.about_z(lift);
         }
-        writer.name(Quantity::OriginAcceleration, joint, own);
-        writer.name(Quantity::OriginAccelerationUnturned, joint, unturned);
+        builder.name_vector(Quantity::OriginAcceleration, joint, own);
+        builder.name_vector(Quantity::OriginAccelerationUnturned, joint, unturned);
         (own, unturned)
     }
 }
@@ -385,7 +386,7 @@ fn spun<'s>(omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot
 
 /// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
 fn prismatic<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     before: Motion<'s>,
@@ -395,44 +396,44 @@ fn prismatic<'s>(
     let row = &rows[index];
     let lambda = arm.parameters.lambda;
     let (offset, d) = arm.lengths(index, lambda);
-    let (twist, turn) = (writer.constant_turn(row.alpha), writer.constant_turn(row.theta));
-    let (qd, qdd) = (writer.rate(rows, index).times(lambda), writer.rate_dot(rows, index).times(lambda));
+    let (twist, turn) = (builder.fixed_turn(row.alpha), builder.fixed_turn(row.theta));
+    let (qd, qdd) = (builder.rate(rows, index).times(lambda), builder.rate_dot(rows, index).times(lambda));
     let twice_rate = qd.times(Number::integer(2));
-    let q = writer.position(rows, index).times(lambda) + writer.number(d);
-    let u = writer.vector(row.axis);
+    let q = builder.position(rows, index).times(lambda) + builder.number(d);
+    let u = builder.vector(row.axis);
 
     let own = if row.carried {
-        writer.at(Quantity::OriginAcceleration, joint);
-        let arm_vector = writer.vector(offset) + u * q;
+        builder.at(Quantity::OriginAcceleration, joint);
+        let arm_vector = builder.vector(offset) + u * q;
         let acceleration =
             before.acceleration + before.gradient.of(arm_vector) + before.omega.cross(u * twice_rate) + u * qdd;
         Motion { acceleration, ..before }
     } else {
-        writer.at(Quantity::OriginAcceleration, joint);
-        let (point, ..) = joint_point(writer, arm, index, before, moved, offset);
+        builder.at(Quantity::OriginAcceleration, joint);
+        let (point, ..) = joint_point(builder, arm, index, before, moved, offset);
         let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
-        writer.at(Quantity::Omega, joint);
-        let omega = writer.name(Quantity::Omega, joint, outward(before.omega));
-        writer.at(Quantity::OmegaDot, joint);
-        let omega_dot = writer.name(Quantity::OmegaDot, joint, outward(before.omega_dot));
-        writer.at(Quantity::Gradient, joint);
+        builder.at(Quantity::Omega, joint);
+        let omega = builder.name_vector(Quantity::Omega, joint, outward(before.omega));
+        builder.at(Quantity::OmegaDot, joint);
+        let omega_dot = builder.name_vector(Quantity::OmegaDot, joint, outward(before.omega_dot));
+        builder.at(Quantity::Gradient, joint);
         let gradient = Gradient::new(omega, omega_dot);
-        name_gradient(writer, Quantity::Gradient, joint, &gradient);
-        writer.at(Quantity::OriginAcceleration, joint);
+        name_gradient(builder, Quantity::Gradient, joint, &gradient);
+        builder.at(Quantity::OriginAcceleration, joint);
         let [wx, wy, _] = omega.0;
         let [x, y, z] = (outward(point) + gradient.column_z() * q).0;
         let acceleration = Vector([x + twice_rate * wy, y - twice_rate * wx, z + qdd]);
         Motion { omega, omega_dot, acceleration, gradient }
     };
-    writer.name(Quantity::OriginAcceleration, joint, own.acceleration);
+    builder.name_vector(Quantity::OriginAcceleration, joint, own.acceleration);
     Moved { own, unturned: own, twist, group_turn: turn, turn }
 }
 
-fn name_gradient(writer: &Writer, quantity: Quantity, joint: usize, gradient: &Gradient<'_>) {
-    if writer.naming.is_some() {
+fn name_gradient(builder: &Builder, quantity: Quantity, joint: usize, gradient: &Gradient<'_>) {
+    if builder.is_traced() {
         for (row, values) in Axis::ALL.into_iter().zip(gradient.u) {
             for (column, value) in Axis::ALL.into_iter().zip(values) {
-                writer.define(Name::matrix(quantity, joint, row, column), value);
+                builder.name(Name::matrix(quantity, joint, row, column), value);
             }
         }
     }

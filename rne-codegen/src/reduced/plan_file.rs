@@ -5,7 +5,7 @@ use std::fmt::Write;
 use rne_model::{Convention, DataFile, JointKind, Report, Robot, Value};
 
 use super::plan::{JointPlan, Plan, Side, Switches};
-use super::sheet::Cost;
+use crate::ir::Cost;
 use crate::program::Proof;
 
 /// A plan file.

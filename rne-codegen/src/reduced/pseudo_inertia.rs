@@ -2,7 +2,7 @@
 
 use std::ops::Add;
 
-use crate::exact::{Number, Turn};
+use crate::ir::{Number, Turn};
 
 /// Three numbers along x, y, z.
 pub(crate) type Triple = [Number; 3];
@@ -127,7 +127,7 @@ pub(crate) fn about_z(turn: Turn) -> Square {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::exact::Reading;
+    use crate::ir::Reading;
     use rne_model::Angle;
 
     fn numbers<const N: usize>(values: [f64; N]) -> [Number; N] {
@@ -159,7 +159,7 @@ mod tests {
         assert_eq!(images(&rod), images(&point));
     }
 
-    fn images(p: &PseudoInertia) -> Vec<crate::exact::Image> {
+    fn images(p: &PseudoInertia) -> Vec<crate::ir::Image> {
         std::iter::once(p.mass).chain(p.h).chain(p.s.into_iter().flatten()).map(|x| x.image).collect()
     }
 }

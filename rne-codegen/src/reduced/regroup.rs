@@ -6,7 +6,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use super::plan::{Plan, Scale, Slide, Target};
 use super::pseudo_inertia::{Entry, PseudoInertia, Square, Triple, about_x, about_z, compose, square};
 use super::rows::{Row, Table};
-use crate::exact::Number;
+use crate::ir::Number;
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
 const LEAST_PIVOT: f64 = 1e-5;

@@ -8,7 +8,7 @@
 use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, Transform};
 
 use super::pseudo_inertia::{PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose};
-use crate::exact::{Number, Reading, Turn};
+use crate::ir::{Number, Reading, Turn};
 
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]

@@ -7,9 +7,9 @@ use rne_model::Robot;
 use super::evaluator::Evaluator;
 use super::moves::Moves;
 use super::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
-use super::sheet::Cost;
 use super::trick::Trick;
 use crate::function::Function;
+use crate::ir::Cost;
 
 /// Plans counted by a build that finds no plan file.
 const DEFAULT_EVALUATIONS: usize = 240;

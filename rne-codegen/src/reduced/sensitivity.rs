@@ -25,13 +25,14 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use super::arguments::SymbolicTurn;
 use super::composite::{Composite, Gathering};
 use super::inward::{Wrench, antisymmetric_of};
 use super::outward::{Arm, Gradient};
 use super::pseudo_inertia::PseudoInertia;
 use super::regroup::{group_start, is_parallel};
-use super::writer::{Symbol, SymbolicTurn, Vector, Writer};
-use crate::exact::Number;
+
+use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::quantity::Quantity;
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
@@ -132,11 +133,11 @@ impl<'s> Behind<'s> {
         }
     }
 
-    fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
+    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
         let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + t.0[i] * self.momentum.0[j]));
         let ([x, y, _], [px, py, _]) = (t.0, self.momentum.0);
         let around = self.around.map(|around| around + (x * px + y * py));
-        Self { body: self.body.moved(t, writer), moment, around, wrench: self.wrench.about(t), ..self }
+        Self { body: self.body.moved(t, builder), moment, around, wrench: self.wrench.about(t), ..self }
     }
 
     /// 2 Ω × velocity, for a doubled velocity.
@@ -190,9 +191,9 @@ impl<'s> Carried<'s> {
         }
     }
 
-    fn moved(self, t: Vector<'s>, writer: &'s Writer) -> Self {
+    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
         Self {
-            behind: self.behind.map(|behind| behind.moved(t, writer)),
+            behind: self.behind.map(|behind| behind.moved(t, builder)),
             columns: self.columns.into_iter().map(|column| column.about(t)).collect(),
             unturned: self.unturned,
         }
@@ -224,24 +225,24 @@ impl<'s> Motion<'s> {
 /// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by rates are
 /// the Coriolis matrix, half of them.
 pub(crate) fn sensitivity<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     gathering: Gathering,
     factor: Number,
 ) -> Sensitivity<'s> {
-    let stations = stations(writer, arm, gathering, factor);
+    let stations = stations(builder, arm, gathering, factor);
     let dof = stations.len();
     let rows = arm.rows();
-    let zero = writer.zero();
+    let zero = builder.zero();
     let mut found = Sensitivity { by_position: vec![vec![zero; dof]; dof], by_rate: vec![vec![zero; dof]; dof] };
     let mut carried = Carried { behind: None, columns: Vec::new(), unturned: false };
-    let z = |x: Number| Vector([zero, zero, writer.number(x)]);
+    let z = |x: Number| Vector([zero, zero, builder.number(x)]);
     for index in (0..dof).rev() {
-        writer.at(Quantity::ReducedForce, index + 1);
+        builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = writer.constant_turn(row.alpha);
-        let own = own(writer, &matter(arm, index), &station.own);
+        let twist = builder.fixed_turn(row.alpha);
+        let own = own(builder, &matter(arm, index), &station.own);
         let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
         let turn = station.turn;
         // everything in frame N of this joint
@@ -255,10 +256,10 @@ pub(crate) fn sensitivity<'s>(
             if row.kind == Revolute { whole.turned_about_z(turn) } else { whole }
         };
         let Some(behind) = here.behind else { break };
-        behind.body.name(writer, index + 1);
-        let column = column(writer, arm, index, station, &behind);
+        behind.body.name(builder, index + 1);
+        let column = column(builder, arm, index, station, &behind);
         for other in here.columns.iter().chain([&column]) {
-            meet(writer, arm, index, station, other, &mut found);
+            meet(builder, arm, index, station, other, &mut found);
         }
         let mut columns = here.columns;
         columns.push(column);
@@ -266,19 +267,19 @@ pub(crate) fn sensitivity<'s>(
         carried = if index == 0 {
             next
         } else if row.kind == Prismatic {
-            let q = writer.position(rows, index) + writer.number(d);
-            let next = next.moved(writer.vector(row.axis) * q, writer);
+            let q = builder.position(rows, index) + builder.number(d);
+            let next = next.moved(builder.vector(row.axis) * q, builder);
             let next = if row.carried {
                 next
             } else {
-                next.turned_about_z(writer.constant_turn(row.theta)).turned_about_x(twist)
+                next.turned_about_z(builder.fixed_turn(row.theta)).turned_about_x(twist)
             };
-            next.moved(writer.vector(offset), writer)
+            next.moved(builder.vector(offset), builder)
         } else if grouped {
             let before = stations[index - 1].turn;
-            next.moved(before.about_z(writer.vector(offset)) + z(d), writer)
+            next.moved(before.about_z(builder.vector(offset)) + z(d), builder)
         } else {
-            next.moved(z(d), writer).turned_about_x(twist).moved(writer.vector(offset), writer)
+            next.moved(z(d), builder).turned_about_x(twist).moved(builder.vector(offset), builder)
         };
     }
     for row in 0..dof {
@@ -308,18 +309,18 @@ pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
 
 /// How all links move.
 pub(crate) fn stations<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     gathering: Gathering,
     factor: Number,
 ) -> Vec<Station<'s>> {
     let rows = arm.rows();
-    let (zeros, zero) = (writer.zeros(), writer.zero());
-    let along = |x: Number| Vector([zero, zero, writer.number(x)]);
+    let (zeros, zero) = (builder.no_vector(), builder.zero());
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
     let mut last = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: writer.vector(arm.table.gravity.map(|g| -g)),
+        acceleration: builder.vector(arm.table.gravity.map(|g| -g)),
         twice_omega: zeros,
         twice_velocity: zeros,
     };
@@ -327,12 +328,12 @@ pub(crate) fn stations<'s>(
     let mut last_unturned = last;
     let mut stations: Vec<Station<'s>> = Vec::with_capacity(rows.len());
     for (index, row) in rows.iter().enumerate() {
-        writer.at(Quantity::Omega, index + 1);
+        builder.at(Quantity::Omega, index + 1);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = writer.constant_turn(row.alpha);
-        let offset = writer.vector(offset);
-        let (rate, rate_dot) = (writer.rate(rows, index), writer.rate_dot(rows, index));
-        let still = SymbolicTurn { s: zero, c: writer.number(Number::ONE) };
+        let twist = builder.fixed_turn(row.alpha);
+        let offset = builder.vector(offset);
+        let (rate, rate_dot) = (builder.rate(rows, index), builder.rate_dot(rows, index));
+        let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
         match row.kind {
             Revolute => {
                 let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
@@ -344,7 +345,7 @@ pub(crate) fn stations<'s>(
                 let turn = if arm.is_spin(index) {
                     still
                 } else {
-                    writer.turn(rows, if grouped { group_start(rows, index) } else { index }, index)
+                    builder.turn(rows, if grouped { group_start(rows, index) } else { index }, index)
                 };
                 let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
                 let omega = before.omega.plus_z(rate);
@@ -359,12 +360,12 @@ pub(crate) fn stations<'s>(
                 stations.push(Station { before, own: last, turn });
             }
             Prismatic => {
-                let theta = writer.constant_turn(row.theta);
+                let theta = builder.fixed_turn(row.theta);
                 let at_axis = last.at(offset);
                 let before =
                     if row.carried { at_axis } else { at_axis.turned(|v| theta.back_about_z(twist.back_about_x(v))) };
-                let u = writer.vector(row.axis);
-                let before = before.at(u * (writer.position(rows, index) + writer.number(d)));
+                let u = builder.vector(row.axis);
+                let before = before.at(u * (builder.position(rows, index) + builder.number(d)));
                 let twice_rate = rate.times(Number::integer(2));
                 last = Motion {
                     acceleration: before.acceleration + before.omega.cross(u * twice_rate) + u * rate_dot,
@@ -380,9 +381,9 @@ pub(crate) fn stations<'s>(
 }
 
 /// What a link alone contributes, in its axes.
-fn own<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
-    let (h, m) = (writer.vector(matter.h), writer.number(matter.mass));
-    let s = matter.s.map(|row| row.map(|x| writer.number(x)));
+fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
+    let (h, m) = (builder.vector(matter.h), builder.number(matter.mass));
+    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
     let ([x, y, z], [vx, vy, vz]) = (motion.twice_omega.0, motion.twice_velocity.0);
     let moment = [0, 1, 2].map(|i| {
         let [sx, sy, sz] = s[i];
@@ -391,7 +392,7 @@ fn own<'s>(writer: &'s Writer, matter: &PseudoInertia, motion: &Motion<'s>) -> B
     });
     let gradient = Gradient::new(motion.omega, motion.omega_dot);
     Behind {
-        body: Composite::of(writer, matter),
+        body: Composite::of(builder, matter),
         moment,
         around: None,
         momentum: motion.twice_velocity * m + motion.twice_omega.cross(h),
@@ -411,10 +412,10 @@ struct Twists<'s> {
     deflection: Vector<'s>,
 }
 
-fn twists<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Twists<'s> {
+fn twists<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Twists<'s> {
     let row = &arm.rows()[index];
     let Motion { omega, omega_dot, acceleration, twice_omega, twice_velocity } = station.before;
-    let (zeros, zero) = (writer.zeros(), writer.zero());
+    let (zeros, zero) = (builder.no_vector(), builder.zero());
     match row.kind {
         Revolute => {
             let ([wx, wy, wz], [dx, dy, _]) = (omega.0, omega_dot.0);
@@ -429,7 +430,7 @@ fn twists<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station
             }
         }
         Prismatic => {
-            let u = writer.vector(row.axis);
+            let u = builder.vector(row.axis);
             Twists {
                 angular: zeros,
                 linear: Gradient::new(omega, omega_dot).of(u),
@@ -443,19 +444,19 @@ fn twists<'s>(writer: &'s Writer, arm: &Arm<'_>, index: usize, station: &Station
 
 /// What a joint contributes to rows and columns of joints nearer to the base.
 fn column<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     station: &Station<'s>,
     behind: &Behind<'s>,
 ) -> Column<'s> {
     let row = &arm.rows()[index];
-    let twists = twists(writer, arm, index, station);
+    let twists = twists(builder, arm, index, station);
     let body = &behind.body;
-    let (zero, g) = (writer.zero(), &behind.moment);
+    let (zero, g) = (builder.zero(), &behind.moment);
     let Wrench { force, moment } = behind.wrench;
-    let by_position = body.carried(writer, twists.angular, twists.linear);
-    let by_rate = body.carried(writer, twists.rate_angular, twists.rate_linear);
+    let by_position = body.carried(builder, twists.angular, twists.linear);
+    let by_rate = body.carried(builder, twists.rate_angular, twists.rate_linear);
     match row.kind {
         Revolute => {
             let quarter = |v: Vector<'s>| Vector([-v.0[1], v.0[0], zero]);
@@ -465,18 +466,18 @@ fn column<'s>(
             let turned = Wrench { force: Vector([-py, px, zero]), moment: Vector([-g[2][0], -g[2][1], both]) };
             Column {
                 joint: index,
-                unit: body.turning(writer),
+                unit: body.turning(builder),
                 spin: Vector([-g[0][2], -g[1][2], both]),
                 by_position: by_position.plus(behind.deflected(twists.deflection)).plus(around),
                 by_rate: by_rate.plus(turned),
             }
         }
         Prismatic => {
-            let u = writer.vector(row.axis);
-            let lever = Wrench { force: writer.zeros(), moment: u.cross(force) };
+            let u = builder.vector(row.axis);
+            let lever = Wrench { force: builder.no_vector(), moment: u.cross(force) };
             Column {
                 joint: index,
-                unit: body.sliding(u, writer),
+                unit: body.sliding(u, builder),
                 spin: behind.momentum.cross(u),
                 by_position: by_position.plus(lever),
                 by_rate,
@@ -487,7 +488,7 @@ fn column<'s>(
 
 /// The elements of joint `index` with that of a column, which is farther out or the same.
 fn meet<'s>(
-    writer: &'s Writer,
+    builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
     station: &Station<'s>,
@@ -495,9 +496,9 @@ fn meet<'s>(
     found: &mut Sensitivity<'s>,
 ) {
     let row = &arm.rows()[index];
-    let twists = twists(writer, arm, index, station);
+    let twists = twists(builder, arm, index, station);
     let Wrench { force, moment } = column.unit;
-    let spin = if row.kind == Revolute { column.spin.0[2] } else { writer.zero() };
+    let spin = if row.kind == Revolute { column.spin.0[2] } else { builder.zero() };
     found.by_position[column.joint][index] =
         moment.dot(twists.angular) + force.dot(twists.linear) + column.spin.dot(twists.deflection);
     found.by_rate[column.joint][index] = moment.dot(twists.rate_angular) + force.dot(twists.rate_linear) + spin;
@@ -506,7 +507,7 @@ fn meet<'s>(
     }
     let along = |wrench: &Wrench<'s>| match row.kind {
         Revolute => wrench.moment.0[2],
-        Prismatic => writer.vector(row.axis).dot(wrench.force),
+        Prismatic => builder.vector(row.axis).dot(wrench.force),
     };
     found.by_position[index][column.joint] = along(&column.by_position);
     found.by_rate[index][column.joint] = along(&column.by_rate);

@@ -229,7 +229,7 @@ fn one_constant_off_by_the_last_digit_is_refused() {
     let (program, exactly, frame) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
     let reading = frame.table.reading;
     assert!(proof::identical(&robot, &program, &exactly, reading).is_ok());
-    let tiny = crate::exact::Reading::default().decimal(1e-18);
+    let tiny = crate::ir::Reading::default().decimal(1e-18);
     for constant in &program.constants {
         let mut wrong = exactly.clone();
         wrong.get_mut(&constant.name).unwrap().0 = exactly[&constant.name].0 + tiny;

@@ -6,11 +6,11 @@ use super::inward::torques;
 use super::outward::{Arm, motions};
 use super::rows::Table;
 use super::sensitivity::sensitivity;
-use super::writer::{Symbol, Writer};
+
 use crate::derivation::square;
 use crate::elimination;
-use crate::exact::Number;
 use crate::function::Function;
+use crate::ir::{Builder, Number, Symbol};
 use crate::name::{By, Name};
 use crate::quantity::Quantity;
 
@@ -64,17 +64,17 @@ impl Way {
     }
 }
 
-/// Writes a function on the writer's sheet: what it returns, by name, in the order of its layout.
-pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, way: Way) -> Vec<(Name, Symbol<'s>)> {
+/// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout.
+pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function, way: Way) -> Vec<(Name, Symbol<'s>)> {
     let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
         values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
     };
     match (function, way) {
         (Function::GravityTorques, Way::Composite(gathering)) => {
-            by_joint(Quantity::Torque, composite::gravity_torques(writer, arm, gathering))
+            by_joint(Quantity::Torque, composite::gravity_torques(builder, arm, gathering))
         }
         (Function::MassMatrix, _) => {
-            let upper = mass_matrix(writer, arm, way);
+            let upper = mass_matrix(builder, arm, way);
             square(arm.rows().len(), |row, column| {
                 let (row, column) = (row.min(column), row.max(column));
                 let by = Some(By::RateDot(column + 1));
@@ -82,45 +82,45 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
             })
         }
         (Function::ForwardDynamics, Way::Articulated(gathering)) => {
-            by_joint(Quantity::RateDot, articulated::forward_dynamics(writer, arm, gathering))
+            by_joint(Quantity::RateDot, articulated::forward_dynamics(builder, arm, gathering))
         }
         (Function::ForwardDynamics, _) => {
-            let upper = mass_matrix(writer, arm, way);
-            let bias = recursion(writer, arm);
+            let upper = mass_matrix(builder, arm, way);
+            let bias = recursion(builder, arm);
             let rest: Vec<_> = bias
                 .into_iter()
                 .enumerate()
                 .map(|(index, torque)| {
-                    writer.at(Quantity::Reduced, index + 1);
-                    writer.torque(index) - torque
+                    builder.at(Quantity::Reduced, index + 1);
+                    builder.torque(index) - torque
                 })
                 .collect();
-            by_joint(Quantity::RateDot, elimination::solved(&Solving { writer }, &upper, &rest))
+            by_joint(Quantity::RateDot, elimination::solved(builder, &upper, &rest))
         }
         (Function::InverseDynamicsDerivatives, Way::Composite(gathering)) => {
-            let found = sensitivity(writer, arm, gathering, Number::integer(2));
+            let found = sensitivity(builder, arm, gathering, Number::integer(2));
             let by = |kind: fn(usize) -> By, matrix: &[Vec<Symbol<'s>>]| {
                 square(arm.rows().len(), |row, column| {
                     let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
-                    writer.define(name, matrix[row][column]);
+                    builder.name(name, matrix[row][column]);
                     (name, matrix[row][column])
                 })
             };
             [by(By::Position, &found.by_position), by(By::Rate, &found.by_rate)].concat()
         }
         (Function::CoriolisMatrix, Way::Composite(gathering)) => {
-            let found = sensitivity(writer, arm, gathering, Number::ONE);
+            let found = sensitivity(builder, arm, gathering, Number::ONE);
             square(arm.rows().len(), |row, column| {
                 let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
-                writer.define(name, found.by_rate[row][column]);
+                builder.name(name, found.by_rate[row][column]);
                 (name, found.by_rate[row][column])
             })
         }
         (Function::InverseDynamicsDerivatives, _) => {
-            let torques = recursion(writer, arm);
+            let torques = recursion(builder, arm);
             let by = |kind: fn(usize) -> By| {
                 let columns: Vec<_> =
-                    (1..=torques.len()).map(|joint| writer.derivatives(arm.rows(), &torques, kind(joint))).collect();
+                    (1..=torques.len()).map(|joint| builder.derivatives(&torques, kind(joint))).collect();
                 square(torques.len(), |row, column| {
                     let by = Some(kind(column + 1));
                     (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
@@ -129,60 +129,42 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
             [by(By::Position), by(By::Rate)].concat()
         }
         (Function::CoriolisMatrix, _) => {
-            let torques = recursion(writer, arm);
-            let half = writer.number(Number::integer(2).inverse().unwrap_or_default());
+            let torques = recursion(builder, arm);
+            let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
             let columns: Vec<_> =
-                (1..=torques.len()).map(|joint| writer.derivatives(arm.rows(), &torques, By::Rate(joint))).collect();
+                (1..=torques.len()).map(|joint| builder.derivatives(&torques, By::Rate(joint))).collect();
             square(torques.len(), |row, column| {
-                writer.at(Quantity::CoriolisElement, row + 1);
+                builder.at(Quantity::CoriolisElement, row + 1);
                 let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
                 let element = columns[column][row] * half;
-                writer.define(name, element);
+                builder.name(name, element);
                 (name, element)
             })
         }
-        _ => by_joint(Quantity::Torque, recursion(writer, arm)),
+        _ => by_joint(Quantity::Torque, recursion(builder, arm)),
     }
 }
 
-fn recursion<'s>(writer: &'s Writer, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
-    let moved = motions(writer, arm);
-    torques(writer, arm, &moved)
+fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
+    let moved = motions(builder, arm);
+    torques(builder, arm, &moved)
 }
 
 /// The upper half of M.
-fn mass_matrix<'s>(writer: &'s Writer, arm: &Arm<'_>, way: Way) -> Vec<Vec<Symbol<'s>>> {
+fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, way: Way) -> Vec<Vec<Symbol<'s>>> {
     let Way::Columns = way else {
         let gathering = if let Way::Composite(gathering) = way { gathering } else { Gathering::Joints };
-        return composite::mass_matrix(writer, arm, gathering);
+        return composite::mass_matrix(builder, arm, gathering);
     };
     let table = Table { gravity: [Number::ZERO; 3], ..arm.table.clone() };
     let still = Arm { table: &table, plan: arm.plan, parameters: arm.parameters };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     for column in 0..dof {
-        let torques = writer.accelerating(column, || recursion(writer, &still));
+        let torques = builder.accelerating(column, || recursion(builder, &still));
         for (row, torque) in torques.into_iter().take(column + 1).enumerate() {
             rows[row].push(torque);
         }
     }
     rows
-}
-
-/// The sheet on which M x = b is solved.
-struct Solving<'s> {
-    writer: &'s Writer,
-}
-
-impl<'s> elimination::Sheet<Symbol<'s>> for Solving<'s> {
-    fn inverse(&self, a: Symbol<'s>) -> Symbol<'s> {
-        a.inverse()
-    }
-
-    fn within(&self, name: Name, value: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
-        self.writer.at(name.quantity, name.joint);
-        let value = value();
-        self.writer.define(name, value);
-        value
-    }
 }

@@ -47,6 +47,23 @@ impl Image {
         self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
+    /// What stands for a value that is chosen by a sign, of which no field knows anything: the same for the same operands, and
+    /// its negative for both values negated.
+    pub(crate) fn by_sign([x, positive, negative]: [Self; 3]) -> Self {
+        if positive.is_zero() && negative.is_zero() {
+            return Self::ZERO;
+        }
+        let flip = if positive.is_zero() { negative.is_negative() } else { positive.is_negative() };
+        if flip {
+            return -Self::by_sign([x, -positive, -negative]);
+        }
+        let mixed = [x, positive, negative]
+            .into_iter()
+            .flat_map(|image| image.0)
+            .fold(0x5167_u64, |mixed, residue| (mixed.rotate_left(23) ^ residue).wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        Self::residues(mixed ^ (mixed >> 29), mixed.wrapping_mul(0xBF58_476D_1CE4_E5B9) >> 3)
+    }
+
     /// The inverse; `None` when an image is zero.
     pub(crate) fn inverse(self) -> Option<Self> {
         let [first, second] = self.0;

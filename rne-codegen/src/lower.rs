@@ -2,97 +2,91 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+use rne_model::Robot;
+
 use crate::CompileError;
 use crate::function::{Form, Function};
-use crate::graph::{Node, NodeId, Term};
+use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
 use crate::ledger::{Operation, Place};
 use crate::name::Name;
 use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
 use crate::quantity::{Quantity, Step};
-use crate::worksheet::Written;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
 
 /// What the program is of.
 pub(crate) struct Heading<'a> {
-    pub(crate) robot: &'a str,
-    pub(crate) dof: usize,
-    pub(crate) parameters: usize,
+    pub(crate) robot: &'a Robot,
     pub(crate) function: Function,
     pub(crate) form: Form,
 }
 
-/// Turns a written sheet into a program that returns `outputs`.
-pub(crate) fn program(
-    heading: &Heading<'_>,
-    written: Written,
-    outputs: &[(Name, Term)],
-) -> Result<Program, CompileError> {
-    Ok(program_and_constants(heading, written, outputs)?.0)
-}
+/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
+pub(crate) type Exactly = HashMap<Name, (Number, Option<Angle>)>;
 
-/// The same, with the nodes of its constants: two numbers may round to the same.
-pub(crate) fn program_and_constants(
+/// Turns a written graph into a program that returns its outputs under these names, and tells what its constants are.
+pub(crate) fn lower(
     heading: &Heading<'_>,
-    mut written: Written,
-    outputs: &[(Name, Term)],
-) -> Result<(Program, Vec<NodeId>), CompileError> {
-    let uses = count_uses(&written, outputs);
+    mut written: Traced,
+    names: &[Name],
+) -> Result<(Program, Exactly), CompileError> {
+    let outputs: Vec<(Name, Ref)> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
+    let uses = count_uses(&written);
     drop_unused(&mut written, &uses);
-    let schedule = Schedule::new(&written, uses, outputs);
-    let (constants, nodes) = schedule.constants()?.into_iter().unzip();
+    let schedule = Schedule::new(&written, uses);
+    let constants = schedule.constants()?;
+    let exactly = constants.iter().map(|(constant, at)| (constant.name, schedule.exactly(constant, *at))).collect();
     let mut statements = schedule.statements();
-    let outputs = schedule.outputs(outputs, &mut statements);
+    let outputs = schedule.outputs(&outputs, &mut statements);
     statements.sort_by_key(|&(position, _)| position);
     let statements = statements.into_iter().map(|(_, statement)| statement);
     let (angles, statements) = statements.partition(|statement| statement.name.quantity.is_of_an_angle());
     let program = Program {
-        robot: heading.robot.to_owned(),
-        dof: heading.dof,
-        parameters: heading.parameters,
+        robot: heading.robot.name.clone(),
+        dof: heading.robot.dof(),
+        parameters: heading.robot.run_time.names.len(),
         function: heading.function,
         form: heading.form,
         arguments: schedule.arguments(),
-        constants,
+        constants: constants.into_iter().map(|(constant, _)| constant).collect(),
         angles,
         turns: schedule.turns(),
         statements,
         outputs,
         findings: schedule.findings(),
-        ledger: written.ledger,
+        ledger: written.trace.ledger,
         choices: Vec::new(),
         proof: None,
     };
-    Ok((program, nodes))
+    Ok((program, exactly))
 }
 
 /// How often each node is used by live nodes and outputs; 0 is dead.
-fn count_uses(written: &Written, outputs: &[(Name, Term)]) -> Vec<usize> {
-    let mut uses = vec![0_usize; written.graph.len()];
-    for (_, term) in outputs {
-        uses[term.node.index()] += 1;
+fn count_uses(Traced { graph, .. }: &Traced) -> Vec<usize> {
+    let mut uses = vec![0_usize; graph.len()];
+    for at in &graph.outputs {
+        uses[at.index()] += 1;
     }
-    for (id, node) in written.graph.nodes().rev() {
-        if uses[id.index()] == 0 {
-            continue;
+    for (at, op) in graph.nodes().rev() {
+        if uses[at.index()] > 0 {
+            op.operands().for_each(|operand| uses[operand.index()] += 1);
         }
-        node.operands().for_each(|operand| uses[operand.index()] += 1);
     }
     uses
 }
 
-fn drop_unused(written: &mut Written, uses: &[usize]) {
-    for (id, node) in written.graph.nodes() {
-        let operation = match node {
-            Node::Sum(..) => Operation::Sum,
-            Node::Product(..) => Operation::Product,
+fn drop_unused(written: &mut Traced, uses: &[usize]) {
+    for (at, op) in written.graph.nodes() {
+        let operation = match op {
+            Op::Sum(..) => Operation::Sum,
+            Op::Product(..) => Operation::Product,
             _ => continue,
         };
-        if uses[id.index()] == 0
-            && let Some(birth) = &written.births[id.index()]
+        if uses[at.index()] == 0
+            && let Some(birth) = &written.trace.births[at.index()]
         {
-            written.ledger.drop_unused(birth.place, operation);
+            written.trace.ledger.drop_unused(birth.place, operation);
         }
     }
 }
@@ -105,7 +99,7 @@ struct Given {
 }
 
 struct Schedule<'w> {
-    written: &'w Written,
+    written: &'w Traced,
     uses: Vec<usize>,
     is_output: Vec<bool>,
     names: Vec<Option<Given>>,
@@ -114,12 +108,13 @@ struct Schedule<'w> {
 }
 
 impl<'w> Schedule<'w> {
-    fn new(written: &'w Written, uses: Vec<usize>, outputs: &[(Name, Term)]) -> Self {
+    fn new(written: &'w Traced, uses: Vec<usize>) -> Self {
         let mut is_output = vec![false; uses.len()];
-        for (_, term) in outputs {
-            is_output[term.node.index()] = true;
+        for at in &written.graph.outputs {
+            is_output[at.index()] = true;
         }
-        let signs = written.definitions.iter().map(|definition| (definition.name, definition.term.negative)).collect();
+        let definitions = written.trace.definitions.iter();
+        let signs = definitions.map(|definition| (definition.name, definition.at.is_negative())).collect();
         let mut schedule = Self { written, names: vec![None; uses.len()], uses, is_output, signs };
         schedule.take_given_names();
         schedule.name_shared_terms();
@@ -128,12 +123,12 @@ impl<'w> Schedule<'w> {
 
     /// A node takes the first name it was given; a letter of the lecture wins over an auxiliary name of the same step.
     fn take_given_names(&mut self) {
-        for definition in &self.written.definitions {
-            let Term { node, negative } = definition.term;
+        for definition in &self.written.trace.definitions {
+            let (node, negative) = (definition.at.magnitude(), definition.at.is_negative());
             let quantity = definition.name.quantity;
             let slot = &mut self.names[node.index()];
             let lectures = |name: Name| name.quantity.is_of_the_lecture();
-            let is_turn = matches!(self.written.graph.node(node), Node::Sine(_) | Node::Cosine(_));
+            let is_turn = matches!(self.written.graph.op(node), Op::Sine(_) | Op::Cosine(_));
             let wins = slot.is_none_or(|old| {
                 // sines and cosines are called what they are
                 !is_turn
@@ -150,8 +145,8 @@ impl<'w> Schedule<'w> {
         for (id, node) in self.written.graph.nodes() {
             let index = id.index();
             match node {
-                Node::Argument(name) => self.names[index] = Some(Given { name, negative: false }),
-                Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..) => {
+                Op::Input(input) => self.names[index] = Some(Given { name: input.name(), negative: false }),
+                Op::Sum(..) | Op::Product(..) | Op::Quotient(..) | Op::BySign(_) => {
                     let keeps = self.names[index].is_some_and(|given| given.name.quantity.is_of_the_lecture());
                     // an auxiliary quantity that is used once is clearer where it is used
                     if !keeps && self.uses[index] < 2 && !self.is_angle(id) {
@@ -169,18 +164,19 @@ impl<'w> Schedule<'w> {
         let mut parts: BTreeMap<Name, usize> = BTreeMap::new();
         for (id, node) in self.written.graph.nodes() {
             let index = id.index();
-            let is_constant = matches!(node, Node::Constant(_));
+            let is_constant = matches!(node, Op::Constant(_));
             let needs_name = self.uses[index] > 0 && (is_constant || self.uses[index] > 1);
             if self.names[index].is_some() || !needs_name {
                 continue;
             }
-            let base = self.written.births[index].as_ref().map_or(Name::scalar(Quantity::Constant, 0), |birth| Name {
-                quantity: birth.place.quantity,
-                joint: birth.place.joint,
-                component: birth.component,
-                part: 0,
-                by: birth.place.by,
-            });
+            let base =
+                self.written.trace.births[index].as_ref().map_or(Name::scalar(Quantity::Constant, 0), |birth| Name {
+                    quantity: birth.place.quantity,
+                    joint: birth.place.joint,
+                    component: birth.component,
+                    part: 0,
+                    by: birth.place.by,
+                });
             // counted among those that look alike: of some quantities a name does not tell the joint
             let part =
                 parts.entry(Name { joint: if base.tells_joint() { base.joint } else { 0 }, ..base }).or_default();
@@ -191,26 +187,44 @@ impl<'w> Schedule<'w> {
         }
     }
 
-    fn is_angle(&self, id: NodeId) -> bool {
+    fn is_angle(&self, id: Ref) -> bool {
         self.names[id.index()].is_some_and(|given| given.name.quantity.is_of_an_angle())
     }
 
-    fn is_live(&self, id: NodeId) -> bool {
+    fn is_zero(&self, at: Ref) -> bool {
+        matches!(self.written.graph.op(at), Op::Constant(_)) && self.magnitude(at) == 0.0
+    }
+
+    /// The magnitude of a constant.
+    fn magnitude(&self, at: Ref) -> f64 {
+        self.written.graph.number(at.magnitude()).map_or(0.0, Number::to_f64)
+    }
+
+    /// What a constant under its name is.
+    fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<Angle>) {
+        let at = at.magnitude().signed(constant.value < 0.0);
+        let is_angle = matches!(constant.name.quantity, Quantity::Theta | Quantity::GroupTheta);
+        let turn = if is_angle { self.written.graph.turn(at) } else { None };
+        (self.written.graph.number(at).unwrap_or_default(), turn)
+    }
+
+    fn is_live(&self, id: Ref) -> bool {
         self.uses[id.index()] > 0
     }
 
     fn arguments(&self) -> Vec<Name> {
         let live = self.written.graph.nodes().filter(|&(id, _)| self.is_live(id));
         let names: BTreeSet<Name> =
-            live.filter_map(|(_, node)| if let Node::Argument(name) = node { Some(name) } else { None }).collect();
+            live.filter_map(|(_, op)| if let Op::Input(input) = op { Some(input.name()) } else { None }).collect();
         names.into_iter().collect()
     }
 
-    fn constants(&self) -> Result<Vec<(Constant, NodeId)>, CompileError> {
+    fn constants(&self) -> Result<Vec<(Constant, Ref)>, CompileError> {
         let mut constants = Vec::new();
         let users = self.users_of_constants();
         for (id, node) in self.written.graph.nodes() {
-            let Node::Constant(magnitude) = node else { continue };
+            let Op::Constant(_) = node else { continue };
+            let magnitude = self.magnitude(id);
             for given in self.constant_names(id, users.get(&id).map_or(&[], Vec::as_slice)) {
                 let value = if given.negative { -magnitude } else { magnitude };
                 if !value.is_finite() {
@@ -225,11 +239,11 @@ impl<'w> Schedule<'w> {
     }
 
     /// The live nodes that use each constant, in order.
-    fn users_of_constants(&self) -> HashMap<NodeId, Vec<NodeId>> {
-        let mut users: HashMap<NodeId, Vec<NodeId>> = HashMap::new();
+    fn users_of_constants(&self) -> HashMap<Ref, Vec<Ref>> {
+        let mut users: HashMap<Ref, Vec<Ref>> = HashMap::new();
         for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
-            for operand in node.operands() {
-                if matches!(self.written.graph.node(operand), Node::Constant(_)) {
+            for operand in node.operands().map(Ref::magnitude) {
+                if matches!(self.written.graph.op(operand), Op::Constant(_)) {
                     users.entry(operand).or_default().push(user);
                 }
             }
@@ -238,7 +252,7 @@ impl<'w> Schedule<'w> {
     }
 
     /// The names under which `users`, live statements, use a constant.
-    fn constant_names(&self, id: NodeId, users: &[NodeId]) -> Vec<Given> {
+    fn constant_names(&self, id: Ref, users: &[Ref]) -> Vec<Given> {
         let mut names: Vec<Given> = Vec::new();
         let mut put = |given: Option<Given>| {
             if let Some(given) = given
@@ -247,7 +261,7 @@ impl<'w> Schedule<'w> {
                 names.push(given);
             }
         };
-        if self.uses[id.index()] == 0 || self.written.graph.node(id) == Node::Constant(0.0) {
+        if self.uses[id.index()] == 0 || self.is_zero(id) {
             return names;
         }
         for &user in users {
@@ -260,8 +274,8 @@ impl<'w> Schedule<'w> {
     }
 
     /// The name of a constant where `user` uses it.
-    fn constant_name(&self, user: NodeId, id: NodeId) -> Option<Given> {
-        let role = self.written.roles.get(&(user, id)).copied();
+    fn constant_name(&self, user: Ref, id: Ref) -> Option<Given> {
+        let role = self.written.trace.roles.get(&(user, id)).copied();
         let given = role.and_then(|name| Some(Given { name, negative: *self.signs.get(&name)? }));
         given.or(self.names[id.index()])
     }
@@ -270,7 +284,7 @@ impl<'w> Schedule<'w> {
     fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            if let (Node::Sum(..) | Node::Product(..) | Node::Quotient(..) | Node::BySign(..), Some(given)) =
+            if let (Op::Sum(..) | Op::Product(..) | Op::Quotient(..) | Op::BySign(_), Some(given)) =
                 (node, self.names[id.index()])
             {
                 let (negative, value) = self.operation(id);
@@ -284,9 +298,9 @@ impl<'w> Schedule<'w> {
 
     /// The sines and cosines, in the order in which they were asked for.
     fn turns(&self) -> Vec<Turn> {
-        let mut turns: Vec<(Term, Turn)> = Vec::new();
+        let mut turns: Vec<(Ref, Turn)> = Vec::new();
         for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            let (Node::Sine(angle) | Node::Cosine(angle)) = node else { continue };
+            let (Op::Sine(angle) | Op::Cosine(angle)) = node else { continue };
             let name = self.names[id.index()].map(|given| given.name);
             let known = turns.iter().position(|(other, _)| *other == angle);
             let index = known.unwrap_or_else(|| {
@@ -296,22 +310,22 @@ impl<'w> Schedule<'w> {
                 turns.len() - 1
             });
             let turn = &mut turns[index].1;
-            *(if matches!(node, Node::Sine(_)) { &mut turn.sine } else { &mut turn.cosine }) = name;
+            *(if matches!(node, Op::Sine(_)) { &mut turn.sine } else { &mut turn.cosine }) = name;
         }
         turns.into_iter().map(|(_, turn)| turn).collect()
     }
 
-    fn place(&self, id: NodeId, name: Name) -> Place {
+    fn place(&self, id: Ref, name: Name) -> Place {
         let step = name.quantity.step().unwrap_or(Step::AngularVelocity);
         let own = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
-        self.written.births[id.index()].as_ref().map_or(own, |birth| birth.place)
+        self.written.trace.births[id.index()].as_ref().map_or(own, |birth| birth.place)
     }
 
     /// Outputs as variables; a torque, and whatever is computed for it alone, gets a statement of its own name.
-    fn outputs(&self, outputs: &[(Name, Term)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
+    fn outputs(&self, outputs: &[(Name, Ref)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
         let mut returned = Vec::with_capacity(outputs.len());
         let mut first: HashMap<Name, usize> = HashMap::new();
-        for (order, definition) in self.written.definitions.iter().enumerate() {
+        for (order, definition) in self.written.trace.definitions.iter().enumerate() {
             first.entry(definition.name).or_insert(order);
         }
         let mut stated = BTreeSet::new();
@@ -331,7 +345,7 @@ impl<'w> Schedule<'w> {
                 returned.push(Output { name, value: Expression::Variable(name) });
                 continue;
             }
-            let definition = &self.written.definitions[order];
+            let definition = &self.written.trace.definitions[order];
             let step = name.quantity.step().unwrap_or(Step::Torque);
             let place = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
             // after the last node that was there when it was named, and after torques named before it
@@ -343,12 +357,13 @@ impl<'w> Schedule<'w> {
 
     fn findings(&self) -> Vec<Finding> {
         let mut seen = BTreeSet::new();
-        let definitions = self.written.definitions.iter().filter(|definition| seen.insert(definition.name));
+        let definitions = self.written.trace.definitions.iter().filter(|definition| seen.insert(definition.name));
         definitions
             .map(|definition| {
-                let Term { node, negative } = definition.term;
-                let value = match self.written.graph.node(node) {
-                    Node::Constant(magnitude) => {
+                let (node, negative) = (definition.at.magnitude(), definition.at.is_negative());
+                let value = match self.written.graph.op(node) {
+                    Op::Constant(_) => {
+                        let magnitude = self.magnitude(node);
                         Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes)
                     }
                     _ if !self.is_live(node) => Found::Unused,
@@ -364,19 +379,18 @@ impl<'w> Schedule<'w> {
     }
 
     /// A term as an expression: the name of its node, or what the node computes.
-    fn expression(&self, term: Term) -> Expression {
-        let (negative, expression) = self.operand(None, term.node);
-        signed(negative != term.negative, expression)
+    fn expression(&self, term: Ref) -> Expression {
+        let (negative, expression) = self.operand(None, term.magnitude());
+        signed(negative != term.is_negative(), expression)
     }
 
     /// A node, as `user` uses it, as a sign and an expression. Signs are carried outwards, to where they cost nothing.
-    fn operand(&self, user: Option<NodeId>, id: NodeId) -> (bool, Expression) {
-        let node = self.written.graph.node(id);
-        if node == Node::Constant(0.0) {
+    fn operand(&self, user: Option<Ref>, id: Ref) -> (bool, Expression) {
+        if self.is_zero(id) {
             return (false, Expression::Zero);
         }
-        let given = match (node, user) {
-            (Node::Constant(_), Some(user)) => self.constant_name(user, id),
+        let given = match (self.written.graph.op(id), user) {
+            (Op::Constant(_), Some(user)) => self.constant_name(user, id),
             _ => self.names[id.index()],
         };
         match given {
@@ -385,38 +399,38 @@ impl<'w> Schedule<'w> {
         }
     }
 
-    fn operation(&self, id: NodeId) -> (bool, Expression) {
-        match self.written.graph.node(id) {
-            Node::Sum(a, b) => {
-                let (a_sign, a_value) = self.operand(Some(id), a.node);
-                let (b_sign, b_value) = self.operand(Some(id), b.node);
+    fn operation(&self, id: Ref) -> (bool, Expression) {
+        match self.written.graph.op(id) {
+            Op::Sum(a, b) => {
+                let (a_sign, a_value) = self.operand(Some(id), a.magnitude());
+                let (b_sign, b_value) = self.operand(Some(id), b.magnitude());
                 let (a_value, b_value) = (Box::new(a_value), Box::new(b_value));
-                match (a_sign != a.negative, b_sign != b.negative) {
+                match (a_sign != a.is_negative(), b_sign != b.is_negative()) {
                     (false, false) => (false, Expression::Sum(a_value, b_value)),
                     (false, true) => (false, Expression::Difference(a_value, b_value)),
                     (true, false) => (false, Expression::Difference(b_value, a_value)),
                     (true, true) => (true, Expression::Sum(a_value, b_value)),
                 }
             }
-            Node::Product(a, b) => {
+            Op::Product(a, b) => {
                 let (a_sign, a_value) = self.operand(Some(id), a);
                 let (b_sign, b_value) = self.operand(Some(id), b);
                 (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
             }
-            Node::Quotient(a, b) => {
+            Op::Quotient(a, b) => {
                 let (a_sign, a_value) = self.operand(Some(id), a);
                 let (b_sign, b_value) = self.operand(Some(id), b);
                 (a_sign != b_sign, Expression::Quotient(Box::new(a_value), Box::new(b_value)))
             }
-            Node::BySign(x, a, b) => {
+            Op::BySign([x, a, b]) => {
                 let [x, a, b] = [x, a, b].map(|term| {
-                    let (sign, value) = self.operand(Some(id), term.node);
-                    Box::new(signed(sign != term.negative, value))
+                    let (sign, value) = self.operand(Some(id), term.magnitude());
+                    Box::new(signed(sign != term.is_negative(), value))
                 });
                 (false, Expression::BySign(x, a, b))
             }
             // leaves always have a name, but for the zero that no operation keeps
-            Node::Constant(_) | Node::Argument(_) | Node::Sine(_) | Node::Cosine(_) => (false, Expression::Zero),
+            Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Expression::Zero),
         }
     }
 }

@@ -2,24 +2,45 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
-use crate::graph::Term;
+use super::{Builder, CausesId, Number, Ref};
 use crate::quantity::Axis;
-use crate::worksheet::{CausesId, Worksheet};
 
-/// A number on a worksheet.
+/// A number of a graph that is being written.
 #[derive(Clone, Copy)]
 pub(crate) struct Symbol<'s> {
-    pub(crate) sheet: &'s Worksheet,
-    pub(crate) term: Term,
+    pub(crate) builder: &'s Builder,
+    pub(crate) at: Ref,
     /// Why it is the constant that it is, if it is one.
     pub(crate) causes: CausesId,
+}
+
+impl<'s> Symbol<'s> {
+    /// Whether it is the number 0.
+    pub(crate) fn is_zero(self) -> bool {
+        self.builder.graph.borrow().is_zero(self.at)
+    }
+
+    /// The number, negated if `negative`.
+    pub(crate) fn signed(self, negative: bool) -> Self {
+        Self { at: self.at.signed(negative), ..self }
+    }
+
+    /// 1/x
+    pub(crate) fn inverse(self) -> Self {
+        self.builder.quotient(self.builder.one(), self)
+    }
+
+    /// Times a constant.
+    pub(crate) fn times(self, factor: Number) -> Self {
+        if self.is_zero() { self } else { self * self.builder.number(factor) }
+    }
 }
 
 impl<'s> Add for Symbol<'s> {
     type Output = Symbol<'s>;
 
     fn add(self, other: Self) -> Self {
-        self.sheet.sum(self, other)
+        self.builder.sum(self, other)
     }
 }
 
@@ -27,7 +48,7 @@ impl<'s> Sub for Symbol<'s> {
     type Output = Symbol<'s>;
 
     fn sub(self, other: Self) -> Self {
-        self.sheet.sum(self, -other)
+        self.builder.sum(self, -other)
     }
 }
 
@@ -35,7 +56,7 @@ impl<'s> Mul for Symbol<'s> {
     type Output = Symbol<'s>;
 
     fn mul(self, other: Self) -> Self {
-        self.sheet.product(self, other)
+        self.builder.product(self, other)
     }
 }
 
@@ -43,7 +64,7 @@ impl Neg for Symbol<'_> {
     type Output = Self;
 
     fn neg(self) -> Self {
-        Self { term: -self.term, ..self }
+        self.signed(true)
     }
 }
 
@@ -66,7 +87,7 @@ impl<'s> Vector<'s> {
     /// a × b, each component a_j b_k - a_k b_j.
     pub(crate) fn cross(self, other: Self) -> Self {
         let ([ax, ay, az], [bx, by, bz]) = (self.0, other.0);
-        componentwise(ax.sheet, |axis| match axis {
+        componentwise(ax.builder, |axis| match axis {
             Axis::X => ay * bz - az * by,
             Axis::Y => az * bx - ax * bz,
             Axis::Z => ax * by - ay * bx,
@@ -80,8 +101,23 @@ impl<'s> Vector<'s> {
         (x + y) + z
     }
 
+    /// Times a constant.
+    pub(crate) fn times(self, factor: Number) -> Self {
+        Self(self.0.map(|x| x.times(factor)))
+    }
+
+    /// v + x z
+    pub(crate) fn plus_z(self, x: Symbol<'s>) -> Self {
+        let [a, b, c] = self.0;
+        Self([a, b, c + x])
+    }
+
+    pub(crate) fn is_zero(self) -> bool {
+        self.0.iter().all(|x| x.is_zero())
+    }
+
     fn zip(self, other: Self, f: impl Fn(Symbol<'s>, Symbol<'s>) -> Symbol<'s>) -> Self {
-        componentwise(self.0[0].sheet, |axis| f(self.0[axis as usize], other.0[axis as usize]))
+        componentwise(self.0[0].builder, |axis| f(self.0[axis as usize], other.0[axis as usize]))
     }
 }
 
@@ -113,7 +149,7 @@ impl<'s> Mul<Symbol<'s>> for Vector<'s> {
     type Output = Self;
 
     fn mul(self, factor: Symbol<'s>) -> Self {
-        componentwise(factor.sheet, |axis| self.0[axis as usize] * factor)
+        componentwise(factor.builder, |axis| self.0[axis as usize] * factor)
     }
 }
 
@@ -146,7 +182,7 @@ impl<'s> Mul<Vector<'s>> for Matrix<'s> {
     type Output = Vector<'s>;
 
     fn mul(self, v: Vector<'s>) -> Vector<'s> {
-        componentwise(v.0[0].sheet, |axis| self.0[axis as usize].dot(v))
+        componentwise(v.0[0].builder, |axis| self.0[axis as usize].dot(v))
     }
 }
 
@@ -159,10 +195,10 @@ impl Mul for Matrix<'_> {
     }
 }
 
-/// Computes a vector component by component and tells the sheet which one is under way.
-fn componentwise<'s>(sheet: &'s Worksheet, f: impl Fn(Axis) -> Symbol<'s>) -> Vector<'s> {
+/// Computes a vector component by component and tells the builder which one is under way.
+fn componentwise<'s>(builder: &'s Builder, f: impl Fn(Axis) -> Symbol<'s>) -> Vector<'s> {
     Vector(Axis::ALL.map(|axis| {
-        sheet.along(axis);
+        builder.along(axis);
         f(axis)
     }))
 }

@@ -5,7 +5,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 use rne_model::{Angle, InertiaReference, Joint, QuarterTurns};
 
 use super::double::{Double, decimal_digits};
-use super::field::Image;
+use super::residue::Image;
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -17,6 +17,12 @@ pub(crate) struct Number {
 impl Number {
     pub(crate) const ZERO: Self = Self { value: Double::new(0.0), image: Image::ZERO };
     pub(crate) const ONE: Self = Self { value: Double::new(1.0), image: Image::ONE };
+
+    /// A number that was rounded, with the residue of what it stands for.
+    pub(crate) fn rounded(value: f64, image: Image) -> Self {
+        // -0 is 0
+        Self { value: Double::new(value + 0.0), image }
+    }
 
     /// A small integer.
     pub(crate) fn integer(value: u32) -> Self {

@@ -1,0 +1,349 @@
+//! What formulas are written on: a graph, and the trace beside it where one is kept.
+
+use std::cell::{Cell, RefCell};
+
+use rne_model::{Angle, Joint};
+
+use super::trace::{Birth, Definition, Trace, Traced};
+use super::{CausesId, Graph, Input, Matrix, Number, Outcome, Policy, Reading, Ref, Side, Symbol, Turn, Vector};
+use crate::function::Function;
+use crate::ledger::{Cause, Operation, Place};
+use crate::name::{By, Name};
+use crate::quantity::{Axis, Quantity};
+
+/// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
+pub(crate) struct Builder {
+    pub(crate) graph: RefCell<Graph>,
+    trace: Option<RefCell<Trace>>,
+    /// The function that is being written: what it does not take is zero.
+    pub(crate) function: Function,
+    /// The variable of the derivatives that are being written.
+    by: Cell<Option<By>>,
+    /// The one joint that accelerates, counted from 0, while a column of the mass matrix is written; nothing moves then.
+    pub(crate) accelerating: Cell<Option<usize>>,
+}
+
+impl Builder {
+    /// An empty graph with a trace.
+    pub(crate) fn traced(policy: Policy, reading: Reading, function: Function) -> Self {
+        Self { trace: Some(RefCell::default()), ..Self::untraced(policy, reading, function) }
+    }
+
+    /// An empty graph that nobody reads.
+    pub(crate) fn untraced(policy: Policy, reading: Reading, function: Function) -> Self {
+        Self {
+            graph: RefCell::new(Graph::new(policy, reading)),
+            trace: None,
+            function,
+            by: Cell::new(None),
+            accelerating: Cell::new(None),
+        }
+    }
+
+    /// Whether names are kept.
+    pub(crate) fn is_traced(&self) -> bool {
+        self.trace.is_some()
+    }
+
+    /// Starts anew, for another reading of the numbers.
+    pub(crate) fn restart(&mut self, reading: Reading) {
+        self.graph.get_mut().clear(reading);
+    }
+
+    fn reading(&self) -> Reading {
+        self.graph.borrow().reading()
+    }
+
+    /// A value without a cause as a symbol.
+    pub(crate) fn symbol(&self, at: Ref) -> Symbol<'_> {
+        Symbol { builder: self, at, causes: CausesId::ARITHMETIC }
+    }
+
+    fn caused(&self, at: Ref, cause: Cause) -> Symbol<'_> {
+        let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.one(cause));
+        Symbol { builder: self, at, causes }
+    }
+
+    /// An exact number.
+    pub(crate) fn number(&self, number: Number) -> Symbol<'_> {
+        self.symbol(self.graph.borrow_mut().constant(number))
+    }
+
+    /// A constant angle.
+    pub(crate) fn angle(&self, turn: Turn) -> Symbol<'_> {
+        self.symbol(self.graph.borrow_mut().angle(turn))
+    }
+
+    /// The number 0.
+    pub(crate) fn zero(&self) -> Symbol<'_> {
+        self.symbol(self.graph.borrow_mut().zero())
+    }
+
+    /// The number 1.
+    pub(crate) fn one(&self) -> Symbol<'_> {
+        self.symbol(self.graph.borrow_mut().one())
+    }
+
+    /// The zero vector.
+    pub(crate) fn no_vector(&self) -> Vector<'_> {
+        Vector([self.zero(); 3])
+    }
+
+    /// Sine and cosine of a constant angle.
+    pub(crate) fn constant_turn(&self, angle: &Angle, cause: Cause) -> (Symbol<'_>, Symbol<'_>) {
+        let turn = self.reading().turn(angle);
+        // the runtime's sine and cosine, where numbers are rounded as there
+        let [sine, cosine] = [(turn.sin, angle.sin), (turn.cos, angle.cos)].map(|(exact, value)| {
+            let number = self.rounded(exact, value);
+            self.caused(self.graph.borrow_mut().constant(number), cause)
+        });
+        (sine, cosine)
+    }
+
+    /// The inertia of a link about its centre of mass.
+    pub(crate) fn inertia(&self, joint: &Joint) -> Matrix<'_> {
+        let exact = self.reading().inertia(joint);
+        let rows = joint.row.link.inertia.rows();
+        let element = |i: usize, j: usize| {
+            let number = self.rounded(exact[i][j], rows[i][j]);
+            self.caused(self.graph.borrow_mut().constant(number), Cause::Arithmetic)
+        };
+        Matrix::from_rows([0, 1, 2].map(|i| [0, 1, 2].map(|j| element(i, j))))
+    }
+
+    /// An exact number, or what the runtime has for it where bits matter.
+    fn rounded(&self, exact: Number, value: f64) -> Number {
+        match self.graph.borrow().policy() {
+            Policy::Structure => Number::rounded(value, exact.image),
+            _ => exact,
+        }
+    }
+
+    /// A number that stands for itself; `cause` tells why it is what it is.
+    pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
+        let number = self.reading().decimal(value);
+        self.caused(self.graph.borrow_mut().constant(number), cause)
+    }
+
+    /// A number of the table under its name.
+    pub(crate) fn entry(&self, name: Name, value: f64) -> Symbol<'_> {
+        self.name(name, self.constant(value, Cause::Table(name)))
+    }
+
+    /// An argument of the function.
+    pub(crate) fn argument(&self, name: Name) -> Symbol<'_> {
+        self.symbol(self.graph.borrow_mut().input(Input::new(name)))
+    }
+
+    /// The zero vector, with its cause.
+    pub(crate) fn zeros(&self, cause: Cause) -> Vector<'_> {
+        Vector([self.constant(0.0, cause); 3])
+    }
+
+    /// Gives a symbol a name. A constant of the table takes its name as cause, so that a fold can say what was zero.
+    pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
+        let Some(trace) = &self.trace else { return symbol };
+        let trace = &mut *trace.borrow_mut();
+        let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
+        let name = if is_entry { name } else { Name { by: name.by.or(self.by.get()), ..name } };
+        let causes = if is_entry { trace.causes.one(Cause::Table(name)) } else { symbol.causes };
+        let after = self.graph.borrow().len();
+        let told = trace.causes.get(causes);
+        trace.definitions.push(Definition { name, at: symbol.at, causes: told, after });
+        Symbol { causes, ..symbol }
+    }
+
+    /// Names the components of a vector.
+    pub(crate) fn name_vector<'s>(&'s self, quantity: Quantity, joint: usize, v: Vector<'s>) -> Vector<'s> {
+        if self.is_traced() { v.map(|axis, x| self.name(Name::vector(quantity, joint, axis), x)) } else { v }
+    }
+
+    /// Names the elements of a matrix.
+    pub(crate) fn name_matrix<'s>(&'s self, quantity: Quantity, joint: usize, m: Matrix<'s>) -> Matrix<'s> {
+        if !self.is_traced() {
+            return m;
+        }
+        m.map(|row, column, x| self.name(Name::matrix(quantity, joint, row, column), x))
+    }
+
+    /// The lines of one joint.
+    pub(crate) fn joint(&self, joint: usize) -> JointLines<'_> {
+        JointLines { builder: self, joint, named: joint }
+    }
+
+    pub(crate) fn sine_and_cosine<'s>(&'s self, angle: Symbol<'s>) -> (Symbol<'s>, Symbol<'s>) {
+        let graph = &mut *self.graph.borrow_mut();
+        let (sine, cosine) = (graph.sine(angle.at), graph.cosine(angle.at));
+        (self.symbol(sine), self.symbol(cosine))
+    }
+
+    pub(crate) fn sum<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let graph = &mut *self.graph.borrow_mut();
+        let (at, outcome) = graph.sum(a.at, b.at);
+        let Some(trace) = &self.trace else { return self.symbol(at) };
+        let trace = &mut *trace.borrow_mut();
+        let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(a.at);
+        let none = CausesId::ARITHMETIC;
+        let (causes, reason) = match outcome {
+            // a sum is zero when both are
+            Outcome::Zero(_) if both_zero => (trace.causes.union(a.causes, b.causes), b.causes),
+            Outcome::Zero(Side::Right) => (a.causes, b.causes),
+            Outcome::Zero(Side::Left) => (b.causes, a.causes),
+            _ => (none, none),
+        };
+        trace.record(graph.len(), Operation::Sum, outcome, reason);
+        trace.record_roles(graph, at, outcome, [a, b]);
+        Symbol { builder: self, at, causes }
+    }
+
+    pub(crate) fn product<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let graph = &mut *self.graph.borrow_mut();
+        let (at, outcome) = graph.product(a.at, b.at);
+        let Some(trace) = &self.trace else { return self.symbol(at) };
+        let trace = &mut *trace.borrow_mut();
+        let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(a.at);
+        let reason = match outcome {
+            // a product is zero when either is
+            Outcome::Zero(_) if both_zero => trace.causes.weightier(a.causes, b.causes),
+            Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.causes,
+            Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.causes,
+            _ => CausesId::ARITHMETIC,
+        };
+        let causes = match outcome {
+            Outcome::One(Side::Left) => b.causes,
+            Outcome::One(Side::Right) => a.causes,
+            _ => reason,
+        };
+        trace.record(graph.len(), Operation::Product, outcome, reason);
+        trace.record_roles(graph, at, outcome, [a, b]);
+        Symbol { builder: self, at, causes }
+    }
+
+    pub(crate) fn quotient<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
+        let graph = &mut *self.graph.borrow_mut();
+        let (at, outcome) = graph.quotient(a.at, b.at);
+        self.record_unfolded(graph, at, outcome, [a, b])
+    }
+
+    pub(crate) fn by_sign<'s>(&'s self, x: Symbol<'s>, positive: Symbol<'s>, negative: Symbol<'s>) -> Symbol<'s> {
+        let graph = &mut *self.graph.borrow_mut();
+        let (at, outcome) = graph.by_sign(x.at, positive.at, negative.at);
+        self.record_unfolded(graph, at, outcome, [positive, negative])
+    }
+
+    /// An operation that no ledger counts.
+    fn record_unfolded<'s>(
+        &'s self,
+        graph: &Graph,
+        at: Ref,
+        outcome: Outcome,
+        operands: [Symbol<'s>; 2],
+    ) -> Symbol<'s> {
+        if let Some(trace) = &self.trace {
+            let trace = &mut *trace.borrow_mut();
+            trace.record_birth(graph.len());
+            trace.record_roles(graph, at, outcome, operands);
+        }
+        self.symbol(at)
+    }
+
+    /// Writes what is the derivative by one variable: its quantities bear that in their names.
+    pub(crate) fn by<R>(&self, by: Option<By>, formulas: impl FnOnce() -> R) -> R {
+        let outer = self.by.replace(by);
+        let value = formulas();
+        self.by.set(outer);
+        value
+    }
+
+    /// What has been traced so far: where each node was created, and the names.
+    pub(super) fn told(&self) -> (Vec<Option<Birth>>, Vec<Definition>) {
+        let Some(trace) = &self.trace else { return Default::default() };
+        let trace = &mut *trace.borrow_mut();
+        trace.births.resize_with(self.graph.borrow().len(), || None);
+        (trace.births.clone(), trace.definitions.clone())
+    }
+
+    /// Writes what belongs where something else was born.
+    pub(super) fn at_birth<R>(&self, birth: Option<Birth>, formula: impl FnOnce() -> R) -> R {
+        let outer = self.enter(birth.map(|birth| birth.place), birth.and_then(|birth| birth.component.axis()));
+        let value = formula();
+        self.enter(outer.0, outer.1);
+        value
+    }
+
+    /// The operations that follow belong to this quantity of this joint, counted from 1.
+    pub(crate) fn at(&self, quantity: Quantity, joint: usize) {
+        if let Some(place) = self.place(quantity, joint) {
+            self.enter(Some(place), None);
+        }
+    }
+
+    fn place(&self, quantity: Quantity, joint: usize) -> Option<Place> {
+        quantity.step().map(|step| Place { joint, step, quantity, by: self.by.get() })
+    }
+
+    /// Sets the component that the next operations belong to.
+    pub(super) fn along(&self, axis: Axis) {
+        if let Some(trace) = &self.trace {
+            trace.borrow_mut().along(axis);
+        }
+    }
+
+    /// Sets the place and component of the next operations; returns those of the operations before.
+    fn enter(&self, place: Option<Place>, axis: Option<Axis>) -> (Option<Place>, Option<Axis>) {
+        let Some(trace) = &self.trace else { return (None, None) };
+        trace.borrow_mut().enter(self.graph.borrow().len(), place, axis)
+    }
+
+    /// What was written, when these are its results.
+    pub(crate) fn finish(self, outputs: Vec<Ref>) -> Traced {
+        let mut graph = self.graph.into_inner();
+        graph.outputs = outputs;
+        let mut trace = self.trace.map(RefCell::into_inner).unwrap_or_default();
+        trace.births.resize_with(graph.len(), || None);
+        Traced { graph, trace }
+    }
+}
+
+/// The lines of one joint: each gives a quantity of the lecture its value.
+#[derive(Clone, Copy)]
+pub(crate) struct JointLines<'s> {
+    builder: &'s Builder,
+    /// The joint at whose place the lines stand.
+    joint: usize,
+    /// The joint whose name the quantities bear.
+    named: usize,
+}
+
+impl<'s> JointLines<'s> {
+    /// The same lines, for quantities that belong to the link before.
+    pub(crate) fn of_link_before(self) -> Self {
+        Self { named: self.joint.saturating_sub(1), ..self }
+    }
+
+    /// A quantity that is one number.
+    pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
+        let value = self.within(quantity, formula);
+        self.builder.name(Name::scalar(quantity, self.named), value)
+    }
+
+    /// A vector.
+    pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
+        let value = self.within(quantity, formula);
+        self.builder.name_vector(quantity, self.named, value)
+    }
+
+    /// A matrix.
+    pub(crate) fn matrix(&self, quantity: Quantity, formula: impl FnOnce() -> Matrix<'s>) -> Matrix<'s> {
+        let value = self.within(quantity, formula);
+        self.builder.name_matrix(quantity, self.named, value)
+    }
+
+    /// Writes what belongs to a quantity and gets no name of its own.
+    pub(crate) fn within<R>(&self, quantity: Quantity, formula: impl FnOnce() -> R) -> R {
+        let outer = self.builder.enter(self.builder.place(quantity, self.joint), None);
+        let value = formula();
+        self.builder.enter(outer.0, outer.1);
+        value
+    }
+}

@@ -1,0 +1,67 @@
+//! The product rule on a graph.
+
+use std::collections::HashMap;
+
+use super::{Birth, Builder, Definition, Input, Op, Ref, Symbol, mark_live};
+use crate::ledger::{Cause, Place};
+use crate::name::{By, Name};
+
+impl Builder {
+    /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of
+    /// what they are derivatives of and under its names.
+    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+        let (births, all) = self.told();
+        let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
+        for definition in all.into_iter().filter(|definition| definition.name.by.is_none()) {
+            definitions.entry(definition.at.index()).or_default().push(definition);
+        }
+        let outputs: Vec<Ref> = of.iter().map(|symbol| symbol.at).collect();
+        let mut live = Vec::new();
+        let ops: Vec<Op> = {
+            let graph = self.graph.borrow();
+            mark_live(&graph.nodes, &outputs, &mut live);
+            graph.nodes().map(|(_, op)| op).collect()
+        };
+        let variable = Input::new(by.variable());
+        let symbol = |at: Ref| self.symbol(at);
+        let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.one());
+        let mut rates: Vec<Symbol<'s>> = vec![zero; ops.len()];
+        for (index, op) in ops.iter().enumerate().filter(|(index, _)| live[*index]) {
+            if let Op::Input(input) = op {
+                rates[index] = if *input == variable { one } else { zero };
+                continue;
+            }
+            let rate = |at: Ref| rates[at.index()].signed(at.is_negative());
+            let is_zero = |at: &[Ref]| at.iter().all(|&at| rate(at).is_zero());
+            let birth = births.get(index).copied().flatten();
+            let birth = birth.map(|birth| Birth { place: Place { by: Some(by), ..birth.place }, ..birth });
+            rates[index] = self.at_birth(birth, || match *op {
+                Op::Constant(_) | Op::Input(_) => zero,
+                Op::Sine(angle) | Op::Cosine(angle) if is_zero(&[angle]) => zero,
+                Op::Sine(angle) => {
+                    let cosine = self.sine_and_cosine(symbol(angle)).1;
+                    rate(angle) * cosine
+                }
+                Op::Cosine(angle) => {
+                    let sine = self.sine_and_cosine(symbol(angle)).0;
+                    -(rate(angle) * sine)
+                }
+                Op::Sum(a, b) => rate(a) + rate(b),
+                Op::Product(a, b) => rate(a) * symbol(b) + symbol(a) * rate(b),
+                Op::Quotient(a, b) if is_zero(&[a, b]) => zero,
+                Op::Quotient(a, b) => {
+                    let quotient = self.quotient(symbol(a), symbol(b));
+                    self.quotient(rate(a) - quotient * rate(b), symbol(b))
+                }
+                Op::BySign([x, positive, negative]) => self.by_sign(symbol(x), rate(positive), rate(negative)),
+            });
+            for definition in definitions.get(&index).into_iter().flatten() {
+                let rate = rates[index].signed(definition.at.is_negative());
+                if !rate.is_zero() && definition.name.quantity.step().is_some() {
+                    self.name(Name { by: Some(by), ..definition.name }, rate);
+                }
+            }
+        }
+        of.iter().map(|symbol| rates[symbol.at.index()].signed(symbol.at.is_negative())).collect()
+    }
+}

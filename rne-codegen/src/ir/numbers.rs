@@ -1,0 +1,64 @@
+//! Constants of a graph, each kept once with where it came from.
+
+use hashbrown::HashTable;
+
+use super::{Image, Number, Ref};
+
+/// How a constant came about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Source {
+    /// From the robot and the plan.
+    Given,
+    /// From two others by their places: negative factors and summands are references with a sign.
+    Sum(Ref, Ref),
+    Product(Ref, Ref),
+    /// One over another.
+    Inverse(u32),
+}
+
+/// Constants, each kept once, none negative.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Numbers {
+    list: Vec<(Number, Source)>,
+    /// Places in the list. Looked up, never iterated.
+    known: HashTable<u32>,
+}
+
+impl Numbers {
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    pub(crate) fn get(&self, place: u32) -> (Number, Source) {
+        self.list[place as usize]
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.list.clear();
+        self.known.clear();
+    }
+
+    /// The place of a number that is not negative. Numbers are one when `same` says so, whose residues are.
+    pub(crate) fn intern(&mut self, number: Number, source: Source, same: impl Fn(Number, Number) -> bool) -> u32 {
+        let Self { list, known } = self;
+        let is_it = |&place: &u32| same(list[place as usize].0, number);
+        if let Some(&place) = known.find(key(number.image), is_it) {
+            return place;
+        }
+        let place = u32::try_from(list.len()).unwrap_or(u32::MAX);
+        list.push((number, source));
+        known.insert_unique(key(number.image), place, |&place| key(list[place as usize].0.image));
+        place
+    }
+}
+
+/// A residue without its sign, and whether it was the negative one.
+pub(crate) fn canonical(image: Image) -> (Image, bool) {
+    let negative = image.is_negative();
+    (if negative { -image } else { image }, negative)
+}
+
+/// A key of a residue that its negative has as well.
+pub(crate) fn key(image: Image) -> u64 {
+    canonical(image).0.key()
+}

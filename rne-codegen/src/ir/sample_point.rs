@@ -1,0 +1,54 @@
+//! Random values for the arguments of a function: where two functions are compared.
+
+use super::{Image, Input, Reading};
+use crate::quantity::Quantity;
+
+/// Random values for all arguments: what a function of the robot is compared at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    reading: Reading,
+    index: u64,
+}
+
+impl Point {
+    pub(crate) const fn new(reading: Reading, index: u64) -> Self {
+        Self { reading, index }
+    }
+
+    fn random(&self, kind: u64, joint: usize) -> Image {
+        self.reading.random(kind ^ (self.index << 8), joint as u64)
+    }
+
+    pub(crate) const fn reading(&self) -> Reading {
+        self.reading
+    }
+
+    /// An argument of any function. Positions of revolute joints are no numbers of the field by themselves, but random ones
+    /// serve where only their sines and cosines matter.
+    pub(crate) fn argument(&self, input: Input) -> Image {
+        let index = input.index();
+        let axis = input.axis().map_or(0, |axis| axis as usize);
+        match input.quantity() {
+            Quantity::Position => self.random(1, index),
+            Quantity::Rate => self.random(2, index),
+            Quantity::RateDot => self.random(3, index),
+            Quantity::JointForce => self.random(4, axis),
+            Quantity::JointMoment => self.random(5, axis),
+            Quantity::Sine => self.turn(index).0,
+            Quantity::Cosine => self.turn(index).1,
+            Quantity::AppliedTorque => self.random(7, index),
+            Quantity::Omega => self.random(8, axis),
+            Quantity::OmegaDot => self.random(9, axis),
+            Quantity::Acceleration => self.random(10, axis),
+            Quantity::Gravity => self.random(11, axis),
+            Quantity::Parameter => self.random(12, index),
+            // nothing else is given
+            other => self.random(64 + other as u64, index),
+        }
+    }
+
+    /// Sine and cosine of the position of a joint.
+    pub(crate) fn turn(&self, joint: usize) -> (Image, Image) {
+        self.reading.point(6 ^ (self.index << 8), joint as u64)
+    }
+}

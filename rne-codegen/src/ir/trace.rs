@@ -1,0 +1,104 @@
+//! What is told of a graph beside it, for those who read the code: names, places, causes, and what became of every operation.
+//! A search, which counts thousands of plans, keeps none.
+
+use std::collections::HashMap;
+
+use super::causes::{CausesId, KnownCauses};
+use super::{Graph, Outcome, Ref, Symbol};
+use crate::ledger::{Causes, Fate, Ledger, Operation, Place};
+use crate::name::Name;
+use crate::quantity::{Axis, Component};
+
+/// A name given to a value, in the order in which the names were given.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Definition {
+    pub(crate) name: Name,
+    pub(crate) at: Ref,
+    /// Why it is the constant that it is, if it is one.
+    pub(crate) causes: Causes,
+    /// How many nodes there were when it got the name.
+    pub(crate) after: usize,
+}
+
+/// Where a node was created.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Birth {
+    pub(crate) place: Place,
+    pub(crate) component: Component,
+}
+
+/// The trace of a graph.
+#[derive(Default)]
+pub(crate) struct Trace {
+    pub(crate) ledger: Ledger,
+    pub(crate) definitions: Vec<Definition>,
+    /// By node; `None` for what belongs to no step.
+    pub(crate) births: Vec<Option<Birth>>,
+    /// As what a constant entered a node: (node, constant) → its name there.
+    pub(crate) roles: HashMap<(Ref, Ref), Name>,
+    pub(super) causes: KnownCauses,
+    place: Option<Place>,
+    axis: Option<Axis>,
+}
+
+/// A graph and its trace.
+pub(crate) struct Traced {
+    pub(crate) graph: Graph,
+    pub(crate) trace: Trace,
+}
+
+impl Trace {
+    /// Sets the place and component of the next operations; returns those of the operations before.
+    pub(super) fn enter(
+        &mut self,
+        nodes: usize,
+        place: Option<Place>,
+        axis: Option<Axis>,
+    ) -> (Option<Place>, Option<Axis>) {
+        // leaves and constants of the table that came before belong to no step
+        self.births.resize_with(nodes, || None);
+        (std::mem::replace(&mut self.place, place), std::mem::replace(&mut self.axis, axis))
+    }
+
+    /// Sets the component that the next operations belong to.
+    pub(super) fn along(&mut self, axis: Axis) {
+        self.axis = Some(axis);
+    }
+
+    /// New nodes belong to the place at hand.
+    pub(super) fn record_birth(&mut self, nodes: usize) {
+        let component = self.axis.map_or(Component::Scalar, Component::Vector);
+        let birth = self.place.map(|place| Birth { place, component });
+        self.births.resize_with(nodes, || birth);
+    }
+
+    /// Remembers as what a constant enters a new node: the same number may be a length here and a mass there.
+    pub(super) fn record_roles(&mut self, graph: &Graph, at: Ref, outcome: Outcome, operands: [Symbol<'_>; 2]) {
+        if outcome != Outcome::Computed {
+            return;
+        }
+        for operand in operands {
+            if graph.is_constant(operand.at)
+                && let Some(name) = self.causes.get(operand.causes).entry()
+            {
+                self.roles.insert((at.magnitude(), operand.at.magnitude()), name);
+            }
+        }
+    }
+
+    pub(super) fn record(&mut self, nodes: usize, operation: Operation, outcome: Outcome, causes: CausesId) {
+        // Constants of the table are formed outside any step: a runtime forms them once, too.
+        let Some(place) = self.place else { return };
+        let cause = self.causes.get(causes);
+        let fate = match outcome {
+            Outcome::Computed => Fate::Kept,
+            Outcome::Shared => Fate::Shared,
+            Outcome::Zero(_) => Fate::Zero(cause),
+            Outcome::One(_) => Fate::One(cause),
+            Outcome::Constants => Fate::Constant,
+            Outcome::Cancelled => Fate::Cancelled,
+        };
+        self.ledger.enter(place, operation, fate);
+        self.record_birth(nodes);
+    }
+}

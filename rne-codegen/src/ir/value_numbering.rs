@@ -1,0 +1,88 @@
+//! Value numbering: the live part of a graph written once more, with equal values as one node.
+
+use super::{Birth, Definition, Graph, Op, Policy, Ref, Trace, Traced, mark_live};
+use crate::ledger::Place;
+use crate::quantity::{Component, Quantity, Step};
+
+/// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
+///
+/// `live` and `map` are memory that a search uses again.
+pub(crate) fn number_values(from: &Graph, to: &mut Graph, live: &mut Vec<bool>, map: &mut Vec<Ref>) {
+    transcribe(from, to, live, map, |_, _, _, _| {});
+}
+
+impl Traced {
+    /// The same with its trace: a name stays with its value, wherever that is computed now.
+    pub(crate) fn numbered(self) -> Self {
+        let Self { graph, trace: told } = self;
+        let mut numbered = Graph::new(Policy::Numbered, graph.reading());
+        let mut trace = Trace::default();
+        let (mut live, mut map) = (Vec::new(), Vec::new());
+        transcribe(&graph, &mut numbered, &mut live, &mut map, |index, map, before, to| {
+            trace.births.resize(before, None);
+            trace.births.resize(to.len(), told.births.get(index).copied().flatten());
+            let (old, new) = (Ref::new(index), map[index].magnitude());
+            for operand in graph.op(old).operands().filter(|at| graph.is_constant(*at)) {
+                if let Some(name) = told.roles.get(&(old, operand.magnitude())) {
+                    trace.roles.entry((new, operand.mapped(map).magnitude())).or_insert(*name);
+                }
+            }
+        });
+        let after = numbered.len();
+        for definition in told.definitions {
+            // zero and one are called what they are
+            let at = numbered.valued(graph.image(definition.at)).filter(|at| at.index() > 1);
+            if let Some(at) = at {
+                trace.definitions.push(Definition { at, after, ..definition });
+            }
+        }
+        Self { graph: numbered, trace }
+    }
+}
+
+impl Traced {
+    /// A graph of the same values that knows less: names and places of those values go over to it.
+    pub(crate) fn told_by(mut self, other: &Self) -> Self {
+        // what is new has no place among the seven steps
+        let place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
+        for (birth, node) in self.trace.births.iter_mut().zip(&self.graph.nodes) {
+            *birth = node.op.is_operation().then_some(Birth { place, component: Component::Scalar });
+        }
+        let births = other.graph.nodes.iter().zip(&other.trace.births);
+        for (node, birth) in births.filter(|(_, birth)| birth.is_some()) {
+            if let Some(at) = self.graph.valued(node.image) {
+                self.trace.births[at.index()] = *birth;
+            }
+        }
+        let after = self.graph.len();
+        for definition in &other.trace.definitions {
+            if let Some(at) = self.graph.valued(other.graph.image(definition.at)).filter(|at| at.index() > 1) {
+                self.trace.definitions.push(Definition { at, after, ..*definition });
+            }
+        }
+        self
+    }
+}
+
+/// Tells `written` of every node: its index, the map so far, and the length of the new graph before.
+fn transcribe(
+    from: &Graph,
+    to: &mut Graph,
+    live: &mut Vec<bool>,
+    map: &mut Vec<Ref>,
+    mut written: impl FnMut(usize, &[Ref], usize, &Graph),
+) {
+    mark_live(&from.nodes, &from.outputs, live);
+    to.clear(from.reading());
+    map.clear();
+    map.resize(from.len(), Ref::new(0));
+    for (index, node) in from.nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
+        let before = to.len();
+        map[index] = match node.op {
+            Op::Constant(place) => to.constant_like(from, place),
+            op => to.transcribed(op, node.image, map),
+        };
+        written(index, map, before, to);
+    }
+    to.outputs.extend(from.outputs.iter().map(|at| at.mapped(map)));
+}

@@ -1,0 +1,168 @@
+//! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
+
+use super::rows::Row;
+use crate::function::Argument;
+use crate::ir::{Builder, Symbol, Turn, Vector};
+use crate::name::{By, Name};
+use crate::quantity::{Axis, Quantity};
+use rne_model::QuarterTurns;
+
+use super::pseudo_inertia::Triple;
+
+/// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the others, and a
+/// constant. It is counted with the sign of the first joint; right angles are left to the sine and cosine.
+fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
+    let group = |kind: Quantity, single: Quantity, at: usize| {
+        if at == first { Name::scalar(single, at + 1) } else { Name { part: first + 1, ..Name::scalar(kind, at + 1) } }
+    };
+    let position = |at: usize| builder.argument(Name::scalar(Quantity::Position, at + 1));
+    let theta = |at: usize| rows[first..=at].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
+    let reversed = rows[first].reversed;
+    let mut sum = position(first);
+    for at in first + 1..=last {
+        sum = sum + position(at).signed(rows[at].reversed != reversed);
+        // without the constant part, if that has one
+        let kind = if theta(at).quarters().is_some() { Quantity::GroupAngle } else { Quantity::GroupPosition };
+        builder.name(group(kind, Quantity::Angle, at), sum);
+    }
+    let theta = theta(last);
+    if let Some(quarters) = theta.quarters() {
+        return (sum, quarters);
+    }
+    let theta = builder.angle(if reversed { theta.back() } else { theta });
+    let theta = builder.name(group(Quantity::GroupTheta, Quantity::Theta, last), theta);
+    (builder.name(group(Quantity::GroupAngle, Quantity::Angle, last), theta + sum), QuarterTurns::Zero)
+}
+
+impl Builder {
+    pub(crate) fn vector(&self, v: Triple) -> Vector<'_> {
+        Vector(v.map(|x| self.number(x)))
+    }
+
+    /// An argument of a joint, counted from 0, in the direction of its row.
+    fn of_joint(&self, quantity: Quantity, rows: &[Row], joint: usize) -> Symbol<'_> {
+        self.argument(Name::scalar(quantity, joint + 1)).signed(rows[joint].reversed)
+    }
+
+    /// q of a prismatic joint.
+    pub(crate) fn position(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+        self.of_joint(Quantity::Position, rows, joint)
+    }
+
+    /// What `formulas` are when one joint accelerates with 1 and nothing moves.
+    pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
+        self.accelerating.set(Some(joint));
+        let value = self.by(Some(By::RateDot(joint + 1)), formulas);
+        self.accelerating.set(None);
+        value
+    }
+
+    pub(crate) fn rate(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+        if !self.function.takes(Argument::Rates) || self.accelerating.get().is_some() {
+            return self.zero();
+        }
+        self.of_joint(Quantity::Rate, rows, joint)
+    }
+
+    pub(crate) fn rate_dot(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+        match self.accelerating.get() {
+            Some(accelerating) if accelerating == joint => self.one().signed(rows[joint].reversed),
+            None if self.function.takes(Argument::Accelerations) => self.of_joint(Quantity::RateDot, rows, joint),
+            _ => self.zero(),
+        }
+    }
+
+    /// τ of an actuator.
+    pub(crate) fn torque(&self, joint: usize) -> Symbol<'_> {
+        self.argument(Name::scalar(Quantity::AppliedTorque, joint + 1))
+    }
+
+    /// Force and moment at the tip, if the function has them.
+    pub(crate) fn wrench(&self, dof: usize) -> Option<(Vector<'_>, Vector<'_>)> {
+        let vector = |quantity| Vector(Axis::ALL.map(|axis| self.argument(Name::vector(quantity, dof + 1, axis))));
+        self.function.takes(Argument::Wrench).then(|| (vector(Quantity::JointForce), vector(Quantity::JointMoment)))
+    }
+
+    /// The turn by the summed angle of joints `first` to `last`.
+    pub(crate) fn turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+        if self.function.takes(Argument::Sines) {
+            return self.given_turn(rows, first, last);
+        }
+        // an angle does not change with what else is derived or accelerated
+        self.by(None, || self.turn_by_angle(rows, first, last))
+    }
+
+    fn turn_by_angle(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+        let ((s, c), quarters) = self.turned(rows, first, last);
+        let (mut s, mut c) = (s.signed(rows[first].reversed), c);
+        let turns = match quarters {
+            QuarterTurns::Zero => 0,
+            QuarterTurns::One => 1,
+            QuarterTurns::Two => 2,
+            QuarterTurns::Three => 3,
+        };
+        for _ in 0..turns {
+            (s, c) = (c, -s);
+        }
+        SymbolicTurn { s, c }
+    }
+
+    /// Sine and cosine of the variable part of a turn, and the right angles that are left.
+    pub(crate) fn turned(&self, rows: &[Row], first: usize, last: usize) -> ((Symbol<'_>, Symbol<'_>), QuarterTurns) {
+        let (angle, quarters) = angle(self, rows, first, last);
+        let (s, c) = self.sine_and_cosine(angle);
+        let name = |group: Quantity, single: Quantity, x| {
+            let name = Name::scalar(single, last + 1);
+            self.name(if first == last { name } else { Name { quantity: group, part: first + 1, ..name } }, x)
+        };
+        ((name(Quantity::GroupSine, Quantity::Sine, s), name(Quantity::GroupCosine, Quantity::Cosine, c)), quarters)
+    }
+
+    /// The same from sines and cosines that are arguments, by the addition theorem.
+    fn given_turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+        let theta = rows[first..=last].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
+        (first..=last).fold(self.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
+            let sine = self.of_joint(Quantity::Sine, rows, joint);
+            let cosine = self.argument(Name::scalar(Quantity::Cosine, joint + 1));
+            SymbolicTurn { s: s * cosine + c * sine, c: c * cosine - s * sine }
+        })
+    }
+
+    /// A turn by a constant angle.
+    pub(crate) fn fixed_turn(&self, turn: Turn) -> SymbolicTurn<'_> {
+        SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
+    }
+}
+
+/// A turn: sine and cosine, about x or about z as it is used.
+#[derive(Clone, Copy)]
+pub(crate) struct SymbolicTurn<'s> {
+    pub(crate) s: Symbol<'s>,
+    pub(crate) c: Symbol<'s>,
+}
+
+impl<'s> SymbolicTurn<'s> {
+    /// Rx v
+    pub(crate) fn about_x(self, v: Vector<'s>) -> Vector<'s> {
+        let ([x, y, z], Self { s, c }) = (v.0, self);
+        Vector([x, y * c - z * s, y * s + z * c])
+    }
+
+    /// Rxᵀ v
+    pub(crate) fn back_about_x(self, v: Vector<'s>) -> Vector<'s> {
+        let ([x, y, z], Self { s, c }) = (v.0, self);
+        Vector([x, y * c + z * s, z * c - y * s])
+    }
+
+    /// Rz v
+    pub(crate) fn about_z(self, v: Vector<'s>) -> Vector<'s> {
+        let ([x, y, z], Self { s, c }) = (v.0, self);
+        Vector([x * c - y * s, x * s + y * c, z])
+    }
+
+    /// Rzᵀ v
+    pub(crate) fn back_about_z(self, v: Vector<'s>) -> Vector<'s> {
+        let ([x, y, z], Self { s, c }) = (v.0, self);
+        Vector([x * c + y * s, y * c - x * s, z])
+    }
+}
