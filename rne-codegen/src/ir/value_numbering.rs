@@ -45,6 +45,7 @@ impl Traced {
     pub(crate) fn told_by(mut self, other: &Self) -> Self {
         // what is new has no place among the seven steps
         let place = Place { joint: 0, step: Step::Torque, quantity: Quantity::Term, by: None };
+        self.trace.births.resize(self.graph.len(), None);
         for (birth, node) in self.trace.births.iter_mut().zip(&self.graph.nodes) {
             *birth = node.op.is_operation().then_some(Birth { place, component: Component::Scalar });
         }

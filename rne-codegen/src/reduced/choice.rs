@@ -403,7 +403,7 @@ fn rewritten(
             #[allow(clippy::cast_precision_loss)]
             let start = begin + length * index as f64;
             let seed = seed.wrapping_add(stage * 100 + index as u64);
-            let mut rewriting = Rewriting::new(graph.clone(), seed);
+            let mut rewriting = Rewriting::new(graph.clone(), seed, Graph::cost);
             let mut local = |progress: &Progress| clock(progress).map(|over| ((over - start) / length).clamp(0.0, 1.0));
             let plans = search.plans;
             let least = best.as_ref().map(|(cost, _)| *cost);

@@ -10,22 +10,23 @@ use crate::ir::{Cost, Graph, Op, Ref, mark_live, mark_live_outside_angles};
 const FACTORS: std::ops::Range<f64> = 1e-4..1e4;
 
 /// A graph that is being made smaller.
-pub(crate) struct Rewriting {
+pub(crate) struct Rewriting<C> {
     current: Graph,
     next: Graph,
     live: Vec<bool>,
     /// What is live otherwise than as an angle.
     computed: Vec<bool>,
     map: Vec<Ref>,
+    cost: C,
     rng: fastrand::Rng,
     best: (Cost, Graph),
 }
 
-impl Rewriting {
+impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Rewriting<C> {
     /// Starts from a numbered graph.
-    pub(crate) fn new(graph: Graph, seed: u64) -> Self {
+    pub(crate) fn new(graph: Graph, seed: u64, cost: C) -> Self {
         let mut live = Vec::new();
-        let best = (graph.cost(&mut live), graph.clone());
+        let best = (cost(&graph, &mut live), graph.clone());
         let next = graph.clone();
         Self {
             current: graph,
@@ -33,6 +34,7 @@ impl Rewriting {
             live,
             computed: Vec::new(),
             map: Vec::new(),
+            cost,
             rng: fastrand::Rng::with_seed(seed),
             best,
         }
@@ -50,7 +52,7 @@ impl Rewriting {
         mut progress: impl FnMut(Cost) -> Progress,
         clock: Clock<'_>,
     ) -> Result<(), Over> {
-        let mut weight = self.current.cost(&mut self.live).weight();
+        let mut weight = (self.cost)(&self.current, &mut self.live).weight();
         let mut over = 0.0;
         for step in 0_u64.. {
             if step % 512 == 0 {
@@ -62,7 +64,7 @@ impl Rewriting {
             if !self.step() {
                 continue;
             }
-            let cost = self.next.cost(&mut self.live);
+            let cost = (self.cost)(&self.next, &mut self.live);
             #[allow(clippy::cast_precision_loss)] // small integers
             let worse = cost.weight() as f64 - weight as f64;
             let temperature = hottest * (1.0 - over) + 0.03;

@@ -9,10 +9,12 @@ use super::evaluator::{Evaluator, Frame, frame};
 use super::moves::Moves;
 use super::rewrite::Rewriting;
 use super::search::{Search, default_plan};
-use super::transcript::Drawing;
 use super::*;
 use crate::fusion::{fused, soonest};
-use crate::proof::{self, Exactly};
+use crate::ir::{Graph, Traced};
+use crate::lower::{Exactly, Heading, lower};
+use crate::name::Name;
+use crate::proof;
 use crate::{CompileError, Expression, Form, Function, Program};
 
 fn robot(name: &str) -> Robot {
@@ -28,15 +30,15 @@ fn robot(name: &str) -> Robot {
 const SEVERAL: [&str; 8] =
     ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp", "dense6_2p"];
 
-fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<(Frame, Drawing)> {
+fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<(Frame, Vec<Name>, Traced)> {
     let frame = frame(robot, plan)?;
-    let drawing = Drawing::new(&frame, plan, function, super::way::Way::Recursion)?;
-    Some((frame, drawing))
+    let (names, written) = frame.written(plan, function, super::way::Way::Recursion)?;
+    Some((frame, names, written))
 }
 
 fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<(Program, Exactly, Frame)> {
-    let (frame, drawing) = drawn(robot, plan, function)?;
-    let (program, exactly) = drawing.unproved(robot, &frame, function, Form::Reduced).unwrap();
+    let (frame, names, written) = drawn(robot, plan, function)?;
+    let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
     Some((program, exactly, frame))
 }
 
@@ -112,10 +114,10 @@ fn a_trick_that_is_left_out_is_not_used() {
 fn rewritten_graphs_survive_as_text() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (frame, drawing) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
-    let given = drawing.dag.sheet.numbers.len();
-    let before = evaluator::cost(&drawing.dag, &frame, &mut Vec::new());
-    let mut rewriting = Rewriting::new(drawing.dag.clone(), 3, |dag, live| evaluator::cost(dag, &frame, live));
+    let (frame, names, plain) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
+    let given = plain.graph.numbers.len();
+    let before = plain.graph.cost(&mut Vec::new());
+    let mut rewriting = Rewriting::new(plain.graph.clone(), 3, Graph::cost);
     let mut ticks = 0;
     let mut clock = |_: &Progress| {
         ticks += 1;
@@ -123,20 +125,19 @@ fn rewritten_graphs_survive_as_text() {
     };
     let progress = |best| Progress { plans: 0, best, phase: "rewriting" };
     assert!(rewriting.anneal(0.2, progress, &mut clock).is_err(), "the clock ended it");
-    let (cost, dag) = rewriting.best();
+    let (cost, graph) = rewriting.best();
     assert!(cost.weight() < before.weight(), "{cost:?} from {before:?}");
-    let text = graph_text::written(&dag, given);
-    let read = graph_text::read(&text, &frame, &drawing.dag.sheet.numbers).unwrap();
-    assert_eq!(evaluator::cost(&read, &frame, &mut Vec::new()), cost);
-    let on = graph_text::on_numbers_of(&read, &drawing.dag);
-    assert_eq!(evaluator::cost(&on, &frame, &mut Vec::new()), cost);
+    let text = graph_text::written(&graph, given);
+    let read = graph_text::read(&text, &frame, &plain.graph.numbers, Function::InverseDynamics).unwrap();
+    assert_eq!(read.graph.cost(&mut Vec::new()), cost);
+    let on = graph_text::on_numbers_of(&read.graph, &plain.graph);
+    assert_eq!(on.cost(&mut Vec::new()), cost);
     // in another order of summands and factors, perhaps
     let again = graph_text::written(&on, given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
-    let program = drawing
-        .with(read)
-        .program(&robot, &frame, Function::InverseDynamics, Form::Rewritten, |program| program)
-        .unwrap();
+    let heading = Heading { robot: &robot, function: Function::InverseDynamics, form: Form::Rewritten };
+    let (program, exactly) = lower(&heading, read.told_by(&plain), &names).unwrap();
+    proof::prove(&robot, &program, &exactly, frame.table.reading).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 
@@ -144,7 +145,7 @@ fn rewritten_graphs_survive_as_text() {
 fn mistakes_in_a_graph_name_their_line() {
     let robot = robot("planar2");
     let plan = Plan::new(2);
-    let (frame, drawing) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
+    let (frame, _, plain) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
     for (text, line, what) in [
         ("t1 = q1 * qd9", 1, "there is no `qd9`"),
         ("t1 = qd1 ^ qd2", 1, "`^` is no operation"),
@@ -155,7 +156,8 @@ fn mistakes_in_a_graph_name_their_line() {
         ("tau1 = qd1", 1, "a torque is missing"),
         ("t1 = k999 * qd1", 1, "there is no `k999`"),
     ] {
-        let (at, message) = graph_text::read(text, &frame, &drawing.dag.sheet.numbers).unwrap_err();
+        let read = graph_text::read(text, &frame, &plain.graph.numbers, Function::InverseDynamics);
+        let Err((at, message)) = read else { panic!("{text}") };
         assert_eq!(at, line, "{text}");
         assert!(message.contains(what), "{text}: {message}");
     }

@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 
 use super::*;
-use crate::reduced::sheet::Dag;
+use crate::ir::Trace;
 
 /// Some rounds of random changes, every plan that applies proved for a function in turn.
 fn wander(robot: &Robot, rounds: usize, seed: u64) {
@@ -53,20 +53,20 @@ fn rewritten_graphs_are_the_seven_steps() {
             // squares of cosines
             joint.switches.second_moment_unturned = true;
         }
-        let (frame, mut drawing) = drawn(&robot, &plan, function).unwrap();
-        let images = |dag: &Dag| dag.outputs.iter().map(|at| dag.sheet.image(*at)).collect::<Vec<_>>();
-        let expected = images(&drawing.dag);
+        let (frame, names, plain) = drawn(&robot, &plan, function).unwrap();
+        let images = |graph: &Graph| graph.outputs.iter().map(|at| graph.image(*at)).collect::<Vec<_>>();
+        let expected = images(&plain.graph);
         let (graphs, seen, found) = (RefCell::new(Vec::new()), Cell::new(0_usize), Cell::new(false));
-        let cost = |dag: &Dag, live: &mut Vec<bool>| {
+        let cost = |graph: &Graph, live: &mut Vec<bool>| {
             seen.set(seen.get() + 1);
-            let is_wrong = !found.get() && images(dag) != expected;
+            let is_wrong = !found.get() && images(graph) != expected;
             found.set(found.get() || is_wrong);
             if is_wrong || seen.get() % 1000 == 0 {
-                graphs.borrow_mut().push(dag.clone());
+                graphs.borrow_mut().push(graph.clone());
             }
-            evaluator::cost(dag, &frame, live)
+            graph.cost(live)
         };
-        let mut rewriting = Rewriting::new(drawing.dag.clone(), 5, cost);
+        let mut rewriting = Rewriting::new(plain.graph.clone(), 5, cost);
         let mut ticks = 0;
         let mut clock = |_: &Progress| {
             ticks += 1;
@@ -77,9 +77,10 @@ fn rewritten_graphs_are_the_seven_steps() {
         let graphs = graphs.take();
         assert!(!graphs.is_empty());
         // the last one first: that is the one whose value has changed
-        for dag in graphs.into_iter().rev() {
-            drawing.dag = dag;
-            let (program, exactly) = drawing.unproved(&robot, &frame, function, Form::Rewritten).unwrap();
+        for graph in graphs.into_iter().rev() {
+            let written = Traced { graph, trace: Trace::default() }.told_by(&plain);
+            let heading = Heading { robot: &robot, function, form: Form::Rewritten };
+            let (program, exactly) = lower(&heading, written, &names).unwrap();
             let program = (program, exactly, frame.clone());
             must_be_identical(&robot, &plan, &program);
         }

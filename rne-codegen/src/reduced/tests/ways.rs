@@ -16,8 +16,8 @@ const FUNCTIONS: [Function; 5] = [
 /// The program of a function in one of its ways; `None` where the plan does not apply.
 fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<(Program, Exactly, Frame)> {
     let frame = frame(robot, plan)?;
-    let drawing = Drawing::new(&frame, plan, function, way)?;
-    let (program, exactly) = drawing.unproved(robot, &frame, function, Form::Reduced).unwrap();
+    let (names, written) = frame.written(plan, function, way)?;
+    let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
     Some((program, exactly, frame))
 }
 
