@@ -311,6 +311,12 @@ impl Graph {
         at
     }
 
+    /// The places of its constants so far, without those that are angles.
+    pub(crate) fn factors(&self) -> Vec<u32> {
+        let places = (0..self.numbers.len()).filter_map(|place| u32::try_from(place).ok());
+        places.filter(|place| !self.turns.contains_key(place)).collect()
+    }
+
     /// What a constant is as an angle.
     pub(crate) fn turn(&self, at: Ref) -> Option<Turn> {
         let Op::Constant(place) = self.op(at) else { return None };

@@ -201,7 +201,7 @@ fn torques_by(robot: &Robot, plan: &Plan) -> Result<(Frame, Vec<Name>, Traced), 
 /// A rewritten graph of the torques: values keep the names that they have under its plan.
 fn rewritten_graph(robot: &Robot, plan: &Plan, text: &str) -> Result<(Frame, Vec<Name>, Traced), CompileError> {
     let (frame, names, plain) = torques_by(robot, plan)?;
-    let read = graph_text::read(text, &frame, &plain.graph.numbers, Function::InverseDynamics)
+    let read = graph_text::read(text, &frame, &plain.graph, Function::InverseDynamics)
         .map_err(|(line, message)| misread(robot, line, &message))?;
     Ok((frame, names, read.told_by(&plain)))
 }
@@ -377,12 +377,12 @@ fn rewritten(
     let mut candidates: Vec<Plan> = candidates.iter().map(|plan| search.tidied(plan)).collect();
     candidates.dedup();
     // (cost, plan, graph, numbers given)
-    let mut graphs: Vec<(Cost, Plan, Graph, usize)> = Vec::new();
+    let mut graphs: Vec<(Cost, Plan, Graph, Vec<u32>)> = Vec::new();
     if let Some((cost, known)) = best {
         let (frame, _, plain) = torques_by(robot, &known.plan)?;
-        let given = plain.graph.numbers.len();
+        let given = plain.graph.factors();
         // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
-        let read = graph_text::read(&known.graph, &frame, &plain.graph.numbers, Function::InverseDynamics);
+        let read = graph_text::read(&known.graph, &frame, &plain.graph, Function::InverseDynamics);
         let graph =
             read.map_or_else(|_| plain.graph.clone(), |read| graph_text::on_numbers_of(&read.graph, &plain.graph));
         graphs.push((*cost, known.plan.clone(), graph, given));
@@ -390,7 +390,7 @@ fn rewritten(
     for plan in candidates {
         let Ok((_, _, written)) = torques_by(robot, &plan) else { continue };
         let cost = written.graph.cost(&mut Vec::new());
-        let given = written.graph.numbers.len();
+        let given = written.graph.factors();
         graphs.push((cost, plan, written.graph, given));
     }
     let middle = from + (1.0 - from) * 0.5;
@@ -425,7 +425,7 @@ fn rewritten(
         if best.as_ref().is_some_and(|(least, _)| cost.weight() >= least.weight()) {
             break;
         }
-        let rewritten = Rewritten { plan, graph: graph_text::written(&graph, given) };
+        let rewritten = Rewritten { plan, graph: graph_text::written(&graph, &given) };
         let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
         if is_precise(robot, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));

@@ -16,8 +16,8 @@ use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol
 use crate::name::Name;
 use crate::quantity::Quantity;
 
-/// A graph as text, when the first `given` of its numbers are those of its plan.
-pub(crate) fn written(graph: &Graph, given: usize) -> String {
+/// A graph as text, when the numbers in the places `given` are those of its plan.
+pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
     let mut text = String::new();
     let mut constants = Constants { numbers: &graph.numbers, given, names: HashMap::new(), text: String::new() };
     let mut names: Vec<String> = vec![String::new(); graph.len()];
@@ -75,15 +75,15 @@ fn group(graph: &Graph, angle: Ref) -> String {
 /// Names of constants, and the lines that make those that are not given.
 struct Constants<'a> {
     numbers: &'a Numbers,
-    given: usize,
+    given: &'a [u32],
     names: HashMap<u32, String>,
     text: String,
 }
 
 impl Constants<'_> {
     fn name(&mut self, place: u32) -> String {
-        if (place as usize) < self.given {
-            return format!("k{place}");
+        if let Some(index) = self.given.iter().position(|given| *given == place) {
+            return format!("k{index}");
         }
         if let Some(name) = self.names.get(&place) {
             return name.clone();
@@ -107,19 +107,19 @@ impl Constants<'_> {
     }
 }
 
-/// The graph of a text; `numbers` are those of the reduced form under the plan.
+/// The graph of a text; `plain` is that of the reduced form under the plan.
 ///
 /// # Errors
 /// What is wrong in which line of the text, counted from 1.
 pub(crate) fn read(
     text: &str,
     frame: &Frame,
-    numbers: &Numbers,
+    plain: &Graph,
     function: Function,
 ) -> Result<Traced, (usize, String)> {
     let builder = Builder::traced(Policy::Numbered, frame.table.reading, function);
-    let given = (0..numbers.len()).filter_map(|place| u32::try_from(place).ok()).map(|place| numbers.get(place).0);
-    let mut reader = Reader { frame, given: given.collect(), builder: &builder, known: HashMap::new() };
+    let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
+    let mut reader = Reader { frame, given, builder: &builder, known: HashMap::new() };
     let mut outputs = vec![None; frame.table.rows.len()];
     for (index, line) in text.lines().enumerate() {
         let at = index + 1;

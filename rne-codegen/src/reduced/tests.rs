@@ -115,7 +115,7 @@ fn rewritten_graphs_survive_as_text() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
     let (frame, names, plain) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
-    let given = plain.graph.numbers.len();
+    let given = plain.graph.factors();
     let before = plain.graph.cost(&mut Vec::new());
     let mut rewriting = Rewriting::new(plain.graph.clone(), 3, Graph::cost);
     let mut ticks = 0;
@@ -127,13 +127,13 @@ fn rewritten_graphs_survive_as_text() {
     assert!(rewriting.anneal(0.2, progress, &mut clock).is_err(), "the clock ended it");
     let (cost, graph) = rewriting.best();
     assert!(cost.weight() < before.weight(), "{cost:?} from {before:?}");
-    let text = graph_text::written(&graph, given);
-    let read = graph_text::read(&text, &frame, &plain.graph.numbers, Function::InverseDynamics).unwrap();
+    let text = graph_text::written(&graph, &given);
+    let read = graph_text::read(&text, &frame, &plain.graph, Function::InverseDynamics).unwrap();
     assert_eq!(read.graph.cost(&mut Vec::new()), cost);
     let on = graph_text::on_numbers_of(&read.graph, &plain.graph);
     assert_eq!(on.cost(&mut Vec::new()), cost);
     // in another order of summands and factors, perhaps
-    let again = graph_text::written(&on, given);
+    let again = graph_text::written(&on, &given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
     let heading = Heading { robot: &robot, function: Function::InverseDynamics, form: Form::Rewritten };
     let (program, exactly) = lower(&heading, read.told_by(&plain), &names).unwrap();
@@ -156,7 +156,7 @@ fn mistakes_in_a_graph_name_their_line() {
         ("tau1 = qd1", 1, "a torque is missing"),
         ("t1 = k999 * qd1", 1, "there is no `k999`"),
     ] {
-        let read = graph_text::read(text, &frame, &plain.graph.numbers, Function::InverseDynamics);
+        let read = graph_text::read(text, &frame, &plain.graph, Function::InverseDynamics);
         let Err((at, message)) = read else { panic!("{text}") };
         assert_eq!(at, line, "{text}");
         assert!(message.contains(what), "{text}: {message}");
