@@ -22,8 +22,8 @@ where
     S: Copy + Sub<Output = S> + Mul<Output = S>,
 {
     let dof = b.len();
-    let element = |row: usize, column: usize| Name { part: column + 1, ..Name::scalar(Quantity::LowerFactor, row + 1) };
-    let scaled = |row: usize, column: usize| Name { part: column + 1, ..Name::scalar(Quantity::ScaledFactor, row + 1) };
+    let element = |row: usize, column: usize| Name::indexed(Quantity::LowerFactor, row + 1, column + 1);
+    let scaled = |row: usize, column: usize| Name::indexed(Quantity::ScaledFactor, row + 1, column + 1);
     let of_joint = |quantity, index: usize| Name::scalar(quantity, index + 1);
     // rows of L and of L D, below the diagonal
     let mut factors: Vec<Vec<(S, S)>> = vec![Vec::new(); dof];

@@ -242,9 +242,5 @@ impl Transcript<'_> {
 
 /// `s3` for one joint, `s2_4` for the sum of three.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
-    if first == last {
-        Name::scalar(single, last + 1)
-    } else {
-        Name { part: first + 1, ..Name::scalar(group, last + 1) }
-    }
+    if first == last { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) }
 }

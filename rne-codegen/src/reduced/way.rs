@@ -111,7 +111,7 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
         (Function::CoriolisMatrix, Way::Composite(gathering)) => {
             let found = sensitivity(writer, arm, gathering, Number::ONE);
             square(arm.rows().len(), |row, column| {
-                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
                 writer.define(name, found.by_rate[row][column]);
                 (name, found.by_rate[row][column])
             })
@@ -135,7 +135,7 @@ pub(crate) fn write<'s>(writer: &'s Writer, arm: &Arm<'_>, function: Function, w
                 (1..=torques.len()).map(|joint| writer.derivatives(arm.rows(), &torques, By::Rate(joint))).collect();
             square(torques.len(), |row, column| {
                 writer.at(Quantity::CoriolisElement, row + 1);
-                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
                 let element = columns[column][row] * half;
                 writer.define(name, element);
                 (name, element)
