@@ -32,7 +32,7 @@ pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointSt
         let viscous = named(Name::scalar(Quantity::ViscousFriction, joint), viscous);
         let entries = [Entry::CoulombPositive(index), Entry::CoulombNegative(index)];
         let [positive, negative] = [0, 1].map(|side| {
-            let name = Name { part: side + 1, ..Name::scalar(Quantity::CoulombFriction, joint) };
+            let name = Name::indexed(Quantity::CoulombFriction, joint, side + 1);
             named(name, magnitude * number(entries[side], motor.coulomb[side]))
         });
         let value = builder.joint(joint).within(Quantity::ActuatorTorque, || {

@@ -132,7 +132,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
         let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.builder.derivatives(&torques, By::Rate(joint))).collect();
         square(dof, |row, column| {
-            let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+            let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
             let line = self.builder.joint(row + 1);
             let value = line.within(Quantity::CoriolisElement, || columns[column][row] * half);
             (name, self.builder.name(name, value))
@@ -186,7 +186,8 @@ impl<'s, 'r> Derivation<'s, 'r> {
             .into_iter()
             .enumerate()
             .flat_map(|(part, vector)| {
-                let name = move |axis| Name { part, ..Name::vector(Quantity::TipAcceleration, tip, axis) };
+                let name =
+                    move |axis| Name { indices: [part, 0], ..Name::vector(Quantity::TipAcceleration, tip, axis) };
                 Axis::ALL.map(|axis| (name(axis), vector.0[axis as usize]))
             })
             .collect()
@@ -209,7 +210,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn regressor(&self) -> Outputs<'s> {
         let rows = regressor::regressor(self.builder, &self.arm, &self.states, &self.motions());
         let element = |joint: usize, link: usize, parameter: usize| Name {
-            part: (link + 1) * 100 + parameter + 1,
+            indices: [link + 1, parameter + 1],
             ..Name::scalar(Quantity::RegressorElement, joint + 1)
         };
         rows.iter()

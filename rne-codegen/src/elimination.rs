@@ -10,8 +10,8 @@ use crate::quantity::Quantity;
 /// The solution of M x = b; row i of `upper` holds the elements (i, i) to (i, n) of M.
 pub(crate) fn solved<'s>(builder: &'s Builder, upper: &[Vec<Symbol<'s>>], b: &[Symbol<'s>]) -> Vec<Symbol<'s>> {
     let dof = b.len();
-    let element = |row: usize, column: usize| Name { part: column + 1, ..Name::scalar(Quantity::LowerFactor, row + 1) };
-    let scaled = |row: usize, column: usize| Name { part: column + 1, ..Name::scalar(Quantity::ScaledFactor, row + 1) };
+    let element = |row: usize, column: usize| Name::indexed(Quantity::LowerFactor, row + 1, column + 1);
+    let scaled = |row: usize, column: usize| Name::indexed(Quantity::ScaledFactor, row + 1, column + 1);
     let of_joint = |quantity, index: usize| Name::scalar(quantity, index + 1);
     let within = |name: Name, value: &dyn Fn() -> Symbol<'s>| {
         let value = builder.joint(name.joint).within(name.quantity, value);

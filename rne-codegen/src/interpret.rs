@@ -1,6 +1,6 @@
 //! An interpreter of programs over any number type, so that thousands of robots can be tried without compiling each.
 
-use std::collections::BTreeMap;
+use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::name::Name;
@@ -37,7 +37,7 @@ impl<'a, T: Copy> Arguments<'a, T> {
     }
 }
 
-/// A program made ready to run: names are resolved to slots.
+/// A program made ready to run: names are resolved to slots, by their text as in the code that is emitted.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
     code: Vec<Instruction>,
@@ -102,8 +102,8 @@ impl Interpreter {
             let angle = builder.expression(&turn.angle);
             let slot = builder.push(Instruction::SineCosine(angle));
             builder.slots += 1;
-            builder.known.extend(turn.sine.map(|name| (name, slot)));
-            builder.known.extend(turn.cosine.map(|name| (name, slot + 1)));
+            builder.known.extend(turn.sine.map(|name| (name.to_string(), slot)));
+            builder.known.extend(turn.cosine.map(|name| (name.to_string(), slot + 1)));
         }
         for statement in &program.statements {
             builder.statement(statement);
@@ -194,7 +194,7 @@ impl<T: Copy> Arguments<'_, T> {
 struct Builder {
     code: Vec<Instruction>,
     slots: usize,
-    known: BTreeMap<Name, usize>,
+    known: HashMap<String, usize>,
 }
 
 impl Builder {
@@ -206,18 +206,18 @@ impl Builder {
 
     fn define(&mut self, name: Name, instruction: Instruction) {
         let slot = self.push(instruction);
-        self.known.insert(name, slot);
+        self.known.insert(name.to_string(), slot);
     }
 
     fn statement(&mut self, Statement { name, value, .. }: &Statement) {
         let slot = self.expression(value);
-        self.known.insert(*name, slot);
+        self.known.insert(name.to_string(), slot);
     }
 
     fn expression(&mut self, expression: &Expression) -> usize {
         let instruction = match expression {
             // every name is defined before it is used: programs are in order of evaluation
-            Expression::Variable(name) => return self.known[name],
+            Expression::Variable(name) => return self.known[&name.to_string()],
             Expression::Zero => Instruction::Constant(None, 0.0),
             Expression::Negative(a) => Instruction::Negative(self.expression(a)),
             Expression::Sum(a, b) => Instruction::Sum(self.expression(a), self.expression(b)),

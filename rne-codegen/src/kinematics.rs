@@ -118,7 +118,7 @@ pub(crate) fn tip_acceleration<'s>(
     let linear = builder.name_vector(Quantity::TipAcceleration, tip, linear);
     let name = |axis: Axis, x| {
         let name = crate::name::Name::vector(Quantity::TipAcceleration, tip, axis);
-        builder.name(crate::name::Name { part: 1, ..name }, x)
+        builder.name(crate::name::Name { indices: [1, 0], ..name }, x)
     };
     Some([linear, angular.map(name)])
 }

@@ -107,6 +107,13 @@ pub enum CompileError {
         /// The largest difference, relative to the largest torque.
         rounding: f64,
     },
+    /// Two variables of one name, of which the second would shadow the first; it is never emitted.
+    TwoOfOneName {
+        /// The function.
+        function: Function,
+        /// The name.
+        name: String,
+    },
     /// A plan that does not fit the robot.
     Plan(String),
 }
@@ -131,6 +138,11 @@ impl fmt::Display for CompileError {
                 f,
                 "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
                  torque. `rne search` finds another plan, `form = \"seven_steps\"` needs none"
+            ),
+            Self::TwoOfOneName { function, name } => write!(
+                f,
+                "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \
+                 meant. No code is written. Please report this robot"
             ),
             Self::Plan(why) => f.write_str(why),
         }

@@ -1,6 +1,6 @@
 //! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use rne_model::Robot;
 
@@ -59,6 +59,7 @@ pub(crate) fn lower(
         choices: Vec::new(),
         proof: None,
     };
+    program.check_names()?;
     Ok((program, exactly))
 }
 
@@ -159,8 +160,12 @@ impl<'w> Schedule<'w> {
     }
 
     /// A term without a name that is used more than once, and a constant without a name, are called after the quantity
-    /// in which they first stood.
+    /// in which they first stood. Other names may look alike, and what a language tells apart is their text: a number that
+    /// gives a text of them is left out.
     fn name_shared_terms(&mut self) {
+        let given = self.names.iter().flatten().map(|given| given.name);
+        let defined = self.written.trace.definitions.iter().map(|definition| definition.name);
+        let mut taken: HashSet<String> = given.chain(defined).map(|name| name.to_string()).collect();
         let mut parts: BTreeMap<Name, usize> = BTreeMap::new();
         for (id, node) in self.written.graph.nodes() {
             let index = id.index();
@@ -171,19 +176,23 @@ impl<'w> Schedule<'w> {
             }
             let base =
                 self.written.trace.births[index].as_ref().map_or(Name::scalar(Quantity::Constant, 0), |birth| Name {
-                    quantity: birth.place.quantity,
-                    joint: birth.place.joint,
                     component: birth.component,
-                    part: 0,
                     by: birth.place.by,
+                    ..Name::scalar(birth.place.quantity, birth.place.joint)
                 });
             // counted among those that look alike: of some quantities a name does not tell the joint
             let part =
                 parts.entry(Name { joint: if base.tells_joint() { base.joint } else { 0 }, ..base }).or_default();
-            *part += 1;
+            let name = loop {
+                *part += 1;
+                let name = Name { part: *part, ..base };
+                if taken.insert(name.to_string()) {
+                    break name;
+                }
+            };
             // with the sign that needs no minus; operands have their names, for they are older
             let negative = !is_constant && self.operation(id).0;
-            self.names[index] = Some(Given { name: Name { part: *part, ..base }, negative });
+            self.names[index] = Some(Given { name, negative });
         }
     }
 

@@ -13,6 +13,9 @@ pub struct Name {
     pub joint: usize,
     /// Which component.
     pub component: Component,
+    /// What else counts it, from 1; 0 where nothing does: the column of a matrix whose row is the joint, the first joint of
+    /// a group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip.
+    pub indices: [usize; 2],
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
     /// Of which variable it is the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
@@ -46,13 +49,13 @@ impl Name {
     /// A quantity that is one number.
     #[must_use]
     pub const fn scalar(quantity: Quantity, joint: usize) -> Self {
-        Self { quantity, joint, component: Component::Scalar, part: 0, by: None }
+        Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
     /// A component of a vector.
     #[must_use]
     pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
-        Self { quantity, joint, component: Component::Vector(axis), part: 0, by: None }
+        Self { component: Component::Vector(axis), ..Self::scalar(quantity, joint) }
     }
 
     /// Whether its text has the joint in it: of what there is one of, it has not.
@@ -72,13 +75,20 @@ impl Name {
     /// An element of a matrix.
     #[must_use]
     pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
-        Self { quantity, joint, component: Component::Matrix(row, column), part: 0, by: None }
+        Self { component: Component::Matrix(row, column), ..Self::scalar(quantity, joint) }
+    }
+
+    /// The number of a quantity that another index counts beside the joint.
+    #[must_use]
+    pub const fn indexed(quantity: Quantity, joint: usize, index: usize) -> Self {
+        Self { indices: [index, 0], ..Self::scalar(quantity, joint) }
     }
 }
 
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
+        let mut indices = self.indices;
         match self.quantity {
             _ if !self.tells_joint() => {}
             Quantity::GroupPosition
@@ -86,7 +96,8 @@ impl fmt::Display for Name {
             | Quantity::GroupAngle
             | Quantity::GroupSine
             | Quantity::GroupCosine => {
-                return write!(f, "{}_{}", self.part, self.joint);
+                write!(f, "{}_{}", indices[0], self.joint)?;
+                indices[0] = 0;
             }
             // f_{i-1,i}: both links, as in the lecture
             Quantity::JointForce | Quantity::JointMoment => {
@@ -99,13 +110,8 @@ impl fmt::Display for Name {
             Component::Vector(axis) => write!(f, "_{axis}")?,
             Component::Matrix(row, column) => write!(f, "_{row}{column}")?,
         }
-        match self.part {
-            0 => {}
-            // link and parameter
-            part if self.quantity == Quantity::RegressorElement && part > 100 => {
-                write!(f, "_{}_{}", part / 100, part % 100)?;
-            }
-            part => write!(f, "_{part}")?,
+        for count in indices.into_iter().chain([self.part]).filter(|&count| count > 0) {
+            write!(f, "_{count}")?;
         }
         if let Some(by) = self.by {
             write!(f, "_{}", by.variable())?;

@@ -2,8 +2,10 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
+use crate::CompileError;
+use crate::emit;
 use crate::function::{Form, Function};
 use crate::ledger::{Causes, Ledger, Place};
 use crate::name::Name;
@@ -180,6 +182,27 @@ impl Operations {
 }
 
 impl Program {
+    /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that the
+    /// emitters add: the second of two would shadow the first.
+    ///
+    /// # Errors
+    /// [`CompileError::TwoOfOneName`], with the first such name.
+    pub fn check_names(&self) -> Result<(), CompileError> {
+        let mut taken: HashSet<String> = emit::locals(self).map(str::to_owned).collect();
+        let statements = |statements: &'_ [Statement]| statements.iter().map(|statement| statement.name).collect();
+        let names: [Vec<Name>; 5] = [
+            self.arguments.clone(),
+            self.constants.iter().map(|constant| constant.name).collect(),
+            statements(&self.angles),
+            self.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect(),
+            statements(&self.statements),
+        ];
+        match names.iter().flatten().map(Name::to_string).find(|text| !taken.insert(text.clone())) {
+            Some(name) => Err(CompileError::TwoOfOneName { function: self.function, name }),
+            None => Ok(()),
+        }
+    }
+
     /// (products, sums) of the seven steps before folding, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {

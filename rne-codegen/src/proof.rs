@@ -54,6 +54,7 @@ pub(crate) fn prove(
     constants: &Exactly,
     reading: Reading,
 ) -> Result<Proof, CompileError> {
+    program.check_names()?;
     identical(robot, program, constants, reading)?;
     let proof = rounding(robot, program, STATES)?;
     if proof.rounding <= largest_rounding(program.function) {

@@ -173,7 +173,7 @@ pub enum Quantity {
     TurnedSine,
     /// Its cosine.
     TurnedCosine,
-    /// The sum of the positions of parallel joints; the first of them is the name's part.
+    /// The sum of the positions of parallel joints; the first of them is the name's index.
     GroupPosition,
     /// Constant part of the sum of their angles.
     GroupTheta,

@@ -75,8 +75,10 @@ pub(crate) fn regressor<'s>(
             let mut parameter = 0;
             rows[joint][index] = elements.map(|element| {
                 parameter += 1;
-                let part = (index + 1) * 100 + parameter;
-                builder.name(Name { part, ..Name::scalar(Quantity::RegressorElement, joint + 1) }, element)
+                builder.name(
+                    Name { indices: [index + 1, parameter], ..Name::scalar(Quantity::RegressorElement, joint + 1) },
+                    element,
+                )
             });
             *v = line.within(Quantity::Partial, || at_origin + u.cross(link.lever));
         }

@@ -18,3 +18,11 @@ pub use syntax::Precision;
 pub use table::{angle, convention, dh_table};
 pub use text::rust_file;
 pub use tokens::Body;
+
+use crate::program::Program;
+
+/// The variables that stand in the code of a program beside its own, in Rust or in C.
+pub(crate) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
+    let arrays = signature::arguments(program).into_iter().map(|array| array.name);
+    arrays.chain(["zero"]).chain(c::locals(program))
+}

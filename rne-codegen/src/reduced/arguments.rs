@@ -13,7 +13,7 @@ use super::pseudo_inertia::Triple;
 /// constant. It is counted with the sign of the first joint; right angles are left to the sine and cosine.
 fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
     let group = |kind: Quantity, single: Quantity, at: usize| {
-        if at == first { Name::scalar(single, at + 1) } else { Name { part: first + 1, ..Name::scalar(kind, at + 1) } }
+        if at == first { Name::scalar(single, at + 1) } else { Name::indexed(kind, at + 1, first + 1) }
     };
     let position = |at: usize| builder.argument(Name::scalar(Quantity::Position, at + 1));
     let theta = |at: usize| rows[first..=at].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
@@ -112,8 +112,10 @@ impl Builder {
         let (angle, quarters) = angle(self, rows, first, last);
         let (s, c) = self.sine_and_cosine(angle);
         let name = |group: Quantity, single: Quantity, x| {
-            let name = Name::scalar(single, last + 1);
-            self.name(if first == last { name } else { Name { quantity: group, part: first + 1, ..name } }, x)
+            let is_single = first == last;
+            let name =
+                if is_single { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) };
+            self.name(name, x)
         };
         ((name(Quantity::GroupSine, Quantity::Sine, s), name(Quantity::GroupCosine, Quantity::Cosine, c)), quarters)
     }

@@ -111,12 +111,7 @@ impl Constants<'_> {
 ///
 /// # Errors
 /// What is wrong in which line of the text, counted from 1.
-pub(crate) fn read(
-    text: &str,
-    frame: &Frame,
-    plain: &Graph,
-    function: Function,
-) -> Result<Traced, (usize, String)> {
+pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
     let builder = Builder::traced(Policy::Numbered, frame.table.reading, function);
     let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
     let mut reader = Reader { frame, given, builder: &builder, known: HashMap::new() };

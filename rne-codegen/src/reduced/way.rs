@@ -111,7 +111,7 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
         (Function::CoriolisMatrix, Way::Composite(gathering)) => {
             let found = sensitivity(builder, arm, gathering, Number::ONE);
             square(arm.rows().len(), |row, column| {
-                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
                 builder.name(name, found.by_rate[row][column]);
                 (name, found.by_rate[row][column])
             })
@@ -135,7 +135,7 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
                 (1..=torques.len()).map(|joint| builder.derivatives(&torques, By::Rate(joint))).collect();
             square(torques.len(), |row, column| {
                 builder.at(Quantity::CoriolisElement, row + 1);
-                let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
+                let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
                 let element = columns[column][row] * half;
                 builder.name(name, element);
                 (name, element)

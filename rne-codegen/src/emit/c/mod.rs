@@ -17,6 +17,12 @@ use crate::program::Program;
 
 pub use prefix::{BadPrefix, Prefix};
 
+/// The variables of a function beside those of its program.
+pub(super) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
+    let inputs = signature::inputs(program).into_iter().map(|array| array.name);
+    inputs.chain([signature::output(program.function), source::UNUSED])
+}
+
 /// Width of a line.
 const WIDTH: usize = 100;
 

@@ -100,9 +100,11 @@ fn arguments(file: &File, program: &Program) -> String {
     text
 }
 
+/// The place for a sine or cosine that nothing needs.
+pub(super) const UNUSED: &str = "unused";
+
 /// One call for each angle. Several share the place for what none of them needs.
 fn turns(file: &File, program: &Program) -> String {
-    const UNUSED: &str = "unused";
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let (mut places, mut calls) = (String::new(), String::new());
     if program.turns.iter().any(|turn| turn.sine.is_none() || turn.cosine.is_none()) {
