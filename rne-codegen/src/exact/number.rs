@@ -144,16 +144,25 @@ impl Turn {
         cos.is_zero().then(|| if sin == Image::ONE { QuarterTurns::One } else { QuarterTurns::Three })
     }
 
-    /// The angle, rad, between -π and π.
-    pub(crate) fn radians(self) -> f64 {
-        self.sin.to_f64().atan2(self.cos.to_f64())
+    /// The angle, rad, between -π and π. Two turns may round to one angle, but their images tell them apart.
+    pub(crate) fn angle(self) -> Number {
+        let radians = self.sin.to_f64().atan2(self.cos.to_f64());
+        let (sin, cos) = Double::new(radians).sin_cos();
+        // one step of Newton: the sine of what is left
+        let rest = self.sin.value * cos - self.cos.value * sin;
+        // an angle has no image, so any will do that changes its sign with the turn
+        let two = Image::integer(2);
+        let image = if self.sin.is_zero() { two } else { self.sin.image * (self.cos.image + two) };
+        Number { value: Double::new((Double::new(radians) + rest).to_f64()), image }
     }
 }
 
 /// How the numbers of a robot file are read into the fields.
 ///
 /// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and cosine of
-/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign.
+/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign:
+/// those whose sine and cosine, rounded to `f64`, are the same two numbers up to order and sign. 0.9 and π - 0.9 are two
+/// angles if they differ so much as in the last bit of a sine.
 ///
 /// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by a
 /// random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
@@ -209,16 +218,14 @@ impl Reading {
         }
         let (sin, cos) = Double::new(angle.radians).sin_cos();
         let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
-        let rest = angle.radians - quarters * std::f64::consts::FRAC_PI_2;
-        // angles that are written differently, such as 0.9 and π - 0.9, meet here but for their last bits
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most π/4 · 10¹²
-        let magnitude = (rest.abs() * 1e12).round() as u64;
-        let point = self.point(0xA11E, magnitude);
-        let (mut s, mut c) = if rest < 0.0 { (-point.0, point.1) } else { point };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 3
-        for _ in 0..quarters.rem_euclid(4.0) as u8 {
-            (s, c) = (c, -s);
-        }
+        let quarters = quarters.rem_euclid(4.0) as u8;
+        let (rest_sin, rest_cos) = (0..quarters).fold((sin, cos), |(s, c), _| (-c, s));
+        // two angles are one up to right angles and sign where both of these numbers are
+        let bits = |x: Double| x.to_f64().abs().to_bits();
+        let point = self.point(0xA11E, mixed(bits(rest_sin)) ^ bits(rest_cos));
+        let rest = if rest_sin.high < 0.0 { (-point.0, point.1) } else { point };
+        let (s, c) = (0..quarters).fold(rest, |(s, c), _| (c, -s));
         Turn { sin: Number { value: sin, image: s }, cos: Number { value: cos, image: c } }
     }
 
@@ -248,6 +255,8 @@ fn mixed(x: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
     use super::*;
 
     #[test]
@@ -262,14 +271,47 @@ mod tests {
     #[test]
     fn turns_are_points_of_the_circle() {
         let reading = Reading::default();
-        for radians in [0.0, 0.9, std::f64::consts::PI, 2.0, -1.0] {
+        for radians in [0.0, 0.9, PI, 2.0, -1.0] {
             let turn = reading.turn(&Angle::new(radians));
             assert!((turn.sin * turn.sin + turn.cos * turn.cos - Number::ONE).is_zero(), "{radians}");
             assert!((turn.sin.to_f64() - radians.sin()).abs() < 1e-15, "{radians}");
             assert_eq!(turn.then(turn.back()).quarters(), Some(QuarterTurns::Zero));
         }
-        let (a, b) = (reading.turn(&Angle::new(0.9)), reading.turn(&Angle::new(std::f64::consts::PI - 0.9)));
-        assert_eq!(a.sin.image, b.sin.image);
-        assert_eq!(a.cos.image, -b.cos.image);
+    }
+
+    #[test]
+    fn angles_are_one_where_their_sines_and_cosines_are() {
+        let reading = Reading::default();
+        let is_one = |a: f64, b: f64| {
+            let [a, b] = [a, b].map(|radians| reading.turn(&Angle::new(radians)));
+            let magnitude = |x: Number| x.image.max(-x.image);
+            let mut images = [a, b].map(|turn| [turn.sin, turn.cos].map(magnitude));
+            images.iter_mut().for_each(|pair| pair.sort_unstable());
+            let mut values = [a, b].map(|turn| [turn.sin, turn.cos].map(|x| x.to_f64().abs().to_bits()));
+            values.iter_mut().for_each(|pair| pair.sort_unstable());
+            assert_eq!(images[0] == images[1], values[0] == values[1], "{a:?} and {b:?}");
+            images[0] == images[1]
+        };
+        assert!(is_one(0.9, -0.9) && is_one(1.5708, -1.5708) && is_one(FRAC_PI_4, 3.0 * FRAC_PI_4));
+        assert!(is_one(0.3, PI - 0.3) && is_one(0.3, FRAC_PI_2 + 0.3), "their last bits agree");
+        assert!(!is_one(0.9, FRAC_PI_2 + 0.9), "their last bits do not");
+        assert!(!is_one(0.9, 0.900_000_000_000_4) && !is_one(4e-13, 1e-13) && !is_one(1e-13, -1.000_000_1e-13));
+        assert!(!is_one(0.9, 0.9_f64.next_up()));
+        // whatever their last bits are, images agree with them
+        for step in 1..200 {
+            let radians = f64::from(step) * 0.0157;
+            for other in [PI - radians, PI + radians, FRAC_PI_2 - radians, radians - FRAC_PI_2, radians + 2.0 * PI] {
+                let _ = is_one(radians, other);
+            }
+        }
+    }
+
+    #[test]
+    fn an_angle_and_its_complement_keep_their_signs() {
+        let reading = Reading::default();
+        let turn = |radians: f64| reading.turn(&Angle::new(radians));
+        let (a, back, supplement) = (turn(0.3), turn(-0.3), turn(PI - 0.3));
+        assert_eq!((back.sin.image, back.cos.image), (-a.sin.image, a.cos.image));
+        assert_eq!((supplement.sin.image, supplement.cos.image), (a.sin.image, -a.cos.image));
     }
 }

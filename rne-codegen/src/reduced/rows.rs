@@ -5,7 +5,7 @@
 //! put right here: the base is turned into the first joint's frame, the last joint's constant angle into its link,
 //! anti-parallel axes are made parallel.
 
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, Transform};
+use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
 use super::pseudo_inertia::{PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose};
 use crate::exact::{Number, Reading, Turn};
@@ -47,6 +47,8 @@ pub(crate) struct Table {
     pub(crate) tip: Tip,
     /// How the numbers of the file were read.
     pub(crate) reading: Reading,
+    /// Sines and cosines of the constant angles of the file, none negative.
+    pub(crate) known: Vec<Number>,
 }
 
 /// Choices that change the rows themselves.
@@ -128,7 +130,9 @@ impl Table {
             let [x, y, z] = apply(&turn, tip.translation);
             tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z] };
         }
-        Self { rows, gravity: robot.gravity.map(decimal), tip, reading }
+        let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
+        let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
+        Self { rows, gravity: robot.gravity.map(decimal), tip, reading, known }
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
@@ -235,7 +239,8 @@ impl Table {
             return true;
         };
         next.offset = apply(&axes, next.offset);
-        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading) else {
+        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading, &self.known)
+        else {
             return false;
         };
         next.alpha = twist;
@@ -255,8 +260,8 @@ impl Table {
     }
 }
 
-/// R = Rz(φ1) Rx(α) Rz(φ2)
-fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
+/// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
+fn decomposed(rotation: &Square, reading: Reading, known: &[Number]) -> Option<[Turn; 3]> {
     let [[xx, _, xz], [yx, _, yz], [zx, zy, zz]] = *rotation;
     if xz.is_zero() && yz.is_zero() {
         // the axes are parallel, so all turning is about one
@@ -264,11 +269,10 @@ fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
     }
     let square = xz * xz + yz * yz;
     // an angle of the file, or one that no angle of the file is
-    let known = reading.turn(&Angle::new(square.value.sqrt().to_f64().atan2(zz.to_f64()))).sin;
-    let sine = if known.image * known.image == square.image {
-        Number { value: square.value.sqrt(), ..known }
-    } else {
-        hypotenuse(xz, yz, reading)?
+    let known = known.iter().find(|known| known.image * known.image == square.image);
+    let sine = match known {
+        Some(&known) => known,
+        None => hypotenuse(xz, yz, reading)?,
     };
     let scale = sine.inverse()?;
     Some([

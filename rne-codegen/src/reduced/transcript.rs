@@ -220,10 +220,8 @@ impl Transcript<'_> {
             self.define(group_name(group, Quantity::Angle, first, at), angle);
         }
         if let Some(turn) = constant {
-            let radians = turn.radians();
-            let magnitude = if radians < 0.0 { turn.back() } else { turn };
-            let theta = self.written.graph.constant(radians);
-            self.turns.insert(theta.node, magnitude);
+            let theta = self.constant(turn.angle());
+            self.turns.insert(theta.node, if theta.negative { turn.back() } else { turn });
             self.define(group_name(Quantity::GroupTheta, Quantity::Theta, first, last), theta);
             angle = self.written.graph.sum(theta, angle).0;
             self.define(group_name(Quantity::GroupAngle, Quantity::Angle, first, last), angle);
