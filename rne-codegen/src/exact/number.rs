@@ -54,9 +54,20 @@ impl Number {
         self.value.to_f64()
     }
 
-    /// Of a number and its negative, the same one is always called negative.
+    /// Of a number and its negative, the same one is always called negative: where the value does not tell, for it is lost to
+    /// cancellation or out of range, the image does.
     pub(crate) fn is_negative(self) -> bool {
-        self.value.high < 0.0
+        let value = self.value.high;
+        if value == 0.0 || value.is_nan() { self.image.is_negative() } else { value < 0.0 }
+    }
+
+    /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size round to
+    /// less than this part of it. It happens when equal numbers are read as different ones.
+    pub(crate) fn is_dust(self, scale: f64) -> bool {
+        const PART: f64 = 1e-25;
+        // what is not a number is no value either
+        let has_value = self.value.high.abs() > PART * scale;
+        !self.is_zero() && !has_value
     }
 
     pub(crate) fn abs(self) -> Self {
@@ -192,22 +203,35 @@ impl Reading {
     }
 
     /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's origin.
+    ///
+    /// When a coordinate of the centre of mass is an unknown, the inertias about both points cannot be known. A product of
+    /// inertia that is zero about one of them is zero there whatever the unknown is, so that nothing is a random number
+    /// that has no value. Others are what the file says.
     pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
-        let (written, reference) = &joint.written_inertia;
-        let written = written.rows().map(|row| row.map(|x| self.decimal(x)));
-        if *reference == InertiaReference::Com {
-            return written;
-        }
+        let (tensor, reference) = &joint.written_inertia;
+        let (written, steiner) = (tensor.rows().map(|row| row.map(|x| self.decimal(x))), self.steiner(joint));
+        let known = Self { unknown: None, ..*self };
+        let certain =
+            self.unknown.map(|_| (tensor.rows().map(|row| row.map(|x| known.decimal(x))), known.steiner(joint)));
+        let about_com = *reference == InertiaReference::Com;
+        [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| match &certain {
+                Some((tensor, steiner_of_it)) if about_com && (tensor[i][j] + steiner_of_it[i][j]).is_zero() => {
+                    -steiner[i][j]
+                }
+                Some((tensor, steiner)) if !about_com && (tensor[i][j] - steiner[i][j]).is_zero() => Number::ZERO,
+                _ if about_com => written[i][j],
+                _ => written[i][j] - steiner[i][j],
+            })
+        })
+    }
+
+    /// By how much the inertia about the origin is larger than that about the centre of mass: m (c·c 1 - c cᵀ).
+    fn steiner(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let mass = self.decimal(joint.row.link.mass);
         let com = joint.row.link.com.map(|x| self.decimal(x));
         let square = com.iter().fold(Number::ZERO, |sum, &x| sum + x * x);
-        [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| {
-                // Steiner: I = J - m (c·c 1 - c cᵀ)
-                let steiner = if i == j { square - com[i] * com[j] } else { -(com[i] * com[j]) };
-                written[i][j] - mass * steiner
-            })
-        })
+        [0, 1, 2].map(|i| [0, 1, 2].map(|j| mass * if i == j { square - com[i] * com[j] } else { -(com[i] * com[j]) }))
     }
 
     /// A constant angle of the file.

@@ -34,7 +34,7 @@ mod trick;
 mod way;
 mod writer;
 
-pub use choice::{Choice, Found, Wanted, cost, is_planned, savings, search};
+pub use choice::{Choice, Found, Maker, Wanted, cost, is_planned, savings, search};
 pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 pub(crate) use point::Point;

@@ -61,7 +61,8 @@ pub(crate) struct Frames {
 }
 
 impl Table {
-    /// The rows of a robot; `None` when a choice of frames does not apply to it.
+    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does: each must
+    /// have a root for every one that is wanted, and value and image of every number must agree about what is zero.
     pub(crate) fn new(robot: &Robot, frames: Frames) -> Option<Self> {
         if frames == Frames::default() {
             return Self::read(robot, frames, Reading::default());
@@ -72,7 +73,27 @@ impl Table {
         let usable = unknowns.filter(|unknown| unknown.is_none_or(|x| (4.0 * x).fract() != 0.0));
         usable
             .flat_map(|unknown| (0..48).map(move |seed| Reading { seed, unknown }))
-            .find_map(|reading| Self::read(robot, frames, reading))
+            .find_map(|reading| Self::read(robot, frames, reading).filter(Self::agrees))
+    }
+
+    /// Whether nothing is zero in value alone.
+    fn agrees(&self) -> bool {
+        let length = |row: &Row| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
+        let reach: f64 = self.rows.iter().map(length).sum();
+        self.rows.iter().all(|row| {
+            let PseudoInertia { mass, h, s } = row.matter;
+            let largest = |of: &[Number], least: f64| of.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
+            let first = largest(&h, mass.to_f64().abs() * reach);
+            let second = largest(s.as_flattened(), mass.to_f64().abs() * reach * reach);
+            let turns = [row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
+            let is_clear = |of: &[Number], scale: f64| !of.iter().any(|x| x.is_dust(scale));
+            is_clear(&row.offset, reach)
+                && is_clear(&[row.d], reach)
+                && is_clear(&h, first)
+                && is_clear(s.as_flattened(), second)
+                && is_clear(turns.as_flattened(), 1.0)
+                && is_clear(&row.axis, 1.0)
+        })
     }
 
     fn read(robot: &Robot, frames: Frames, reading: Reading) -> Option<Self> {

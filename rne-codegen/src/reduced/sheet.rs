@@ -159,7 +159,9 @@ impl Sheet {
             return known;
         }
         let place = self.numbers.intern(number.abs(), source);
-        self.constant_at(place).signed(number.is_negative())
+        // what is there already may be the negative: the image tells, as it does everywhere
+        let (kept, _) = self.numbers.get(place);
+        self.constant_at(place).signed(kept.image != number.image)
     }
 
     /// The constant of that place.
