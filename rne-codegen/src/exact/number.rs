@@ -203,35 +203,54 @@ impl Reading {
     }
 
     /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's origin.
-    ///
-    /// When a coordinate of the centre of mass is an unknown, the inertias about both points cannot be known. A product of
-    /// inertia that is zero about one of them is zero there whatever the unknown is, so that nothing is a random number
-    /// that has no value. Others are what the file says.
     pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let (tensor, reference) = &joint.written_inertia;
-        let (written, steiner) = (tensor.rows().map(|row| row.map(|x| self.decimal(x))), self.steiner(joint));
-        let known = Self { unknown: None, ..*self };
-        let certain =
-            self.unknown.map(|_| (tensor.rows().map(|row| row.map(|x| known.decimal(x))), known.steiner(joint)));
-        let about_com = *reference == InertiaReference::Com;
-        [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| match &certain {
-                Some((tensor, steiner_of_it)) if about_com && (tensor[i][j] + steiner_of_it[i][j]).is_zero() => {
-                    -steiner[i][j]
-                }
-                Some((tensor, steiner)) if !about_com && (tensor[i][j] - steiner[i][j]).is_zero() => Number::ZERO,
-                _ if about_com => written[i][j],
-                _ => written[i][j] - steiner[i][j],
-            })
-        })
+        let written = tensor.rows().map(|row| row.map(|x| self.decimal(x)));
+        if self.unknown.is_some() {
+            return self.inertia_of_unknown(joint, &written);
+        }
+        match reference {
+            InertiaReference::Com => written,
+            InertiaReference::Origin => {
+                let moved = self.moments_of_mass(joint);
+                let square = moved[0][0] + moved[1][1] + moved[2][2];
+                // Steiner: I = J - m (c·c 1 - c cᵀ)
+                by_entries(|i, j| written[i][j] - if i == j { square - moved[i][j] } else { -moved[i][j] })
+            }
+        }
     }
 
-    /// By how much the inertia about the origin is larger than that about the centre of mass: m (c·c 1 - c cᵀ).
-    fn steiner(&self, joint: &Joint) -> [[Number; 3]; 3] {
+    /// The same when a coordinate of the centre of mass may be an unknown, so that second moments about the origin and about
+    /// the centre of mass cannot both be what they are. One that is zero about either point is zero there whatever the
+    /// unknown is, so that nothing is zero in value alone. The others are what the file says.
+    fn inertia_of_unknown(&self, joint: &Joint, written: &[[Number; 3]; 3]) -> [[Number; 3]; 3] {
+        let known = Self { unknown: None, ..*self };
+        let half = self.decimal(0.5);
+        // ∫ r rᵀ dm, of which an inertia is the trace less the matrix
+        let second = |inertia: &[[Number; 3]; 3]| {
+            let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
+            by_entries(|i, j| if i == j { trace - inertia[i][j] } else { -inertia[i][j] })
+        };
+        let (moved, moved_if_known) = (self.moments_of_mass(joint), known.moments_of_mass(joint));
+        let (about_com, written) = (second(&known.inertia(joint)), second(written));
+        let is_about_com = joint.written_inertia.1 == InertiaReference::Com;
+        let s = by_entries(|i, j| {
+            let is_zero_about_origin = (about_com[i][j] + moved_if_known[i][j]).is_zero();
+            match (is_about_com, about_com[i][j].is_zero()) {
+                (_, true) => Number::ZERO,
+                (true, _) if is_zero_about_origin => -moved[i][j],
+                (true, _) => written[i][j],
+                (false, _) => written[i][j] - moved[i][j],
+            }
+        });
+        by_entries(|i, j| if i == j { s[0][0] + s[1][1] + s[2][2] - s[i][j] } else { -s[i][j] })
+    }
+
+    /// Second moments about the origin of a link's mass at its centre: m c cᵀ.
+    fn moments_of_mass(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let mass = self.decimal(joint.row.link.mass);
         let com = joint.row.link.com.map(|x| self.decimal(x));
-        let square = com.iter().fold(Number::ZERO, |sum, &x| sum + x * x);
-        [0, 1, 2].map(|i| [0, 1, 2].map(|j| mass * if i == j { square - com[i] * com[j] } else { -(com[i] * com[j]) }))
+        by_entries(|i, j| mass * com[i] * com[j])
     }
 
     /// A constant angle of the file.
@@ -267,6 +286,10 @@ impl Reading {
         let seed = mixed(self.seed ^ mixed(kind ^ mixed(index)));
         Image::residues(mixed(seed ^ 1), mixed(seed ^ 2))
     }
+}
+
+fn by_entries(f: impl Fn(usize, usize) -> Number) -> [[Number; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
 }
 
 /// The finalizer of splitmix64 (Steele, Lea, Flood 2014).
