@@ -115,7 +115,7 @@ pub(crate) fn counts(
     };
     if !without.is_empty() {
         let plan = without.iter().fold(compiler.choice()?.plan.clone(), |plan, trick| trick.left_out_of(&plan));
-        let choice = Choice { plan, rewritten: None };
+        let choice = Choice::of(plan);
         for &function in functions {
             let program = choice.compile(robot, function, Form::Reduced);
             let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;

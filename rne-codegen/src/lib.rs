@@ -99,13 +99,17 @@ pub enum CompileError {
         function: Function,
         /// The first number returned that differs, counted from 1: for torques, the joint.
         output: usize,
+        /// What may be the cause.
+        suspect: Suspect,
     },
-    /// Code whose torques round too far away from those of the seven steps; it is never emitted.
+    /// Code that rounds too far away from the seven steps; it is never emitted.
     Imprecise {
         /// The function.
         function: Function,
-        /// The largest difference, relative to the largest torque.
+        /// The largest difference, relative to the largest number returned.
         rounding: f64,
+        /// What may be the cause.
+        suspect: Suspect,
     },
     /// Two variables of one name, of which the second would shadow the first; it is never emitted.
     TwoOfOneName {
@@ -118,6 +122,77 @@ pub enum CompileError {
     Plan(String),
 }
 
+/// What may be the cause when a form is refused.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Suspect {
+    /// It was written by the plan of a plan file.
+    pub planned: bool,
+    /// A number of the robot whose products leave the range of double precision.
+    pub number: Option<Extreme>,
+}
+
+/// A number of a robot that is very large or very small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extreme {
+    /// What it is, and its link.
+    what: &'static str,
+    link: usize,
+    value: f64,
+}
+
+impl Extreme {
+    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the precision of
+    /// twice that, in which constants are computed.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Option<Self> {
+        const LARGEST: f64 = 1e75;
+        let far = |value: f64| value.abs().log2().abs();
+        let mut numbers = Vec::new();
+        for (index, joint) in robot.joints.iter().enumerate() {
+            let mut put = |what, values: &[f64]| {
+                numbers.extend(values.iter().map(|&value| Self { what, link: index + 1, value }));
+            };
+            put("the length d", &[joint.row.dh.d]);
+            put("the length a", &[joint.row.dh.a]);
+            put("the angle theta", &[joint.row.dh.theta.radians]);
+            put("the angle alpha", &[joint.row.dh.alpha.radians]);
+            put("the mass", &[joint.row.link.mass]);
+            put("a coordinate of the centre of mass,", &joint.row.link.com);
+            put("an inertia,", joint.written_inertia.0.rows().as_flattened());
+        }
+        numbers.retain(|number| number.value != 0.0 && far(number.value) > LARGEST.log2());
+        numbers.into_iter().max_by(|a, b| far(a.value).total_cmp(&far(b.value)))
+    }
+}
+
+impl fmt::Display for Extreme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, link, value } = self;
+        let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
+        write!(
+            f,
+            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double precision. \
+             Other units help, `form = \"seven_steps\"` multiplies less"
+        )
+    }
+}
+
+impl CompileError {
+    /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
+    #[must_use]
+    pub fn is_refusal(&self) -> bool {
+        matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
+    }
+
+    /// The error with what may be the cause.
+    fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
+        if let Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. } = &mut self {
+            *suspect = Suspect { planned: is_planned, number: Extreme::of(robot) };
+        }
+        self
+    }
+}
+
 impl fmt::Display for CompileError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -127,18 +202,38 @@ impl fmt::Display for CompileError {
                 name.quantity.meaning(),
                 name.joint
             ),
-            Self::NotIdentical { function, output } => write!(
-                f,
-                "this form of `{function}` is not the seven steps: {} {output} differs. No code is written. A \
-                 graph in a plan file that has been edited does that; `rne search --fresh` writes it anew. Without a plan file, \
-                 please report this robot",
-                if function.returns_torques() { "the torque of joint" } else { "of its result, number" }
-            ),
-            Self::Imprecise { function, rounding } => write!(
-                f,
-                "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
-                 torque. `rne search` finds another plan, `form = \"seven_steps\"` needs none"
-            ),
+            Self::NotIdentical { function, output, suspect } => {
+                let what = if function.returns_torques() { "the torque of joint" } else { "of its result, number" };
+                write!(
+                    f,
+                    "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
+                )?;
+                match suspect {
+                    Suspect { number: Some(number), .. } => number.fmt(f),
+                    Suspect { planned: true, .. } => f.write_str(
+                        "A graph in a plan file that has been edited does that; `rne search --fresh` writes it anew",
+                    ),
+                    Suspect { planned: false, .. } => f.write_str("Please report this robot"),
+                }
+            }
+            Self::Imprecise { function, rounding, suspect } => {
+                let what = match function {
+                    _ if function.returns_torques() => "torque",
+                    Function::ForwardDynamics => "acceleration",
+                    _ => "number that it returns",
+                };
+                write!(
+                    f,
+                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest {what}. "
+                )?;
+                match suspect {
+                    Suspect { number: Some(number), .. } => number.fmt(f),
+                    Suspect { planned: true, .. } => {
+                        f.write_str("`rne search --fresh` finds another plan, `form = \"seven_steps\"` needs none")
+                    }
+                    Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
+                }
+            }
             Self::TwoOfOneName { function, name } => write!(
                 f,
                 "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \

@@ -16,7 +16,7 @@ use crate::lower::Exactly;
 use crate::name::Name;
 use crate::program::{Program, Proof};
 use crate::quantity::{Axis, Quantity};
-use crate::{CompileError, compile};
+use crate::{CompileError, Suspect, compile};
 
 /// Points of the fields at which torques are compared.
 const POINTS: u64 = 4;
@@ -60,7 +60,11 @@ pub(crate) fn prove(
     if proof.rounding <= largest_rounding(program.function) {
         Ok(proof)
     } else {
-        Err(CompileError::Imprecise { function: program.function, rounding: proof.rounding })
+        Err(CompileError::Imprecise {
+            function: program.function,
+            rounding: proof.rounding,
+            suspect: Suspect::default(),
+        })
     }
 }
 
@@ -80,7 +84,8 @@ pub(crate) fn identical(
         let found = values(robot, &interpreter, constants, &point);
         let differs = |index: &usize| found.as_ref().and_then(|found| found.get(*index)) != expected.get(*index);
         if let Some(index) = (0..expected.len()).find(differs) {
-            return Err(CompileError::NotIdentical { function: program.function, output: index + 1 });
+            let suspect = Suspect::default();
+            return Err(CompileError::NotIdentical { function: program.function, output: index + 1, suspect });
         }
     }
     Ok(())

@@ -103,10 +103,10 @@ fn reduced_forms_of_random_robots_are_the_runtime() {
         let dof = rng.usize(1..=8);
         let (robot, arm) = read(seed, dof);
         for function in Function::TORQUES {
-            let plain = agrees(&robot, &arm, &Choice::none(&robot), function, &mut rng);
+            let plain = agrees(&robot, &arm, &Choice::of(Plan::new(dof)), function, &mut rng);
             assert!(plain.is_some(), "{}: no choice fits every robot", robot.name);
             for rarity in [3, 8] {
-                let choice = Choice { plan: random_plan(&mut rng, dof, rarity), rewritten: None };
+                let choice = Choice::of(random_plan(&mut rng, dof, rarity));
                 planned += usize::from(agrees(&robot, &arm, &choice, function, &mut rng).is_some());
             }
         }

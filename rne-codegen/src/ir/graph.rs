@@ -294,10 +294,9 @@ impl Graph {
 
     /// A constant that is an angle.
     pub(crate) fn angle(&mut self, turn: Turn) -> Ref {
-        let radians = turn.radians();
-        let at = self.constant(self.reading().decimal(radians));
+        let at = self.constant(turn.angle());
         if let Op::Constant(place) = self.op(at) {
-            self.turns.insert(place, if radians < 0.0 { turn.back() } else { turn });
+            self.turns.insert(place, if at.is_negative() { turn.back() } else { turn });
         }
         at
     }
@@ -337,7 +336,12 @@ impl Graph {
         } else {
             self.numbers.intern(number.abs(), source, |a, b| canonical(a.image).0 == canonical(b.image).0)
         };
-        self.constant_at(place).signed(number.is_negative())
+        let negative = match self.policy {
+            Policy::Structure => number.is_negative(),
+            // what is there already may be the negative: the residue tells, as it does everywhere
+            _ => self.numbers.get(place).0.image != number.image,
+        };
+        self.constant_at(place).signed(negative)
     }
 
     /// The constant of that place.

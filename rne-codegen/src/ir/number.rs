@@ -60,9 +60,20 @@ impl Number {
         self.value.to_f64()
     }
 
-    /// Of a number and its negative, the same one is always called negative.
+    /// Of a number and its negative, the same one is always called negative: where the value does not tell, for it is lost to
+    /// cancellation or out of range, the image does.
     pub(crate) fn is_negative(self) -> bool {
-        self.value.high < 0.0
+        let value = self.value.high;
+        if value == 0.0 || value.is_nan() { self.image.is_negative() } else { value < 0.0 }
+    }
+
+    /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size round to
+    /// less than this part of it. It happens when equal numbers are read as different ones.
+    pub(crate) fn is_dust(self, scale: f64) -> bool {
+        const PART: f64 = 1e-25;
+        // what is not a number is no value either
+        let has_value = self.value.high.abs() > PART * scale;
+        !self.is_zero() && !has_value
     }
 
     pub(crate) fn abs(self) -> Self {
@@ -150,16 +161,25 @@ impl Turn {
         cos.is_zero().then(|| if sin == Image::ONE { QuarterTurns::One } else { QuarterTurns::Three })
     }
 
-    /// The angle, rad, between -π and π.
-    pub(crate) fn radians(self) -> f64 {
-        self.sin.to_f64().atan2(self.cos.to_f64())
+    /// The angle, rad, between -π and π. Two turns may round to one angle, but their images tell them apart.
+    pub(crate) fn angle(self) -> Number {
+        let radians = self.sin.to_f64().atan2(self.cos.to_f64());
+        let (sin, cos) = Double::new(radians).sin_cos();
+        // one step of Newton: the sine of what is left
+        let rest = self.sin.value * cos - self.cos.value * sin;
+        // an angle has no image, so any will do that changes its sign with the turn
+        let two = Image::integer(2);
+        let image = if self.sin.is_zero() { two } else { self.sin.image * (self.cos.image + two) };
+        Number { value: Double::new((Double::new(radians) + rest).to_f64()), image }
     }
 }
 
 /// How the numbers of a robot file are read into the fields.
 ///
 /// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and cosine of
-/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign.
+/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign:
+/// those whose sine and cosine, rounded to `f64`, are the same two numbers up to order and sign. 0.9 and π - 0.9 are two
+/// angles if they differ so much as in the last bit of a sine.
 ///
 /// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by a
 /// random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
@@ -190,21 +210,53 @@ impl Reading {
 
     /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's origin.
     pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
-        let (written, reference) = &joint.written_inertia;
-        let written = written.rows().map(|row| row.map(|x| self.decimal(x)));
-        if *reference == InertiaReference::Com {
-            return written;
+        let (tensor, reference) = &joint.written_inertia;
+        let written = tensor.rows().map(|row| row.map(|x| self.decimal(x)));
+        if self.unknown.is_some() {
+            return self.inertia_of_unknown(joint, &written);
         }
+        match reference {
+            InertiaReference::Com => written,
+            InertiaReference::Origin => {
+                let moved = self.moments_of_mass(joint);
+                let square = moved[0][0] + moved[1][1] + moved[2][2];
+                // Steiner: I = J - m (c·c 1 - c cᵀ)
+                by_entries(|i, j| written[i][j] - if i == j { square - moved[i][j] } else { -moved[i][j] })
+            }
+        }
+    }
+
+    /// The same when a coordinate of the centre of mass may be an unknown, so that second moments about the origin and about
+    /// the centre of mass cannot both be what they are. One that is zero about either point is zero there whatever the
+    /// unknown is, so that nothing is zero in value alone. The others are what the file says.
+    fn inertia_of_unknown(&self, joint: &Joint, written: &[[Number; 3]; 3]) -> [[Number; 3]; 3] {
+        let known = Self { unknown: None, ..*self };
+        let half = self.decimal(0.5);
+        // ∫ r rᵀ dm, of which an inertia is the trace less the matrix
+        let second = |inertia: &[[Number; 3]; 3]| {
+            let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
+            by_entries(|i, j| if i == j { trace - inertia[i][j] } else { -inertia[i][j] })
+        };
+        let (moved, moved_if_known) = (self.moments_of_mass(joint), known.moments_of_mass(joint));
+        let (about_com, written) = (second(&known.inertia(joint)), second(written));
+        let is_about_com = joint.written_inertia.1 == InertiaReference::Com;
+        let s = by_entries(|i, j| {
+            let is_zero_about_origin = (about_com[i][j] + moved_if_known[i][j]).is_zero();
+            match (is_about_com, about_com[i][j].is_zero()) {
+                (_, true) => Number::ZERO,
+                (true, _) if is_zero_about_origin => -moved[i][j],
+                (true, _) => written[i][j],
+                (false, _) => written[i][j] - moved[i][j],
+            }
+        });
+        by_entries(|i, j| if i == j { s[0][0] + s[1][1] + s[2][2] - s[i][j] } else { -s[i][j] })
+    }
+
+    /// Second moments about the origin of a link's mass at its centre: m c cᵀ.
+    fn moments_of_mass(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let mass = self.decimal(joint.row.link.mass);
         let com = joint.row.link.com.map(|x| self.decimal(x));
-        let square = com.iter().fold(Number::ZERO, |sum, &x| sum + x * x);
-        [0, 1, 2].map(|i| {
-            [0, 1, 2].map(|j| {
-                // Steiner: I = J - m (c·c 1 - c cᵀ)
-                let steiner = if i == j { square - com[i] * com[j] } else { -(com[i] * com[j]) };
-                written[i][j] - mass * steiner
-            })
-        })
+        by_entries(|i, j| mass * com[i] * com[j])
     }
 
     /// A constant angle of the file.
@@ -215,16 +267,14 @@ impl Reading {
         }
         let (sin, cos) = Double::new(angle.radians).sin_cos();
         let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
-        let rest = angle.radians - quarters * std::f64::consts::FRAC_PI_2;
-        // angles that are written differently, such as 0.9 and π - 0.9, meet here but for their last bits
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most π/4 · 10¹²
-        let magnitude = (rest.abs() * 1e12).round() as u64;
-        let point = self.point(0xA11E, magnitude);
-        let (mut s, mut c) = if rest < 0.0 { (-point.0, point.1) } else { point };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // 0 to 3
-        for _ in 0..quarters.rem_euclid(4.0) as u8 {
-            (s, c) = (c, -s);
-        }
+        let quarters = quarters.rem_euclid(4.0) as u8;
+        let (rest_sin, rest_cos) = (0..quarters).fold((sin, cos), |(s, c), _| (-c, s));
+        // two angles are one up to right angles and sign where both of these numbers are
+        let bits = |x: Double| x.to_f64().abs().to_bits();
+        let point = self.point(0xA11E, mixed(bits(rest_sin)) ^ bits(rest_cos));
+        let rest = if rest_sin.high < 0.0 { (-point.0, point.1) } else { point };
+        let (s, c) = (0..quarters).fold(rest, |(s, c), _| (c, -s));
         Turn { sin: Number { value: sin, image: s }, cos: Number { value: cos, image: c } }
     }
 
@@ -244,6 +294,10 @@ impl Reading {
     }
 }
 
+fn by_entries(f: impl Fn(usize, usize) -> Number) -> [[Number; 3]; 3] {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
+}
+
 /// The finalizer of splitmix64 (Steele, Lea, Flood 2014).
 fn mixed(x: u64) -> u64 {
     let x = x.wrapping_add(0x9E37_79B9_7F4A_7C15);
@@ -254,6 +308,8 @@ fn mixed(x: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
+
     use super::*;
 
     #[test]
@@ -268,14 +324,47 @@ mod tests {
     #[test]
     fn turns_are_points_of_the_circle() {
         let reading = Reading::default();
-        for radians in [0.0, 0.9, std::f64::consts::PI, 2.0, -1.0] {
+        for radians in [0.0, 0.9, PI, 2.0, -1.0] {
             let turn = reading.turn(&Angle::new(radians));
             assert!((turn.sin * turn.sin + turn.cos * turn.cos - Number::ONE).is_zero(), "{radians}");
             assert!((turn.sin.to_f64() - radians.sin()).abs() < 1e-15, "{radians}");
             assert_eq!(turn.then(turn.back()).quarters(), Some(QuarterTurns::Zero));
         }
-        let (a, b) = (reading.turn(&Angle::new(0.9)), reading.turn(&Angle::new(std::f64::consts::PI - 0.9)));
-        assert_eq!(a.sin.image, b.sin.image);
-        assert_eq!(a.cos.image, -b.cos.image);
+    }
+
+    #[test]
+    fn angles_are_one_where_their_sines_and_cosines_are() {
+        let reading = Reading::default();
+        let is_one = |a: f64, b: f64| {
+            let [a, b] = [a, b].map(|radians| reading.turn(&Angle::new(radians)));
+            let magnitude = |x: Number| x.image.max(-x.image);
+            let mut images = [a, b].map(|turn| [turn.sin, turn.cos].map(magnitude));
+            images.iter_mut().for_each(|pair| pair.sort_unstable());
+            let mut values = [a, b].map(|turn| [turn.sin, turn.cos].map(|x| x.to_f64().abs().to_bits()));
+            values.iter_mut().for_each(|pair| pair.sort_unstable());
+            assert_eq!(images[0] == images[1], values[0] == values[1], "{a:?} and {b:?}");
+            images[0] == images[1]
+        };
+        assert!(is_one(0.9, -0.9) && is_one(1.5708, -1.5708) && is_one(FRAC_PI_4, 3.0 * FRAC_PI_4));
+        assert!(is_one(0.3, PI - 0.3) && is_one(0.3, FRAC_PI_2 + 0.3), "their last bits agree");
+        assert!(!is_one(0.9, FRAC_PI_2 + 0.9), "their last bits do not");
+        assert!(!is_one(0.9, 0.900_000_000_000_4) && !is_one(4e-13, 1e-13) && !is_one(1e-13, -1.000_000_1e-13));
+        assert!(!is_one(0.9, 0.9_f64.next_up()));
+        // whatever their last bits are, images agree with them
+        for step in 1..200 {
+            let radians = f64::from(step) * 0.0157;
+            for other in [PI - radians, PI + radians, FRAC_PI_2 - radians, radians - FRAC_PI_2, radians + 2.0 * PI] {
+                let _ = is_one(radians, other);
+            }
+        }
+    }
+
+    #[test]
+    fn an_angle_and_its_complement_keep_their_signs() {
+        let reading = Reading::default();
+        let turn = |radians: f64| reading.turn(&Angle::new(radians));
+        let (a, back, supplement) = (turn(0.3), turn(-0.3), turn(PI - 0.3));
+        assert_eq!((back.sin.image, back.cos.image), (-a.sin.image, a.cos.image));
+        assert_eq!((supplement.sin.image, supplement.cos.image), (a.sin.image, -a.cos.image));
     }
 }

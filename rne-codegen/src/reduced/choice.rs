@@ -27,19 +27,36 @@ pub struct Choice {
     pub plan: Plan,
     /// The rewritten graph of `inverse_dynamics`, if there is one.
     pub rewritten: Option<Rewritten>,
+    /// Who made it.
+    pub maker: Maker,
+}
+
+/// Who made the choices by which a robot is compiled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Maker {
+    /// The build, which takes what it proves: what cannot be proved is left out.
+    Build,
+    /// Somebody, in a plan file: it is compiled as it stands or not at all.
+    PlanFile,
 }
 
 impl Choice {
+    /// A plan to be compiled as it stands.
+    #[must_use]
+    pub const fn of(plan: Plan) -> Self {
+        Self { plan, rewritten: None, maker: Maker::PlanFile }
+    }
+
     /// No choice made.
     #[must_use]
     pub fn none(robot: &Robot) -> Self {
-        Self { plan: Plan::new(robot.dof()), rewritten: None }
+        Self { maker: Maker::Build, ..Self::of(Plan::new(robot.dof())) }
     }
 
     /// The choice of a build that has no plan file, without some tricks: the same on every machine.
     #[must_use]
     pub fn default_without(robot: &Robot, without: &[Trick]) -> Self {
-        Self { plan: default_plan(robot, without), rewritten: None }
+        Self { maker: Maker::Build, ..Self::of(default_plan(robot, without)) }
     }
 
     /// The choice of a build that has no plan file.
@@ -77,10 +94,10 @@ impl Choice {
         if form == Form::SevenSteps {
             return crate::compile(robot, function, form);
         }
-        if form == Form::Rewritten && function == Function::InverseDynamics && robot.run_time.is_empty() {
-            return self.compile_rewritten(robot, arranged);
-        }
         let is_fixed = robot.run_time.is_empty();
+        if form == Form::Rewritten && function == Function::InverseDynamics && is_fixed {
+            return self.compile_rewritten(robot, arranged).map_err(|error| error.suspecting(robot, true));
+        }
         match function {
             // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
             Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
@@ -90,20 +107,55 @@ impl Choice {
             }
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
-                let (plan, way) = self.cheapest(robot, function);
-                let (frame, names, written) = written_in(robot, &plan, function, way)?;
-                let heading = Heading { robot, function, form };
-                let program = proved(&heading, written, &names, frame.table.reading, arranged)?;
-                let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
-                Ok(Program { choices, ..program })
+                match self.compile_planned(robot, function, form, arranged) {
+                    Err(_) if self.maker == Maker::Build => self.compile_with_less(robot, function, form, arranged),
+                    done => done.map_err(|error| error.suspecting(robot, self.maker == Maker::PlanFile)),
+                }
             }
-            _ => {
-                let merged = merged(robot, function, arranged)?;
-                let plain = crate::compile(robot, function, Form::SevenSteps)?;
-                // a value that is found where it is not used otherwise costs what it takes there
-                Ok(if plain.operations().total() < merged.operations().total() { plain } else { merged })
-            }
+            _ => compile_merged(robot, function, arranged),
         }
+    }
+
+    /// By the plan, in the way that takes the fewest operations.
+    fn compile_planned(
+        &self,
+        robot: &Robot,
+        function: Function,
+        form: Form,
+        arranged: fn(Program) -> Program,
+    ) -> Result<Program, CompileError> {
+        let (plan, way) = self.cheapest(robot, function);
+        let (frame, names, written) = written_in(robot, &plan, function, way)?;
+        let heading = Heading { robot, function, form };
+        let program = proved(&heading, written, &names, frame.table.reading, arranged)?;
+        let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
+        Ok(Program { choices, ..program })
+    }
+
+    /// By ever fewer choices until the program can be proved: without those of frames, without any, without regrouping, the
+    /// plain formulas with equal values merged, the plain formulas.
+    fn compile_with_less(
+        &self,
+        robot: &Robot,
+        function: Function,
+        form: Form,
+        arranged: fn(Program) -> Program,
+    ) -> Result<Program, CompileError> {
+        let unframed = Plan { turned_last_frame: false, carried_prismatics: false, ..self.plan.clone() };
+        let none = Plan::new(robot.dof());
+        let unregrouped = Plan { regrouped: false, ..none.clone() };
+        let mut tried = vec![self.plan.clone()];
+        for plan in [unframed, none, unregrouped] {
+            if tried.contains(&plan) {
+                continue;
+            }
+            let choice = Self { plan: plan.clone(), ..self.clone() };
+            if let Ok(program) = choice.compile_planned(robot, function, form, arranged) {
+                return Ok(program);
+            }
+            tried.push(plan);
+        }
+        compile_merged(robot, function, arranged)
     }
 
     /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without the
@@ -151,18 +203,27 @@ fn proved(
 }
 
 /// The plain formulas of a function with every value computed once, however often and in whatever way the formulas compute
-/// it: the reduced form of what has no recursion of its own.
-fn merged(robot: &Robot, function: Function, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
+/// it: the reduced form of what has no recursion of its own. As they are where that is cheaper, or cannot be proved.
+fn compile_merged(
+    robot: &Robot,
+    function: Function,
+    arranged: fn(Program) -> Program,
+) -> Result<Program, CompileError> {
+    let plain = crate::compile(robot, function, Form::SevenSteps)?;
     let reading = Reading::default();
     let builder = Builder::traced(Policy::Value, reading, function);
     let (names, outputs): (Vec<Name>, Vec<_>) = derivation::outputs(&builder, robot, function).into_iter().unzip();
     let written = builder.finish(outputs).numbered();
-    proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged)
+    match proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged) {
+        // a value that is found where it is not used otherwise costs what it takes there
+        Ok(merged) if merged.operations().total() <= plain.operations().total() => Ok(merged),
+        _ => Ok(plain),
+    }
 }
 
 impl From<PlanFile> for Choice {
     fn from(file: PlanFile) -> Self {
-        Self { plan: file.plan, rewritten: file.rewritten }
+        Self { plan: file.plan, rewritten: file.rewritten, maker: Maker::PlanFile }
     }
 }
 
@@ -276,10 +337,7 @@ pub fn search(
 ) -> Result<Found, CompileError> {
     let mut search = Search::new(robot, &[]);
     let model = robot.clone();
-    search.refuse(move |plan| {
-        let choice = Choice { plan: plan.clone(), rewritten: None };
-        !is_precise(&model, &choice, Form::Reduced).unwrap_or(false)
-    });
+    search.refuse(move |plan| !is_sound(&model, &Choice::of(plan.clone()), Form::Reduced).unwrap_or(false));
     search.greedy(usize::MAX);
     if let Some(known) = known {
         search.start_from(&known.plan);
@@ -297,8 +355,8 @@ pub fn search(
     if let Some(rewritten) = known.and_then(|known| known.rewritten.as_ref()) {
         let (_, _, read) = rewritten_graph(robot, &rewritten.plan, &rewritten.graph)?;
         // one that has lost too much precision may be replaced by a dearer one
-        let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
-        if !wanted.rewrite || is_precise(robot, &choice, Form::Rewritten)? {
+        let choice = Choice { rewritten: Some(rewritten.clone()), ..Choice::of(rewritten.plan.clone()) };
+        if !wanted.rewrite || is_sound(robot, &choice, Form::Rewritten)? {
             best = Some((read.graph.cost(&mut Vec::new()), rewritten.clone()));
         }
     }
@@ -313,7 +371,9 @@ pub fn search(
     };
     let choice = Choice::from(file.clone());
     let remark = |form, cost| {
-        let program = choice.compile(robot, Function::InverseDynamics, form)?;
+        let program = choice.compile(robot, Function::InverseDynamics, form);
+        // the plan was made here
+        let program = program.map_err(|error| error.suspecting(robot, false))?;
         let proof = program.proof.ok_or_else(|| CompileError::Plan("a program without proof".to_owned()))?;
         Ok(Remark { cost, proof })
     };
@@ -328,15 +388,19 @@ const PRECISION: f64 = 3.0;
 /// States over which the average is taken.
 const STATES: usize = 200;
 
-fn is_precise(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
-    let (_, names, written) = match (form, &choice.rewritten) {
+/// Whether a form can be proved, and is not much less precise than the seven steps.
+fn is_sound(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
+    let (frame, names, written) = match (form, &choice.rewritten) {
         (Form::Rewritten, Some(rewritten)) => match rewritten_graph(robot, &rewritten.plan, &rewritten.graph) {
             Ok(read) => read,
             Err(_) => return Ok(false),
         },
         _ => torques_by(robot, &choice.plan)?,
     };
-    let (program, _) = lower(&Heading { robot, function: Function::InverseDynamics, form }, written, &names)?;
+    let (program, exactly) = lower(&Heading { robot, function: Function::InverseDynamics, form }, written, &names)?;
+    if proof::identical(robot, &program, &exactly, frame.table.reading).is_err() {
+        return Ok(false);
+    }
     Ok(proof::loss_of_precision(robot, &program, STATES)? <= PRECISION)
 }
 
@@ -426,8 +490,8 @@ fn rewritten(
             break;
         }
         let rewritten = Rewritten { plan, graph: graph_text::written(&graph, &given) };
-        let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
-        if is_precise(robot, &choice, Form::Rewritten)? {
+        let choice = Choice { rewritten: Some(rewritten.clone()), ..Choice::of(rewritten.plan.clone()) };
+        if is_sound(robot, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));
             break;
         }

@@ -29,7 +29,7 @@ mod trick;
 mod way;
 
 pub use crate::ir::Cost;
-pub use choice::{Choice, Found, Wanted, cost, is_planned, savings, search};
+pub use choice::{Choice, Found, Maker, Wanted, cost, is_planned, savings, search};
 pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
 pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
 pub use search::{Clock, Progress};

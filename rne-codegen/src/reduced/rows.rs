@@ -5,7 +5,7 @@
 //! put right here: the base is turned into the first joint's frame, the last joint's constant angle into its link,
 //! anti-parallel axes are made parallel.
 
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, Transform};
+use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
 use super::pseudo_inertia::{PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose};
 use crate::ir::{Number, Reading, Turn};
@@ -47,6 +47,8 @@ pub(crate) struct Table {
     pub(crate) tip: Tip,
     /// How the numbers of the file were read.
     pub(crate) reading: Reading,
+    /// Sines and cosines of the constant angles of the file, none negative.
+    pub(crate) known: Vec<Number>,
 }
 
 /// Choices that change the rows themselves.
@@ -59,7 +61,8 @@ pub(crate) struct Frames {
 }
 
 impl Table {
-    /// The rows of a robot; `None` when a choice of frames does not apply to it.
+    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does: each must
+    /// have a root for every one that is wanted, and value and image of every number must agree about what is zero.
     pub(crate) fn new(robot: &Robot, frames: Frames) -> Option<Self> {
         if frames == Frames::default() {
             return Self::read(robot, frames, Reading::default());
@@ -70,7 +73,27 @@ impl Table {
         let usable = unknowns.filter(|unknown| unknown.is_none_or(|x| (4.0 * x).fract() != 0.0));
         usable
             .flat_map(|unknown| (0..48).map(move |seed| Reading { seed, unknown }))
-            .find_map(|reading| Self::read(robot, frames, reading))
+            .find_map(|reading| Self::read(robot, frames, reading).filter(Self::agrees))
+    }
+
+    /// Whether nothing is zero in value alone.
+    fn agrees(&self) -> bool {
+        let length = |row: &Row| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
+        let reach: f64 = self.rows.iter().map(length).sum();
+        self.rows.iter().all(|row| {
+            let PseudoInertia { mass, h, s } = row.matter;
+            let largest = |of: &[Number], least: f64| of.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
+            let first = largest(&h, mass.to_f64().abs() * reach);
+            let second = largest(s.as_flattened(), mass.to_f64().abs() * reach * reach);
+            let turns = [row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
+            let is_clear = |of: &[Number], scale: f64| !of.iter().any(|x| x.is_dust(scale));
+            is_clear(&row.offset, reach)
+                && is_clear(&[row.d], reach)
+                && is_clear(&h, first)
+                && is_clear(s.as_flattened(), second)
+                && is_clear(turns.as_flattened(), 1.0)
+                && is_clear(&row.axis, 1.0)
+        })
     }
 
     fn read(robot: &Robot, frames: Frames, reading: Reading) -> Option<Self> {
@@ -128,7 +151,9 @@ impl Table {
             let [x, y, z] = apply(&turn, tip.translation);
             tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z] };
         }
-        Self { rows, gravity: robot.gravity.map(decimal), tip, reading }
+        let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
+        let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
+        Self { rows, gravity: robot.gravity.map(decimal), tip, reading, known }
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
@@ -235,7 +260,8 @@ impl Table {
             return true;
         };
         next.offset = apply(&axes, next.offset);
-        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading) else {
+        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading, &self.known)
+        else {
             return false;
         };
         next.alpha = twist;
@@ -255,8 +281,8 @@ impl Table {
     }
 }
 
-/// R = Rz(φ1) Rx(α) Rz(φ2)
-fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
+/// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
+fn decomposed(rotation: &Square, reading: Reading, known: &[Number]) -> Option<[Turn; 3]> {
     let [[xx, _, xz], [yx, _, yz], [zx, zy, zz]] = *rotation;
     if xz.is_zero() && yz.is_zero() {
         // the axes are parallel, so all turning is about one
@@ -264,11 +290,10 @@ fn decomposed(rotation: &Square, reading: Reading) -> Option<[Turn; 3]> {
     }
     let square = xz * xz + yz * yz;
     // an angle of the file, or one that no angle of the file is
-    let known = reading.turn(&Angle::new(square.value.sqrt().to_f64().atan2(zz.to_f64()))).sin;
-    let sine = if known.image * known.image == square.image {
-        Number { value: square.value.sqrt(), ..known }
-    } else {
-        hypotenuse(xz, yz, reading)?
+    let known = known.iter().find(|known| known.image * known.image == square.image);
+    let sine = match known {
+        Some(&known) => known,
+        None => hypotenuse(xz, yz, reading)?,
     };
     let scale = sine.inverse()?;
     Some([

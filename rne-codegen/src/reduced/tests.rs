@@ -20,7 +20,8 @@ use crate::{CompileError, Expression, Form, Function, Program};
 fn robot(name: &str) -> Robot {
     let folder = match name {
         _ if name.starts_with("dense") => "tests/dense",
-        _ if name == "spindle" || name.starts_with(|first: char| first.is_ascii_digit()) => "tests/random/files",
+        "spindle" | "close_angles" | "about_origin" => "tests/random/files",
+        _ if name.starts_with(|first: char| first.is_ascii_digit()) => "tests/random/files",
         _ => "robots",
     };
     let path = format!("{}/../{folder}/{name}.yaml", env!("CARGO_MANIFEST_DIR"));

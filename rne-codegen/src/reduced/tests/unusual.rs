@@ -86,3 +86,23 @@ fn rewritten_graphs_are_the_seven_steps() {
         }
     }
 }
+
+#[test]
+fn angles_that_are_close_have_their_own_constants() {
+    let mut robot = robot("close_angles");
+    for _ in 0..robot.dof() {
+        // that of the first joint goes into gravity
+        robot.joints.rotate_right(1);
+        let angles: Vec<f64> = robot.joints[1..].iter().map(|joint| joint.row.dh.alpha.radians).collect();
+        for (choice, is_plain) in [(Choice::none(&robot), true), (Choice::default_of(&robot), false)] {
+            for function in Function::TORQUES {
+                let program = choice.compile(&robot, function, Form::Reduced).unwrap();
+                let has = |value: f64| program.constants.iter().any(|constant| constant.value.abs() == value);
+                for angle in angles.iter().filter(|_| is_plain) {
+                    assert!(has(angle.sin()), "{function} needs the sine of {angle}");
+                }
+                assert!(program.proof.as_ref().unwrap().rounding < 4e-15, "{:?}", program.proof);
+            }
+        }
+    }
+}
