@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use rne_codegen::emit::{self, Listing, listing};
-use rne_codegen::reduced::{self, Choice, PlanFile};
+use rne_codegen::plan::{self, Choice, PlanFile};
 use rne_codegen::{Capability, Form, Function, Operations, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
@@ -207,10 +207,10 @@ fn tricks() -> String {
     let savings = robots.map(|name| {
         let path = root().join("robots").join(name).with_extension("yaml");
         let robot = robot(&path);
-        reduced::savings(&robot, &choice(&path, &robot).0.plan)
+        plan::savings(&robot, &choice(&path, &robot).0.plan)
     });
     let mut text = format!("| trick | {} | what it is |\n|---|---:|---:|---|\n", robots.join(" | "));
-    for trick in reduced::Trick::ALL {
+    for trick in plan::Trick::ALL {
         let saved = |robot: usize| savings[robot].iter().find(|(used, _)| *used == trick).map(|(_, saved)| *saved);
         let cell = |saved: Option<isize>| saved.map_or_else(String::new, |saved| saved.to_string());
         if saved(0).is_some() || saved(1).is_some() {

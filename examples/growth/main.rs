@@ -26,7 +26,7 @@ mod user;
 use std::fmt::Write;
 use std::time::Instant;
 
-use rne_codegen::reduced::Choice;
+use rne_codegen::plan::Choice;
 use rne_codegen::{Form, Function, emit};
 use rne_model::Robot;
 

@@ -4,7 +4,7 @@ use std::fmt;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
-use rne_codegen::reduced::Trick;
+use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
 
 use crate::terminal::HELP_STYLES;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::reduced::{self, Choice, Trick};
+use rne_codegen::plan::{self, Choice, Trick};
 use rne_codegen::{Form, Function, Operations, Program};
 use rne_model::Robot;
 use serde::Serialize;
@@ -138,7 +138,7 @@ pub(crate) fn counts(
 fn tricks(robot: &Robot, choice: &Choice) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
-    for (trick, saved) in reduced::savings(robot, &choice.plan) {
+    for (trick, saved) in plan::savings(robot, &choice.plan) {
         lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
     }
     for (index, line) in columns(&[Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {

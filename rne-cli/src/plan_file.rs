@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::reduced::{self, Cost, Found, PlanFile, Progress, Wanted};
+use rne_codegen::plan::{self, Cost, Found, PlanFile, Progress, Wanted};
 
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
@@ -99,7 +99,7 @@ fn watched(
     }
     let start = Instant::now();
     let mut shown = start;
-    let found = reduced::search(robot, known, wanted, &mut |progress: &Progress| {
+    let found = plan::search(robot, known, wanted, &mut |progress: &Progress| {
         if INTERRUPTED.load(Ordering::Relaxed) {
             return None;
         }
@@ -122,7 +122,7 @@ fn watched(
 fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
-    let mut line = |form: &str, remark: &reduced::Remark| {
+    let mut line = |form: &str, remark: &plan::Remark| {
         let _ = writeln!(
             text,
             "{form:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \

@@ -3,9 +3,9 @@
 use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use crate::name::Name;
+use crate::ir::name::Name;
+use crate::ir::quantity::{Component, Quantity};
 use crate::program::{Expression, Program, Statement};
-use crate::quantity::{Component, Quantity};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]

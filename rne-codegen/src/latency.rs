@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::name::Name;
+use crate::ir::name::Name;
 use crate::program::{Expression, Program};
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of these years.

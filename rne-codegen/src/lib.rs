@@ -10,43 +10,29 @@
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]
 
-mod actuation;
-mod capability;
-mod derivation;
-mod elimination;
 pub mod emit;
-mod energy;
+pub mod fma;
+mod formulate;
 mod function;
-pub mod fusion;
 mod interpret;
 mod ir;
-mod kinematics;
 mod latency;
-mod layout;
-mod ledger;
-mod links;
 mod lower;
-mod mass_matrix;
-mod name;
+pub mod plan;
 mod program;
-mod proof;
-mod quantity;
-pub mod reduced;
-mod regressor;
-mod seven_steps;
+mod prove;
+mod reduced;
 
 use std::fmt;
 
 use rne_model::Robot;
 
-pub use capability::Capability;
-pub use function::{Argument, Form, Function, UnknownName};
+pub use function::{Argument, Capability, Form, Function, Layout, Record, UnknownName};
 pub use interpret::{Arguments, Interpreter, Real};
-pub use layout::{Layout, Record};
-pub use ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
-pub use name::{By, Name};
+pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
+pub use ir::name::{By, Name};
+pub use ir::quantity::{Axis, Component, Quantity, Step};
 pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
-pub use quantity::{Axis, Component, Quantity, Step};
 
 use crate::ir::{Builder, Policy, Reading};
 
@@ -71,10 +57,10 @@ pub fn compile_keeping(
     keep: &[Quantity],
 ) -> Result<Program, CompileError> {
     if form != Form::SevenSteps {
-        return reduced::Choice::default_of(robot).compile(robot, function, form);
+        return plan::Choice::default_of(robot).compile(robot, function, form);
     }
     let builder = Builder::traced(Policy::Structure, Reading::default(), function);
-    let (mut names, outputs): (Vec<Name>, Vec<_>) = derivation::outputs(&builder, robot, function).into_iter().unzip();
+    let (mut names, outputs): (Vec<Name>, Vec<_>) = formulate::outputs(&builder, robot, function).into_iter().unzip();
     let mut written = builder.finish(outputs);
     for definition in &written.trace.definitions {
         if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {

@@ -6,11 +6,11 @@ use rne_model::Robot;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
+use crate::ir::ledger::{Operation, Place};
+use crate::ir::name::Name;
+use crate::ir::quantity::{Quantity, Step};
 use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
-use crate::ledger::{Operation, Place};
-use crate::name::Name;
 use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
-use crate::quantity::{Quantity, Step};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);

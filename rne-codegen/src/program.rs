@@ -7,8 +7,8 @@ use std::collections::{BTreeSet, HashSet};
 use crate::CompileError;
 use crate::emit;
 use crate::function::{Form, Function};
-use crate::ledger::{Causes, Ledger, Place};
-use crate::name::Name;
+use crate::ir::ledger::{Causes, Ledger, Place};
+use crate::ir::name::Name;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]

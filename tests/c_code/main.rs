@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rne_codegen::emit::Precision;
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{Form, Function, Program};
 use rne_model::Robot;
 

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Pose, Scalar, Wrench};
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{Arguments, Form, Function, Interpreter, Program, Real};
 use rne_model::Robot;
 

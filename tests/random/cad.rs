@@ -4,7 +4,7 @@
 
 use fastrand::Rng;
 use rne::DynArm;
-use rne_codegen::reduced::Choice;
+use rne_codegen::plan::Choice;
 use rne_codegen::{Form, Function};
 use rne_model::Robot;
 

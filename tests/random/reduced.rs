@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use rne::{Arm, DynArm, InverseDynamics, Wrench};
-use rne_codegen::reduced::{Choice, JointPlan, Moment, Plan, Scale, Side, Slide, Target};
+use rne_codegen::plan::{Choice, JointPlan, Moment, Plan, Scale, Side, Slide, Target};
 use rne_codegen::{CompileError, Form, Function, Program};
 use rne_model::Robot;
 

@@ -1,6 +1,6 @@
 //! Operation counts against an independent count of a faithful unrolling.
 
-use rne_codegen::reduced::{Choice, PlanFile, Trick, savings};
+use rne_codegen::plan::{Choice, PlanFile, Trick, savings};
 use rne_codegen::{Form, Function, compile};
 use rne_model::Robot;
 

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rne_codegen::emit::{Precision, Prefix, c_code};
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{Argument, Form, Function, Layout};
 use rne_model::Robot;
 use robots::puma560::Arguments;

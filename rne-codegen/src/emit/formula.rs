@@ -2,7 +2,7 @@
 
 use rne_model::JointKind;
 
-use crate::quantity::Step;
+use crate::ir::quantity::Step;
 
 /// The formulas of a step for joint `joint`, in the letters of the lecture.
 pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String> {

@@ -11,10 +11,10 @@ use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
 use crate::function::{Form, Function};
-use crate::ledger::{Cause, Causes, Fate, Ledger, Place};
-use crate::name::{By, Name};
+use crate::ir::ledger::{Cause, Causes, Fate, Ledger, Place};
+use crate::ir::name::{By, Name};
+use crate::ir::quantity::{Component, Quantity, Step};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
-use crate::quantity::{Component, Quantity, Step};
 
 /// Width of a comment.
 const WIDTH: usize = 100;

@@ -1,9 +1,9 @@
 //! The arguments of a generated function.
 
 use crate::function::Argument;
-use crate::name::Name;
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Quantity};
 use crate::program::Program;
-use crate::quantity::{Axis, Quantity};
 
 /// An argument array and the names of its elements; `None` for an element that is not used.
 pub(super) struct ArgumentArray {

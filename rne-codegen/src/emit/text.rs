@@ -11,10 +11,10 @@ use super::listing::{Listing, listing, statement_line};
 use super::signature::{ArgumentArray, arguments};
 use super::syntax::Syntax;
 use super::table::{convention, dh_table};
-use crate::layout::Layout;
-use crate::name::Name;
+use crate::function::Layout;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
 use crate::program::Program;
-use crate::quantity::Quantity;
 
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]

@@ -8,9 +8,9 @@ use quote::{ToTokens, quote};
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
 use super::syntax::Syntax;
+use crate::function::Record;
+use crate::ir::name::Name;
 use crate::latency::{self, Latency};
-use crate::layout::Record;
-use crate::name::Name;
 use crate::program::{Expression, Program, Statement};
 
 /// The body of a program's function: everything between its braces.

@@ -7,9 +7,9 @@ use rne_model::{Angle, Joint};
 use super::trace::{Birth, Definition, Trace, Traced};
 use super::{CausesId, Graph, Input, Matrix, Number, Outcome, Policy, Reading, Ref, Side, Symbol, Turn, Vector};
 use crate::function::Function;
-use crate::ledger::{Cause, Operation, Place};
-use crate::name::{By, Name};
-use crate::quantity::{Axis, Quantity};
+use crate::ir::ledger::{Cause, Operation, Place};
+use crate::ir::name::{By, Name};
+use crate::ir::quantity::{Axis, Quantity};
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
 pub(crate) struct Builder {

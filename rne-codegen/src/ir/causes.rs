@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::ledger::{Cause, Causes};
+use crate::ir::ledger::{Cause, Causes};
 
 /// The index of [`Causes`] in the trace that knows them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::{Birth, Builder, Definition, Input, Op, Ref, Symbol, mark_live};
-use crate::ledger::{Cause, Place};
-use crate::name::{By, Name};
+use crate::ir::ledger::{Cause, Place};
+use crate::ir::name::{By, Name};
 
 impl Builder {
     /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of

@@ -705,8 +705,8 @@ impl Cost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::name::Name;
-    use crate::quantity::Quantity;
+    use crate::ir::name::Name;
+    use crate::ir::quantity::Quantity;
 
     fn inputs(policy: Policy) -> (Graph, Ref, Ref) {
         let mut graph = Graph::new(policy, Reading::default());

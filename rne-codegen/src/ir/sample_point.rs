@@ -1,7 +1,7 @@
 //! Random values for the arguments of a function: where two functions are compared.
 
 use super::{Image, Input, Reading};
-use crate::quantity::Quantity;
+use crate::ir::quantity::Quantity;
 
 /// Random values for all arguments: what a function of the robot is compared at.
 #[derive(Clone, Copy, Debug)]

@@ -3,7 +3,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use super::{Builder, CausesId, Number, Ref};
-use crate::quantity::Axis;
+use crate::ir::quantity::Axis;
 
 /// A number of a graph that is being written.
 #[derive(Clone, Copy)]

@@ -5,9 +5,9 @@ use std::collections::HashMap;
 
 use super::causes::{CausesId, KnownCauses};
 use super::{Graph, Outcome, Ref, Symbol};
-use crate::ledger::{Causes, Fate, Ledger, Operation, Place};
-use crate::name::Name;
-use crate::quantity::{Axis, Component};
+use crate::ir::ledger::{Causes, Fate, Ledger, Operation, Place};
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Component};
 
 /// A name given to a value, in the order in which the names were given.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,8 @@
 //! Value numbering: the live part of a graph written once more, with equal values as one node.
 
 use super::{Birth, Definition, Graph, Op, Policy, Ref, Trace, Traced, mark_live};
-use crate::ledger::Place;
-use crate::quantity::{Component, Quantity, Step};
+use crate::ir::ledger::Place;
+use crate::ir::quantity::{Component, Quantity, Step};
 
 /// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
 ///

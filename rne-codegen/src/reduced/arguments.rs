@@ -1,13 +1,13 @@
 //! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
 
-use super::rows::Row;
 use crate::function::Argument;
+use crate::ir::name::{By, Name};
+use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, Symbol, Turn, Vector};
-use crate::name::{By, Name};
-use crate::quantity::{Axis, Quantity};
+use crate::reduced::joint_frames::Row;
 use rne_model::QuarterTurns;
 
-use super::pseudo_inertia::Triple;
+use crate::reduced::link_parameters::Triple;
 
 /// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the others, and a
 /// constant. It is counted with the sign of the first joint; right angles are left to the sine and cosine.

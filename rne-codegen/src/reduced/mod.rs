@@ -3,34 +3,17 @@
 //! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration of
 //! the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
-//! From the robot file to code: `rows` and `regroup` prepare the numbers, `outward` and `inward` write the recursion
-//! on a `sheet`, `transcript` turns the sheet into a program, which the gate of `proof.rs` lets pass or not.
+//! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write the
+//! recursion with them (RNEA), `crba`, `aba` and `rnea_derivatives` what else there is; `algorithm` names the ways in which a
+//! function can be written.
 
-mod arguments;
-mod articulated;
-mod choice;
-mod composite;
-mod evaluator;
-mod graph_text;
-mod inward;
-mod moves;
-mod outward;
-mod plan;
-mod plan_file;
-mod pseudo_inertia;
-mod regroup;
-mod rewrite;
-mod rows;
-mod search;
-mod sensitivity;
-#[cfg(test)]
-mod tests;
-mod trick;
-mod way;
-
-pub use crate::ir::Cost;
-pub use choice::{Choice, Found, Maker, Wanted, cost, is_planned, savings, search};
-pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
-pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
-pub use search::{Clock, Progress};
-pub use trick::Trick;
+pub(crate) mod aba;
+pub(crate) mod algorithm;
+pub(crate) mod arguments;
+pub(crate) mod backward;
+pub(crate) mod crba;
+pub(crate) mod forward;
+pub(crate) mod joint_frames;
+pub(crate) mod link_parameters;
+pub(crate) mod regrouping;
+pub(crate) mod rnea_derivatives;

@@ -2,7 +2,7 @@
 
 use std::sync::OnceLock;
 
-use rne_codegen::reduced::{Choice, PlanFile};
+use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 

@@ -7,7 +7,7 @@ use super::signature::{fields, head, record_type, records};
 use super::{File, TIED, comment, harmless};
 use crate::emit::evidence::evidence;
 use crate::emit::table::{convention, dh_table};
-use crate::layout::Record;
+use crate::function::Record;
 use crate::program::Program;
 
 /// How both files begin.

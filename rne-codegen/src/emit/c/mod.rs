@@ -12,7 +12,7 @@ use rne_model::Robot;
 
 use super::syntax::{Precision, Syntax};
 use crate::function::Function;
-use crate::name::Name;
+use crate::ir::name::Name;
 use crate::program::Program;
 
 pub use prefix::{BadPrefix, Prefix};

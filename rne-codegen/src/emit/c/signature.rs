@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::{File, WIDTH, filled};
 use crate::emit::signature::{ArgumentArray, arguments};
 use crate::function::Function;
-use crate::layout::{Layout, Record};
+use crate::function::{Layout, Record};
 use crate::program::Program;
 
 /// The argument arrays of a function, by names that are no functions of the C library.

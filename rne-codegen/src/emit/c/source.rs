@@ -10,7 +10,7 @@ use crate::emit::listing::{Listing, listing_in, statement_line};
 use crate::emit::signature::ArgumentArray;
 use crate::emit::syntax::Precision;
 use crate::emit::text::legend;
-use crate::layout::Layout;
+use crate::function::Layout;
 use crate::program::Program;
 
 /// Sine and cosine in C; PREFIX stands for the prefix.

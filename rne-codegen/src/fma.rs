@@ -1,0 +1,381 @@
+//! The order of the terms of sums: for the fewest instructions, or for the shortest wait.
+//!
+//! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many products
+//! are left over depends on the order of the terms and on which products are computed at all:
+//!
+//! - A sum of n terms takes n - 1 instructions, whatever they are, once there is a term to start from. So terms that are no
+//!   products come first and every product is fused with what has been summed before.
+//! - A product that is used in several sums is fused with each of them and never computed by itself.
+//! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can start.
+//!
+//! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of operations: there
+//! the term that comes last should be added last ([`soonest`]).
+
+use std::collections::BTreeMap;
+
+use crate::ir::name::Name;
+use crate::latency;
+use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
+
+/// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
+///
+/// ```
+/// use rne_codegen::fma;
+/// # use rne_codegen::{Form, Function, compile};
+/// # let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+/// #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
+/// # let robot = rne_model::Robot::from_yaml(yaml).unwrap();
+/// # let program = compile(&robot, Function::InverseDynamics, Form::SevenSteps).unwrap();
+/// let fused = fma::fused(&program);
+/// assert!(fma::instructions(&fused) <= fma::instructions(&program));
+/// ```
+#[must_use]
+pub fn fused(program: &Program) -> Program {
+    let (mut graph, outputs) = Graph::new(program);
+    graph.flatten(Named::Too);
+    graph.choose_products();
+    graph.program(program, &outputs)
+}
+
+/// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
+#[must_use]
+pub fn soonest(program: &Program) -> Program {
+    let (mut graph, outputs) = Graph::new(program);
+    graph.flatten(Named::Not);
+    graph.sort_terms(&program.turns);
+    graph.program(program, &outputs)
+}
+
+/// Instructions of one evaluation, without sines and cosines, where every product that stands right of + or - is fused.
+#[must_use]
+pub fn instructions(program: &Program) -> usize {
+    let statements = program.statements.iter().map(|statement| &statement.value);
+    statements.chain(program.outputs.iter().map(|output| &output.value)).map(expression_instructions).sum()
+}
+
+fn expression_instructions(expression: &Expression) -> usize {
+    use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
+    match expression {
+        Variable(_) | Zero => 0,
+        // goes into the instruction that uses it, but for an output
+        Negative(a) => expression_instructions(a),
+        Sum(a, b) | Difference(a, b) => {
+            let inner = |a: &Expression| expression_instructions(a);
+            let is_product = |a: &Expression| matches!(a, Product(..));
+            let saved = usize::from(is_product(a) || is_product(b));
+            1 + inner(a) + inner(b) - saved
+        }
+        Product(a, b) | Quotient(a, b) => 1 + expression_instructions(a) + expression_instructions(b),
+        BySign(x, a, b) => 2 + [x, a, b].into_iter().map(|operand| expression_instructions(operand)).sum::<usize>(),
+    }
+}
+
+/// A node and the sign it enters with.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Term {
+    sign: Sign,
+    node: usize,
+}
+
+enum Kind {
+    /// What the statements are made of: arguments, constants, sines and cosines.
+    Leaf(Expression),
+    Product([usize; 2]),
+    Quotient([usize; 2]),
+    BySign([Term; 3]),
+    Sum(Vec<Term>),
+}
+
+struct Node {
+    kind: Kind,
+    /// The statement that computes it, if one does.
+    statement: Option<usize>,
+    name: Option<Name>,
+    uses: usize,
+    /// Computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
+    is_computed: bool,
+}
+
+#[derive(Default)]
+struct Graph {
+    nodes: Vec<Node>,
+    known: BTreeMap<Name, Term>,
+    statements: usize,
+}
+
+impl Graph {
+    /// The graph of a program and its outputs.
+    fn new(program: &Program) -> (Self, Vec<Term>) {
+        let mut graph = Self::default();
+        for statement in &program.statements {
+            graph.define(statement);
+        }
+        let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
+        graph.count_uses(&outputs);
+        (graph, outputs)
+    }
+
+    fn define(&mut self, statement: &Statement) {
+        let mut term = self.term(&statement.value);
+        let node = &mut self.nodes[term.node];
+        match &mut node.kind {
+            // a name stands for a value with its sign
+            Kind::Sum(terms) if node.name.is_none() && term.sign == Sign::Minus => {
+                for term in terms {
+                    *term = term.opposite();
+                }
+                term.sign = Sign::Plus;
+            }
+            Kind::Sum(_) | Kind::Product(_) if node.name.is_none() && term.sign == Sign::Plus => {}
+            // another name of what has one, or its negative
+            _ => term = Term { sign: Sign::Plus, node: self.push(Kind::Sum(vec![term])) },
+        }
+        let node = &mut self.nodes[term.node];
+        (node.statement, node.name) = (Some(self.statements), Some(statement.name));
+        self.statements += 1;
+        self.known.insert(statement.name, term);
+    }
+
+    fn push(&mut self, kind: Kind) -> usize {
+        self.nodes.push(Node { kind, statement: None, name: None, uses: 0, is_computed: true });
+        self.nodes.len() - 1
+    }
+
+    fn term(&mut self, expression: &Expression) -> Term {
+        use Sign::{Minus, Plus};
+        match expression {
+            Expression::Variable(name) => {
+                if let Some(&term) = self.known.get(name) {
+                    return term;
+                }
+                let term = Term { sign: Plus, node: self.push(Kind::Leaf(expression.clone())) };
+                self.known.insert(*name, term);
+                term
+            }
+            Expression::Zero => Term { sign: Plus, node: self.push(Kind::Leaf(Expression::Zero)) },
+            Expression::Negative(a) => self.term(a).opposite(),
+            Expression::Sum(a, b) => {
+                let terms = vec![self.term(a), self.term(b)];
+                Term { sign: Plus, node: self.push(Kind::Sum(terms)) }
+            }
+            Expression::Difference(a, b) => {
+                let terms = vec![self.term(a), self.term(b).opposite()];
+                Term { sign: Plus, node: self.push(Kind::Sum(terms)) }
+            }
+            Expression::Product(a, b) => {
+                let (a, b) = (self.term(a), self.term(b));
+                let sign = if a.sign == b.sign { Plus } else { Minus };
+                Term { sign, node: self.push(Kind::Product([a.node, b.node])) }
+            }
+            Expression::Quotient(a, b) => {
+                let (a, b) = (self.term(a), self.term(b));
+                let sign = if a.sign == b.sign { Plus } else { Minus };
+                Term { sign, node: self.push(Kind::Quotient([a.node, b.node])) }
+            }
+            Expression::BySign(x, a, b) => {
+                let operands = [x, a, b].map(|operand| self.term(operand));
+                Term { sign: Plus, node: self.push(Kind::BySign(operands)) }
+            }
+        }
+    }
+
+    fn count_uses(&mut self, outputs: &[Term]) {
+        let mut uses = vec![0; self.nodes.len()];
+        for node in &self.nodes {
+            match &node.kind {
+                Kind::Leaf(_) => {}
+                Kind::Product(factors) | Kind::Quotient(factors) => {
+                    for &factor in factors {
+                        uses[factor] += 1;
+                    }
+                }
+                Kind::BySign(operands) => operands.iter().for_each(|operand| uses[operand.node] += 1),
+                Kind::Sum(terms) => terms.iter().for_each(|term| uses[term.node] += 1),
+            }
+        }
+        for output in outputs {
+            uses[output.node] += 1;
+        }
+        for (node, uses) in self.nodes.iter_mut().zip(uses) {
+            node.uses = uses;
+        }
+    }
+
+    /// Sums that are used in one sum alone become terms of it. Nodes stand behind what they use.
+    fn flatten(&mut self, which: Named) {
+        for index in 0..self.nodes.len() {
+            let Kind::Sum(terms) = &self.nodes[index].kind else { continue };
+            let mut flat = Vec::new();
+            let mut inlined = Vec::new();
+            for &term in terms {
+                match &self.nodes[term.node] {
+                    Node { kind: Kind::Sum(inner), uses: 1, name, .. } if which == Named::Too || name.is_none() => {
+                        let signed = |inner: &Term| if term.sign == Sign::Minus { inner.opposite() } else { *inner };
+                        flat.extend(inner.iter().map(signed));
+                        inlined.push(term.node);
+                    }
+                    _ => flat.push(term),
+                }
+            }
+            for node in inlined {
+                (self.nodes[node].is_computed, self.nodes[node].kind) = (false, Kind::Sum(Vec::new()));
+            }
+            self.nodes[index].kind = Kind::Sum(flat);
+        }
+    }
+
+    /// Decides which products are computed by themselves.
+    fn choose_products(&mut self) {
+        // uses as terms of sums; a product with other uses has to be computed
+        let mut in_sums = vec![0; self.nodes.len()];
+        let sums: Vec<_> = self
+            .nodes
+            .iter()
+            .filter_map(|node| if let Kind::Sum(terms) = &node.kind { Some(terms) } else { None })
+            .collect();
+        for term in sums.iter().copied().flatten() {
+            in_sums[term.node] += 1;
+        }
+        let mut is_computed: Vec<_> = (0..self.nodes.len())
+            .map(|node| {
+                self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
+            })
+            .collect();
+        let mut unstarted: Vec<_> = sums.into_iter().filter(|terms| !terms.is_empty()).collect();
+        loop {
+            unstarted.retain(|terms| !terms.iter().any(|term| is_computed[term.node]));
+            let mut starts = BTreeMap::<usize, usize>::new();
+            for term in unstarted.iter().copied().flatten() {
+                *starts.entry(term.node).or_default() += 1;
+            }
+            // the first of those that start most sums
+            let Some((&best, _)) = starts.iter().rev().max_by_key(|&(_, &count)| count) else { break };
+            is_computed[best] = true;
+        }
+        for (index, node) in self.nodes.iter_mut().enumerate() {
+            node.is_computed = is_computed[index];
+            if let Kind::Sum(terms) = &mut node.kind {
+                terms.sort_by_key(|term| !is_computed[term.node]);
+            }
+        }
+    }
+
+    fn sort_terms(&mut self, turns: &[Turn]) {
+        let turns: Vec<_> = turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect();
+        // nodes stand behind what they use
+        let mut known: Vec<usize> = Vec::with_capacity(self.nodes.len());
+        for node in &mut self.nodes {
+            let at = match &mut node.kind {
+                Kind::Leaf(Expression::Variable(name)) if turns.contains(name) => latency::TURN,
+                Kind::Leaf(_) => 0,
+                Kind::Product([a, b]) => known[*a].max(known[*b]) + latency::PRODUCT,
+                Kind::Quotient([a, b]) => known[*a].max(known[*b]) + latency::QUOTIENT,
+                Kind::BySign(operands) => {
+                    operands.iter().map(|operand| known[operand.node]).max().unwrap_or(0) + latency::SUM
+                }
+                Kind::Sum(terms) => {
+                    terms.sort_by_key(|term| known[term.node]);
+                    let times = terms.iter().map(|term| known[term.node]);
+                    times.reduce(|sum, term| sum.max(term) + latency::SUM).unwrap_or(0)
+                }
+            };
+            known.push(at);
+        }
+    }
+
+    /// The program that the graph has become.
+    fn program(&self, program: &Program, outputs: &[Term]) -> Program {
+        let nodes = self.nodes.iter().enumerate();
+        let computed: BTreeMap<_, _> = nodes.filter_map(|(index, node)| Some((node.statement?, index))).collect();
+        let mut statements = Vec::new();
+        for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
+            if let Some(node) = computed.get(&index).copied().filter(|&node| self.is_named(node)) {
+                statements.push(Statement { place: *place, name: *name, value: self.value(node) });
+            }
+        }
+        let outputs = program.outputs.iter().zip(outputs);
+        let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
+        Program { statements, outputs, ..program.clone() }
+    }
+
+    /// A product whose factors are not computed once more wherever it is fused.
+    fn may_be_fused(&self, node: usize) -> bool {
+        let is_nameless = |&factor: &usize| {
+            let factor = &self.nodes[factor];
+            factor.name.is_none() && !matches!(factor.kind, Kind::Leaf(_))
+        };
+        match &self.nodes[node].kind {
+            Kind::Product(factors) => self.nodes[node].uses == 1 || !factors.iter().any(is_nameless),
+            Kind::Leaf(_) | Kind::Sum(_) | Kind::Quotient(_) | Kind::BySign(_) => false,
+        }
+    }
+
+    /// Whether a statement computes the node.
+    fn is_named(&self, node: usize) -> bool {
+        self.nodes[node].is_computed && self.nodes[node].name.is_some()
+    }
+
+    /// A term where it is used: the name of what a statement computes, else its value.
+    fn operand(&self, term: Term) -> Expression {
+        let node = &self.nodes[term.node];
+        let value = match node.name {
+            Some(name) if node.is_computed => Expression::Variable(name),
+            _ => self.value(term.node),
+        };
+        if term.sign == Sign::Minus { Expression::Negative(Box::new(value)) } else { value }
+    }
+
+    fn value(&self, node: usize) -> Expression {
+        match &self.nodes[node].kind {
+            Kind::Leaf(expression) => expression.clone(),
+            Kind::Product(factors) => {
+                let [a, b] = factors.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
+                Expression::Product(a, b)
+            }
+            Kind::Quotient(operands) => {
+                let [a, b] = operands.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
+                Expression::Quotient(a, b)
+            }
+            Kind::BySign(operands) => {
+                let [x, a, b] = operands.map(|operand| Box::new(self.operand(operand)));
+                Expression::BySign(x, a, b)
+            }
+            Kind::Sum(terms) => self.sum(terms),
+        }
+    }
+
+    /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has none.
+    fn sum(&self, terms: &[Term]) -> Expression {
+        use Expression::{Difference, Negative, Sum};
+        let plain = |term: Term| self.operand(Term { sign: Sign::Plus, ..term });
+        let parts = terms.iter().map(|&term| (term.sign, plain(term)));
+        let sum = parts.reduce(|(sign, sum), (sign_of_term, term)| {
+            let (sum, term) = (Box::new(sum), Box::new(term));
+            match (sign, sign_of_term) {
+                (Sign::Plus, Sign::Plus) => (Sign::Plus, Sum(sum, term)),
+                (Sign::Plus, Sign::Minus) => (Sign::Plus, Difference(sum, term)),
+                (Sign::Minus, Sign::Plus) => (Sign::Plus, Difference(term, sum)),
+                (Sign::Minus, Sign::Minus) => (Sign::Minus, Sum(sum, term)),
+            }
+        });
+        match sum {
+            Some((Sign::Plus, sum)) => sum,
+            Some((Sign::Minus, sum)) => Negative(Box::new(sum)),
+            None => Expression::Zero,
+        }
+    }
+}
+
+/// Whether sums that have a name of their own become terms of others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Named {
+    Too,
+    Not,
+}
+
+impl Term {
+    fn opposite(self) -> Self {
+        let sign = if self.sign == Sign::Plus { Sign::Minus } else { Sign::Plus };
+        Self { sign, ..self }
+    }
+}

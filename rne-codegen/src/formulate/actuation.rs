@@ -1,0 +1,44 @@
+//! What motors behind gears add: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇). Rotor gyroscopics are left out.
+
+use rne_model::{Entry, Robot};
+
+use crate::formulate::arm::number;
+use crate::formulate::seven_steps::JointState;
+use crate::ir::Builder;
+use crate::ir::Symbol;
+use crate::ir::ledger::Cause;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+
+/// The torques of the motors, base to tip; zero where a joint has none.
+pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {
+    let torque = |(index, state): (usize, &JointState<'s>)| {
+        let joint = index + 1;
+        let Some(motor) = robot.joints.get(index).and_then(|joint| joint.motor) else {
+            return builder.constant(0.0, Cause::Arithmetic);
+        };
+        let number = |entry, value| number(builder, robot, entry, value);
+        let ratio = number(Entry::GearRatio(index), motor.gear_ratio);
+        let squared = ratio * ratio;
+        let magnitude = match robot.run_time.formula(Entry::GearRatio(index)) {
+            Some(_) => builder.by_sign(ratio, ratio, -ratio),
+            None if motor.gear_ratio < 0.0 => -ratio,
+            None => ratio,
+        };
+        let named = |name, symbol| builder.name(name, symbol);
+        let inertia = squared * number(Entry::MotorInertia(index), motor.inertia);
+        let inertia = named(Name::scalar(Quantity::RotorInertia, joint), inertia);
+        let viscous = squared * number(Entry::Viscous(index), motor.viscous);
+        let viscous = named(Name::scalar(Quantity::ViscousFriction, joint), viscous);
+        let entries = [Entry::CoulombPositive(index), Entry::CoulombNegative(index)];
+        let [positive, negative] = [0, 1].map(|side| {
+            let name = Name::indexed(Quantity::CoulombFriction, joint, side + 1);
+            named(name, magnitude * number(entries[side], motor.coulomb[side]))
+        });
+        let value = builder.joint(joint).within(Quantity::ActuatorTorque, || {
+            inertia * state.qdd + viscous * state.qd + builder.by_sign(state.qd, positive, negative)
+        });
+        builder.name(Name::scalar(Quantity::ActuatorTorque, joint), value)
+    };
+    states.iter().enumerate().map(torque).collect()
+}

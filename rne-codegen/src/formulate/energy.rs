@@ -1,0 +1,45 @@
+//! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
+//!
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i);   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
+
+use crate::formulate::arm::Arm;
+use crate::formulate::kinematics::Frames;
+use crate::formulate::seven_steps::Motion;
+use crate::ir::Builder;
+use crate::ir::Symbol;
+use crate::ir::ledger::Cause;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+
+pub(crate) fn kinetic<'s>(builder: &'s Builder, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
+    let mut twice = builder.constant(0.0, Cause::Arithmetic);
+    for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
+        let line = builder.joint(index + 1);
+        twice = line.within(Quantity::KineticEnergy, || {
+            let momentum = link.inertia * motion.omega;
+            let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + motion.omega.dot(momentum);
+            twice + of_link
+        });
+    }
+    let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
+    let line = builder.joint(motions.len());
+    let energy = line.within(Quantity::KineticEnergy, || twice * half);
+    builder.name(Name::scalar(Quantity::KineticEnergy, 0), energy)
+}
+
+/// `frames` in frame 0, where gravity is given.
+pub(crate) fn potential<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'s>,
+    frames: &Frames<'s>,
+    centres: &[crate::ir::Vector<'s>],
+) -> Symbol<'s> {
+    let mut lost = builder.constant(0.0, Cause::Arithmetic);
+    for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
+        let line = builder.joint(index + 1);
+        let centre = line.within(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
+        let centre = builder.name_vector(Quantity::ComPosition, index + 1, centre);
+        lost = line.within(Quantity::PotentialEnergy, || lost + arm.gravity.dot(centre) * link.mass);
+    }
+    builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
+}

@@ -1,0 +1,250 @@
+//! What was folded, and because of what: data for listings, not a log.
+
+use std::collections::BTreeMap;
+use std::fmt;
+
+use crate::ir::name::{By, Name};
+use crate::ir::quantity::{Axis, Quantity, Step};
+
+/// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Cause {
+    /// Constants that happen to give it.
+    Arithmetic,
+    /// A turn about z leaves z alone.
+    TurnAboutZ,
+    /// A turn about x leaves x alone.
+    TurnAboutX,
+    /// The joint axis is e = (0, 0, 1).
+    JointAxis,
+    /// Frame 0 of a standard table is at joint 1.
+    FirstFrame,
+    /// A number of the table, or made from it.
+    Table(Name),
+    /// Gravity has no such component in frame 0.
+    GravityDirection(Axis),
+    /// The base does not move: ω₀ = ω̇₀ = ċ₀ = c̈₀ = 0.
+    FixedBase,
+    /// Nothing touches the tip: f_{n,n+1} = n_{n,n+1} = 0.
+    FreeTip,
+    /// The function is for an arm at rest, q̇ = 0.
+    AtRest,
+    /// The function is for an arm that does not accelerate, q̈ = 0.
+    NoAcceleration,
+    /// One joint accelerates, the others do not.
+    UnitAcceleration,
+    /// The function has nothing to do with gravity.
+    NoGravity,
+}
+
+impl fmt::Display for Cause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Arithmetic => f.write_str("constants"),
+            Self::TurnAboutZ => f.write_str("a turn about z leaves z alone"),
+            Self::TurnAboutX => f.write_str("a turn about x leaves x alone"),
+            Self::JointAxis => f.write_str("the joint axis is (0, 0, 1)"),
+            Self::FirstFrame => f.write_str("frame 0 is at joint 1"),
+            Self::Table(name) => write!(f, "{}", Entry(*name)),
+            Self::GravityDirection(axis) => write!(f, "gravity has no {axis} in frame 0"),
+            Self::FixedBase => f.write_str("the base does not move"),
+            Self::FreeTip => f.write_str("nothing touches the tip"),
+            Self::AtRest => f.write_str("the arm is at rest"),
+            Self::NoAcceleration => f.write_str("the joints do not accelerate"),
+            Self::UnitAcceleration => f.write_str("one joint alone accelerates"),
+            Self::NoGravity => f.write_str("gravity has no part in it"),
+        }
+    }
+}
+
+/// Everything because of which a number is exactly zero or one: a product needs one zero, a sum needs all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Causes([Option<Cause>; Self::MOST]);
+
+impl Causes {
+    /// More than three are not told apart.
+    const MOST: usize = 3;
+
+    pub(crate) const fn one(cause: Cause) -> Self {
+        Self([Some(cause), None, None])
+    }
+
+    /// The causes, the weightiest first.
+    pub fn iter(&self) -> impl Iterator<Item = Cause> {
+        self.0.into_iter().flatten()
+    }
+
+    /// The name of the one table entry that is the cause, if it is one alone.
+    pub(crate) fn entry(&self) -> Option<Name> {
+        match self.0 {
+            [Some(Cause::Table(name)), None, _] => Some(name),
+            [Some(Cause::GravityDirection(axis)), None, _] => Some(Name::vector(Quantity::Gravity, 0, axis)),
+            _ => None,
+        }
+    }
+
+    /// Both together, as a sum of two zeros needs them. That a frame turns about its own axis goes without saying.
+    pub(crate) fn and(self, other: Self) -> Self {
+        let mut all: Vec<Cause> = self.iter().chain(other.iter()).collect();
+        all.sort_unstable_by(|a, b| b.weight().cmp(&a.weight()).then(a.cmp(b)));
+        all.dedup();
+        if all.first().is_some_and(|cause| !cause.is_geometry()) {
+            all.retain(|cause| !cause.is_geometry());
+        }
+        let mut causes = all.into_iter();
+        Self([causes.next(), causes.next(), causes.next()])
+    }
+}
+
+impl fmt::Display for Causes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (index, cause) in self.iter().enumerate() {
+            if index > 0 {
+                f.write_str(" and ")?;
+            }
+            cause.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl Cause {
+    /// How much a cause tells, the rank of its variant.
+    const fn weight(&self) -> u8 {
+        match self {
+            Self::Arithmetic => 0,
+            Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame => 1,
+            Self::Table(_) => 2,
+            Self::GravityDirection(_) => 3,
+            Self::FixedBase
+            | Self::FreeTip
+            | Self::AtRest
+            | Self::NoAcceleration
+            | Self::UnitAcceleration
+            | Self::NoGravity => 4,
+        }
+    }
+
+    /// Whether it holds for every arm: zeros of Rx, Rz and e.
+    const fn is_geometry(&self) -> bool {
+        matches!(self, Self::Arithmetic | Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame)
+    }
+}
+
+/// An entry of the table in the words of the table.
+struct Entry(Name);
+
+impl fmt::Display for Entry {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Name { quantity, joint, .. } = self.0;
+        match quantity {
+            Quantity::TwistSine | Quantity::TwistCosine => write!(f, "alpha{joint} is a right angle"),
+            Quantity::ThetaSine | Quantity::ThetaCosine => write!(f, "theta{joint} is a right angle"),
+            Quantity::Mass => write!(f, "link {joint} has no mass"),
+            Quantity::TipRotation => f.write_str("the tip frame is turned by right angles"),
+            _ => write!(f, "{} = 0", self.0),
+        }
+    }
+}
+
+/// A product or a sum. A difference is a sum; a negation is free.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Operation {
+    /// A multiplication.
+    Product,
+    /// An addition or subtraction.
+    Sum,
+}
+
+/// What became of operations that the unfolded recursion performs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Fate {
+    /// It stands in the generated code.
+    Kept,
+    /// A factor or summand is zero.
+    Zero(Causes),
+    /// A factor is 1 or -1.
+    One(Causes),
+    /// Both operands are constants: done at compile time.
+    Constant,
+    /// x - x.
+    Cancelled,
+    /// The same value had been computed before.
+    Shared,
+    /// Nothing the function returns depends on it.
+    Unused,
+}
+
+/// Where in the recursion an operation stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Place {
+    /// The joint, counted from 1.
+    pub joint: usize,
+    /// The step.
+    pub step: Step,
+    /// The quantity that was being computed.
+    pub quantity: Quantity,
+    /// Of which variable it was the derivative.
+    pub by: Option<By>,
+}
+
+/// How many operations at one place met one fate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Line {
+    /// Where.
+    pub place: Place,
+    /// Product or sum.
+    pub operation: Operation,
+    /// What became of them.
+    pub fate: Fate,
+    /// How many.
+    pub count: usize,
+}
+
+/// Every operation of the unfolded recursion, by place and fate.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Ledger {
+    lines: BTreeMap<(Place, Operation, Fate), usize>,
+}
+
+impl Ledger {
+    pub(crate) fn enter(&mut self, place: Place, operation: Operation, fate: Fate) {
+        *self.lines.entry((place, operation, fate)).or_default() += 1;
+    }
+
+    /// An operation that was kept turns out to be unused.
+    pub(crate) fn drop_unused(&mut self, place: Place, operation: Operation) {
+        if let Some(kept) = self.lines.get_mut(&(place, operation, Fate::Kept)) {
+            *kept -= 1;
+            if *kept == 0 {
+                self.lines.remove(&(place, operation, Fate::Kept));
+            }
+            self.enter(place, operation, Fate::Unused);
+        }
+    }
+
+    /// The lines, ordered by joint, step and quantity.
+    pub fn lines(&self) -> impl Iterator<Item = Line> {
+        self.lines.iter().map(|(&(place, operation, fate), &count)| Line { place, operation, fate, count })
+    }
+
+    /// (products, sums) over the lines that pass `filter`.
+    pub fn total(&self, filter: impl Fn(&Line) -> bool) -> (usize, usize) {
+        self.lines().filter(|line| filter(line)).fold((0, 0), |(products, sums), line| match line.operation {
+            Operation::Product => (products + line.count, sums),
+            Operation::Sum => (products, sums + line.count),
+        })
+    }
+
+    /// (products, sums) before folding; of the seven steps, step 3 included.
+    #[must_use]
+    pub fn before(&self) -> (usize, usize) {
+        self.total(|_| true)
+    }
+
+    /// (products, sums) that are left.
+    #[must_use]
+    pub fn after(&self) -> (usize, usize) {
+        self.total(|line| line.fate == Fate::Kept)
+    }
+}

@@ -1,0 +1,149 @@
+//! The full name of a number in the code: quantity, joint, component, and of what it is the derivative.
+
+use std::fmt;
+
+use crate::ir::quantity::{Axis, Component, Quantity};
+
+/// The full name of a number: `w2_z` is component z of ω of link 2.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Name {
+    /// What it is.
+    pub quantity: Quantity,
+    /// The joint, counted from 1; 0 for the base and for what belongs to no joint, n + 1 for the tip.
+    pub joint: usize,
+    /// Which component.
+    pub component: Component,
+    /// What else counts it, from 1; 0 where nothing does: the column of a matrix whose row is the joint, the first joint of
+    /// a group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip.
+    pub indices: [usize; 2],
+    /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
+    pub part: usize,
+    /// Of which variable it is the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
+    pub by: Option<By>,
+}
+
+/// The variable of a partial derivative; joints count from 1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum By {
+    /// A joint position.
+    Position(usize),
+    /// A joint rate.
+    Rate(usize),
+    /// A joint acceleration.
+    RateDot(usize),
+}
+
+impl By {
+    /// The name of the variable.
+    #[must_use]
+    pub const fn variable(self) -> Name {
+        match self {
+            Self::Position(joint) => Name::scalar(Quantity::Position, joint),
+            Self::Rate(joint) => Name::scalar(Quantity::Rate, joint),
+            Self::RateDot(joint) => Name::scalar(Quantity::RateDot, joint),
+        }
+    }
+}
+
+impl Name {
+    /// A quantity that is one number.
+    #[must_use]
+    pub const fn scalar(quantity: Quantity, joint: usize) -> Self {
+        Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
+    }
+
+    /// A component of a vector.
+    #[must_use]
+    pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {
+        Self { component: Component::Vector(axis), ..Self::scalar(quantity, joint) }
+    }
+
+    /// Whether its text has the joint in it: of what there is one of, it has not.
+    pub(crate) const fn tells_joint(&self) -> bool {
+        !matches!(
+            self.quantity,
+            Quantity::Two
+                | Quantity::One
+                | Quantity::Half
+                | Quantity::KineticEnergy
+                | Quantity::PotentialEnergy
+                | Quantity::Constant
+                | Quantity::Term
+        )
+    }
+
+    /// An element of a matrix.
+    #[must_use]
+    pub const fn matrix(quantity: Quantity, joint: usize, row: Axis, column: Axis) -> Self {
+        Self { component: Component::Matrix(row, column), ..Self::scalar(quantity, joint) }
+    }
+
+    /// The number of a quantity that another index counts beside the joint.
+    #[must_use]
+    pub const fn indexed(quantity: Quantity, joint: usize, index: usize) -> Self {
+        Self { indices: [index, 0], ..Self::scalar(quantity, joint) }
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.quantity.prefix())?;
+        let mut indices = self.indices;
+        match self.quantity {
+            _ if !self.tells_joint() => {}
+            Quantity::GroupPosition
+            | Quantity::GroupTheta
+            | Quantity::GroupAngle
+            | Quantity::GroupSine
+            | Quantity::GroupCosine => {
+                write!(f, "{}_{}", indices[0], self.joint)?;
+                indices[0] = 0;
+            }
+            // f_{i-1,i}: both links, as in the lecture
+            Quantity::JointForce | Quantity::JointMoment => {
+                write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?;
+            }
+            _ => write!(f, "{}", self.joint)?,
+        }
+        match self.component {
+            Component::Scalar => {}
+            Component::Vector(axis) => write!(f, "_{axis}")?,
+            Component::Matrix(row, column) => write!(f, "_{row}{column}")?,
+        }
+        for count in indices.into_iter().chain([self.part]).filter(|&count| count > 0) {
+            write!(f, "_{count}")?;
+        }
+        if let Some(by) = self.by {
+            write!(f, "_{}", by.variable())?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_the_interface() {
+        use Axis::{X, Y, Z};
+        for (name, text) in [
+            (Name::vector(Quantity::Omega, 2, Z), "w2_z"),
+            (Name::vector(Quantity::OmegaDot, 2, X), "dw2_x"),
+            (Name::vector(Quantity::Velocity, 2, Y), "dc2_y"),
+            (Name::vector(Quantity::Acceleration, 2, Y), "ddc2_y"),
+            (Name::vector(Quantity::Gravity, 2, Z), "g2_z"),
+            (Name::vector(Quantity::InertiaForce, 2, X), "f2_x"),
+            (Name::vector(Quantity::InertiaMoment, 2, X), "n2_x"),
+            (Name::vector(Quantity::JointForce, 2, X), "f1_2_x"),
+            (Name::vector(Quantity::JointMoment, 2, X), "n1_2_x"),
+            (Name::scalar(Quantity::Torque, 2), "tau2"),
+            (Name::scalar(Quantity::Sine, 2), "s2"),
+            (Name::scalar(Quantity::Cosine, 2), "c2"),
+            (Name::matrix(Quantity::Rotation, 3, X, Y), "rot3_xy"),
+            (Name { part: 1, ..Name::vector(Quantity::Acceleration, 3, X) }, "ddc3_x_1"),
+        ] {
+            assert_eq!(name.to_string(), text);
+        }
+    }
+}

@@ -1,0 +1,348 @@
+//! Every discrete choice of the reduced form, as data.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::reduced::joint_frames::Frames;
+use crate::reduced::link_parameters::Entry;
+
+/// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[allow(clippy::struct_excessive_bools)] // independent choices
+pub struct Plan {
+    /// Matter on joint axes is given to the link before (section 4).
+    pub regrouped: bool,
+    /// The last link is a spinning sphere without mass (section 5.6).
+    pub gyrostat: bool,
+    /// The last frame is turned so that h_y vanishes (section 5.8).
+    pub turned_last_frame: bool,
+    /// Prismatic links keep the axes of the revolute link before (section 5.9).
+    pub carried_prismatics: bool,
+    /// λ is one over this (section 3.5).
+    pub length_scale: Scale,
+    /// μ is one over this.
+    pub force_scale: Scale,
+    /// The choices of each joint, base to tip.
+    pub joints: Vec<JointPlan>,
+}
+
+/// What one joint chooses.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
+pub struct JointPlan {
+    /// Which three parameters the rods on this axis annul (section 4.5).
+    pub gauge: [Target; 3],
+    /// Where on its axis the frame's origin sits (section 5.4).
+    pub slide: Slide,
+    /// Where the offset along the axis acts on the way out (section 5.2).
+    pub outward_offset: Side,
+    /// Where it acts on the way back.
+    pub inward_offset: Side,
+    /// The moment of the link (section 3.3).
+    pub moment: Moment,
+    /// Everything that is on or off.
+    pub switches: Switches,
+}
+
+macro_rules! switches {
+    ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
+        /// The choices of a joint that are on or off.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+        #[allow(clippy::struct_excessive_bools)] // independent choices
+        pub struct Switches { $($(#[$doc])* pub $name: bool),* }
+
+        impl Switches {
+            /// Their names in a plan file.
+            pub const NAMES: &'static [&'static str] = &[$(stringify!($name)),*];
+
+            /// Each with its name.
+            pub(crate) fn list(&self) -> [(&'static str, bool); Self::NAMES.len()] {
+                [$((stringify!($name), self.$name)),*]
+            }
+
+            /// Sets one by its name; false when there is none of that name.
+            pub(crate) fn set(&mut self, name: &str, on: bool) -> bool {
+                match name {
+                    $(stringify!($name) => self.$name = on,)*
+                    _ => return false,
+                }
+                true
+            }
+
+            /// One of them by its place in `NAMES`.
+            pub(crate) fn at(&mut self, index: usize) -> Option<&mut bool> {
+                [$(&mut self.$name),*].into_iter().nth(index)
+            }
+        }
+    };
+}
+
+switches! {
+    /// U z is the same for both links of this axis (section 5.3).
+    axis_column,
+    /// The twist on the way out with seven products (section 5.1).
+    scaled_twist_outward,
+    /// The twist on the way back with seven products.
+    scaled_twist_inward,
+    /// The next joint's origin is accelerated in the frame that does not turn with this joint (section 5.7).
+    origin_unturned,
+    /// ω̇ is formed there.
+    omega_dot_unturned,
+    /// Force and first moment are.
+    first_moment_unturned,
+    /// The second moments are.
+    second_moment_unturned,
+    /// The wrench from the next joint arrives there.
+    wrench_unturned,
+    /// ω comes from the group of parallel axes by the summed angle (section 5.5).
+    group_omega,
+    /// ω̇ does.
+    group_omega_dot,
+    /// The acceleration does.
+    group_acceleration,
+    /// The wrench goes back to the group unturned.
+    group_wrench,
+}
+
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident: $what:literal { $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)? }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+        pub enum $type { $($(#[$variant_doc])* $variant),* }
+
+        impl $type {
+            /// All of them.
+            pub const ALL: &'static [Self] = &[$(Self::$variant),*];
+
+            /// Its name in a plan file.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
+        }
+
+        impl fmt::Display for $type {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl FromStr for $type {
+            type Err = String;
+
+            fn from_str(text: &str) -> Result<Self, String> {
+                Self::ALL.iter().copied().find(|one| one.name() == text).ok_or_else(|| {
+                    let names: Vec<_> = Self::ALL.iter().map(|one| format!("`{one}`")).collect();
+                    format!("`{text}` is no {}; there are {}", $what, names.join(", "))
+                })
+            }
+        }
+    };
+}
+
+named! {
+    /// A parameter that a rod annuls: one of the link's own, or one of the link before.
+    Target: "target of a gauge" {
+        /// The link's own: mass, h_z and S33 in this order.
+        #[default] Own = "own",
+        /// h_x of the link before.
+        Hx = "parent_hx",
+        /// h_y of the link before.
+        Hy = "parent_hy",
+        /// S11 of the link before.
+        Sxx = "parent_s11",
+        /// S22 of the link before.
+        Syy = "parent_s22",
+        /// S12 of the link before.
+        Sxy = "parent_s12",
+        /// S13 of the link before.
+        Sxz = "parent_s13",
+        /// S23 of the link before.
+        Syz = "parent_s23",
+        /// S11 - S22 of the link before.
+        Difference = "parent_s11_s22",
+    }
+}
+
+impl Target {
+    /// What each of the three rods of an axis may annul.
+    pub const CHOICES: [&'static [Self]; 3] = [
+        &[Self::Own, Self::Hx, Self::Hy],
+        &[Self::Own, Self::Hy, Self::Hx, Self::Syz, Self::Sxz],
+        &[Self::Own, Self::Syy, Self::Sxx, Self::Syz, Self::Sxz, Self::Sxy, Self::Difference],
+    ];
+
+    /// The entry of the link before; `None` for the link's own.
+    pub(crate) const fn entry(self) -> Option<Entry> {
+        Some(match self {
+            Self::Own => return None,
+            Self::Hx => Entry::H(0),
+            Self::Hy => Entry::H(1),
+            Self::Sxx => Entry::S(0, 0),
+            Self::Syy => Entry::S(1, 1),
+            Self::Sxy => Entry::S(0, 1),
+            Self::Sxz => Entry::S(0, 2),
+            Self::Syz => Entry::S(1, 2),
+            Self::Difference => Entry::Difference,
+        })
+    }
+}
+
+named! {
+    /// A rule for where on its axis a frame's origin sits; never a number.
+    Slide: "rule for a slide" {
+        /// Where the table has it.
+        #[default] None = "none",
+        /// -d: the offset moves on to the next joint.
+        MinusD = "minus_d",
+        /// Annuls S13.
+        AnnulS13 = "annul_s13",
+        /// Annuls S23.
+        AnnulS23 = "annul_s23",
+        /// The offsets of all parallel axes behind this one are gathered here.
+        GroupInward = "group_inward",
+        /// The same for the next axis alone.
+        NextOffset = "next_offset",
+        /// The same, less the own offset.
+        NextLessOwn = "next_less_own",
+        /// The offsets of the parallel axes up to this one are handed on.
+        GroupOutward = "group_outward",
+        /// One point mass then annuls both h_x and h_y of the link before.
+        AnnulParentH = "annul_parent_h",
+    }
+}
+
+named! {
+    /// Where an offset along an axis acts.
+    Side: "side of an offset" {
+        /// In the link's frame.
+        #[default] Link = "link",
+        /// In the axes of the link before.
+        Parent = "parent",
+        /// In the frame on the axis that does not turn with the joint.
+        Joint = "joint",
+    }
+}
+
+named! {
+    /// The three equal forms of a link's moment.
+    Moment: "form of a moment" {
+        /// Second moments.
+        #[default] Second = "second",
+        /// Second moments, with the diagonal split into accelerations and products of rates.
+        Diagonal = "diagonal",
+        /// J ω̇ + ω × J ω.
+        Inertia = "inertia",
+    }
+}
+
+/// What a scale of lengths or forces is taken from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
+pub enum Scale {
+    /// For lengths: none. For forces: that of lengths.
+    #[default]
+    Default,
+    /// None.
+    One,
+    /// The length a of a row, counted from 1.
+    A(usize),
+    /// The offset d of a row.
+    D(usize),
+    /// A first moment of a link: joint and axis, 0 to 2.
+    FirstMoment(usize, usize),
+    /// The mass of a link.
+    Mass(usize),
+}
+
+impl fmt::Display for Scale {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Default => f.write_str("default"),
+            Self::One => f.write_str("one"),
+            Self::A(row) => write!(f, "a{row}"),
+            Self::D(row) => write!(f, "d{row}"),
+            Self::FirstMoment(link, axis) => write!(f, "h{link}_{}", ["x", "y", "z"][axis % 3]),
+            Self::Mass(link) => write!(f, "m{link}"),
+        }
+    }
+}
+
+impl FromStr for Scale {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = |digits: &str| digits.parse::<usize>().ok().filter(|&joint| joint > 0);
+        let scale = match text {
+            "default" => Some(Self::Default),
+            "one" => Some(Self::One),
+            _ => match (text.get(..1), text.get(1..)) {
+                (Some("a"), Some(digits)) => number(digits).map(Self::A),
+                (Some("d"), Some(digits)) => number(digits).map(Self::D),
+                (Some("m"), Some(digits)) => number(digits).map(Self::Mass),
+                (Some("h"), Some(rest)) => rest.split_once('_').and_then(|(digits, axis)| {
+                    Some(Self::FirstMoment(number(digits)?, ["x", "y", "z"].iter().position(|one| *one == axis)?))
+                }),
+                _ => None,
+            },
+        };
+        scale.ok_or_else(|| {
+            format!(
+                "`{text}` is no scale; there are `default`, `one`, `a2`, `d2`, `h2_x` and `m2` for any joint number"
+            )
+        })
+    }
+}
+
+impl Plan {
+    /// No choice made.
+    #[must_use]
+    pub fn new(dof: usize) -> Self {
+        Self {
+            regrouped: true,
+            gyrostat: false,
+            turned_last_frame: false,
+            carried_prismatics: false,
+            length_scale: Scale::Default,
+            force_scale: Scale::Default,
+            joints: vec![JointPlan::default(); dof],
+        }
+    }
+
+    /// The choices in words, those of the arm and then those of each joint, without those that are not made.
+    #[must_use]
+    pub fn choices(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        let of_the_arm = [
+            (self.regrouped, "matter on joint axes belongs to the link before".to_owned()),
+            (self.gyrostat, "the last link is a spinning sphere without mass".to_owned()),
+            (self.turned_last_frame, "the last frame is turned so that h_y vanishes".to_owned()),
+            (self.carried_prismatics, "prismatic links keep the axes of the revolute link before".to_owned()),
+            (self.length_scale != Scale::Default, format!("lengths are measured in {}", self.length_scale)),
+            (self.force_scale != Scale::Default, format!("forces are measured by {}", self.force_scale)),
+        ];
+        lines.extend(of_the_arm.into_iter().filter(|(made, _)| *made).map(|(_, words)| words));
+        for (index, joint) in self.joints.iter().enumerate() {
+            let plain = JointPlan::default();
+            let [first, second, third] = joint.gauge;
+            let mut words: Vec<String> = [
+                (joint.gauge != plain.gauge, format!("gauge ({first}, {second}, {third})")),
+                (joint.slide != plain.slide, format!("slide {}", joint.slide)),
+                (joint.outward_offset != plain.outward_offset, format!("outward offset at {}", joint.outward_offset)),
+                (joint.inward_offset != plain.inward_offset, format!("inward offset at {}", joint.inward_offset)),
+                (joint.moment != plain.moment, format!("moment {}", joint.moment)),
+            ]
+            .into_iter()
+            .filter(|(made, _)| *made)
+            .map(|(_, words)| words)
+            .collect();
+            words.extend(joint.switches.list().iter().filter(|(_, on)| *on).map(|(name, _)| name.replace('_', " ")));
+            if !words.is_empty() {
+                lines.push(format!("joint {}: {}", index + 1, words.join(", ")));
+            }
+        }
+        lines
+    }
+
+    pub(crate) fn frames(&self) -> Frames {
+        Frames { turned_last: self.turned_last_frame, carried: self.carried_prismatics }
+    }
+}

@@ -1,0 +1,118 @@
+//! What a plan costs: the form is written, equal values are merged, and what is left is counted.
+
+use rne_model::Robot;
+
+use crate::function::Function;
+use crate::ir::name::Name;
+use crate::ir::{Builder, Cost, Graph, Policy, Ref, Traced, number_values};
+use crate::plan::Plan;
+use crate::reduced::algorithm::{self, Way};
+use crate::reduced::forward::Arm;
+use crate::reduced::joint_frames::{Frames, Table};
+use crate::reduced::regrouping::{Offers, Parameters, parameters};
+
+/// A table and what it offers.
+#[derive(Clone, Debug)]
+pub(crate) struct Frame {
+    frames: Frames,
+    pub(crate) table: Table,
+    pub(crate) offers: Offers,
+}
+
+/// Counts plans of one robot, as many as a search wants.
+pub(crate) struct Evaluator {
+    frames: Vec<Frame>,
+    builder: Builder,
+    numbered: Graph,
+    live: Vec<bool>,
+    map: Vec<Ref>,
+}
+
+/// The tables of a robot under every choice of frames that applies to it.
+pub(crate) fn frames(robot: &Robot) -> Vec<Frame> {
+    let choices =
+        [false, true].into_iter().flat_map(|carried| [false, true].map(|turned_last| Frames { turned_last, carried }));
+    choices
+        .filter_map(|frames| {
+            let table = Table::new(robot, frames)?;
+            let offers = Offers::new(&table);
+            Some(Frame { frames, table, offers })
+        })
+        .collect()
+}
+
+/// The table of a robot under the frames of one plan.
+pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<Frame> {
+    let frames = plan.frames();
+    let table = Table::new(robot, frames)?;
+    let offers = Offers::new(&table);
+    Some(Frame { frames, table, offers })
+}
+
+impl Frame {
+    pub(crate) fn is_of(&self, plan: &Plan) -> bool {
+        self.frames == plan.frames()
+    }
+
+    pub(crate) fn turns_last(&self) -> bool {
+        self.frames.turned_last
+    }
+
+    pub(crate) fn carries(&self) -> bool {
+        self.frames.carried
+    }
+
+    pub(crate) fn parameters(&self, plan: &Plan) -> Option<Parameters> {
+        (plan.joints.len() == self.table.rows.len()).then(|| parameters(&self.table, &self.offers, plan))?
+    }
+
+    /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
+    pub(crate) fn written(&self, plan: &Plan, function: Function, way: Way) -> Option<(Vec<Name>, Traced)> {
+        let parameters = self.parameters(plan)?;
+        let builder = Builder::traced(Policy::Value, self.table.reading, function);
+        let arm = Arm { table: &self.table, plan, parameters: &parameters };
+        let (names, outputs): (Vec<Name>, Vec<_>) = algorithm::write(&builder, &arm, function, way)
+            .into_iter()
+            .map(|(name, symbol)| (name, builder.name(name, symbol).at))
+            .unzip();
+        Some((names, builder.finish(outputs).numbered()))
+    }
+}
+
+impl Evaluator {
+    pub(crate) fn new(robot: &Robot, function: Function) -> Self {
+        let frames = frames(robot);
+        let reading = frames.first().map(|frame| frame.table.reading).unwrap_or_default();
+        Self {
+            frames,
+            builder: Builder::untraced(Policy::Value, reading, function),
+            numbered: Graph::new(Policy::Numbered, reading),
+            live: Vec::new(),
+            map: Vec::new(),
+        }
+    }
+
+    pub(crate) fn frames(&self) -> &[Frame] {
+        &self.frames
+    }
+
+    /// What a plan costs; `None` when it does not apply to the robot.
+    pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
+        self.cost_of(plan, Way::Recursion)
+    }
+
+    /// What a plan costs when the function is written in one of its ways.
+    pub(crate) fn cost_of(&mut self, plan: &Plan, way: Way) -> Option<Cost> {
+        let Self { frames, builder, numbered, live, map } = self;
+        let frame = frames.iter().find(|frame| frame.is_of(plan))?;
+        let parameters = frame.parameters(plan)?;
+        builder.restart(frame.table.reading);
+        let arm = Arm { table: &frame.table, plan, parameters: &parameters };
+        let outputs: Vec<Ref> =
+            algorithm::write(builder, &arm, builder.function, way).into_iter().map(|(_, symbol)| symbol.at).collect();
+        let graph = builder.graph.get_mut();
+        graph.outputs = outputs;
+        number_values(graph, numbered, live, map);
+        Some(numbered.cost(live))
+    }
+}

@@ -1,0 +1,254 @@
+//! A rewritten graph as text: one operation per line, in order.
+//!
+//! ```text
+//! d1 = k4 / k7          a constant made from others, without its sign; k7 is a number of the reduced form under its plan
+//! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
+//! t13 = d1 * qd3
+//! tau2 = -t13
+//! ```
+
+use std::collections::HashMap;
+use std::fmt::Write;
+
+use crate::function::Function;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol, Traced, mark_live_outside_angles};
+use crate::plan::cost::Frame;
+
+/// A graph as text, when the numbers in the places `given` are those of its plan.
+pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
+    let mut text = String::new();
+    let mut constants = Constants { numbers: &graph.numbers, given, names: HashMap::new(), text: String::new() };
+    let mut names: Vec<String> = vec![String::new(); graph.len()];
+    let mut terms = 0;
+    // angles are known by their joints
+    let mut live = Vec::new();
+    mark_live_outside_angles(&graph.nodes, &graph.outputs, &mut live);
+    for (at, op) in graph.nodes().filter(|(at, _)| live[at.index()]) {
+        let operand = |at: Ref| format!("{}{}", if at.is_negative() { "-" } else { "" }, names[at.index()]);
+        let line = match op {
+            Op::Constant(place) => Err(constants.name(place)),
+            Op::Input(input) => Err(input.name().to_string()),
+            Op::Sine(angle) => Err(format!("s{}", group(graph, angle))),
+            Op::Cosine(angle) => Err(format!("c{}", group(graph, angle))),
+            Op::Sum(a, b) if b.is_negative() => Ok(format!("{} - {}", operand(a), operand(-b))),
+            Op::Sum(a, b) => Ok(format!("{} + {}", operand(a), operand(b))),
+            Op::Product(a, b) => Ok(format!("{} * {}", operand(a), operand(b))),
+            Op::Quotient(a, b) => Ok(format!("{} / {}", operand(a), operand(b))),
+            // nothing that is rewritten chooses
+            Op::BySign(_) => Err("k0".to_owned()),
+        };
+        names[at.index()] = match line {
+            Err(name) => name,
+            Ok(line) => {
+                terms += 1;
+                let _ = writeln!(text, "t{terms} = {line}");
+                format!("t{terms}")
+            }
+        };
+    }
+    for (joint, at) in graph.outputs.iter().enumerate() {
+        let sign = if at.is_negative() { "-" } else { "" };
+        let _ = writeln!(text, "tau{} = {sign}{}", joint + 1, names[at.index()]);
+    }
+    constants.text + &text
+}
+
+/// The joints whose positions are summed in an angle: `2`, or `2_4` for three of them.
+fn group(graph: &Graph, angle: Ref) -> String {
+    fn joints(graph: &Graph, at: Ref, found: &mut Vec<usize>) {
+        match graph.op(at) {
+            Op::Input(input) => found.push(input.index() + 1),
+            op => op.operands().for_each(|operand| joints(graph, operand, found)),
+        }
+    }
+    let mut found = Vec::new();
+    joints(graph, angle, &mut found);
+    match (found.iter().min(), found.iter().max()) {
+        (Some(first), Some(last)) if first < last => format!("{first}_{last}"),
+        (Some(first), _) => first.to_string(),
+        _ => String::new(),
+    }
+}
+
+/// Names of constants, and the lines that make those that are not given.
+struct Constants<'a> {
+    numbers: &'a Numbers,
+    given: &'a [u32],
+    names: HashMap<u32, String>,
+    text: String,
+}
+
+impl Constants<'_> {
+    fn name(&mut self, place: u32) -> String {
+        if let Some(index) = self.given.iter().position(|given| *given == place) {
+            return format!("k{index}");
+        }
+        if let Some(name) = self.names.get(&place) {
+            return name.clone();
+        }
+        let source = self.numbers.get(place).1;
+        let mut operand = |at: Ref| {
+            let name = self.name(u32::try_from(at.index()).unwrap_or(u32::MAX));
+            if at.is_negative() { format!("-{name}") } else { name }
+        };
+        let line = match source {
+            // numbers that were not there at first have all been made
+            Source::Given => String::from("k0"),
+            Source::Sum(a, b) => format!("{} + {}", operand(a), operand(b)),
+            Source::Product(a, b) => format!("{} * {}", operand(a), operand(b)),
+            Source::Inverse(of) => format!("1 / {}", operand(Ref::new(of as usize))),
+        };
+        let name = format!("d{}", self.names.len() + 1);
+        let _ = writeln!(self.text, "{name} = {line}");
+        self.names.insert(place, name.clone());
+        name
+    }
+}
+
+/// The graph of a text; `plain` is that of the reduced form under the plan.
+///
+/// # Errors
+/// What is wrong in which line of the text, counted from 1.
+pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
+    let builder = Builder::traced(Policy::Numbered, frame.table.reading, function);
+    let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
+    let mut reader = Reader { frame, given, builder: &builder, known: HashMap::new() };
+    let mut outputs = vec![None; frame.table.rows.len()];
+    for (index, line) in text.lines().enumerate() {
+        let at = index + 1;
+        let line = line.trim();
+        if line.is_empty() {
+            continue;
+        }
+        let Some((name, value)) = line.split_once('=') else {
+            return Err((at, format!("`{line}` is no line of a graph, such as `t1 = s2 * qd3`")));
+        };
+        let (name, value) = (name.trim(), value.trim());
+        let term = reader.operation(value).map_err(|message| (at, message))?;
+        // a constant is kept without its sign
+        let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
+        if let Some(joint) = name.strip_prefix("tau").and_then(|joint| joint.parse::<usize>().ok()) {
+            let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
+            *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term.at);
+        } else if reader.known.insert(name.to_owned(), term).is_some() {
+            return Err((at, format!("`{name}` stands there twice")));
+        }
+    }
+    let outputs: Option<Vec<Ref>> = outputs.into_iter().collect();
+    let end = text.lines().count();
+    outputs.map(|outputs| builder.finish(outputs)).ok_or_else(|| (end, "a torque is missing".to_owned()))
+}
+
+/// A graph that was read, with the numbers of its plan in their places and its own behind them.
+pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
+    let mut graph = plan.clone();
+    graph.clear_nodes();
+    let mut map: Vec<Ref> = Vec::with_capacity(read.len());
+    let mut places: HashMap<u32, Ref> = HashMap::new();
+    for node in &read.nodes {
+        let at = match node.op {
+            Op::Constant(place) => constant_on(&mut graph, &read.numbers, &mut places, place),
+            op => graph.transcribed(op, node.image, &map),
+        };
+        map.push(at);
+    }
+    graph.outputs = read.outputs.iter().map(|at| at.mapped(&map)).collect();
+    graph
+}
+
+/// Makes a constant of another graph from what it was made of there.
+fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, Ref>, place: u32) -> Ref {
+    if let Some(&known) = places.get(&place) {
+        return known;
+    }
+    let (number, source) = numbers.get(place);
+    let mut operand = |graph: &mut Graph, at: Ref| {
+        let place = u32::try_from(at.index()).unwrap_or(u32::MAX);
+        constant_on(graph, numbers, places, place).signed(at.is_negative())
+    };
+    let at = match source {
+        Source::Given => graph.constant(number),
+        Source::Sum(a, b) => {
+            let (a, b) = (operand(graph, a), operand(graph, b));
+            graph.sum(a, b).0
+        }
+        Source::Product(a, b) => {
+            let (a, b) = (operand(graph, a), operand(graph, b));
+            graph.product(a, b).0
+        }
+        Source::Inverse(of) => {
+            let of = operand(graph, Ref::new(of as usize));
+            graph.constant_inverse(of).unwrap_or_else(|| graph.zero())
+        }
+    };
+    // a place holds the magnitude
+    let at = at.magnitude();
+    places.insert(place, at);
+    at
+}
+
+struct Reader<'a, 's> {
+    frame: &'a Frame,
+    given: Vec<Number>,
+    builder: &'s Builder,
+    known: HashMap<String, Symbol<'s>>,
+}
+
+impl<'s> Reader<'_, 's> {
+    fn operation(&mut self, text: &str) -> Result<Symbol<'s>, String> {
+        let parts: Vec<&str> = text.split_whitespace().collect();
+        match parts[..] {
+            [one] => self.operand(one),
+            [a, sign, b] => {
+                let (a, b) = (self.operand(a)?, self.operand(b)?);
+                match sign {
+                    "+" => Ok(a + b),
+                    "-" => Ok(a - b),
+                    "*" => Ok(a * b),
+                    "/" if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
+                    "/" => Err(format!("`{text}` divides by what is no constant")),
+                    _ => Err(format!("`{sign}` is no operation of a graph")),
+                }
+            }
+            _ => Err(format!("`{text}` is no operation of a graph")),
+        }
+    }
+
+    fn operand(&mut self, text: &str) -> Result<Symbol<'s>, String> {
+        let (name, negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
+        let term = match self.known.get(name) {
+            Some(&known) => known,
+            None => self.leaf(name).ok_or_else(|| format!("there is no `{name}` before this line"))?,
+        };
+        Ok(term.signed(negative))
+    }
+
+    fn leaf(&mut self, name: &str) -> Option<Symbol<'s>> {
+        if name == "1" {
+            return Some(self.builder.one());
+        }
+        let digits = name.find(|c: char| c.is_ascii_digit())?;
+        let (letters, digits) = name.split_at(digits);
+        let rows = &self.frame.table.rows;
+        let joint = |text: &str| text.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < rows.len());
+        let argument = |quantity| Some(self.builder.argument(Name::scalar(quantity, joint(digits)? + 1)));
+        match letters {
+            "k" => Some(self.builder.number(*self.given.get(digits.parse::<usize>().ok()?)?)),
+            "q" => argument(Quantity::Position),
+            "qd" => argument(Quantity::Rate),
+            "qdd" => argument(Quantity::RateDot),
+            "s" | "c" => {
+                let (first, last) = digits.split_once('_').unwrap_or((digits, digits));
+                let (first, last) = (joint(first)?, joint(last)?);
+                if first > last {
+                    return None;
+                }
+                let (s, c) = self.builder.turned(rows, first, last).0;
+                Some(if letters == "s" { s } else { c })
+            }
+            _ => None,
+        }
+    }
+}

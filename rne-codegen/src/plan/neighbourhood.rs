@@ -1,0 +1,276 @@
+//! What can be changed in a plan, in a fixed order.
+
+use rne_model::JointKind::Revolute;
+
+use crate::plan::cost::Frame;
+use crate::plan::{Moment, Plan, Scale, Side, Slide, Switches, Target};
+use crate::reduced::joint_frames::Row;
+use crate::reduced::regrouping::{group_end, is_parallel};
+
+/// The choices that a robot leaves open.
+pub(crate) struct Moves {
+    rows: Vec<Row>,
+    slides: Vec<Vec<Slide>>,
+    lengths: Vec<Scale>,
+    gyrostat: bool,
+    turned_last: bool,
+    carried: bool,
+}
+
+impl Moves {
+    /// From the frames of a robot, the plain ones first.
+    pub(crate) fn new(frames: &[Frame]) -> Self {
+        let plain = frames.first();
+        let rules = |offers: &[(Slide, crate::ir::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
+        let slides = plain.map_or_else(Vec::new, |frame| frame.offers.slides.iter().map(|s| rules(s)).collect());
+        let has = |test: fn(&Frame) -> bool| frames.iter().any(test);
+        Self {
+            rows: plain.map_or_else(Vec::new, |frame| frame.table.rows.clone()),
+            slides,
+            lengths: plain.map_or_else(Vec::new, |frame| frame.offers.lengths.clone()),
+            gyrostat: plain.is_some_and(|frame| frame.offers.gyrostat),
+            turned_last: has(Frame::turns_last),
+            carried: has(Frame::carries),
+        }
+    }
+
+    /// Whether a rule for a slide gives something of its own at a joint.
+    pub(crate) fn offers(&self, index: usize, rule: Slide) -> bool {
+        self.slides.get(index).is_some_and(|rules| rules.contains(&rule))
+    }
+
+    /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group of
+    /// parallel axes shares.
+    pub(crate) fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
+        let mut list = Vec::new();
+        self.of_the_arm(plan, &mut list);
+        for index in 0..self.rows.len() {
+            self.of_joint(plan, index, &mut list);
+            self.of_unturned_frame(plan, index, &mut list);
+            self.of_group(plan, index, &mut list);
+            self.of_gauge(plan, index, &mut list);
+        }
+        list
+    }
+
+    fn of_the_arm(&self, plan: &Plan, list: &mut Vec<Plan>) {
+        let mut put = |change: &dyn Fn(&mut Plan)| {
+            let mut other = plan.clone();
+            change(&mut other);
+            if other != *plan {
+                list.push(other);
+            }
+        };
+        if self.gyrostat {
+            put(&|plan| plan.gyrostat = !plan.gyrostat);
+        }
+        if self.turned_last {
+            put(&|plan| plan.turned_last_frame = !plan.turned_last_frame);
+        }
+        if self.carried {
+            put(&|plan| plan.carried_prismatics = !plan.carried_prismatics);
+        }
+        for &length in self.lengths.iter().chain(&[Scale::Default, Scale::One]) {
+            put(&|plan| (plan.length_scale, plan.force_scale) = (length, Scale::Default));
+            put(&|plan| plan.length_scale = length);
+            put(&|plan| plan.force_scale = length);
+        }
+        for joint in 1..=self.rows.len() {
+            for axis in 0..3 {
+                put(&|plan| plan.length_scale = Scale::FirstMoment(joint, axis));
+                put(&|plan| plan.force_scale = Scale::FirstMoment(joint, axis));
+            }
+            put(&|plan| plan.force_scale = Scale::Mass(joint));
+        }
+    }
+
+    fn of_joint(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
+        let row = &self.rows[index];
+        let mut put = |change: &dyn Fn(&mut Plan)| {
+            let mut other = plan.clone();
+            change(&mut other);
+            if other != *plan {
+                list.push(other);
+            }
+        };
+        for &slide in &self.slides[index] {
+            put(&|plan| plan.joints[index].slide = slide);
+        }
+        if row.kind != Revolute {
+            return;
+        }
+        for &side in Side::ALL {
+            put(&|plan| plan.joints[index].outward_offset = side);
+        }
+        for side in [Side::Link, Side::Parent] {
+            put(&|plan| plan.joints[index].inward_offset = side);
+        }
+        for &moment in Moment::ALL {
+            put(&|plan| plan.joints[index].moment = moment);
+        }
+        for switch in 0..Switches::NAMES.len() {
+            if self.is_open(index, switch) {
+                put(&|plan| {
+                    if let Some(on) = plan.joints[index].switches.at(switch) {
+                        *on = !*on;
+                    }
+                });
+            }
+        }
+    }
+
+    /// Whether a switch can make a difference at a joint.
+    fn is_open(&self, index: usize, switch: usize) -> bool {
+        let name = Switches::NAMES[switch];
+        if name.starts_with("group") {
+            return is_parallel(&self.rows, index);
+        }
+        if name.starts_with("scaled") {
+            return self.rows[index].alpha.quarters().is_none();
+        }
+        index > 0 || name != "axis_column"
+    }
+
+    fn of_unturned_frame(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
+        if self.rows[index].kind != Revolute {
+            return;
+        }
+        for bits in 0..32_u32 {
+            let mut other = plan.clone();
+            let on = &mut other.joints[index].switches;
+            on.origin_unturned = bits & 1 != 0;
+            on.first_moment_unturned = bits & 2 != 0;
+            on.second_moment_unturned = bits & 4 != 0;
+            on.wrench_unturned = bits & 8 != 0;
+            on.omega_dot_unturned = bits & 16 != 0;
+            if other != *plan {
+                list.push(other);
+            }
+        }
+    }
+
+    /// All that a group of parallel axes can share, with its offsets as they are, innermost or outermost.
+    fn of_group(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
+        let starts =
+            index + 1 < self.rows.len() && !is_parallel(&self.rows, index) && is_parallel(&self.rows, index + 1);
+        if !starts {
+            return;
+        }
+        let end = group_end(&self.rows, index);
+        for shared in 0..16_u32 {
+            for offsets in 0..3 {
+                for frames in 0..4_u32 {
+                    let mut other = plan.clone();
+                    for at in index + 1..=end {
+                        let on = &mut other.joints[at].switches;
+                        on.group_omega = shared & 1 != 0;
+                        on.group_acceleration = shared & 2 != 0;
+                        on.group_wrench = shared & 4 != 0;
+                        on.group_omega_dot = shared & 8 != 0;
+                    }
+                    if offsets > 0 {
+                        for at in index..=end {
+                            let rule = if offsets == 1 { Slide::GroupInward } else { Slide::GroupOutward };
+                            let rule = if self.offers(at, rule) { rule } else { Slide::None };
+                            if at > 0 {
+                                other.joints[at].slide = rule;
+                            }
+                            if at > index {
+                                other.joints[at].outward_offset = Side::Parent;
+                                other.joints[at].inward_offset = Side::Parent;
+                            }
+                        }
+                    }
+                    for at in index..=end {
+                        other.joints[at].switches.wrench_unturned = frames & 1 != 0;
+                        other.joints[at].switches.origin_unturned = frames & 2 != 0;
+                    }
+                    if other != *plan {
+                        list.push(other);
+                    }
+                }
+            }
+        }
+    }
+
+    fn of_gauge(&self, plan: &Plan, index: usize, list: &mut Vec<Plan>) {
+        if index == 0 || self.rows[index].kind != Revolute {
+            return;
+        }
+        for &first in Target::CHOICES[0] {
+            for &second in Target::CHOICES[1] {
+                for &third in Target::CHOICES[2] {
+                    let mut other = plan.clone();
+                    other.joints[index].gauge = [first, second, third];
+                    if other != *plan {
+                        list.push(other);
+                    }
+                }
+            }
+        }
+    }
+
+    /// One to three random changes.
+    pub(crate) fn random(&self, plan: &Plan, rng: &mut fastrand::Rng) -> Plan {
+        let mut other = plan.clone();
+        let mut left = [1, 1, 1, 2, 3][rng.usize(..5)];
+        while left > 0 {
+            if self.change(&mut other, rng) {
+                left -= 1;
+            }
+        }
+        other
+    }
+
+    /// Makes one random change; false when it came to nothing.
+    fn change(&self, plan: &mut Plan, rng: &mut fastrand::Rng) -> bool {
+        let index = rng.usize(..self.rows.len());
+        let row = &self.rows[index];
+        let joint = &mut plan.joints[index];
+        match rng.u32(..100) {
+            0..4 if self.gyrostat => plan.gyrostat = !plan.gyrostat,
+            4..6 if self.turned_last => plan.turned_last_frame = !plan.turned_last_frame,
+            6..8 if self.carried => plan.carried_prismatics = !plan.carried_prismatics,
+            8..34 if row.kind == Revolute && index > 0 => {
+                for (target, choices) in joint.gauge.iter_mut().zip(Target::CHOICES) {
+                    *target = if rng.bool() { Target::Own } else { choices[rng.usize(..choices.len())] };
+                }
+                if rng.u32(..3) == 0 {
+                    joint.gauge = [Target::Own; 3];
+                }
+            }
+            34..46 => joint.slide = self.slides[index][rng.usize(..self.slides[index].len())],
+            46..50 => {
+                let length = *[Scale::One, Scale::Default]
+                    .iter()
+                    .chain(&self.lengths)
+                    .nth(rng.usize(..self.lengths.len() + 2))
+                    .unwrap_or(&Scale::One);
+                match rng.u32(..5) {
+                    0 => (plan.length_scale, plan.force_scale) = (length, Scale::Default),
+                    1 => plan.length_scale = length,
+                    2 => plan.force_scale = length,
+                    3 => plan.length_scale = Scale::FirstMoment(index + 1, rng.usize(..3)),
+                    _ if rng.bool() => plan.force_scale = Scale::Mass(index + 1),
+                    _ => plan.force_scale = Scale::FirstMoment(index + 1, rng.usize(..3)),
+                }
+            }
+            50..56 => joint.outward_offset = Side::ALL[rng.usize(..3)],
+            56..60 => {
+                joint.inward_offset = if joint.inward_offset == Side::Link { Side::Parent } else { Side::Link };
+            }
+            60..64 => joint.moment = Moment::ALL[rng.usize(..3)],
+            64..100 => {
+                let switch = rng.usize(..Switches::NAMES.len());
+                if !self.is_open(index, switch) {
+                    return false;
+                }
+                if let Some(on) = joint.switches.at(switch) {
+                    *on = !*on;
+                }
+            }
+            _ => return false,
+        }
+        true
+    }
+}

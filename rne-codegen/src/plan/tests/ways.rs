@@ -1,0 +1,95 @@
+//! Every way in which a function can be written is that function, under any plan.
+
+use std::fmt::Write;
+
+use super::*;
+use crate::reduced::algorithm::Way;
+
+const FUNCTIONS: [Function; 5] = [
+    Function::GravityTorques,
+    Function::MassMatrix,
+    Function::ForwardDynamics,
+    Function::CoriolisMatrix,
+    Function::InverseDynamicsDerivatives,
+];
+
+/// The program of a function in one of its ways; `None` where the plan does not apply.
+fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<(Program, Exactly, Frame)> {
+    let frame = frame(robot, plan)?;
+    let (names, written) = frame.written(plan, function, way)?;
+    let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
+    Some((program, exactly, frame))
+}
+
+#[test]
+fn all_ways_are_the_seven_steps() {
+    for name in SEVERAL.into_iter().chain(["spherical_rrp", "gantry_ppp", "puma560_mdh", "ur5e"]) {
+        let robot = robot(name);
+        let plan = default_plan(&robot, &[]);
+        for function in FUNCTIONS {
+            for &way in Way::of(function) {
+                let program = written(&robot, &plan, function, way).unwrap_or_else(|| panic!("{name}: {way:?}"));
+                if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2.table.reading) {
+                    panic!("the proof refuses {name}, {way:?}: {error}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn all_ways_under_random_plans_are_the_seven_steps() {
+    for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
+        let robot = robot(name);
+        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
+        let mut rng = fastrand::Rng::with_seed(11);
+        let mut plan = Plan::new(robot.dof());
+        let mut tried = 0;
+        for round in 0..40 {
+            let other = moves.random(&plan, &mut rng);
+            let function = FUNCTIONS[round % FUNCTIONS.len()];
+            let ways = Way::of(function);
+            let way = ways[(round / FUNCTIONS.len()) % ways.len()];
+            let Some(program) = written(&robot, &other, function, way) else { continue };
+            if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2.table.reading) {
+                panic!("the proof refuses {name}, {way:?}: {error}\n{:#?}", other.choices());
+            }
+            plan = other;
+            tried += 1;
+        }
+        assert!(tried > 20, "{name}: {tried}");
+    }
+}
+
+/// Articulated bodies take as many operations per joint however many there are; a mass matrix takes more and more.
+#[test]
+fn long_arms_are_articulated() {
+    let chain = |joints: usize| {
+        let mut text =
+            "format: 1\nname: chain\nsource: no arm\nconvention: modified\ngravity: [1, 2, -9]\njoints:\n".to_owned();
+        for joint in 1..=joints {
+            let _ = write!(
+                text,
+                "  - type: revolute\n    dh: {{theta: 0, d: 0.2, a: 0.{joint}, alpha: pi/2}}\n    link: {{mass: 1.{joint}, \
+                 com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}\n"
+            );
+        }
+        Robot::from_yaml(&text).unwrap()
+    };
+    let mut first = None;
+    for joints in [4, 6, 8, 10, 12, 14, 16, 20] {
+        let robot = chain(joints);
+        let plan = Plan::new(joints);
+        let mut evaluator = Evaluator::new(&robot, Function::ForwardDynamics);
+        let costs: Vec<(usize, Way)> = Way::of(Function::ForwardDynamics)
+            .iter()
+            .map(|&way| (evaluator.cost_of(&plan, way).unwrap().total(), way))
+            .collect();
+        let best = costs.iter().min_by_key(|(total, _)| *total).unwrap();
+        println!("{joints:2} joints: {:?}", costs.iter().map(|(total, _)| *total).collect::<Vec<_>>());
+        if matches!(best.1, Way::Articulated(_)) && first.is_none() {
+            first = Some(joints);
+        }
+    }
+    assert!(first.is_some_and(|joints| joints > 6), "{first:?}");
+}

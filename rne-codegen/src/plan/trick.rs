@@ -1,0 +1,169 @@
+//! The ideas that make the reduced form small, each with a name, so that a reader can leave one out.
+
+use std::fmt;
+use std::str::FromStr;
+
+use crate::plan::{Moment, Plan, Scale, Side, Slide, Target};
+
+/// One idea; the section numbers are those of `docs/reduced-form.md`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Trick {
+    /// Matter on joint axes is given to the link before, so that it vanishes from the link.
+    Regrouping,
+    /// Other parameters vanish than the link's own.
+    Gauges,
+    /// An axisymmetric last link is a spinning sphere without mass.
+    Gyrostat,
+    /// The last frame is turned so that a first moment vanishes.
+    LastFrame,
+    /// Prismatic links keep the axes of the revolute link before.
+    CarriedPrismatics,
+    /// The column U z is shared by the two links of an axis.
+    AxisColumns,
+    /// Parallel axes share a frame.
+    ParallelGroups,
+    /// Offsets along axes act where they are cheapest.
+    Offsets,
+    /// Origins slide along their axes.
+    Slides,
+    /// Lengths and forces are measured in units of the arm.
+    Scales,
+    /// The moment of a link in the form that suits its tensor.
+    MomentForms,
+    /// Twists that are no right angles take seven products instead of eight.
+    ScaledTwists,
+    /// Parts of a link are evaluated in the frame that does not turn with it.
+    UnturnedFrames,
+}
+
+impl Trick {
+    /// All of them.
+    pub const ALL: [Self; 13] = [
+        Self::Regrouping,
+        Self::Gauges,
+        Self::Gyrostat,
+        Self::LastFrame,
+        Self::CarriedPrismatics,
+        Self::AxisColumns,
+        Self::ParallelGroups,
+        Self::Offsets,
+        Self::Slides,
+        Self::Scales,
+        Self::MomentForms,
+        Self::ScaledTwists,
+        Self::UnturnedFrames,
+    ];
+
+    /// Its name on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Regrouping => "regrouping",
+            Self::Gauges => "gauges",
+            Self::Gyrostat => "gyrostat",
+            Self::LastFrame => "last-frame",
+            Self::CarriedPrismatics => "carried-prismatics",
+            Self::AxisColumns => "axis-columns",
+            Self::ParallelGroups => "parallel-groups",
+            Self::Offsets => "offsets",
+            Self::Slides => "slides",
+            Self::Scales => "scales",
+            Self::MomentForms => "moment-forms",
+            Self::ScaledTwists => "scaled-twists",
+            Self::UnturnedFrames => "unturned-frames",
+        }
+    }
+
+    /// What it does, in one line, with its formula.
+    #[must_use]
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::Regrouping => {
+                "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk uuᵀ (4.4)"
+            }
+            Self::Gauges => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
+            Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈), the link before carries c·1 and the spin (5.6)",
+            Self::LastFrame => "φ = atan2(h_y, h_x) turns the last frame, so that h_y = 0 (5.8)",
+            Self::CarriedPrismatics => {
+                "a prismatic joint turns nothing: a = a' + U (p + q u) + 2 q̇ ω × u + q̈ u in the axes before (5.9)"
+            }
+            Self::AxisColumns => "U_i z = U_{i-1} z gives ω̇_x = ω_y ω_z - U23, ω̇_y = U13 - ω_x ω_z (5.3)",
+            Self::ParallelGroups => "parallel axes share a frame N: Q = Σ q̇, Θ = Σ θ (5.5)",
+            Self::Offsets => "d acts in the frame before, on the axis or in the link's frame (5.2)",
+            Self::Slides => "the origin of a frame may sit anywhere on its axis (5.4)",
+            Self::Scales => "a' = λ a, f' = μ f: a length or a moment becomes 1 (3.5)",
+            Self::MomentForms => "antisym(U S) = J ω̇ + ω × J ω, or with the diagonal split (3.3)",
+            Self::ScaledTwists => "u = v_y + tan α v_z turns a vector with seven products (5.1)",
+            Self::UnturnedFrames => "p, ω̇, h, S or the wrench from behind are evaluated in frame N (5.7)",
+        }
+    }
+
+    /// The plan without this idea.
+    #[must_use]
+    pub fn left_out_of(self, plan: &Plan) -> Plan {
+        let mut plan = plan.clone();
+        match self {
+            Self::Regrouping => {
+                plan.regrouped = false;
+                return Self::Gauges.left_out_of(&plan);
+            }
+            Self::Gyrostat => plan.gyrostat = false,
+            Self::LastFrame => plan.turned_last_frame = false,
+            Self::CarriedPrismatics => plan.carried_prismatics = false,
+            Self::Scales => (plan.length_scale, plan.force_scale) = (Scale::Default, Scale::Default),
+            _ => {}
+        }
+        for joint in &mut plan.joints {
+            let on = &mut joint.switches;
+            match self {
+                Self::Gauges => joint.gauge = [Target::Own; 3],
+                Self::AxisColumns => on.axis_column = false,
+                Self::ParallelGroups => {
+                    on.group_omega = false;
+                    on.group_omega_dot = false;
+                    on.group_acceleration = false;
+                    on.group_wrench = false;
+                }
+                Self::Offsets => (joint.outward_offset, joint.inward_offset) = (Side::Link, Side::Link),
+                Self::Slides => joint.slide = Slide::None,
+                Self::MomentForms => joint.moment = Moment::Second,
+                Self::ScaledTwists => {
+                    on.scaled_twist_outward = false;
+                    on.scaled_twist_inward = false;
+                }
+                Self::UnturnedFrames => {
+                    on.origin_unturned = false;
+                    on.omega_dot_unturned = false;
+                    on.first_moment_unturned = false;
+                    on.second_moment_unturned = false;
+                    on.wrench_unturned = false;
+                }
+                _ => {}
+            }
+        }
+        plan
+    }
+
+    /// Whether a plan makes use of it.
+    #[must_use]
+    pub fn is_in(self, plan: &Plan) -> bool {
+        self.left_out_of(plan) != *plan
+    }
+}
+
+impl fmt::Display for Trick {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl FromStr for Trick {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        Self::ALL.into_iter().find(|trick| trick.name() == text).ok_or_else(|| {
+            let names: Vec<_> = Self::ALL.iter().map(|trick| format!("`{trick}`")).collect();
+            format!("`{text}` is no trick of the reduced form; there are {}", names.join(", "))
+        })
+    }
+}

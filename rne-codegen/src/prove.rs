@@ -1,0 +1,379 @@
+//! The gate: a program is emitted only if it is the same function of the robot as the seven steps.
+//!
+//! Both are evaluated at random points of two prime fields, without rounding. Rational functions that agree there are
+//! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants were
+//! rounded, so both are run in double precision at random states as well.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use rne_model::{JointKind, Robot};
+
+use crate::formulate;
+use crate::function::{Form, Function};
+use crate::interpret::{Arguments, Interpreter, Real};
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref};
+use crate::lower::Exactly;
+use crate::program::{Program, Proof};
+use crate::{CompileError, Suspect, compile};
+
+/// Points of the fields at which torques are compared.
+const POINTS: u64 = 4;
+/// States at which rounding is measured when code is generated.
+const STATES: usize = 24;
+/// No program is emitted whose torques differ more, relative to the largest.
+const LARGEST_ROUNDING: f64 = 1e-11;
+
+/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of its
+/// rotors has 10⁵.
+const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
+
+/// Accelerations that single precision changes by as much of the largest are those of a mass matrix that is singular but for
+/// rounding.
+const SINGULAR: f64 = 0.1;
+
+const fn largest_rounding(function: Function) -> f64 {
+    match function {
+        Function::ForwardDynamics => LARGEST_ROUNDING_OF_ACCELERATIONS,
+        _ => LARGEST_ROUNDING,
+    }
+}
+
+/// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
+/// torques at least.
+const LEAST_SCALE: f64 = 1e-2;
+
+/// Compares a program with the seven steps.
+///
+/// # Errors
+/// When it is another function, or rounds too badly.
+pub(crate) fn prove(
+    robot: &Robot,
+    program: &Program,
+    constants: &Exactly,
+    reading: Reading,
+) -> Result<Proof, CompileError> {
+    program.check_names()?;
+    identical(robot, program, constants, reading)?;
+    let proof = rounding(robot, program, STATES)?;
+    if proof.rounding <= largest_rounding(program.function) {
+        Ok(proof)
+    } else {
+        Err(CompileError::Imprecise {
+            function: program.function,
+            rounding: proof.rounding,
+            suspect: Suspect::default(),
+        })
+    }
+}
+
+/// # Errors
+/// When an output differs at a point.
+pub(crate) fn identical(
+    robot: &Robot,
+    program: &Program,
+    constants: &Exactly,
+    reading: Reading,
+) -> Result<(), CompileError> {
+    let plain = Plain::new(robot, program.function, reading);
+    let interpreter = Interpreter::new(program);
+    for index in 1..=POINTS {
+        let point = Point::new(reading, index);
+        let expected = plain.outputs(&point);
+        let found = values(robot, &interpreter, constants, &point);
+        let differs = |index: &usize| found.as_ref().and_then(|found| found.get(*index)) != expected.get(*index);
+        if let Some(index) = (0..expected.len()).find(differs) {
+            let suspect = Suspect::default();
+            return Err(CompileError::NotIdentical { function: program.function, output: index + 1, suspect });
+        }
+    }
+    Ok(())
+}
+
+/// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is always
+/// singular is the same function as another.
+pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
+    let reading = Reading::default();
+    let plain = Plain::new(robot, function, reading);
+    let images = plain.images(&Point::new(reading, 1));
+    plain.0.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if images[b.index()].is_zero()))
+}
+
+/// The plain formulas, as they are written.
+struct Plain(Graph);
+
+impl Plain {
+    fn new(robot: &Robot, function: Function, reading: Reading) -> Self {
+        let builder = Builder::untraced(Policy::Structure, reading, function);
+        let outputs = formulate::outputs(&builder, robot, function).into_iter().map(|(_, at)| at).collect();
+        Self(builder.finish(outputs).graph)
+    }
+
+    /// By node.
+    fn images(&self, point: &Point) -> Vec<Image> {
+        let mut images: Vec<Image> = Vec::with_capacity(self.0.len());
+        for (_, op) in self.0.nodes() {
+            images.push(self.0.image_at(op, &images, point));
+        }
+        images
+    }
+
+    fn outputs(&self, point: &Point) -> Vec<Image> {
+        let images = self.images(point);
+        let image = |at: &Ref| {
+            let image = images[at.index()];
+            if at.is_negative() { -image } else { image }
+        };
+        self.0.outputs.iter().map(image).collect()
+    }
+}
+
+fn signed((sine, cosine): (Image, Image), negative: bool) -> (Image, Image) {
+    (if negative { -sine } else { sine }, cosine)
+}
+
+/// The addition theorem.
+fn composed((s, c): (Image, Image), (sine, cosine): (Image, Image)) -> (Image, Image) {
+    (s * cosine + c * sine, c * cosine - s * sine)
+}
+
+/// A number of a field that may be an angle: then it has a sine and a cosine.
+#[derive(Clone, Copy)]
+struct Value {
+    number: Image,
+    turn: (Image, Image),
+}
+
+impl Value {
+    /// A number that is no angle: its sine would be wrong whatever it is.
+    const fn number(number: Image) -> Self {
+        Self { number, turn: (Image::ZERO, Image::ZERO) }
+    }
+}
+
+impl Add for Value {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { number: self.number + other.number, turn: composed(self.turn, other.turn) }
+    }
+}
+
+impl Neg for Value {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { number: -self.number, turn: signed(self.turn, true) }
+    }
+}
+
+impl Sub for Value {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+#[allow(clippy::suspicious_arithmetic_impl)] // a field divides by multiplying with the inverse
+impl Div for Value {
+    type Output = Self;
+
+    fn div(self, other: Self) -> Self {
+        let inverse = Self::number(other.number.inverse().unwrap_or(Image::ZERO));
+        self * inverse
+    }
+}
+
+impl Real for Value {
+    /// No rational function: an unknown, the same for the same operands.
+    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        Self::number(Image::by_sign([self, positive, negative].map(|value| value.number)))
+    }
+}
+
+impl Mul for Value {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self::number(self.number * other.number)
+    }
+}
+
+fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
+    let kind = || robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.row.kind);
+    if name.quantity == Quantity::Position && kind() == Some(JointKind::Revolute) {
+        let index = name.joint - 1;
+        return Value { number: point.argument(Input::new(name)), turn: point.turn(index) };
+    }
+    Value::number(point.argument(Input::new(name)))
+}
+
+/// What a program returns at a point.
+fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Point) -> Option<Vec<Image>> {
+    let dof = robot.dof();
+    let joints = |quantity| -> Vec<Value> {
+        (1..=dof).map(|joint| argument(robot, point, Name::scalar(quantity, joint))).collect()
+    };
+    let vector = |quantity, joint| Axis::ALL.map(|axis| argument(robot, point, Name::vector(quantity, joint, axis)));
+    let (q, qd, qdd) = (joints(Quantity::Position), joints(Quantity::Rate), joints(Quantity::RateDot));
+    let tau = joints(Quantity::AppliedTorque);
+    let parameters: Vec<_> = (1..=robot.run_time.names.len())
+        .map(|index| Value::number(point.argument(Input::new(Name::scalar(Quantity::Parameter, index)))))
+        .collect();
+    let arguments = Arguments {
+        force: vector(Quantity::JointForce, dof + 1),
+        moment: vector(Quantity::JointMoment, dof + 1),
+        tau: &tau,
+        base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
+            .map(|quantity| vector(quantity, 0)),
+        parameters: &parameters,
+        ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Image::ZERO))
+    };
+    let constant = |name: Option<Name>, _| {
+        let Some(name) = name else { return Some(Value::number(Image::ZERO)) };
+        let (number, turn) = constants.get(&name)?;
+        let turn = turn.map_or((Image::ZERO, Image::ZERO), |turn| (turn.sin.image, turn.cos.image));
+        Some(Value { number: number.image, turn })
+    };
+    let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
+    let outputs = program.run_named(&arguments, constant, sin_cos)?;
+    Some(outputs.into_iter().map(|output| output.number).collect())
+}
+
+/// Measures a program and the seven steps in floating point.
+///
+/// # Errors
+/// When the seven steps of the robot cannot be compiled.
+fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
+    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+    let mut proof = Proof {
+        points: usize::try_from(POINTS).unwrap_or_default(),
+        states,
+        rounding: 0.0,
+        single: 0.0,
+        single_of_seven_steps: 0.0,
+        before: faithful.ledger.before(),
+    };
+    for errors in errors(robot, program, &faithful, states)? {
+        proof.rounding = larger(proof.rounding, errors.double);
+        proof.single = larger(proof.single, errors.single);
+        proof.single_of_seven_steps = larger(proof.single_of_seven_steps, errors.single_of_seven_steps);
+    }
+    Ok(proof)
+}
+
+/// How much larger the error of a program in single precision is than that of the seven steps, on the average: the largest
+/// error depends on which rare states one meets.
+///
+/// # Errors
+/// When the seven steps of the robot cannot be compiled.
+pub(crate) fn loss_of_precision(robot: &Robot, program: &Program, states: usize) -> Result<f64, CompileError> {
+    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+    let errors = errors(robot, program, &faithful, states)?;
+    let sum = |error: fn(&Errors) -> f64| errors.iter().map(error).sum::<f64>();
+    let (found, expected) = (sum(|errors| errors.single), sum(|errors| errors.single_of_seven_steps));
+    Ok(if found == 0.0 { 0.0 } else { found / expected })
+}
+
+/// Differences from the seven steps in double precision at one state, relative to the largest torque.
+struct Errors {
+    double: f64,
+    single: f64,
+    single_of_seven_steps: f64,
+}
+
+/// Runs a program and the seven steps, `faithful`, in floating point at random states: positions within the limits of the
+/// joints, ±3 where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Vec<Errors>, CompileError> {
+    let mut all = Vec::with_capacity(states);
+    let steps = Interpreter::new(faithful);
+    let motion = match program.function {
+        Function::GravityTorques
+        | Function::BiasTorques
+        | Function::MassMatrix
+        | Function::CoriolisMatrix
+        | Function::InverseDynamicsDerivatives => {
+            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
+        }
+        _ => None,
+    };
+    let reduced = Interpreter::new(program);
+    // as they stand in the file, and rounded
+    let parameters = robot.run_time.values(robot);
+    #[allow(clippy::cast_possible_truncation)]
+    let parameters_in_single: Vec<f32> = parameters.iter().map(|&value| value as f32).collect();
+    let parameters: Vec<f64> = parameters_in_single.iter().copied().map(f64::from).collect();
+    let mut rng = fastrand::Rng::with_seed(2024);
+    for _ in 0..states {
+        // numbers of single precision, so that both precisions are given the same state
+        #[allow(clippy::cast_possible_truncation)]
+        let mut between = |low: f64, high: f64| f64::from((low + (high - low) * rng.f64()) as f32);
+        let q: Vec<f64> = robot
+            .joints
+            .iter()
+            .map(|joint| {
+                let (low, high) = joint.limits.position.unwrap_or((-3.0, 3.0));
+                between(low.max(-3.0), high.min(3.0))
+            })
+            .collect();
+        let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
+        let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
+        let arguments = Arguments {
+            force: wrench,
+            moment: wrench,
+            tau: &qdd,
+            base: [wrench; 4],
+            parameters: &parameters,
+            ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
+        };
+        let [expected, found] =
+            [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
+        let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
+        let torques = motion.as_ref().and_then(|motion| motion.run(&arguments, |x| x, f64::sin_cos));
+        let scale = largest(&expected).max(LEAST_SCALE * torques.map_or(0.0, |torques| largest(&torques)));
+        // a singular mass matrix has no accelerations to compare
+        if scale == 0.0 || !expected.iter().all(|value| value.is_finite()) {
+            continue;
+        }
+        let error = |torques: &[f64]| {
+            let difference = |(a, b): (&f64, &f64)| (a - b).abs() / scale;
+            torques.iter().zip(&expected).map(difference).fold(0.0, larger)
+        };
+        let single = |code: &Interpreter| {
+            #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+            let round = |values: &[f64]| values.iter().map(|&x| x as f32).collect::<Vec<f32>>();
+            let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
+            #[allow(clippy::cast_possible_truncation)]
+            let wrench = wrench.map(|x| x as f32);
+            let arguments = Arguments {
+                force: wrench,
+                moment: wrench,
+                tau: &qdd,
+                base: [wrench; 4],
+                parameters: &parameters_in_single,
+                ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
+            };
+            #[allow(clippy::cast_possible_truncation)]
+            let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
+            torques.into_iter().map(f64::from).collect::<Vec<f64>>()
+        };
+        let errors = Errors {
+            double: error(&found),
+            single: error(&single(&reduced)),
+            single_of_seven_steps: error(&single(&steps)),
+        };
+        // nor has one that is singular but for rounding
+        let is_regular = errors.single_of_seven_steps < SINGULAR;
+        if is_regular || program.function != Function::ForwardDynamics {
+            all.push(errors);
+        }
+    }
+    Ok(all)
+}
+
+/// The larger of two; what is no number is larger than any.
+fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a > b { a } else { b }
+}

@@ -1,0 +1,288 @@
+//! Forward dynamics by articulated bodies: what is behind a joint resists like one body, whose joints may give way.
+//!
+//! ```text
+//! n = A ω̇ + B a + n°,   f = Bᵀ ω̇ + C a + f°             about the joint's origin; rigid: A = J, B = [h]×, C = m 1
+//! joint:   U = (A z, Bᵀ z),  D = z·A z,  u = τ - z·n°      (prismatic: U = (B u, C u), D = u·C u, u = τ - u·f°)
+//!          A, B, C less U Uᵀ/D;   (n°, f°) plus what the velocities do to these, plus U u/D
+//! moved:   B' = B + [p]× C,  A' = A - B' [p]× + [p]× Bᵀ
+//! outward: q̈ = (u - U · (ω̇' + q̇ ω' × z, a'))/D
+//! ```
+//!
+//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of spatial
+//! ones, over regrouped matter: D is a pivot of M, which regrouping does not change.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::backward::{Wrench, antisymmetric_of};
+use crate::reduced::crba::{Gathering, turned_about_x, turned_about_z};
+use crate::reduced::forward::{Arm, Gradient};
+use crate::reduced::regrouping::is_parallel;
+use crate::reduced::rnea_derivatives::{Station, matter, stations};
+
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Number, Symbol, Vector};
+
+type Square<'s> = [[Symbol<'s>; 3]; 3];
+
+/// A symmetric matrix: xx, yy, zz, xy, xz, yz.
+type Symmetric<'s> = [Symbol<'s>; 6];
+
+/// What is behind a joint, as its motion resists it.
+#[derive(Clone, Copy)]
+struct Articulated<'s> {
+    angular: Symmetric<'s>,
+    mixed: Square<'s>,
+    linear: Symmetric<'s>,
+    bias: Wrench<'s>,
+}
+
+/// What the way out needs of a joint again.
+#[derive(Clone, Copy)]
+struct Pivot<'s> {
+    /// U: angular and linear part.
+    resistance: [Vector<'s>; 2],
+    /// What velocities alone do to ω̇ and a.
+    drift: [Vector<'s>; 2],
+    inverse: Symbol<'s>,
+    rest: Symbol<'s>,
+}
+
+fn full([xx, yy, zz, xy, xz, yz]: Symmetric<'_>) -> Square<'_> {
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+fn of<'s>(matrix: &Square<'s>, v: Vector<'s>) -> Vector<'s> {
+    Vector(matrix.map(|row| Vector(row).dot(v)))
+}
+
+fn transposed<'s>(matrix: &Square<'s>) -> Square<'s> {
+    [0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[j][i]))
+}
+
+/// a aᵀ times a factor, taken away.
+fn less<'s>(matrix: Symmetric<'s>, a: Vector<'s>, scaled: Vector<'s>) -> Symmetric<'s> {
+    let ([x, y, z], [sx, sy, sz]) = (a.0, scaled.0);
+    let [xx, yy, zz, xy, xz, yz] = matrix;
+    [xx - x * sx, yy - y * sy, zz - z * sz, xy - x * sy, xz - x * sz, yz - y * sz]
+}
+
+impl<'s> Articulated<'s> {
+    fn plus(self, other: Self) -> Self {
+        Self {
+            angular: std::array::from_fn(|k| self.angular[k] + other.angular[k]),
+            mixed: [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] + other.mixed[i][j])),
+            linear: std::array::from_fn(|k| self.linear[k] + other.linear[k]),
+            bias: self.bias.plus(other.bias),
+        }
+    }
+
+    fn turned(
+        self,
+        symmetric: impl Fn(Symmetric<'s>) -> Symmetric<'s>,
+        turn: impl Fn(Vector<'s>) -> Vector<'s>,
+    ) -> Self {
+        let rows = self.mixed.map(|row| turn(Vector(row)).0);
+        let columns = transposed(&rows).map(|column| turn(Vector(column)).0);
+        Self {
+            angular: symmetric(self.angular),
+            mixed: transposed(&columns),
+            linear: symmetric(self.linear),
+            bias: self.bias.map(&turn),
+        }
+    }
+
+    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
+        self.turned(|matrix| turned_about_z(matrix, turn), |v| turn.about_z(v))
+    }
+
+    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
+        self.turned(|matrix| turned_about_x(matrix, turn), |v| turn.about_x(v))
+    }
+
+    /// About a point from which the old one is at p, on a link that turns with ω.
+    fn moved(self, p: Vector<'s>, omega: Vector<'s>) -> Self {
+        let linear = full(self.linear);
+        let columns = transposed(&linear).map(|column| p.cross(Vector(column)).0);
+        let shift = transposed(&columns);
+        let mixed: Square<'s> = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] + shift[i][j]));
+        // -B' [p]×: each row b becomes p × b; [p]× Bᵀ: each column of Bᵀ, a row of B, becomes p × it
+        let first = mixed.map(|row| p.cross(Vector(row)).0);
+        let second = transposed(&self.mixed.map(|row| p.cross(Vector(row)).0));
+        let sum = |i: usize, j: usize| first[i][j] + second[i][j];
+        let [xx, yy, zz, xy, xz, yz] = self.angular;
+        let drift = omega.cross(omega.cross(p));
+        let force = self.bias.force + of(&linear, drift);
+        let moment = self.bias.moment + of(&self.mixed, drift) + p.cross(force);
+        Self {
+            angular: [xx + sum(0, 0), yy + sum(1, 1), zz + sum(2, 2), xy + sum(0, 1), xz + sum(0, 2), yz + sum(1, 2)],
+            mixed,
+            linear: self.linear,
+            bias: Wrench { force, moment },
+        }
+    }
+
+    /// Gives way along its joint.
+    fn released(self, builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> (Self, Pivot<'s>) {
+        let (row, rows) = (&arm.rows()[index], arm.rows());
+        let rate = builder.rate(rows, index);
+        let torque = builder.torque(index);
+        let torque = if row.reversed { -torque } else { torque };
+        let zeros = builder.no_vector();
+        let omega = station.before.omega;
+        let (angular, linear) = (full(self.angular), full(self.linear));
+        let (resistance, pivot, rest, drift) = match row.kind {
+            Revolute => {
+                let [wx, wy, _] = omega.0;
+                let drift = Vector([rate * wy, -(rate * wx), builder.zero()]);
+                let resistance = [Vector(angular[2]), Vector(self.mixed[2])];
+                (resistance, angular[2][2], torque - self.bias.moment.0[2], [drift, zeros])
+            }
+            Prismatic => {
+                let u = builder.vector(row.axis);
+                let resistance = [of(&self.mixed, u), of(&linear, u)];
+                let drift = omega.cross(u * rate.times(Number::integer(2)));
+                (resistance, u.dot(resistance[1]), torque - u.dot(self.bias.force), [zeros, drift])
+            }
+        };
+        let inverse = pivot.inverse();
+        let scaled = resistance.map(|v| v * inverse);
+        let mixed = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] - resistance[0].0[i] * scaled[1].0[j]));
+        let given = Self {
+            angular: less(self.angular, resistance[0], scaled[0]),
+            mixed,
+            linear: less(self.linear, resistance[1], scaled[1]),
+            bias: self.bias,
+        };
+        let moment = of(&full(given.angular), drift[0]) + of(&mixed, drift[1]) + scaled[0] * rest;
+        let force = of(&transposed(&mixed), drift[0]) + of(&full(given.linear), drift[1]) + scaled[1] * rest;
+        let bias = self.bias.plus(Wrench { force, moment });
+        (Self { bias, ..given }, Pivot { resistance, drift, inverse, rest })
+    }
+}
+
+/// The link alone.
+fn rigid<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Articulated<'s> {
+    let matter = matter(arm, index);
+    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
+    let (h, m, zero) = (builder.vector(matter.h), builder.number(matter.mass), builder.zero());
+    let [x, y, z] = h.0;
+    let gradient = Gradient::new(station.own.omega, builder.no_vector());
+    Articulated {
+        // J = tr(S) 1 - S
+        angular: [s[1][1] + s[2][2], s[0][0] + s[2][2], s[0][0] + s[1][1], -s[0][1], -s[0][2], -s[1][2]],
+        mixed: [[zero, -z, y], [z, zero, -x], [-y, x, zero]],
+        linear: [m, m, m, zero, zero, zero],
+        bias: Wrench { force: gradient.of(h), moment: antisymmetric_of(&gradient, &s) },
+    }
+}
+
+/// The accelerations of the joints.
+pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
+    let rows = arm.rows();
+    let dof = rows.len();
+    let stations = stations(builder, arm, gathering, Number::ONE);
+    let zero = builder.zero();
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
+    let grouped = |index: usize| is_parallel(rows, index) && gathering == Gathering::Groups;
+    let mut pivots = Vec::with_capacity(dof);
+    // in the axes of link i or, behind a parallel axis, in N of its group
+    let mut behind: Option<Articulated<'s>> = None;
+    for index in (0..dof).rev() {
+        builder.at(Quantity::ReducedForce, index + 1);
+        let (row, station) = (&rows[index], &stations[index]);
+        let (offset, d) = arm.lengths(index, Number::ONE);
+        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let own = rigid(builder, arm, index, station);
+        let is_unturned = index + 1 < dof && grouped(index + 1);
+        let here = match (row.kind, behind) {
+            (Revolute, Some(behind)) if is_unturned => own.about_z(station.turn).plus(behind),
+            (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).about_z(station.turn),
+            (Prismatic, behind) => behind.map_or(own, |behind| own.plus(behind)),
+        };
+        let (given, pivot) = here.released(builder, arm, index, station);
+        pivots.push(pivot);
+        // the point of link i-1 at this joint's origin moves on to the origin of link i-1
+        let omega = station.before.omega;
+        behind = Some(match row.kind {
+            _ if index == 0 => break,
+            Revolute if grouped(index) => {
+                let before = stations[index - 1].turn;
+                given.moved(before.about_z(offset) + along(d), omega)
+            }
+            Revolute => given.moved(along(d), omega).about_x(twist).moved(offset, stations[index - 1].own.omega),
+            Prismatic => {
+                let q = builder.position(rows, index) + builder.number(d);
+                let given = given.moved(builder.vector(row.axis) * q, omega);
+                let given =
+                    if row.carried { given } else { given.about_z(builder.fixed_turn(row.theta)).about_x(twist) };
+                given.moved(offset, stations[index - 1].own.omega)
+            }
+        });
+    }
+    pivots.reverse();
+    outward(builder, arm, gathering, &stations, &pivots)
+}
+
+/// The way out: each joint's acceleration from that of the link before it.
+fn outward<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    gathering: Gathering,
+    stations: &[Station<'s>],
+    pivots: &[Pivot<'s>],
+) -> Vec<Symbol<'s>> {
+    let rows = arm.rows();
+    let zero = builder.zero();
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
+    let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.table.gravity.map(|g| -g)));
+    let mut unturned = (omega_dot, acceleration);
+    let mut accelerations = Vec::with_capacity(rows.len());
+    // to a point p of a link that turns with ω
+    let at = |(omega_dot, acceleration): (Vector<'s>, Vector<'s>), p: Vector<'s>, omega: Vector<'s>| {
+        (omega_dot, acceleration + omega_dot.cross(p) + omega.cross(omega.cross(p)))
+    };
+    for (index, (row, (station, pivot))) in rows.iter().zip(stations.iter().zip(pivots)).enumerate() {
+        builder.at(Quantity::OmegaDot, index + 1);
+        let (offset, d) = arm.lengths(index, Number::ONE);
+        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let theta = builder.fixed_turn(row.theta);
+        let before = match row.kind {
+            Revolute if is_parallel(rows, index) && gathering == Gathering::Groups => {
+                let turned = stations[index - 1].turn.about_z(offset);
+                at(unturned, turned + along(d), station.before.omega)
+            }
+            _ => {
+                let own = index.checked_sub(1).map_or(builder.no_vector(), |last| stations[last].own.omega);
+                let (omega_dot, acceleration) = at((omega_dot, acceleration), offset, own);
+                let turn = |v: Vector<'s>| match row.kind {
+                    Revolute => twist.back_about_x(v),
+                    Prismatic if row.carried => v,
+                    Prismatic => theta.back_about_z(twist.back_about_x(v)),
+                };
+                let p = match row.kind {
+                    Revolute => along(d),
+                    Prismatic => builder.vector(row.axis) * (builder.position(rows, index) + builder.number(d)),
+                };
+                at((turn(omega_dot), turn(acceleration)), p, station.before.omega)
+            }
+        };
+        let (angular, linear) = (before.0 + pivot.drift[0], before.1 + pivot.drift[1]);
+        // U · (ω̇' + drift, a' + drift): what the drift does to n° and f° has been added for the links before only
+        let resisted = pivot.resistance[0].dot(angular) + pivot.resistance[1].dot(linear);
+        let own = (pivot.rest - resisted) * pivot.inverse;
+        accelerations.push(if row.reversed { -own } else { own });
+        match row.kind {
+            Revolute => {
+                unturned = (angular.plus_z(own), linear);
+                omega_dot = station.turn.back_about_z(unturned.0);
+                acceleration = station.turn.back_about_z(unturned.1);
+            }
+            Prismatic => {
+                (omega_dot, acceleration) = (angular, linear + builder.vector(row.axis) * own);
+                unturned = (omega_dot, acceleration);
+            }
+        }
+    }
+    accelerations
+}

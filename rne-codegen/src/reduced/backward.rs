@@ -1,0 +1,364 @@
+//! The way back, tip to base: forces, moments and torques (the reduced form, sections 3 and 5).
+//!
+//! ```text
+//! F = m a + U h        N = antisym(U S) + h × a
+//! f_i = F_i + R_{i+1} f_{i+1}        n_i = N_i + R_{i+1} n_{i+1} + p_{i+1} × R_{i+1} f_{i+1}
+//! τ_i = z · n_i (revolute), z · f_i (prismatic)
+//! ```
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::plan::{JointPlan, Moment, Side};
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
+use crate::reduced::joint_frames::Row;
+use crate::reduced::link_parameters::PseudoInertia;
+use crate::reduced::regrouping::is_parallel;
+
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::{Builder, Number, Symbol, Vector};
+
+/// A force, times μ, and a moment about the origin of a frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Wrench<'s> {
+    pub(crate) force: Vector<'s>,
+    pub(crate) moment: Vector<'s>,
+}
+
+impl<'s> Wrench<'s> {
+    fn zero(builder: &'s Builder) -> Self {
+        Self { force: builder.no_vector(), moment: builder.no_vector() }
+    }
+
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self { force: self.force + other.force, moment: self.moment + other.moment }
+    }
+
+    pub(crate) fn map(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+        Self { force: f(self.force), moment: f(self.moment) }
+    }
+
+    fn is_zero(self) -> bool {
+        self.force.is_zero() && self.moment.is_zero()
+    }
+
+    /// n + p × f: the same wrench about a point from which the old one is at `p`.
+    pub(crate) fn about(self, p: Vector<'s>) -> Self {
+        Self { moment: self.moment + p.cross(self.force), ..self }
+    }
+}
+
+/// What the link behind exerts, about the origin of its frame.
+#[derive(Clone, Copy)]
+struct Child<'s> {
+    wrench: Wrench<'s>,
+    /// In frame N of a group of parallel axes; otherwise in the axes of the link at hand.
+    unturned: bool,
+    /// From the origin of the link at hand to where the moment is taken.
+    arm: [Number; 3],
+}
+
+/// The torques, base to tip.
+pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
+    let rows = arm.rows();
+    let tip = tip_wrench(builder, arm);
+    let mut torques = Vec::with_capacity(rows.len());
+    let mut child: Option<Child<'s>> = None;
+    for index in (0..rows.len()).rev() {
+        let link = &moved[index];
+        builder.at(Quantity::ReducedForce, index + 1);
+        let tip = tip.filter(|_| index + 1 == rows.len());
+        let (torque, next) = if arm.is_spin(index) {
+            spin(builder, arm, index, link, tip)
+        } else {
+            let (own, unturned) = own_wrench(builder, arm, index, link);
+            let own = tip.map_or(own, |tip| own.plus(tip));
+            let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
+            match rows[index].kind {
+                Prismatic => slide(builder, arm, index, link, own.plus(unturned)),
+                Revolute => turn(builder, arm, index, link, own, unturned),
+            }
+        };
+        builder.at(Quantity::Torque, index + 1);
+        let torque = if rows[index].reversed { -torque } else { torque };
+        builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
+        torques.push(torque);
+        child = next;
+    }
+    torques.reverse();
+    torques
+}
+
+/// What the last link exerts at the tip, about the origin of its frame and in its axes.
+fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
+    let (force, moment) = builder.wrench(arm.rows().len())?;
+    let tip = &arm.table.tip;
+    let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
+    let slide = arm.parameters.slides.last().copied().unwrap_or_default();
+    let [x, y, z] = tip.translation;
+    let wrench = Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - slide]));
+    Some(Wrench { force: wrench.force.times(arm.parameters.mu), ..wrench })
+}
+
+/// A last link that is a sphere without mass: it keeps its spin, and q itself is not needed (section 5.6).
+fn spin<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    tip: Option<Wrench<'s>>,
+) -> (Symbol<'s>, Option<Child<'s>>) {
+    let rows = arm.rows();
+    let c = arm.parameters.sphere.unwrap_or_default();
+    let (momentum, rate_dot) = (builder.rate(rows, index).times(c), builder.rate_dot(rows, index).times(c));
+    let ([wx, wy, _], [_, _, dz]) = (link.own.omega.0, link.own.omega_dot.0);
+    let torque = dz.times(c) + rate_dot;
+    let (offset, d) = arm.lengths(index, length_inward(arm));
+    let spin = Wrench {
+        force: builder.no_vector(),
+        moment: link.twist.about_x(Vector([wy * momentum, -(wx * momentum), rate_dot])),
+    };
+    let Some(tip) = tip else {
+        return (torque, Some(Child { wrench: spin, unturned: false, arm: [Number::ZERO; 3] }));
+    };
+    let torque = torque + tip.moment.0[2];
+    let back = tip.map(|v| link.twist.about_x(link.turn.about_z(v)));
+    let arm = plus(offset, along_axis(&rows[index], d));
+    (torque, Some(Child { wrench: back.plus(spin), unturned: false, arm }))
+}
+
+/// 1/μ: lengths of the way back.
+fn length_inward(arm: &Arm<'_>) -> Number {
+    arm.parameters.mu.inverse().unwrap_or(Number::ONE)
+}
+
+/// F and N of the link itself: the part in its frame, and the part in frame N.
+fn own_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, link: &Moved<'s>) -> (Wrench<'s>, Wrench<'s>) {
+    let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
+    let matter = &arm.parameters.links[index];
+    let is_revolute = arm.rows()[index].kind != Prismatic;
+    name_matter(builder, index + 1, matter);
+    let (mut own, mut unturned) = (Wrench::zero(builder), Wrench::zero(builder));
+    let h = builder.vector(matter.h);
+    if on.first_moment_unturned && is_revolute {
+        unturned = first_moment(builder, arm, &link.unturned, matter, link.group_turn.about_z(h));
+    } else {
+        own = first_moment(builder, arm, &link.own, matter, h);
+    }
+    if on.second_moment_unturned && is_revolute {
+        let s = turned_second_moment(builder, matter, link.group_turn);
+        unturned.moment = unturned.moment + antisymmetric_of(&link.unturned.gradient, &s);
+    } else {
+        own.moment = own.moment + second_moment(builder, matter, &link.own, moment);
+    }
+    (own, unturned)
+}
+
+/// F = m a + U h and h × a.
+fn first_moment<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    motion: &Motion<'s>,
+    matter: &PseudoInertia,
+    h: Vector<'s>,
+) -> Wrench<'s> {
+    let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+    let per_length = lambda.inverse().unwrap_or(Number::ONE);
+    let mass = builder.number(matter.mass * mu * per_length);
+    Wrench {
+        force: motion.acceleration * mass + motion.gradient.of(h.times(mu)),
+        moment: h.times(per_length).cross(motion.acceleration),
+    }
+}
+
+/// antisym(U S) in one of three equal forms (section 3.3).
+fn second_moment<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>, form: Moment) -> Vector<'s> {
+    let s = matter.s;
+    match form {
+        Moment::Second => antisymmetric_of(&motion.gradient, &s.map(|row| row.map(|x| builder.number(x)))),
+        Moment::Diagonal => {
+            let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);
+            let diagonal = |rate_dot: Symbol<'s>, product: Symbol<'s>, a: Number, b: Number| {
+                rate_dot.times(a + b) + product.times(a - b)
+            };
+            let u = &motion.gradient.u;
+            let [zy, xz, yx] = motion.gradient.differences;
+            let [s12, s13, s23] = [s[0][1], s[0][2], s[1][2]];
+            Vector([
+                u[2][0].times(s12) - u[1][0].times(s13) + diagonal(dx, y * z, s[1][1], s[2][2]) + zy.times(s23),
+                u[0][1].times(s23) - u[2][1].times(s12) + diagonal(dy, x * z, s[2][2], s[0][0]) + xz.times(s13),
+                u[1][2].times(s13) - u[0][2].times(s23) + diagonal(dz, x * y, s[0][0], s[1][1]) + yx.times(s12),
+            ])
+        }
+        Moment::Inertia => {
+            // J = tr(S) 1 - S
+            let trace = s[0][0] + s[1][1] + s[2][2];
+            let j = [0, 1, 2]
+                .map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] })));
+            let apply = |v: Vector<'s>| Vector(j.map(|row| row.dot(v)));
+            apply(motion.omega_dot) + motion.omega.cross(apply(motion.omega))
+        }
+    }
+}
+
+/// N_x = U31 S12 + U32 S22 - U23 S33 - U21 S13 + (U33 - U22) S23, and so on.
+pub(crate) fn antisymmetric_of<'s>(gradient: &Gradient<'s>, s: &[[Symbol<'s>; 3]; 3]) -> Vector<'s> {
+    let u = &gradient.u;
+    let [zy, xz, yx] = gradient.differences;
+    Vector([
+        u[2][0] * s[0][1] + u[2][1] * s[1][1] - u[1][2] * s[2][2] - u[1][0] * s[0][2] + zy * s[1][2],
+        u[0][2] * s[2][2] - u[2][0] * s[0][0] + u[0][1] * s[1][2] - u[2][1] * s[0][1] + xz * s[0][2],
+        u[1][0] * s[0][0] - u[0][1] * s[1][1] + u[1][2] * s[0][2] - u[0][2] * s[1][2] + yx * s[0][1],
+    ])
+}
+
+/// Rz S Rzᵀ (section 5.7).
+fn turned_second_moment<'s>(
+    builder: &'s Builder,
+    matter: &PseudoInertia,
+    turn: SymbolicTurn<'s>,
+) -> [[Symbol<'s>; 3]; 3] {
+    let SymbolicTurn { s: sine, c: cosine } = turn;
+    let s = matter.s;
+    let number = |x| builder.number(x);
+    let (difference, twice) = (s[0][0] - s[1][1], s[0][1] + s[0][1]);
+    let (both, square) = (cosine * sine, cosine * cosine);
+    let u = square.times(difference) - both.times(twice);
+    let xy = both.times(difference) + (square.times(twice) - number(s[0][1]));
+    let xz = cosine.times(s[0][2]) - sine.times(s[1][2]);
+    let yz = sine.times(s[0][2]) + cosine.times(s[1][2]);
+    [[u + number(s[1][1]), xy, xz], [xy, number(s[0][0]) - u, yz], [xz, yz, number(s[2][2])]]
+}
+
+/// Adds what the link behind exerts.
+fn with_child<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    child: Option<Child<'s>>,
+    own: Wrench<'s>,
+    unturned: Wrench<'s>,
+) -> (Wrench<'s>, Wrench<'s>) {
+    let Some(child) = child else { return (own, unturned) };
+    let p = builder.vector(child.arm);
+    let Wrench { force, moment } = child.wrench;
+    let to_unturned = arm.plan.joints[index].switches.wrench_unturned && arm.rows()[index].kind != Prismatic;
+    match (child.unturned, to_unturned) {
+        (false, false) => (own.plus(child.wrench.about(p)), unturned),
+        (false, true) => {
+            let force = link.group_turn.about_z(force);
+            let moved = Wrench { force, moment: link.group_turn.about_z(p).cross(force) };
+            (Wrench { moment: own.moment + moment, ..own }, unturned.plus(moved))
+        }
+        (true, true) => (own, unturned.plus(child.wrench.about(link.group_turn.about_z(p)))),
+        (true, false) => {
+            let turned = link.group_turn.back_about_z(force);
+            (Wrench { moment: own.moment + p.cross(turned), ..own }, unturned.plus(child.wrench))
+        }
+    }
+}
+
+/// A revolute joint: its torque, and what its link exerts on the one before.
+fn turn<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    own: Wrench<'s>,
+    unturned: Wrench<'s>,
+) -> (Symbol<'s>, Option<Child<'s>>) {
+    let (rows, joint) = (arm.rows(), index + 1);
+    let row = &rows[index];
+    let JointPlan { inward_offset, switches: on, .. } = arm.plan.joints[index];
+    let (offset, d) = arm.lengths(index, length_inward(arm));
+    let parallel = is_parallel(rows, index);
+    builder.name_vector(Quantity::ReducedForce, joint, own.force);
+    builder.name_vector(Quantity::ReducedMoment, joint, own.moment);
+    let torque = own.moment.0[2] + unturned.moment.0[2];
+    if index == 0 {
+        return (torque, None);
+    }
+    let in_unturned = !unturned.is_zero() || (parallel && on.group_wrench);
+    let mut wrench = if in_unturned { own.map(|v| link.group_turn.about_z(v)).plus(unturned) } else { own };
+    let mut p = offset;
+    if inward_offset == Side::Parent {
+        p = plus(p, along_axis(row, d));
+    } else {
+        // d z × f; z is the axis in the link's frame and in N alike
+        let [fx, fy, _] = wrench.force.0;
+        let [nx, ny, nz] = wrench.moment.0;
+        wrench.moment = Vector([nx - fy.times(d), ny + fx.times(d), nz]);
+    }
+    let (wrench, unturned) = if in_unturned && parallel {
+        (wrench, true)
+    } else if in_unturned {
+        (wrench.map(|v| link.twist.about_x(v)), false)
+    } else if parallel {
+        (wrench.map(|v| link.turn.about_z(v)), false)
+    } else {
+        (wrench.map(|v| rotated_inward(row, link, on.scaled_twist_inward, v)), false)
+    };
+    builder.name_vector(Quantity::TurnedForce, joint - 1, wrench.force);
+    builder.name_vector(Quantity::TurnedMoment, joint - 1, wrench.moment);
+    (torque, Some(Child { wrench, unturned, arm: p }))
+}
+
+/// A prismatic joint.
+fn slide<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    wrench: Wrench<'s>,
+) -> (Symbol<'s>, Option<Child<'s>>) {
+    let (rows, joint) = (arm.rows(), index + 1);
+    let row = &rows[index];
+    let per_force = length_inward(arm);
+    let (offset, d) = arm.lengths(index, per_force);
+    builder.name_vector(Quantity::ReducedForce, joint, wrench.force);
+    builder.name_vector(Quantity::ReducedMoment, joint, wrench.moment);
+    let q = builder.position(rows, index).times(per_force) + builder.number(d);
+    let u = builder.vector(row.axis);
+    let torque = u.dot(wrench.force).times(per_force);
+    if row.carried {
+        let wrench = wrench.about(builder.vector(offset) + u * q);
+        return (torque, Some(Child { wrench, unturned: false, arm: [Number::ZERO; 3] }));
+    }
+    let back = wrench.about(u * q).map(|v| link.twist.about_x(link.turn.about_z(v)));
+    builder.name_vector(Quantity::TurnedForce, joint - 1, back.force);
+    builder.name_vector(Quantity::TurnedMoment, joint - 1, back.moment);
+    (torque, Some(Child { wrench: back, unturned: false, arm: offset }))
+}
+
+/// Rx(α) Rz(θ) v; for a twist that is no right angle seven products are enough (section 5.1).
+fn rotated_inward<'s>(row: &Row, link: &Moved<'s>, scaled: bool, v: Vector<'s>) -> Vector<'s> {
+    let SymbolicTurn { s, c } = link.turn;
+    let (true, Some(ScaledTwist { ratio, larger, on_sine })) = (scaled, ScaledTwist::new(row)) else {
+        return link.twist.about_x(link.turn.about_z(v));
+    };
+    let [x, y, z] = v.0;
+    let u = s.times(larger) * x + c.times(larger) * y;
+    let (sine, cosine) = (z * link.twist.s, z * link.twist.c);
+    if on_sine {
+        Vector([c * x - s * y, u.times(ratio) - sine, u + cosine])
+    } else {
+        Vector([c * x - s * y, u - sine, u.times(ratio) + cosine])
+    }
+}
+
+fn name_matter(builder: &Builder, joint: usize, matter: &PseudoInertia) {
+    if !builder.is_traced() {
+        return;
+    }
+    builder.name(Name::scalar(Quantity::Mass, joint), builder.number(matter.mass));
+    for (axis, h) in Axis::ALL.into_iter().zip(matter.h) {
+        builder.name(Name::vector(Quantity::FirstMoment, joint, axis), builder.number(h));
+    }
+    for (row, values) in Axis::ALL.into_iter().zip(matter.s) {
+        for (column, s) in Axis::ALL.into_iter().zip(values).filter(|(column, _)| *column >= row) {
+            builder.name(Name::matrix(Quantity::SecondMoment, joint, row, column), builder.number(s));
+        }
+    }
+}

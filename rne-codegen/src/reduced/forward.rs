@@ -1,0 +1,460 @@
+//! The way out, base to tip: how each link moves (the reduced form, sections 3 and 5).
+//!
+//! ```text
+//! ω_i = R_iᵀ ω_{i-1} + q̇ z        ω̇_i = R_iᵀ ω̇_{i-1} + q̇ (ω_y, -ω_x, 0) + q̈ z        a_i = R_iᵀ (a_{i-1} + U_{i-1} p_i)
+//! U = [ω̇]× + [ω]×[ω]×              acceleration of the point r of a link: a + U r;       a_0 = -g
+//! ```
+//!
+//! R_i = Rx(α) Rz(θ) turns in two steps. Between them stands frame N, on the axis but not turning with the joint; a group of
+//! parallel axes shares one N.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::plan::{JointPlan, Plan, Side};
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::joint_frames::{Row, Table};
+use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
+
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::{Builder, Number, Symbol, Vector};
+
+/// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
+#[derive(Clone, Copy)]
+pub(crate) struct Gradient<'s> {
+    pub(crate) u: [[Symbol<'s>; 3]; 3],
+    /// U33 - U22, U11 - U33, U22 - U11
+    pub(crate) differences: [Symbol<'s>; 3],
+}
+
+impl<'s> Gradient<'s> {
+    pub(crate) fn new(omega: Vector<'s>, omega_dot: Vector<'s>) -> Self {
+        let ([x, y, z], [dx, dy, dz]) = (omega.0, omega_dot.0);
+        let (xx, yy, zz) = (x * x, y * y, z * z);
+        let (xy, xz, yz) = (x * y, x * z, y * z);
+        Self {
+            u: [[-(yy + zz), xy - dz, xz + dy], [xy + dz, -(xx + zz), yz - dx], [xz - dy, yz + dx, -(xx + yy)]],
+            differences: [zz - yy, xx - zz, yy - xx],
+        }
+    }
+
+    /// When U z is known already, with ω and ω̇_z (section 5.3).
+    fn with_axis_column(omega: Vector<'s>, omega_dot_z: Symbol<'s>, column: Vector<'s>) -> Self {
+        let ([x, y, z], [u13, u23, u33]) = (omega.0, column.0);
+        let (xx, zz, xy, xz, yz) = (x * x, z * z, x * y, x * z, y * z);
+        let (dx, dy) = (yz - u23, u13 - xz);
+        let (u22, middle) = (-(xx + zz), xx - zz);
+        let u11 = middle + u33;
+        Self {
+            u: [[u11, xy - omega_dot_z, u13], [xy + omega_dot_z, u22, u23], [xz - dy, yz + dx, u33]],
+            differences: [u33 - u22, middle, u22 - u11],
+        }
+    }
+
+    /// U v
+    pub(crate) fn of(&self, v: Vector<'s>) -> Vector<'s> {
+        Vector([0, 1, 2].map(|row| Vector(self.u[row]).dot(v)))
+    }
+
+    /// U z
+    fn column_z(&self) -> Vector<'s> {
+        Vector([0, 1, 2].map(|row| self.u[row][2]))
+    }
+}
+
+/// The motion of a link in one frame.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'s> {
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+    /// Of the frame's origin, less gravity, times λ.
+    pub(crate) acceleration: Vector<'s>,
+    pub(crate) gradient: Gradient<'s>,
+}
+
+/// What the way back needs to know of a link.
+#[derive(Clone, Copy)]
+pub(crate) struct Moved<'s> {
+    /// In the link's frame.
+    pub(crate) own: Motion<'s>,
+    /// In frame N on its axis.
+    pub(crate) unturned: Motion<'s>,
+    pub(crate) twist: SymbolicTurn<'s>,
+    /// From frame N of the group to the link's.
+    pub(crate) group_turn: SymbolicTurn<'s>,
+    /// From the frame of the link before, about z.
+    pub(crate) turn: SymbolicTurn<'s>,
+}
+
+/// One group of parallel axes: what its frame N takes over from the link before the group.
+#[derive(Clone, Copy)]
+struct Group<'s> {
+    omega: Vector<'s>,
+    omega_dot: Vector<'s>,
+    /// U z of the first axis, in N.
+    column: Vector<'s>,
+    rate: Symbol<'s>,
+    rate_dot: Symbol<'s>,
+}
+
+/// The arm under a plan, as both ways see it.
+pub(crate) struct Arm<'a> {
+    pub(crate) table: &'a Table,
+    pub(crate) plan: &'a Plan,
+    pub(crate) parameters: &'a Parameters,
+}
+
+impl<'a> Arm<'a> {
+    pub(crate) fn rows(&self) -> &'a [Row] {
+        &self.table.rows
+    }
+
+    /// O_{i-1} to axis i in axes of link i-1, with the slide of frame i-1, and d with that of frame i; times `scale`.
+    pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
+        let row = &self.rows()[index];
+        let [x, y, z] = row.offset;
+        let slides = &self.parameters.slides;
+        let before = index.checked_sub(1).map_or(Number::ZERO, |before| slides[before]);
+        let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
+        ([x, y, z - before].map(|length| length * scale), d * scale)
+    }
+
+    /// Whether the last link is only a spin.
+    pub(crate) fn is_spin(&self, index: usize) -> bool {
+        self.parameters.sphere.is_some() && index + 1 == self.rows().len()
+    }
+}
+
+/// d along the axis, in axes of the link before.
+pub(crate) fn along_axis(row: &Row, d: Number) -> [Number; 3] {
+    [Number::ZERO, -(d * row.alpha.sin), d * row.alpha.cos]
+}
+
+pub(crate) fn plus(a: [Number; 3], b: [Number; 3]) -> [Number; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The motion of all links.
+pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>> {
+    let lambda = arm.parameters.lambda;
+    let zeros = builder.no_vector();
+    let at_rest = Motion {
+        omega: zeros,
+        omega_dot: zeros,
+        acceleration: builder.vector(arm.table.gravity.map(|g| -(g * lambda))),
+        gradient: Gradient::new(zeros, zeros),
+    };
+    let mut before = at_rest;
+    let mut moved: Vec<Moved<'s>> = Vec::with_capacity(arm.rows().len());
+    let mut group = None;
+    for index in 0..arm.rows().len() {
+        let link = match arm.rows()[index].kind {
+            Revolute => revolute(builder, arm, index, before, &moved, &mut group),
+            Prismatic => prismatic(builder, arm, index, before, &moved),
+        };
+        before = link.own;
+        moved.push(link);
+    }
+    moved
+}
+
+/// The acceleration of the next joint's point, in the axes of the link before, and the part of it that is U p.
+///
+/// It may be formed in the frame N of the link before: then its own part is in N.
+fn joint_point<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+    p: [Number; 3],
+) -> (Vector<'s>, Vector<'s>, bool) {
+    let Some(link) = moved.last() else { return (before.acceleration, builder.no_vector(), false) };
+    let unturned = arm.plan.joints[index - 1].switches.origin_unturned && arm.rows()[index - 1].kind == Revolute;
+    let p = builder.vector(p);
+    if unturned {
+        let part = link.unturned.gradient.of(link.group_turn.about_z(p));
+        (link.group_turn.back_about_z(link.unturned.acceleration + part), part, true)
+    } else {
+        let part = before.gradient.of(p);
+        (before.acceleration + part, part, false)
+    }
+}
+
+/// A revolute joint while the motion of its link is written.
+struct Revolving<'s, 'a> {
+    builder: &'s Builder,
+    row: &'a Row,
+    /// Counted from 1.
+    joint: usize,
+    plan: &'a JointPlan,
+    /// Whether its axis is parallel to the one before, so that both share N.
+    parallel: bool,
+    twist: SymbolicTurn<'s>,
+    turn: SymbolicTurn<'s>,
+    group_turn: SymbolicTurn<'s>,
+    rate: Symbol<'s>,
+    rate_dot: Symbol<'s>,
+}
+
+/// ω, ω̇ and U in one frame.
+type Rates<'s> = (Vector<'s>, Vector<'s>, Gradient<'s>);
+
+fn revolute<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+    group: &mut Option<Group<'s>>,
+) -> Moved<'s> {
+    let rows = arm.rows();
+    let parallel = is_parallel(rows, index);
+    let turn = builder.turn(rows, index, index);
+    let link = Revolving {
+        builder,
+        row: &rows[index],
+        joint: index + 1,
+        plan: &arm.plan.joints[index],
+        parallel,
+        twist: builder.fixed_turn(rows[index].alpha),
+        turn,
+        group_turn: if parallel { builder.turn(rows, group_start(rows, index), index) } else { turn },
+        rate: builder.rate(rows, index),
+        rate_dot: builder.rate_dot(rows, index),
+    };
+    if arm.is_spin(index) {
+        return link.spin(before);
+    }
+    let (offset, d) = arm.lengths(index, arm.parameters.lambda);
+    let to_parent = link.plan.outward_offset == Side::Parent;
+    let p = if to_parent { plus(offset, along_axis(link.row, d)) } else { offset };
+
+    builder.at(Quantity::OriginAcceleration, link.joint);
+    let (point, part, part_unturned) = joint_point(builder, arm, index, before, moved, p);
+    let point_unturned = match moved.last() {
+        Some(last) if parallel => {
+            last.unturned.acceleration + if part_unturned { part } else { last.group_turn.about_z(part) }
+        }
+        _ => link.twist.back_about_x(point),
+    };
+    let shared = link.share(before, group);
+    let (own, unturned) = link.rates(before, &shared);
+    let d = if to_parent { Number::ZERO } else { d };
+    let (acceleration, acceleration_unturned) = link.acceleration(point, point_unturned, d, &own.2, &unturned.2);
+    let motion =
+        |(omega, omega_dot, gradient): Rates<'s>, acceleration| Motion { omega, omega_dot, acceleration, gradient };
+    Moved {
+        own: motion(own, acceleration),
+        unturned: motion(unturned, acceleration_unturned),
+        twist: link.twist,
+        group_turn: link.group_turn,
+        turn,
+    }
+}
+
+impl<'s> Revolving<'s, '_> {
+    /// A last link that is only a spin: what it needs is ω and ω̇ of the link before, in N.
+    fn spin(&self, before: Motion<'s>) -> Moved<'s> {
+        let motion = Motion {
+            omega: self.twist.back_about_x(before.omega),
+            omega_dot: self.twist.back_about_x(before.omega_dot),
+            ..before
+        };
+        Moved { own: motion, unturned: motion, twist: self.twist, group_turn: self.turn, turn: self.turn }
+    }
+
+    /// What frame N takes over from before the group, and the rates of the group so far.
+    fn share(&self, before: Motion<'s>, group: &mut Option<Group<'s>>) -> Group<'s> {
+        self.builder.at(Quantity::OmegaUnturned, self.joint);
+        let shared = match *group {
+            Some(shared) if self.parallel => {
+                Group { rate: shared.rate + self.rate, rate_dot: shared.rate_dot + self.rate_dot, ..shared }
+            }
+            _ => {
+                let axis = self.builder.vector(along_axis(self.row, Number::ONE));
+                Group {
+                    omega: self.twist.back_about_x(before.omega),
+                    omega_dot: self.twist.back_about_x(before.omega_dot),
+                    column: self.twist.back_about_x(before.gradient.of(axis)),
+                    rate: self.rate,
+                    rate_dot: self.rate_dot,
+                }
+            }
+        };
+        *group = Some(shared);
+        shared
+    }
+
+    /// Rz(θ)ᵀ Rx(α)ᵀ v; for a twist that is no right angle seven products are enough (section 5.1).
+    fn outward(&self, v: Vector<'s>) -> Vector<'s> {
+        let Self { twist, turn, .. } = *self;
+        let (true, Some(scaled)) = (self.plan.switches.scaled_twist_outward, ScaledTwist::new(self.row)) else {
+            return turn.back_about_z(twist.back_about_x(v));
+        };
+        let ScaledTwist { ratio, larger, on_sine } = scaled;
+        let [x, y, z] = v.0;
+        let (s, c) = (turn.s.times(larger), turn.c.times(larger));
+        let u = if on_sine { z + y.times(ratio) } else { y + z.times(ratio) };
+        Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
+    }
+
+    /// ω, ω̇ and U in the link's frame and in N.
+    fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> (Rates<'s>, Rates<'s>) {
+        let (builder, joint, on) = (self.builder, self.joint, self.plan.switches);
+        let omega_unturned = builder.name_vector(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
+        let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
+
+        // 1   ω
+        builder.at(Quantity::Omega, joint);
+        let omega = if self.parallel && on.group_omega {
+            self.group_turn.back_about_z(omega_unturned)
+        } else {
+            self.outward(before.omega).plus_z(self.rate)
+        };
+        let omega = builder.name_vector(Quantity::Omega, joint, omega);
+
+        // 2   ω̇
+        builder.at(Quantity::OmegaDot, joint);
+        let mut omega_dot = if on.omega_dot_unturned {
+            self.group_turn.back_about_z(omega_dot_unturned)
+        } else if self.parallel && on.group_omega_dot {
+            spun(omega, shared.rate, shared.rate_dot, self.group_turn.back_about_z(shared.omega_dot))
+        } else {
+            spun(omega, self.rate, self.rate_dot, self.outward(before.omega_dot))
+        };
+        let column = self.group_turn.back_about_z(shared.column);
+        if on.axis_column {
+            let ([x, y, z], [u13, u23, _]) = (omega.0, column.0);
+            omega_dot = Vector([y * z - u23, u13 - x * z, omega_dot.0[2]]);
+        }
+        builder.name_vector(Quantity::OmegaDot, joint, omega_dot);
+
+        // U
+        builder.at(Quantity::Gradient, joint);
+        let (gradient, gradient_unturned) = if on.axis_column {
+            (
+                Gradient::with_axis_column(omega, omega_dot.0[2], column),
+                Gradient::with_axis_column(omega_unturned, omega_dot_unturned.0[2], shared.column),
+            )
+        } else {
+            (Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
+        };
+        name_gradient(builder, Quantity::Gradient, joint, &gradient);
+        name_gradient(builder, Quantity::GradientUnturned, joint, &gradient_unturned);
+        ((omega, omega_dot, gradient), (omega_unturned, omega_dot_unturned, gradient_unturned))
+    }
+
+    /// a in the link's frame and in N, with the part of the offset `d` that acts on the axis or in the link.
+    fn acceleration(
+        &self,
+        point: Vector<'s>,
+        point_unturned: Vector<'s>,
+        d: Number,
+        gradient: &Gradient<'s>,
+        gradient_unturned: &Gradient<'s>,
+    ) -> (Vector<'s>, Vector<'s>) {
+        let (builder, joint, side) = (self.builder, self.joint, self.plan.outward_offset);
+        builder.at(Quantity::OriginAcceleration, joint);
+        let at_joint = !d.is_zero() && side == Side::Joint;
+        let lift = gradient_unturned.column_z().times(d);
+        let mut unturned = if at_joint { point_unturned + lift } else { point_unturned };
+        let mut own = if self.parallel && !self.plan.switches.group_acceleration {
+            let turned = self.turn.back_about_z(point);
+            if at_joint { turned + self.group_turn.back_about_z(lift) } else { turned }
+        } else if self.parallel || at_joint {
+            self.group_turn.back_about_z(unturned)
+        } else {
+            self.outward(point)
+        };
+        if !d.is_zero() && side == Side::Link {
+            let lift = gradient.column_z().times(d);
+            own = own + lift;
+            unturned = unturned + self.group_turn.about_z(lift);
+        }
+        builder.name_vector(Quantity::OriginAcceleration, joint, own);
+        builder.name_vector(Quantity::OriginAccelerationUnturned, joint, unturned);
+        (own, unturned)
+    }
+}
+
+/// ω̇ + q̇ (ω_y, -ω_x, 0) + q̈ z
+fn spun<'s>(omega: Vector<'s>, rate: Symbol<'s>, rate_dot: Symbol<'s>, omega_dot: Vector<'s>) -> Vector<'s> {
+    let ([wx, wy, _], [x, y, z]) = (omega.0, omega_dot.0);
+    Vector([x + rate * wy, y - rate * wx, z + rate_dot])
+}
+
+/// A sliding link turns as the link before: a = Rᵀ (a_{i-1} + U_{i-1} p) + (d + q) U u + 2 q̇ ω × u + q̈ u.
+fn prismatic<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    before: Motion<'s>,
+    moved: &[Moved<'s>],
+) -> Moved<'s> {
+    let (rows, joint) = (arm.rows(), index + 1);
+    let row = &rows[index];
+    let lambda = arm.parameters.lambda;
+    let (offset, d) = arm.lengths(index, lambda);
+    let (twist, turn) = (builder.fixed_turn(row.alpha), builder.fixed_turn(row.theta));
+    let (qd, qdd) = (builder.rate(rows, index).times(lambda), builder.rate_dot(rows, index).times(lambda));
+    let twice_rate = qd.times(Number::integer(2));
+    let q = builder.position(rows, index).times(lambda) + builder.number(d);
+    let u = builder.vector(row.axis);
+
+    let own = if row.carried {
+        builder.at(Quantity::OriginAcceleration, joint);
+        let arm_vector = builder.vector(offset) + u * q;
+        let acceleration =
+            before.acceleration + before.gradient.of(arm_vector) + before.omega.cross(u * twice_rate) + u * qdd;
+        Motion { acceleration, ..before }
+    } else {
+        builder.at(Quantity::OriginAcceleration, joint);
+        let (point, ..) = joint_point(builder, arm, index, before, moved, offset);
+        let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
+        builder.at(Quantity::Omega, joint);
+        let omega = builder.name_vector(Quantity::Omega, joint, outward(before.omega));
+        builder.at(Quantity::OmegaDot, joint);
+        let omega_dot = builder.name_vector(Quantity::OmegaDot, joint, outward(before.omega_dot));
+        builder.at(Quantity::Gradient, joint);
+        let gradient = Gradient::new(omega, omega_dot);
+        name_gradient(builder, Quantity::Gradient, joint, &gradient);
+        builder.at(Quantity::OriginAcceleration, joint);
+        let [wx, wy, _] = omega.0;
+        let [x, y, z] = (outward(point) + gradient.column_z() * q).0;
+        let acceleration = Vector([x + twice_rate * wy, y - twice_rate * wx, z + qdd]);
+        Motion { omega, omega_dot, acceleration, gradient }
+    };
+    builder.name_vector(Quantity::OriginAcceleration, joint, own.acceleration);
+    Moved { own, unturned: own, twist, group_turn: turn, turn }
+}
+
+fn name_gradient(builder: &Builder, quantity: Quantity, joint: usize, gradient: &Gradient<'_>) {
+    if builder.is_traced() {
+        for (row, values) in Axis::ALL.into_iter().zip(gradient.u) {
+            for (column, value) in Axis::ALL.into_iter().zip(values) {
+                builder.name(Name::matrix(quantity, joint, row, column), value);
+            }
+        }
+    }
+}
+
+/// The smaller of sin α and cos α as a multiple of the larger.
+pub(crate) struct ScaledTwist {
+    pub(crate) ratio: Number,
+    pub(crate) larger: Number,
+    pub(crate) on_sine: bool,
+}
+
+impl ScaledTwist {
+    /// `None` for right angles.
+    pub(crate) fn new(row: &Row) -> Option<Self> {
+        let (s, c) = (row.alpha.sin, row.alpha.cos);
+        if row.alpha.quarters().is_some() {
+            return None;
+        }
+        let on_sine = s.to_f64().abs() > c.to_f64().abs();
+        let (smaller, larger) = if on_sine { (c, s) } else { (s, c) };
+        Some(Self { ratio: smaller * larger.inverse()?, larger, on_sine })
+    }
+}

@@ -1,0 +1,347 @@
+//! From the robot file to rows of joint-frame, link-origin parameters: frame i on joint axis i, fixed to link i.
+//!
+//! Whatever the table's convention, row i leads from frame i-1 to frame i as a modified one does, Rx(α) Tx(a) Rz(θ) Tz(d),
+//! and the matter of link i is about the origin of frame i in its axes (the reduced form, section 2). What costs nothing is
+//! put right here: the base is turned into the first joint's frame, the last joint's constant angle into its link,
+//! anti-parallel axes are made parallel.
+
+use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
+
+use crate::ir::{Number, Reading, Turn};
+use crate::reduced::link_parameters::{
+    PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose,
+};
+
+/// One joint and the link that it moves.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) kind: JointKind,
+    /// Whether q, q̇, q̈ and τ count the other way round.
+    pub(crate) reversed: bool,
+    /// Rx(α), the twist between the axes.
+    pub(crate) alpha: Turn,
+    /// O_{i-1} to axis i, in axes of link i-1.
+    pub(crate) offset: Triple,
+    /// The constant part of the joint angle.
+    pub(crate) theta: Turn,
+    /// Along axis i, without the joint variable.
+    pub(crate) d: Number,
+    /// Along which a prismatic joint slides, in the axes of its link.
+    pub(crate) axis: Triple,
+    /// A prismatic link in the axes of the revolute link before it: it turns nothing.
+    pub(crate) carried: bool,
+    pub(crate) matter: PseudoInertia,
+}
+
+/// The tip frame in frame n: rotation and translation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Tip {
+    pub(crate) rotation: Square,
+    pub(crate) translation: Triple,
+}
+
+/// All rows of an arm.
+#[derive(Clone, Debug)]
+pub(crate) struct Table {
+    pub(crate) rows: Vec<Row>,
+    /// Acceleration of gravity in the axes of the base, which are those of joint 1 at rest.
+    pub(crate) gravity: Triple,
+    pub(crate) tip: Tip,
+    /// How the numbers of the file were read.
+    pub(crate) reading: Reading,
+    /// Sines and cosines of the constant angles of the file, none negative.
+    pub(crate) known: Vec<Number>,
+}
+
+/// Choices that change the rows themselves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub(crate) struct Frames {
+    /// The last frame is turned about its axis so that h_y of the last link vanishes (section 5.8).
+    pub(crate) turned_last: bool,
+    /// Prismatic links keep the axes of the last revolute link (section 5.9).
+    pub(crate) carried: bool,
+}
+
+impl Table {
+    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does: each must
+    /// have a root for every one that is wanted, and value and image of every number must agree about what is zero.
+    pub(crate) fn new(robot: &Robot, frames: Frames) -> Option<Self> {
+        if frames == Frames::default() {
+            return Self::read(robot, frames, Reading::default());
+        }
+        // roots: every fourth reading has a given one
+        let last = robot.rows().last()?.link.com;
+        let unknowns = [None].into_iter().chain([last[0], last[1]].map(|x| Some(x.abs())));
+        let usable = unknowns.filter(|unknown| unknown.is_none_or(|x| (4.0 * x).fract() != 0.0));
+        usable
+            .flat_map(|unknown| (0..48).map(move |seed| Reading { seed, unknown }))
+            .find_map(|reading| Self::read(robot, frames, reading).filter(Self::agrees))
+    }
+
+    /// Whether nothing is zero in value alone.
+    fn agrees(&self) -> bool {
+        let length = |row: &Row| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
+        let reach: f64 = self.rows.iter().map(length).sum();
+        self.rows.iter().all(|row| {
+            let PseudoInertia { mass, h, s } = row.matter;
+            let largest = |of: &[Number], least: f64| of.iter().map(|x| x.to_f64().abs()).fold(least, f64::max);
+            let first = largest(&h, mass.to_f64().abs() * reach);
+            let second = largest(s.as_flattened(), mass.to_f64().abs() * reach * reach);
+            let turns = [row.alpha, row.theta].map(|turn| [turn.sin, turn.cos]);
+            let is_clear = |of: &[Number], scale: f64| !of.iter().any(|x| x.is_dust(scale));
+            is_clear(&row.offset, reach)
+                && is_clear(&[row.d], reach)
+                && is_clear(&h, first)
+                && is_clear(s.as_flattened(), second)
+                && is_clear(turns.as_flattened(), 1.0)
+                && is_clear(&row.axis, 1.0)
+        })
+    }
+
+    fn read(robot: &Robot, frames: Frames, reading: Reading) -> Option<Self> {
+        let mut table = Self::as_written(robot, reading);
+        table.straighten();
+        table.normalise_first();
+        if frames.carried && !table.carry_prismatics() {
+            return None;
+        }
+        if !frames.turned_last {
+            table.normalise_last();
+        } else if !table.turn_last() {
+            return None;
+        }
+        Some(table)
+    }
+
+    fn as_written(robot: &Robot, reading: Reading) -> Self {
+        let decimal = |x: f64| reading.decimal(x);
+        let half = decimal(0.5);
+        let mut tip = pose(&robot.tool, reading);
+        let mut rows = Vec::with_capacity(robot.dof());
+        // a standard table: twist and length of row i-1 stand before joint i
+        let (mut alpha, mut a) = (Turn::NONE, Number::ZERO);
+        for joint in &robot.joints {
+            let row = &joint.row;
+            let (own_alpha, own_a) = (reading.turn(&row.dh.alpha), decimal(row.dh.a));
+            let com = row.link.com.map(decimal);
+            let body = PseudoInertia::of_body(decimal(row.link.mass), com, reading.inertia(joint), half);
+            let matter = match robot.convention {
+                Convention::Modified => {
+                    (alpha, a) = (own_alpha, own_a);
+                    body
+                }
+                Convention::Standard => body.turned(&about_x(own_alpha)).moved([own_a, Number::ZERO, Number::ZERO]),
+            };
+            rows.push(Row {
+                kind: row.kind,
+                reversed: false,
+                alpha,
+                offset: [a, Number::ZERO, Number::ZERO],
+                theta: reading.turn(&row.dh.theta),
+                d: decimal(row.dh.d),
+                axis: [Number::ZERO, Number::ZERO, Number::ONE],
+                carried: false,
+                matter,
+            });
+            if robot.convention == Convention::Standard {
+                (alpha, a) = (own_alpha, own_a);
+            }
+        }
+        if robot.convention == Convention::Standard {
+            // the last row's twist and length lead from frame n on its joint to the link frame
+            let turn = about_x(alpha);
+            let [x, y, z] = apply(&turn, tip.translation);
+            tip = Tip { rotation: compose(&turn, &tip.rotation), translation: [x + a, y, z] };
+        }
+        let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
+        let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
+        Self { rows, gravity: robot.gravity.map(decimal), tip, reading, known }
+    }
+
+    /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
+    fn straighten(&mut self) {
+        let flip =
+            [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { minus_if(i > 0, Number::ONE) } else { Number::ZERO }));
+        let mut reversed = false;
+        for (index, row) in self.rows.iter_mut().enumerate() {
+            if index > 0 && row.alpha.quarters() == Some(QuarterTurns::Two) {
+                row.alpha = Turn::NONE;
+                reversed = !reversed;
+            }
+            if reversed {
+                row.reversed = true;
+                row.theta = row.theta.back();
+                row.d = -row.d;
+                row.matter = row.matter.turned(&flip);
+            }
+        }
+        if reversed {
+            self.turn_tip(&flip);
+        }
+    }
+
+    /// The base is turned into the frame of joint 1 at q = 0. Where it stands is no matter.
+    fn normalise_first(&mut self) {
+        let Some(first) = self.rows.first_mut() else { return };
+        let rotation = compose(&about_x(first.alpha), &about_z(first.theta));
+        self.gravity = apply(&transpose(&rotation), self.gravity);
+        (first.alpha, first.theta) = (Turn::NONE, Turn::NONE);
+        (first.offset, first.d) = ([Number::ZERO; 3], Number::ZERO);
+    }
+
+    /// The constant angle of a last revolute joint goes into its link.
+    fn normalise_last(&mut self) {
+        let Some(last) = self.rows.last_mut() else { return };
+        if last.kind == JointKind::Revolute && last.theta.quarters() != Some(QuarterTurns::Zero) {
+            let rotation = about_z(last.theta);
+            last.theta = Turn::NONE;
+            last.matter = last.matter.turned(&rotation);
+            self.turn_tip(&rotation);
+        }
+    }
+
+    fn turn_tip(&mut self, rotation: &Square) {
+        self.tip.rotation = compose(rotation, &self.tip.rotation);
+        self.tip.translation = apply(rotation, self.tip.translation);
+    }
+
+    /// Turns the last frame by φ = atan2(h_y, h_x); false when there is nothing to gain or no root.
+    fn turn_last(&mut self) -> bool {
+        let reading = self.reading;
+        let Some(last) = self.rows.last_mut() else { return false };
+        let [x, y, _] = last.matter.h;
+        if last.kind != JointKind::Revolute {
+            return false;
+        }
+        if y.is_zero() {
+            // the angle of the file serves
+            return last.theta.quarters() != Some(QuarterTurns::Zero);
+        }
+        let Some(phi) = direction(y, x, reading) else { return false };
+        let back = about_z(phi.back());
+        last.theta = last.theta.then(phi);
+        last.matter = last.matter.turned(&back);
+        self.turn_tip(&back);
+        true
+    }
+
+    /// Puts prismatic links behind a revolute one into its axes. One constant rotation Rz(φ1) Rx(α') Rz(φ2) is left at the
+    /// next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a prismatic
+    /// joint costs no rotation at all. False when there is no such link, or no root.
+    fn carry_prismatics(&mut self) -> bool {
+        let mut any = false;
+        let mut index = 0;
+        while index < self.rows.len() {
+            let follows = |at: usize| self.rows.get(at).is_some_and(|row| row.kind == JointKind::Prismatic);
+            if self.rows[index].kind == JointKind::Revolute && follows(index + 1) {
+                let end = (index + 1..=self.rows.len()).find(|&at| !follows(at)).unwrap_or(index + 1);
+                if !self.carry_behind(index, end) {
+                    return false;
+                }
+                any = true;
+            }
+            index += 1;
+        }
+        any
+    }
+
+    /// Carries the prismatic rows behind the revolute row `first`, up to `end`.
+    fn carry_behind(&mut self, first: usize, end: usize) -> bool {
+        // from the axes of the revolute link to those of each link behind it
+        let mut axes = square(|i, j| if i == j { Number::ONE } else { Number::ZERO });
+        let (zero, one) = (Number::ZERO, Number::ONE);
+        for row in &mut self.rows[first + 1..end] {
+            row.offset = apply(&axes, row.offset);
+            axes = compose(&axes, &compose(&about_x(row.alpha), &about_z(row.theta)));
+            row.axis = apply(&axes, [zero, zero, one]);
+            row.matter = row.matter.turned(&axes);
+            (row.alpha, row.theta, row.carried) = (Turn::NONE, Turn::NONE, true);
+        }
+        let Some(next) = self.rows.get_mut(end) else {
+            self.turn_tip(&axes);
+            return true;
+        };
+        next.offset = apply(&axes, next.offset);
+        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading, &self.known)
+        else {
+            return false;
+        };
+        next.alpha = twist;
+        next.theta = after.then(next.theta);
+        let back = about_z(before.back());
+        let next_offset = apply(&back, next.offset);
+        next.offset = next_offset;
+        for (index, row) in self.rows[first..end].iter_mut().enumerate() {
+            row.matter = row.matter.turned(&back);
+            if index > 0 {
+                row.offset = apply(&back, row.offset);
+                row.axis = apply(&back, row.axis);
+            }
+        }
+        self.rows[first].theta = self.rows[first].theta.then(before);
+        true
+    }
+}
+
+/// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
+fn decomposed(rotation: &Square, reading: Reading, known: &[Number]) -> Option<[Turn; 3]> {
+    let [[xx, _, xz], [yx, _, yz], [zx, zy, zz]] = *rotation;
+    if xz.is_zero() && yz.is_zero() {
+        // the axes are parallel, so all turning is about one
+        return Some([Turn::NONE, Turn { sin: Number::ZERO, cos: zz }, Turn { sin: yx * zz, cos: xx }]);
+    }
+    let square = xz * xz + yz * yz;
+    // an angle of the file, or one that no angle of the file is
+    let known = known.iter().find(|known| known.image * known.image == square.image);
+    let sine = match known {
+        Some(&known) => known,
+        None => hypotenuse(xz, yz, reading)?,
+    };
+    let scale = sine.inverse()?;
+    Some([
+        Turn { sin: xz * scale, cos: -(yz * scale) },
+        Turn { sin: sine, cos: zz },
+        Turn { sin: zx * scale, cos: zy * scale },
+    ])
+}
+
+/// The turn whose tangent is y/x.
+fn direction(y: Number, x: Number, reading: Reading) -> Option<Turn> {
+    let scale = hypotenuse(x, y, reading)?.inverse()?;
+    Some(Turn { sin: y * scale, cos: x * scale })
+}
+
+/// √(x² + y²)
+fn hypotenuse(x: Number, y: Number, reading: Reading) -> Option<Number> {
+    // a rational number, of which the fields might take roots of different signs
+    match (x.is_zero(), y.is_zero()) {
+        (true, _) => Some(y.abs()),
+        (_, true) => Some(x.abs()),
+        _ => root(x * x + y * y, reading),
+    }
+}
+
+/// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the rationals, of
+/// which either root in the field serves.
+fn root(square: Number, reading: Reading) -> Option<Number> {
+    let decimal = reading.decimal(square.value.sqrt().to_f64());
+    if decimal.image * decimal.image == square.image {
+        return Some(decimal);
+    }
+    square.sqrt()
+}
+
+fn minus_if(negative: bool, x: Number) -> Number {
+    if negative { -x } else { x }
+}
+
+/// R = Rz(yaw) Ry(pitch) Rx(roll)
+fn pose(transform: &Transform, reading: Reading) -> Tip {
+    let [roll, pitch, yaw] = transform.rpy.map(|angle| reading.turn(&angle));
+    let (zero, one) = (Number::ZERO, Number::ONE);
+    let about_y = [[pitch.cos, zero, pitch.sin], [zero, one, zero], [-pitch.sin, zero, pitch.cos]];
+    Tip {
+        rotation: compose(&compose(&about_z(yaw), &about_y), &about_x(roll)),
+        translation: transform.xyz.map(|x| reading.decimal(x)),
+    }
+}

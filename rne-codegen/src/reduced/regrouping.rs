@@ -1,0 +1,331 @@
+//! Matter on a joint axis belongs equally to the links on both sides: it is shared out so that as many parameters as
+//! possible vanish (the reduced form, section 4).
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::ir::Number;
+use crate::plan::{Plan, Scale, Slide, Target};
+use crate::reduced::joint_frames::{Row, Table};
+use crate::reduced::link_parameters::{Entry, PseudoInertia, Square, Triple, about_x, about_z, compose, square};
+
+/// A pivot of the three equations for the rods of an axis must not be smaller.
+const LEAST_PIVOT: f64 = 1e-5;
+/// A rod must not be larger than so many times the arm's own mass and moments.
+const LARGEST_ROD: f64 = 1e3;
+/// A slide must not be longer than so many times the arm.
+const LONGEST_SLIDE: f64 = 5.0;
+/// Bounds of the scales.
+const SCALES: std::ops::Range<f64> = 1e-3..1e3;
+
+/// The numbers of an arm under a plan.
+#[derive(Clone, Debug)]
+pub(crate) struct Parameters {
+    pub(crate) links: Vec<PseudoInertia>,
+    /// How far the origin of each frame has been slid along its axis.
+    pub(crate) slides: Vec<Number>,
+    /// I_zz of a last link that is a spinning sphere without mass.
+    pub(crate) sphere: Option<Number>,
+    /// λ: lengths of the outward pass are multiplied by it.
+    pub(crate) lambda: Number,
+    /// μ: forces are multiplied by it.
+    pub(crate) mu: Number,
+}
+
+/// What a table offers to choose from, and how large the arm is.
+#[derive(Clone, Debug)]
+pub(crate) struct Offers {
+    /// Per joint, the rules that give different slides.
+    pub(crate) slides: Vec<Vec<(Slide, Number)>>,
+    /// Different lengths of the table.
+    pub(crate) lengths: Vec<Scale>,
+    /// Whether the last link is axisymmetric about its joint.
+    pub(crate) gyrostat: bool,
+    /// Limits of a rod's mass, first and second moment.
+    rods: [f64; 3],
+}
+
+/// Whether a row's axis is parallel to the one before, both revolute.
+pub(crate) fn is_parallel(rows: &[Row], index: usize) -> bool {
+    index > 0
+        && rows[index].kind == Revolute
+        && rows[index - 1].kind == Revolute
+        && rows[index].alpha.sin.is_zero()
+        && rows[index].alpha.cos == Number::ONE
+}
+
+/// The last row of the group of parallel axes that a row belongs to.
+pub(crate) fn group_end(rows: &[Row], index: usize) -> usize {
+    (index + 1..rows.len()).find(|&next| !is_parallel(rows, next)).unwrap_or(rows.len()) - 1
+}
+
+/// The first row of the group of parallel axes that a row belongs to.
+pub(crate) fn group_start(rows: &[Row], index: usize) -> usize {
+    (0..=index).rev().find(|&at| !is_parallel(rows, at)).unwrap_or(0)
+}
+
+impl Offers {
+    pub(crate) fn new(table: &Table) -> Self {
+        let rows = &table.rows;
+        let reach: f64 = rows.iter().map(|row| length(row.offset) + row.d.to_f64().abs()).sum::<f64>();
+        let reach = if reach > 0.0 { reach } else { 1.0 };
+        let mass: f64 = rows.iter().map(|row| row.matter.mass.to_f64().abs()).sum();
+        let rods = [mass, mass * reach, mass * reach * reach].map(|x| LARGEST_ROD * x);
+        let mut offers = Self { slides: Vec::new(), lengths: Vec::new(), gyrostat: has_sphere(table), rods };
+        let plain = Plan::new(rows.len());
+        let links = regrouped(table, &plan_slides(&plain), &plain, &offers).map_or_else(Vec::new, |(links, _)| links);
+        for (index, row) in rows.iter().enumerate() {
+            let mut slides: Vec<(Slide, Number)> = Vec::new();
+            for &rule in Slide::ALL {
+                let Some(value) = slide(rows, &links, index, rule) else { continue };
+                let is_new = slides.iter().all(|(_, other)| other.image != value.image);
+                if is_new && value.to_f64().abs() <= LONGEST_SLIDE * reach {
+                    slides.push((rule, value));
+                }
+            }
+            offers.slides.push(slides);
+            for (scale, value) in [(Scale::A(index + 1), row.offset[0]), (Scale::D(index + 1), row.d)] {
+                let known = offers.lengths.iter().filter_map(|&scale| length_of(rows, scale));
+                if !value.is_zero() && !value.is_unit() && !known.map(Number::abs).any(|x| x == value.abs()) {
+                    offers.lengths.push(scale);
+                }
+            }
+        }
+        offers
+    }
+
+    fn slide(&self, index: usize, rule: Slide) -> Option<Number> {
+        self.slides.get(index)?.iter().find(|(other, _)| *other == rule).map(|(_, value)| *value)
+    }
+}
+
+/// The numbers of a table under a plan; `None` when a choice does not apply to it or leaves the bounds.
+pub(crate) fn parameters(table: &Table, offers: &Offers, plan: &Plan) -> Option<Parameters> {
+    let slides: Option<Vec<Number>> =
+        plan.joints.iter().enumerate().map(|(index, joint)| offers.slide(index, joint.slide)).collect();
+    let slides = slides?;
+    let (links, sphere) = regrouped(table, &slides, plan, offers)?;
+    let (lambda, mu) = scales(table, &links, plan)?;
+    Some(Parameters { links, slides, sphere, lambda, mu })
+}
+
+fn plan_slides(plan: &Plan) -> Vec<Number> {
+    vec![Number::ZERO; plan.joints.len()]
+}
+
+/// The links with matter moved along the arm, and the sphere that is left of the last.
+fn regrouped(
+    table: &Table,
+    slides: &[Number],
+    plan: &Plan,
+    offers: &Offers,
+) -> Option<(Vec<PseudoInertia>, Option<Number>)> {
+    let rows = &table.rows;
+    let slid = |(row, slide): (&Row, &Number)| {
+        if slide.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*slide]) }
+    };
+    let mut links: Vec<PseudoInertia> = rows.iter().zip(slides).map(slid).collect();
+    let mut sphere = None;
+    let mut end = rows.len();
+    if plan.gyrostat {
+        if !offers.gyrostat {
+            return None;
+        }
+        // a massless sphere c·1 is left, which the link before absorbs but for its spin
+        end -= 1;
+        let link = links[end];
+        let c = link.s[0][0];
+        let (p, u) = line(rows, slides, end);
+        links[end - 1] = links[end - 1]
+            + PseudoInertia::rod([link.mass, link.h[2], link.s[2][2] - c], p, u)
+            + PseudoInertia { s: square(|i, j| if i == j { c } else { Number::ZERO }), ..PseudoInertia::default() };
+        links[end] = PseudoInertia::default();
+        sphere = Some(c + c);
+    }
+    if !plan.regrouped {
+        return Some((links, sphere));
+    }
+    for index in (0..end).rev() {
+        match rows[index].kind {
+            Prismatic => {
+                // a sliding link turns as the one before: all second moments belong to that
+                let s = std::mem::take(&mut links[index].s);
+                if index > 0 {
+                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rotation(&rows[index]));
+                    links[index - 1] = links[index - 1] + moved;
+                }
+            }
+            Revolute => share_rods(rows, slides, plan, offers, &mut links, index)?,
+        }
+    }
+    if rows.first().is_some_and(|row| row.kind == Revolute) {
+        // only the inertia about its axis acts
+        let first = &mut links[0];
+        let about_axis = first.s[0][0] + first.s[1][1];
+        first.s = Square::default();
+        first.s[0][0] = about_axis;
+    }
+    Some((links, sphere))
+}
+
+/// Moves three rods of matter from revolute link `index` to the link before, so that the three targets vanish.
+fn share_rods(
+    rows: &[Row],
+    slides: &[Number],
+    plan: &Plan,
+    offers: &Offers,
+    links: &mut [PseudoInertia],
+    index: usize,
+) -> Option<()> {
+    const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
+    let (p, u) = line(rows, slides, index);
+    let targets = if index == 0 { [Target::Own; 3] } else { plan.joints[index].gauge };
+    let units = [0, 1, 2].map(|k| {
+        let mut rod = [Number::ZERO; 3];
+        rod[k] = Number::ONE;
+        rod
+    });
+    // three equations: the target vanishes
+    let mut equations = [[Number::ZERO; 4]; 3];
+    for (k, (target, equation)) in targets.iter().zip(&mut equations).enumerate() {
+        match target.entry() {
+            None => {
+                equation[k] = Number::ONE;
+                equation[3] = links[index].get(OWN[k]);
+            }
+            Some(entry) => {
+                for (column, &unit) in units.iter().enumerate() {
+                    equation[column] = -PseudoInertia::rod(unit, p, u).get(entry);
+                }
+                equation[3] = links[index - 1].get(entry);
+            }
+        }
+    }
+    let rods = solved(equations)?;
+    // what a link has of its own it can always give, in an arm without mass too
+    let is_plain = targets == [Target::Own; 3];
+    if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
+        return None;
+    }
+    let link = &mut links[index];
+    link.mass = link.mass - rods[0];
+    link.h[2] = link.h[2] - rods[1];
+    link.s[2][2] = link.s[2][2] - rods[2];
+    if index > 0 {
+        links[index - 1] = links[index - 1] + PseudoInertia::rod(rods, p, u);
+    }
+    Some(())
+}
+
+/// Three linear equations by Gauss and Jordan; `None` when a pivot is too small.
+fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
+    for column in 0..3 {
+        let size = |row: &[Number; 4]| row[column].to_f64().abs();
+        let pivot = (column..3).max_by(|&a, &b| size(&rows[a]).total_cmp(&size(&rows[b])).then(b.cmp(&a)))?;
+        if size(&rows[pivot]) < LEAST_PIVOT {
+            return None;
+        }
+        rows.swap(column, pivot);
+        let scale = rows[column][column].inverse()?;
+        rows[column] = rows[column].map(|x| x * scale);
+        for other in (0..3).filter(|&other| other != column) {
+            let factor = rows[other][column];
+            if !factor.is_zero() {
+                let pivot = rows[column];
+                for (x, p) in rows[other].iter_mut().zip(pivot).skip(column) {
+                    *x = *x - factor * p;
+                }
+            }
+        }
+    }
+    Some(rows.map(|row| row[3]))
+}
+
+/// The axis of a row in axes of the link before: the origin of its frame, and its direction.
+fn line(rows: &[Row], slides: &[Number], index: usize) -> (Triple, Triple) {
+    let row = &rows[index];
+    let u = [Number::ZERO, -row.alpha.sin, row.alpha.cos];
+    let before = index.checked_sub(1).map_or(Number::ZERO, |before| slides[before]);
+    let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
+    let [x, y, z] = row.offset;
+    ([x, y + d * u[1], z - before + d * u[2]], u)
+}
+
+/// Rx(α) Rz(θ) of a prismatic row.
+fn rotation(row: &Row) -> Square {
+    compose(&about_x(row.alpha), &about_z(row.theta))
+}
+
+/// Whether the last link is axisymmetric about a revolute joint.
+fn has_sphere(table: &Table) -> bool {
+    let (Some(row), true) = (table.rows.last(), table.rows.len() > 1) else { return false };
+    let PseudoInertia { h, s, .. } = row.matter;
+    let vanish = [s[0][0] - s[1][1], s[0][1], s[0][2], s[1][2], h[0], h[1]];
+    row.kind == Revolute && vanish.iter().all(|x| x.is_zero())
+}
+
+/// What a rule gives, from the links of the plain gauge.
+fn slide(rows: &[Row], links: &[PseudoInertia], index: usize, rule: Slide) -> Option<Number> {
+    let row = &rows[index];
+    if rule == Slide::None {
+        return Some(Number::ZERO);
+    }
+    if row.carried || index == 0 && row.kind == Prismatic {
+        return None;
+    }
+    let ratio = |a: Number, b: Number| Some(a * b.inverse()?);
+    let link = links.get(index)?;
+    let sum = |range: std::ops::RangeInclusive<usize>| range.fold(Number::ZERO, |sum, at| sum + rows[at].d);
+    let is_group = row.kind == Revolute && group_end(rows, index) > index;
+    let slide = match rule {
+        Slide::None => Number::ZERO,
+        Slide::MinusD => -row.d,
+        _ if row.kind == Prismatic => return None,
+        Slide::AnnulS13 => ratio(link.s[0][2], link.h[0])?,
+        Slide::AnnulS23 => ratio(link.s[1][2], link.h[1])?,
+        Slide::GroupInward if is_group => sum(index + 1..=group_end(rows, index)),
+        Slide::NextOffset if is_group => rows[index + 1].d,
+        Slide::NextLessOwn if is_group => rows[index + 1].d - row.d,
+        Slide::GroupOutward if is_parallel(rows, index) || is_group => -sum(group_start(rows, index)..=index),
+        Slide::AnnulParentH if index > 0 => {
+            let [x, y, _] = links[index - 1].h;
+            ratio(-(y * row.offset[0]), x * row.alpha.sin)? - row.d
+        }
+        _ => return None,
+    };
+    (index > 0 || rule != Slide::MinusD).then_some(slide)
+}
+
+fn length(v: Triple) -> f64 {
+    v.iter().map(|x| x.to_f64() * x.to_f64()).sum::<f64>().sqrt()
+}
+
+fn length_of(rows: &[Row], scale: Scale) -> Option<Number> {
+    match scale {
+        Scale::A(row) => Some(rows.get(row.checked_sub(1)?)?.offset[0]),
+        Scale::D(row) => Some(rows.get(row.checked_sub(1)?)?.d),
+        _ => None,
+    }
+}
+
+/// λ and μ; `None` outside their bounds.
+fn scales(table: &Table, links: &[PseudoInertia], plan: &Plan) -> Option<(Number, Number)> {
+    let first_moment = |link: usize, axis: usize| Some(links.get(link.checked_sub(1)?)?.h.get(axis)?.abs());
+    let lambda = match plan.length_scale {
+        Scale::Default | Scale::One => Number::ONE,
+        // |h| / λ = 1 in the moments
+        Scale::FirstMoment(link, axis) => first_moment(link, axis)?,
+        Scale::Mass(_) => return None,
+        scale => length_of(&table.rows, scale)?.abs().inverse()?,
+    };
+    let mu = match plan.force_scale {
+        Scale::Default => lambda.inverse()?,
+        Scale::One => Number::ONE,
+        // μ |h| = 1 in the forces
+        Scale::FirstMoment(link, axis) => first_moment(link, axis)?.inverse()?,
+        // m μ / λ = 1
+        Scale::Mass(link) => lambda * links.get(link.checked_sub(1)?)?.mass.abs().inverse()?,
+        scale => length_of(&table.rows, scale)?.abs(),
+    };
+    let within = |scale: Number| SCALES.contains(&scale.to_f64());
+    (within(lambda) && within(mu)).then_some((lambda, mu))
+}

@@ -1,0 +1,514 @@
+//! ∂τ/∂q and ∂τ/∂q̇ by composite bodies, from the recursion and not from its expressions.
+//!
+//! Joint j turns or slides everything behind it as one body. Seen from there, only the motion of link j-1 changes, so that each
+//! body behind accelerates differently by
+//!
+//! ```text
+//! ∂/∂q_j:  the field of the twist (κ, b), and 2 Ω × (its velocity)        κ = U' z = ω̇' × z + ω' × Ω,   Ω = ω' × z
+//! ∂/∂q̇_j:  the field of the twist 2 (Ω, v' × z), and 2 z × (its velocity)  b = a' × z - 2 Ω × v'
+//! ```
+//!
+//! with ω', ω̇', a', v' of link j-1 at joint j, in frame N_j. What that takes is linear in P = Σ [S h; hᵀ m], G = Σ ∫ r vᵀ dm and
+//! p = Σ ∫ v dm of the bodies behind:
+//!
+//! ```text
+//! twist (e, b)    f = m b + e × h          n = J e + h × b
+//! Ω × velocity    f = Ω × p                n = tr(G) Ω - Gᵀ Ω
+//! ```
+//!
+//! For a torque nearer to the base than j this wrench is moved inward, with what the turn does to the wrench that is there:
+//! z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward and meets the
+//! twist of joint j, and so does tr(G) z - G z of joint i.
+//!
+//! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who have the same in spatial
+//! vectors; here over regrouped matter and in frames N. All velocities are doubled where they enter, which saves the factors 2.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::backward::{Wrench, antisymmetric_of};
+use crate::reduced::crba::{Composite, Gathering};
+use crate::reduced::forward::{Arm, Gradient};
+use crate::reduced::link_parameters::PseudoInertia;
+use crate::reduced::regrouping::{group_start, is_parallel};
+
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Number, Symbol, Vector};
+
+/// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
+pub(crate) struct Sensitivity<'s> {
+    pub(crate) by_position: Vec<Vec<Symbol<'s>>>,
+    pub(crate) by_rate: Vec<Vec<Symbol<'s>>>,
+}
+
+/// How a link moves, in some axes. `twice` are velocities times a factor, 2 or 1.
+#[derive(Clone, Copy)]
+pub(crate) struct Motion<'s> {
+    pub(crate) omega: Vector<'s>,
+    omega_dot: Vector<'s>,
+    acceleration: Vector<'s>,
+    twice_omega: Vector<'s>,
+    twice_velocity: Vector<'s>,
+}
+
+/// A joint on the way out.
+pub(crate) struct Station<'s> {
+    /// Of the link before, at this joint's origin, in frame N (prismatic: in the axes of the link).
+    pub(crate) before: Motion<'s>,
+    /// Of the link, in its axes.
+    pub(crate) own: Motion<'s>,
+    /// From the axes of the link to N.
+    pub(crate) turn: SymbolicTurn<'s>,
+}
+
+/// ∫ r vᵀ dm
+type Moment<'s> = [[Symbol<'s>; 3]; 3];
+
+/// What is behind a joint, about its origin.
+#[derive(Clone, Copy)]
+struct Behind<'s> {
+    body: Composite<'s>,
+    /// Times the factor of the velocities.
+    moment: Moment<'s>,
+    /// G11 + G22, which a turn about z leaves alone, where it has been turned so.
+    around: Option<Symbol<'s>>,
+    momentum: Vector<'s>,
+    wrench: Wrench<'s>,
+}
+
+/// What joint `joint` contributes to the rows and columns of joints nearer to the base.
+#[derive(Clone, Copy)]
+struct Column<'s> {
+    joint: usize,
+    /// The column of M.
+    unit: Wrench<'s>,
+    /// tr(G) z - G z
+    spin: Vector<'s>,
+    by_position: Wrench<'s>,
+    by_rate: Wrench<'s>,
+}
+
+struct Carried<'s> {
+    behind: Option<Behind<'s>>,
+    columns: Vec<Column<'s>>,
+    unturned: bool,
+}
+
+impl<'s> Behind<'s> {
+    fn plus(self, other: Self) -> Self {
+        let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + other.moment[i][j]));
+        Self {
+            body: self.body.plus(other.body),
+            moment,
+            around: (self.around.is_some() || other.around.is_some()).then(|| self.around() + other.around()),
+            momentum: self.momentum + other.momentum,
+            wrench: self.wrench.plus(other.wrench),
+        }
+    }
+
+    fn around(&self) -> Symbol<'s> {
+        self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
+    }
+
+    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
+        let around = Some(self.around());
+        Self { around, ..self.turned(|body| body.about_z(turn), |v| turn.about_z(v)) }
+    }
+
+    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
+        self.turned(|body| body.about_x(turn), |v| turn.about_x(v))
+    }
+
+    /// Everything turned by a rotation of vectors.
+    fn turned(self, body: impl Fn(Composite<'s>) -> Composite<'s>, turn: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+        // R G Rᵀ: rows, then columns
+        let rows = self.moment.map(|row| turn(Vector(row)).0);
+        let columns = [0, 1, 2].map(|j| turn(Vector([0, 1, 2].map(|i| rows[i][j]))).0);
+        Self {
+            body: body(self.body),
+            moment: [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])),
+            around: None,
+            momentum: turn(self.momentum),
+            wrench: self.wrench.map(&turn),
+        }
+    }
+
+    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
+        let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + t.0[i] * self.momentum.0[j]));
+        let ([x, y, _], [px, py, _]) = (t.0, self.momentum.0);
+        let around = self.around.map(|around| around + (x * px + y * py));
+        Self { body: self.body.moved(t, builder), moment, around, wrench: self.wrench.about(t), ..self }
+    }
+
+    /// 2 Ω × velocity, for a doubled velocity.
+    fn deflected(&self, by: Vector<'s>) -> Wrench<'s> {
+        let g = &self.moment;
+        let [x, y, z] = by.0;
+        let moment = Vector([
+            (g[1][1] + g[2][2]) * x - (g[1][0] * y + g[2][0] * z),
+            (g[0][0] + g[2][2]) * y - (g[0][1] * x + g[2][1] * z),
+            self.around() * z - (g[0][2] * x + g[1][2] * y),
+        ]);
+        Wrench { force: by.cross(self.momentum), moment }
+    }
+}
+
+impl<'s> Column<'s> {
+    fn map(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+        Self {
+            unit: self.unit.map(&f),
+            spin: f(self.spin),
+            by_position: self.by_position.map(&f),
+            by_rate: self.by_rate.map(&f),
+            ..self
+        }
+    }
+
+    fn about(self, t: Vector<'s>) -> Self {
+        Self {
+            unit: self.unit.about(t),
+            by_position: self.by_position.about(t),
+            by_rate: self.by_rate.about(t),
+            ..self
+        }
+    }
+}
+
+impl<'s> Carried<'s> {
+    fn turned_about_z(self, turn: SymbolicTurn<'s>) -> Self {
+        Self {
+            behind: self.behind.map(|behind| behind.about_z(turn)),
+            columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_z(v))).collect(),
+            unturned: self.unturned,
+        }
+    }
+
+    fn turned_about_x(self, turn: SymbolicTurn<'s>) -> Self {
+        Self {
+            behind: self.behind.map(|behind| behind.about_x(turn)),
+            columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_x(v))).collect(),
+            unturned: self.unturned,
+        }
+    }
+
+    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
+        Self {
+            behind: self.behind.map(|behind| behind.moved(t, builder)),
+            columns: self.columns.into_iter().map(|column| column.about(t)).collect(),
+            unturned: self.unturned,
+        }
+    }
+}
+
+impl<'s> Motion<'s> {
+    fn turned(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+        Self {
+            omega: f(self.omega),
+            omega_dot: f(self.omega_dot),
+            acceleration: f(self.acceleration),
+            twice_omega: f(self.twice_omega),
+            twice_velocity: f(self.twice_velocity),
+        }
+    }
+
+    /// The same link at another of its points.
+    fn at(self, p: Vector<'s>) -> Self {
+        let gradient = Gradient::new(self.omega, self.omega_dot);
+        Self {
+            acceleration: self.acceleration + gradient.of(p),
+            twice_velocity: self.twice_velocity + self.twice_omega.cross(p),
+            ..self
+        }
+    }
+}
+
+/// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by rates are
+/// the Coriolis matrix, half of them.
+pub(crate) fn sensitivity<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    gathering: Gathering,
+    factor: Number,
+) -> Sensitivity<'s> {
+    let stations = stations(builder, arm, gathering, factor);
+    let dof = stations.len();
+    let rows = arm.rows();
+    let zero = builder.zero();
+    let mut found = Sensitivity { by_position: vec![vec![zero; dof]; dof], by_rate: vec![vec![zero; dof]; dof] };
+    let mut carried = Carried { behind: None, columns: Vec::new(), unturned: false };
+    let z = |x: Number| Vector([zero, zero, builder.number(x)]);
+    for index in (0..dof).rev() {
+        builder.at(Quantity::ReducedForce, index + 1);
+        let (row, station) = (&rows[index], &stations[index]);
+        let (offset, d) = arm.lengths(index, Number::ONE);
+        let twist = builder.fixed_turn(row.alpha);
+        let own = own(builder, &matter(arm, index), &station.own);
+        let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
+        let turn = station.turn;
+        // everything in frame N of this joint
+        let here = if carried.unturned {
+            let own = own.about_z(turn);
+            let behind = carried.behind.map_or(own, |behind| own.plus(behind));
+            Carried { behind: Some(behind), ..carried }
+        } else {
+            let behind = carried.behind.map_or(own, |behind| own.plus(behind));
+            let whole = Carried { behind: Some(behind), ..carried };
+            if row.kind == Revolute { whole.turned_about_z(turn) } else { whole }
+        };
+        let Some(behind) = here.behind else { break };
+        behind.body.name(builder, index + 1);
+        let column = column(builder, arm, index, station, &behind);
+        for other in here.columns.iter().chain([&column]) {
+            meet(builder, arm, index, station, other, &mut found);
+        }
+        let mut columns = here.columns;
+        columns.push(column);
+        let next = Carried { behind: Some(behind), columns, unturned: grouped };
+        carried = if index == 0 {
+            next
+        } else if row.kind == Prismatic {
+            let q = builder.position(rows, index) + builder.number(d);
+            let next = next.moved(builder.vector(row.axis) * q, builder);
+            let next = if row.carried {
+                next
+            } else {
+                next.turned_about_z(builder.fixed_turn(row.theta)).turned_about_x(twist)
+            };
+            next.moved(builder.vector(offset), builder)
+        } else if grouped {
+            let before = stations[index - 1].turn;
+            next.moved(before.about_z(builder.vector(offset)) + z(d), builder)
+        } else {
+            next.moved(z(d), builder).turned_about_x(twist).moved(builder.vector(offset), builder)
+        };
+    }
+    for row in 0..dof {
+        for column in (0..dof).filter(|&column| rows[row].reversed != rows[column].reversed) {
+            for matrix in [&mut found.by_position, &mut found.by_rate] {
+                matrix[row][column] = -matrix[row][column];
+            }
+        }
+    }
+    found
+}
+
+/// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is taken back.
+pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
+    let mut matter = arm.parameters.links[index];
+    let Some(c) = arm.parameters.sphere else { return matter };
+    let half = c * Number::integer(2).inverse().unwrap_or_default();
+    let dof = arm.rows().len();
+    if index + 1 == dof {
+        matter = PseudoInertia::default();
+        (0..3).for_each(|k| matter.s[k][k] = half);
+    } else if index + 2 == dof {
+        (0..3).for_each(|k| matter.s[k][k] = matter.s[k][k] - half);
+    }
+    matter
+}
+
+/// How all links move.
+pub(crate) fn stations<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    gathering: Gathering,
+    factor: Number,
+) -> Vec<Station<'s>> {
+    let rows = arm.rows();
+    let (zeros, zero) = (builder.no_vector(), builder.zero());
+    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
+    let mut last = Motion {
+        omega: zeros,
+        omega_dot: zeros,
+        acceleration: builder.vector(arm.table.gravity.map(|g| -g)),
+        twice_omega: zeros,
+        twice_velocity: zeros,
+    };
+    // in frame N of the joint before
+    let mut last_unturned = last;
+    let mut stations: Vec<Station<'s>> = Vec::with_capacity(rows.len());
+    for (index, row) in rows.iter().enumerate() {
+        builder.at(Quantity::Omega, index + 1);
+        let (offset, d) = arm.lengths(index, Number::ONE);
+        let twist = builder.fixed_turn(row.alpha);
+        let offset = builder.vector(offset);
+        let (rate, rate_dot) = (builder.rate(rows, index), builder.rate_dot(rows, index));
+        let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
+        match row.kind {
+            Revolute => {
+                let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
+                let before = match stations.last() {
+                    Some(station) if grouped => last_unturned.at(station.turn.about_z(offset) + along(d)),
+                    _ if index == 0 => last.turned(|v| twist.back_about_x(v)),
+                    _ => last.at(offset).turned(|v| twist.back_about_x(v)).at(along(d)),
+                };
+                let turn = if arm.is_spin(index) {
+                    still
+                } else {
+                    builder.turn(rows, if grouped { group_start(rows, index) } else { index }, index)
+                };
+                let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
+                let omega = before.omega.plus_z(rate);
+                let unturned = Motion {
+                    omega,
+                    omega_dot: Vector([dx + rate * wy, dy - rate * wx, dz + rate_dot]),
+                    twice_omega: omega.times(factor),
+                    ..before
+                };
+                last = unturned.turned(|v| turn.back_about_z(v));
+                last_unturned = unturned;
+                stations.push(Station { before, own: last, turn });
+            }
+            Prismatic => {
+                let theta = builder.fixed_turn(row.theta);
+                let at_axis = last.at(offset);
+                let before =
+                    if row.carried { at_axis } else { at_axis.turned(|v| theta.back_about_z(twist.back_about_x(v))) };
+                let u = builder.vector(row.axis);
+                let before = before.at(u * (builder.position(rows, index) + builder.number(d)));
+                let twice_rate = rate.times(Number::integer(2));
+                last = Motion {
+                    acceleration: before.acceleration + before.omega.cross(u * twice_rate) + u * rate_dot,
+                    twice_velocity: before.twice_velocity + u * rate.times(factor),
+                    ..before
+                };
+                last_unturned = last;
+                stations.push(Station { before, own: last, turn: still });
+            }
+        }
+    }
+    stations
+}
+
+/// What a link alone contributes, in its axes.
+fn own<'s>(builder: &'s Builder, matter: &PseudoInertia, motion: &Motion<'s>) -> Behind<'s> {
+    let (h, m) = (builder.vector(matter.h), builder.number(matter.mass));
+    let s = matter.s.map(|row| row.map(|x| builder.number(x)));
+    let ([x, y, z], [vx, vy, vz]) = (motion.twice_omega.0, motion.twice_velocity.0);
+    let moment = [0, 1, 2].map(|i| {
+        let [sx, sy, sz] = s[i];
+        let hi = h.0[i];
+        [hi * vx + (y * sz - z * sy), hi * vy + (z * sx - x * sz), hi * vz + (x * sy - y * sx)]
+    });
+    let gradient = Gradient::new(motion.omega, motion.omega_dot);
+    Behind {
+        body: Composite::of(builder, matter),
+        moment,
+        around: None,
+        momentum: motion.twice_velocity * m + motion.twice_omega.cross(h),
+        wrench: Wrench {
+            force: motion.acceleration * m + gradient.of(h),
+            moment: antisymmetric_of(&gradient, &s) + h.cross(motion.acceleration),
+        },
+    }
+}
+
+/// The twists of a joint in its frame N: by its position and by its rate, each angular and linear, and Ω.
+struct Twists<'s> {
+    angular: Vector<'s>,
+    linear: Vector<'s>,
+    rate_angular: Vector<'s>,
+    rate_linear: Vector<'s>,
+    deflection: Vector<'s>,
+}
+
+fn twists<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Station<'s>) -> Twists<'s> {
+    let row = &arm.rows()[index];
+    let Motion { omega, omega_dot, acceleration, twice_omega, twice_velocity } = station.before;
+    let (zeros, zero) = (builder.no_vector(), builder.zero());
+    match row.kind {
+        Revolute => {
+            let ([wx, wy, wz], [dx, dy, _]) = (omega.0, omega_dot.0);
+            let ([ax, ay, _], [vx, vy, vz]) = (acceleration.0, twice_velocity.0);
+            let [tx, ty, _] = twice_omega.0;
+            Twists {
+                angular: Vector([wx * wz + dy, wy * wz - dx, -(wx * wx + wy * wy)]),
+                linear: Vector([ay + wx * vz, wy * vz - ax, -(wx * vx + wy * vy)]),
+                rate_angular: Vector([ty, -tx, zero]),
+                rate_linear: Vector([vy, -vx, zero]),
+                deflection: Vector([wy, -wx, zero]),
+            }
+        }
+        Prismatic => {
+            let u = builder.vector(row.axis);
+            Twists {
+                angular: zeros,
+                linear: Gradient::new(omega, omega_dot).of(u),
+                rate_angular: zeros,
+                rate_linear: twice_omega.cross(u),
+                deflection: zeros,
+            }
+        }
+    }
+}
+
+/// What a joint contributes to rows and columns of joints nearer to the base.
+fn column<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    station: &Station<'s>,
+    behind: &Behind<'s>,
+) -> Column<'s> {
+    let row = &arm.rows()[index];
+    let twists = twists(builder, arm, index, station);
+    let body = &behind.body;
+    let (zero, g) = (builder.zero(), &behind.moment);
+    let Wrench { force, moment } = behind.wrench;
+    let by_position = body.carried(builder, twists.angular, twists.linear);
+    let by_rate = body.carried(builder, twists.rate_angular, twists.rate_linear);
+    match row.kind {
+        Revolute => {
+            let quarter = |v: Vector<'s>| Vector([-v.0[1], v.0[0], zero]);
+            let around = Wrench { force: quarter(force), moment: quarter(moment) };
+            let both = behind.around();
+            let [px, py, _] = behind.momentum.0;
+            let turned = Wrench { force: Vector([-py, px, zero]), moment: Vector([-g[2][0], -g[2][1], both]) };
+            Column {
+                joint: index,
+                unit: body.turning(builder),
+                spin: Vector([-g[0][2], -g[1][2], both]),
+                by_position: by_position.plus(behind.deflected(twists.deflection)).plus(around),
+                by_rate: by_rate.plus(turned),
+            }
+        }
+        Prismatic => {
+            let u = builder.vector(row.axis);
+            let lever = Wrench { force: builder.no_vector(), moment: u.cross(force) };
+            Column {
+                joint: index,
+                unit: body.sliding(u, builder),
+                spin: behind.momentum.cross(u),
+                by_position: by_position.plus(lever),
+                by_rate,
+            }
+        }
+    }
+}
+
+/// The elements of joint `index` with that of a column, which is farther out or the same.
+fn meet<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    station: &Station<'s>,
+    column: &Column<'s>,
+    found: &mut Sensitivity<'s>,
+) {
+    let row = &arm.rows()[index];
+    let twists = twists(builder, arm, index, station);
+    let Wrench { force, moment } = column.unit;
+    let spin = if row.kind == Revolute { column.spin.0[2] } else { builder.zero() };
+    found.by_position[column.joint][index] =
+        moment.dot(twists.angular) + force.dot(twists.linear) + column.spin.dot(twists.deflection);
+    found.by_rate[column.joint][index] = moment.dot(twists.rate_angular) + force.dot(twists.rate_linear) + spin;
+    if column.joint == index {
+        return;
+    }
+    let along = |wrench: &Wrench<'s>| match row.kind {
+        Revolute => wrench.moment.0[2],
+        Prismatic => builder.vector(row.axis).dot(wrench.force),
+    };
+    found.by_position[index][column.joint] = along(&column.by_position);
+    found.by_rate[index][column.joint] = along(&column.by_rate);
+}

@@ -1,0 +1,72 @@
+//! Fused multiply-adds: fewer instructions, the same operations but for their order, proved to be the same function.
+
+mod common;
+
+use common::{choice, compiled, shipped};
+use rne_codegen::{Form, Function, Name, Program, fma};
+use std::collections::BTreeSet;
+
+/// What is defined, in order, is what is used, later.
+fn check_definitions(program: &Program) {
+    let mut known: BTreeSet<Name> = program.arguments.iter().copied().collect();
+    known.extend(program.constants.iter().map(|constant| constant.name));
+    known.extend(program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
+    let mut used = BTreeSet::new();
+    for statement in &program.statements {
+        let mut operands = BTreeSet::new();
+        statement.value.names(&mut operands);
+        assert!(operands.is_subset(&known), "{} of {}", statement.name, program.robot);
+        used.extend(operands);
+        assert!(known.insert(statement.name), "{} of {} twice", statement.name, program.robot);
+    }
+    for output in &program.outputs {
+        output.value.names(&mut used);
+    }
+    let idle = program.statements.iter().find(|statement| !used.contains(&statement.name));
+    assert_eq!(idle.map(|statement| statement.name), None, "of {}", program.robot);
+}
+
+#[test]
+fn every_program_takes_fewer_instructions_and_no_more_sums() {
+    for (_, programs) in compiled() {
+        for program in programs {
+            let fused = fma::fused(&program);
+            check_definitions(&fused);
+            let (before, after) = (program.operations(), fused.operations());
+            assert!(fma::instructions(&fused) <= fma::instructions(&program), "{}", program.robot);
+            assert_eq!(after.add, before.add, "{} of {}", program.function, program.robot);
+            // a product that is fused with several sums is computed with each of them
+            assert!(after.mul >= before.mul, "{} of {}", program.function, program.robot);
+        }
+    }
+}
+
+/// The terms of sums change places, nothing else.
+#[test]
+fn the_shortest_wait_has_the_same_operations_under_the_same_names() {
+    for (_, programs) in compiled() {
+        for program in programs.into_iter().filter(|program| program.form != Form::SevenSteps) {
+            let soonest = fma::soonest(&program);
+            check_definitions(&soonest);
+            assert_eq!(soonest.operations(), program.operations(), "{} of {}", program.function, program.robot);
+            let names = |program: &Program| program.statements.iter().map(|s| s.name).collect::<Vec<_>>();
+            assert_eq!(names(&soonest), names(&program), "{} of {}", program.function, program.robot);
+            assert!(fma::soonest(&soonest) == soonest, "{} of {}", program.function, program.robot);
+        }
+    }
+}
+
+/// The proof runs in two prime fields; a program that it refuses is an error here.
+#[test]
+fn every_reduced_program_is_proved_as_it_is_fused() {
+    for robot in shipped() {
+        let choice = choice(&robot);
+        let program = choice.compile_fused(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let proof = program.proof.expect("a proof");
+        assert!(proof.rounding < 1e-13, "{}: {:e}", robot.name, proof.rounding);
+        let plain = choice.compile(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let [before, after] = [&plain, &program].map(fma::instructions);
+        println!("{:<20} {before} instructions as written, {after} fused", robot.name);
+        assert!(after <= before, "{}", robot.name);
+    }
+}
