@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use rne_codegen::emit::{self, Precision};
-use rne_codegen::{Form, Function, Program};
+use rne_codegen::{Function, Program};
 use rne_model::Robot;
 
 use crate::compiler::Compiler;
@@ -18,9 +18,8 @@ pub(crate) struct Unit {
 }
 
 impl Unit {
-    pub(crate) fn new(robot: &Robot, programs: &[Program], form: Form, precision: Precision) -> Self {
-        // several files in one, with names that differ
-        let prefix = format!("{form}_{}", precision.c_type());
+    /// Files that go into one program have prefixes that differ.
+    pub(crate) fn new(robot: &Robot, programs: &[Program], precision: Precision, prefix: String) -> Self {
         let name = prefix.parse().expect("an identifier");
         let code = emit::c_code(robot, programs, precision, &name).unwrap_or_else(|error| panic!("{error}"));
         let functions = programs.iter().map(|program| program.function).collect();
@@ -88,6 +87,10 @@ impl Driver<'_> {
         for precision in Precision::ALL {
             let real = precision.c_type();
             let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 18);
+        }
+        for precision in Precision::ALL {
+            // where no file has this number type
+            let _ = writeln!(text, "    (void)print_{};", precision.c_type());
         }
         let count = 6 * dof + 18;
         let _ = writeln!(text, "    while (read_float(floats, {count}u) && read_double(doubles, {count}u)) {{");

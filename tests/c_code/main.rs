@@ -6,6 +6,7 @@ mod compiler;
 mod derived;
 mod driver;
 mod kernel;
+mod special;
 mod states;
 
 use std::sync::Mutex;
@@ -48,9 +49,12 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler
 
     let units: Vec<Unit> = code
         .iter()
-        .flat_map(|(form, programs)| Precision::ALL.map(|precision| Unit::new(&robot, programs, *form, precision)))
+        .flat_map(|(form, programs)| {
+            Precision::ALL
+                .map(|precision| Unit::new(&robot, programs, precision, format!("{form}_{}", precision.c_type())))
+        })
         .collect();
-    let states = states::of(&robot);
+    let states = special::states(&robot);
     let mut found = Driver { name, units: &units, dof: robot.dof() }.run(compiler, &states).into_iter();
     let mut compared = 0;
     for state in &states {

@@ -110,6 +110,15 @@ impl Arm {
         Self { robot: robot.clone(), runtime: DynArm::from_robot(robot), code }
     }
 
+    /// By no choice at all, which fits every robot and takes no time to find.
+    pub(crate) fn by_no_choice(robot: &Robot, maker: Maker) -> Self {
+        let arm = Self::new(robot, maker);
+        if let Some(code) = &arm.code {
+            code.choice.set(Choice::none(robot)).expect("no choice has been made before");
+        }
+        arm
+    }
+
     /// By the plan file that stands beside the robot file, if there is one; compiled once in all tests.
     pub(crate) fn from_file(file: &str, maker: Maker) -> &'static Self {
         static ARMS: Mutex<BTreeMap<String, &'static Arm>> = Mutex::new(BTreeMap::new());

@@ -85,6 +85,11 @@ impl Worst {
         }
     }
 
+    /// The worse of both.
+    pub(crate) fn join(&mut self, other: Self) {
+        other.0.into_iter().for_each(|(what, error)| self.see(what, error));
+    }
+
     /// Prints all and fails on those above `tolerance`.
     #[track_caller]
     pub(crate) fn at_most(&self, tolerance: f64, of: &str) {

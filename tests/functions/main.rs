@@ -2,9 +2,15 @@
 //! other, and against physics.
 
 mod arm;
+#[path = "../random/arms.rs"]
+mod arms;
 mod case;
 mod check;
+#[path = "../c_code/compiler.rs"]
+mod compiler;
 mod conventions;
+#[path = "../c_code/driver.rs"]
+mod driver;
 mod energy;
 mod equality;
 mod golden;
@@ -13,7 +19,10 @@ mod matrices;
 mod operations;
 mod peers;
 mod published;
+mod random_arms;
 #[path = "../random/robots.rs"]
 mod robots;
 mod single_precision;
+#[path = "../c_code/states.rs"]
+mod states;
 mod wrenches;

@@ -198,6 +198,8 @@ fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, st
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     let _ = writeln!(text, "    // {}", step_title(program, joint, step));
     let formulas = match recursion(program) {
+        // the lecture's base is at rest
+        _ if joint == 0 => Vec::new(),
         Form::SevenSteps => formulas(step, kind, joint),
         _ if program.is_of_bodies() => Vec::new(),
         _ => reduced_formulas(step, kind, joint),
@@ -225,7 +227,8 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
         (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
         _ => step.title(),
     };
-    format!("joint {joint}, step {}: {title}", step.number())
+    let of = if joint == 0 { "base".to_owned() } else { format!("joint {joint}") };
+    format!("{of}, step {}: {title}", step.number())
 }
 
 /// Which sine and cosine stand at the head of the function.

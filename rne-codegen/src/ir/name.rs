@@ -146,4 +146,16 @@ mod tests {
             assert_eq!(name.to_string(), text);
         }
     }
+
+    #[test]
+    fn an_index_is_no_number_of_a_shared_term() {
+        let element = Name::indexed(Quantity::ScaledFactor, 5, 2);
+        let shared = Name { part: 2, ..Name::scalar(Quantity::ScaledFactor, 5) };
+        assert_ne!(element, shared);
+        assert_eq!(element.to_string(), shared.to_string(), "why texts are compared, not names");
+        assert_eq!(Name { part: 1, ..element }.to_string(), "lowd5_2_1");
+        assert_eq!(Name::indexed(Quantity::GroupSine, 4, 2).to_string(), "s2_4");
+        let parameter = Name { indices: [3, 10], ..Name::scalar(Quantity::RegressorElement, 2) };
+        assert_eq!(parameter.to_string(), "y2_3_10");
+    }
 }
