@@ -132,7 +132,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let half = self.sheet.entry(Name::scalar(Quantity::Half, 0), 0.5);
-        let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.sheet.derivatives(&torques, By::Rate(joint))).collect();
+        let columns = self.sheet.derivatives(&torques, (1..=dof).map(By::Rate));
         square(dof, |row, column| {
             let name = Name { part: column + 1, ..Name::scalar(Quantity::CoriolisElement, row + 1) };
             let line = self.sheet.joint(row + 1);
@@ -227,7 +227,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let by = |kind: fn(usize) -> By| {
-            let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.sheet.derivatives(&torques, kind(joint))).collect();
+            let columns = self.sheet.derivatives(&torques, (1..=dof).map(kind));
             square(dof, |row, column| {
                 let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                 (name, columns[column][row])

@@ -8,16 +8,30 @@ use crate::name::{By, Name};
 use crate::symbol::Symbol;
 use crate::worksheet::{Birth, Definition, Snapshot, Worksheet};
 
+/// What is differentiated: the graph as it was before.
+struct Formulas {
+    nodes: Vec<Node>,
+    births: Vec<Option<Birth>>,
+    definitions: HashMap<usize, Vec<Definition>>,
+    live: Vec<bool>,
+}
+
 impl Worksheet {
-    /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of
+    /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the places of
     /// what they are derivatives of and under its names.
-    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: impl Iterator<Item = By>) -> Vec<Vec<Symbol<'s>>> {
         let Snapshot { nodes, births, definitions: all } = self.snapshot();
         let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
         for definition in all.into_iter().filter(|definition| definition.name.by.is_none()) {
             definitions.entry(definition.term.node.index()).or_default().push(definition);
         }
-        let live = live(&nodes, of);
+        // what derivatives add to the graph is none of what they are derivatives of
+        let formulas = Formulas { live: live(&nodes, of), nodes, births, definitions };
+        by.map(|by| self.derivatives_of(&formulas, of, by)).collect()
+    }
+
+    fn derivatives_of<'s>(&'s self, formulas: &Formulas, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+        let Formulas { nodes, births, definitions, live } = formulas;
         let symbol = |term: Term| self.symbol(term);
         let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.constant(1.0, Cause::Arithmetic));
         let mut rates: Vec<Symbol<'s>> = vec![zero; nodes.len()];

@@ -11,7 +11,8 @@
 //! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of operations: there
 //! the term that comes last should be added last ([`soonest`]).
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use crate::latency;
 use crate::name::Name;
@@ -241,16 +242,32 @@ impl Graph {
                 self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
             })
             .collect();
-        let mut unstarted: Vec<_> = sums.into_iter().filter(|terms| !terms.is_empty()).collect();
-        loop {
-            unstarted.retain(|terms| !terms.iter().any(|term| is_computed[term.node]));
-            let mut starts = BTreeMap::<usize, usize>::new();
-            for term in unstarted.iter().copied().flatten() {
-                *starts.entry(term.node).or_default() += 1;
+        // sums that nothing begins yet, by their terms, and how many of them each term is in
+        let mut is_started: Vec<_> = sums.iter().map(|terms| terms.iter().any(|term| is_computed[term.node])).collect();
+        let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); self.nodes.len()];
+        let mut counts = vec![0_usize; self.nodes.len()];
+        for (index, terms) in sums.iter().enumerate().filter(|(index, _)| !is_started[*index]) {
+            for term in *terms {
+                counts[term.node] += 1;
+                sums_of[term.node].push(index);
             }
-            // the first of those that start most sums
-            let Some((&best, _)) = starts.iter().rev().max_by_key(|&(_, &count)| count) else { break };
-            is_computed[best] = true;
+        }
+        // the first of those that begin most sums; counts fall, so what is too high in the queue goes back
+        let counted = counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        let mut queue: BinaryHeap<_> = counted.map(|(node, &count)| (count, Reverse(node))).collect();
+        while let Some((count, Reverse(node))) = queue.pop() {
+            if count != counts[node] {
+                if counts[node] > 0 {
+                    queue.push((counts[node], Reverse(node)));
+                }
+                continue;
+            }
+            is_computed[node] = true;
+            for &sum in &sums_of[node] {
+                if !std::mem::replace(&mut is_started[sum], true) {
+                    sums[sum].iter().for_each(|term| counts[term.node] -= 1);
+                }
+            }
         }
         for (index, node) in self.nodes.iter_mut().enumerate() {
             node.is_computed = is_computed[index];
@@ -295,7 +312,7 @@ impl Graph {
         }
         let outputs = program.outputs.iter().zip(outputs);
         let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
-        Program { statements, outputs, ..program.clone() }
+        program.computed_by(statements, outputs)
     }
 
     /// A product whose factors are not computed once more wherever it is fused.

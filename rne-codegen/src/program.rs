@@ -180,6 +180,23 @@ impl Operations {
 }
 
 impl Program {
+    /// The same program with other statements.
+    pub(crate) fn computed_by(&self, statements: Vec<Statement>, outputs: Vec<Output>) -> Self {
+        Self {
+            robot: self.robot.clone(),
+            arguments: self.arguments.clone(),
+            constants: self.constants.clone(),
+            angles: self.angles.clone(),
+            turns: self.turns.clone(),
+            statements,
+            outputs,
+            findings: self.findings.clone(),
+            ledger: self.ledger.clone(),
+            choices: self.choices.clone(),
+            ..*self
+        }
+    }
+
     /// (products, sums) of the seven steps before folding, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {

@@ -188,14 +188,15 @@ impl Reading {
     /// A number of the file.
     pub(crate) fn decimal(&self, value: f64) -> Number {
         let magnitude = value.abs();
+        if magnitude == 0.0 {
+            return Number::ZERO;
+        }
         let image = if self.unknown == Some(magnitude) {
             let seed = self.seed ^ magnitude.to_bits();
             Image::residues(mixed(seed), mixed(!seed))
         } else {
             let (digits, exponent) = decimal_digits(magnitude);
-            let ten = Image::integer(10);
-            // ten is no divisor of either prime
-            let factor = if exponent < 0 { ten.inverse().unwrap_or(ten) } else { ten };
+            let factor = if exponent < 0 { Image::TENTH } else { Image::integer(10) };
             (0..exponent.abs()).fold(Image::integer(digits), |image, _| image * factor)
         };
         let number = Number { value: Double::decimal(magnitude), image };

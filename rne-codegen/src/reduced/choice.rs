@@ -159,14 +159,15 @@ impl Choice {
     /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without the
     /// choices that it makes joint by joint for the recursion.
     fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Way) {
-        let ways = Way::of(function);
+        let ways = Way::of_so_many(function, robot.dof());
         let first = (self.plan.clone(), ways.first().copied().unwrap_or(Way::Recursion));
         if ways.len() < 2 {
             return first;
         }
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = evaluator::Evaluator::new(robot, function);
-        let candidates = ways.iter().flat_map(|way| [(self.plan.clone(), *way), (plain.clone(), *way)]);
+        let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        let candidates = ways.iter().flat_map(|way| plans.iter().map(|plan| (plan.clone(), *way)));
         let costs = candidates.filter_map(|(plan, way)| Some((evaluator.cost_of(&plan, way)?.weight(), plan, way)));
         costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, way)| (plan, way))
     }
@@ -194,7 +195,7 @@ fn compile_merged(
     arranged: fn(Program) -> Program,
 ) -> Result<Program, CompileError> {
     let plain = crate::compile(robot, function, Form::SevenSteps)?;
-    match merged::program(robot, function, arranged) {
+    match merged::program(robot, &plain, arranged) {
         // a value that is found where it is not used otherwise costs what it takes there
         Ok(merged) if merged.operations().total() <= plain.operations().total() => Ok(merged),
         _ => Ok(plain),

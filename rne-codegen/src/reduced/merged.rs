@@ -4,7 +4,7 @@
 use rne_model::{Angle, Robot};
 
 use crate::exact::{Number, Reading, Turn};
-use crate::function::{Form, Function};
+use crate::function::Form;
 use crate::graph::Term;
 use crate::program::Program;
 use crate::proof::{self, Exactly};
@@ -12,12 +12,13 @@ use crate::quantity::Quantity;
 use crate::worksheet::Worksheet;
 use crate::{CompileError, derivation, schedule};
 
-/// A function, `arranged` and proved to be that of the plain formulas.
+/// The function of the plain program, `arranged` and proved to be that of the plain formulas.
 pub(crate) fn program(
     robot: &Robot,
-    function: Function,
+    plain: &Program,
     arranged: fn(Program) -> Program,
 ) -> Result<Program, CompileError> {
+    let function = plain.function;
     let reading = Reading::default();
     let sheet = Worksheet::merged(reading);
     let outputs = derivation::outputs(&sheet, robot, function);
@@ -40,6 +41,6 @@ pub(crate) fn program(
         exactly.insert(constant.name, signed);
     }
     let mut program = arranged(program);
-    program.proof = Some(proof::prove(robot, &program, &exactly, reading)?);
+    program.proof = Some(proof::prove_beside(plain, robot, &program, &exactly, reading)?);
     Ok(program)
 }

@@ -51,6 +51,18 @@ impl Way {
         }
     }
 
+    /// The ways of a function for so many joints that are worth counting. Those that write the recursion anew for every
+    /// joint grow faster than composite bodies, and lose long before `MANY`.
+    pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
+        const MANY: usize = 10;
+        let is_of_columns = |way: Self| {
+            way == Way::Columns
+                || way == Way::Recursion
+                    && matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives)
+        };
+        Self::of(function).iter().copied().filter(|way| joints < MANY || !is_of_columns(*way)).collect()
+    }
+
     /// In words, for the choices of a program; nothing is said of the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
