@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use indicatif::ProgressBar;
 use rne_codegen::reduced::{Choice, PlanFile};
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::{CompileError, Form, Function, Program, compile};
 use rne_model::Robot;
 
 use crate::outcome::Failure;
@@ -111,13 +111,18 @@ impl<'a> Compiler<'a> {
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
+        self.compiled(function, form)?.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+    }
+
+    /// The program, or why there is none.
+    pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
         let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
         let compiled = match form {
             Form::SevenSteps => compile(self.robot, function, form),
             Form::Reduced | Form::Rewritten => self.choice()?.compile(self.robot, function, form),
         };
         bar.finish_and_clear();
-        compiled.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+        Ok(compiled)
     }
 
     /// On a terminal, what an arm that is not done at once is at.

@@ -34,7 +34,7 @@ use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
 pub fn fused(program: &Program) -> Program {
     let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Too);
-    graph.choose_products();
+    let _ = graph.choose_products();
     graph.program(program, &outputs)
 }
 
@@ -225,8 +225,8 @@ impl Graph {
         }
     }
 
-    /// Decides which products are computed by themselves.
-    fn choose_products(&mut self) {
+    /// Decides which products are computed by themselves; how many candidates it looked at.
+    fn choose_products(&mut self) -> usize {
         // uses as terms of sums; a product with other uses has to be computed
         let mut in_sums = vec![0; self.nodes.len()];
         let sums: Vec<_> = self
@@ -237,6 +237,7 @@ impl Graph {
         for term in sums.iter().copied().flatten() {
             in_sums[term.node] += 1;
         }
+        let mut steps = 0;
         let mut is_computed: Vec<_> = (0..self.nodes.len())
             .map(|node| {
                 self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
@@ -256,6 +257,7 @@ impl Graph {
         let counted = counts.iter().enumerate().filter(|(_, count)| **count > 0);
         let mut queue: BinaryHeap<_> = counted.map(|(node, &count)| (count, Reverse(node))).collect();
         while let Some((count, Reverse(node))) = queue.pop() {
+            steps += 1;
             if count != counts[node] {
                 if counts[node] > 0 {
                     queue.push((counts[node], Reverse(node)));
@@ -275,6 +277,7 @@ impl Graph {
                 terms.sort_by_key(|term| !is_computed[term.node]);
             }
         }
+        steps
     }
 
     fn sort_terms(&mut self, turns: &[Turn]) {
@@ -394,5 +397,22 @@ impl Term {
     fn opposite(self) -> Self {
         let sign = if self.sign == Sign::Plus { Sign::Minus } else { Sign::Plus };
         Self { sign, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Form, Function, compile};
+
+    #[test]
+    fn the_choice_of_products_is_not_quadratic() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/dense/dense7.yaml");
+        let robot = rne_model::check_bytes("dense7", &std::fs::read(path).unwrap()).unwrap().robot;
+        let program = compile(&robot, Function::Regressor, Form::SevenSteps).unwrap();
+        let (mut graph, _) = Graph::new(&program);
+        graph.flatten(Named::Too);
+        let (steps, nodes) = (graph.choose_products(), graph.nodes.len());
+        assert!(steps > 100 && steps < 2 * nodes, "{steps} of {nodes}");
     }
 }

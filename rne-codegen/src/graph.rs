@@ -242,6 +242,12 @@ impl Graph {
         self.nodes.len()
     }
 
+    /// Sums, products and quotients.
+    pub(crate) fn operations(&self) -> usize {
+        let is_operation = |node: &&Node| matches!(node, Node::Sum(..) | Node::Product(..) | Node::Quotient(..));
+        self.nodes.iter().filter(is_operation).count()
+    }
+
     /// All nodes with their ids, in order of creation.
     pub(crate) fn nodes(&self) -> impl DoubleEndedIterator<Item = (NodeId, Node)> + ExactSizeIterator {
         self.nodes.iter().enumerate().map(|(index, &node)| (Self::id(index), node))

@@ -77,10 +77,23 @@ pub fn compile_keeping(
     if form != Form::SevenSteps {
         return reduced::Choice::default_of(robot).compile(robot, function, form);
     }
+    seven_steps_within(LARGEST, robot, function, keep)
+}
+
+/// The seven steps, if they are not more than `most` operations.
+fn seven_steps_within(
+    most: usize,
+    robot: &Robot,
+    function: Function,
+    keep: &[Quantity],
+) -> Result<Program, CompileError> {
     let sheet = Worksheet::default();
-    let dof = robot.dof();
+    let (dof, form) = (robot.dof(), Form::SevenSteps);
     let mut outputs = derivation::outputs(&sheet, robot, function);
     let written = sheet.finish();
+    if written.graph.operations() > most {
+        return Err(CompileError::TooLarge { function, dof, most });
+    }
     let of_a_link = |name: &Name| (1..=dof).contains(&name.joint);
     let kept = written
         .definitions
@@ -117,9 +130,22 @@ pub enum CompileError {
         /// What may be the cause.
         suspect: Suspect,
     },
+    /// A function of so many joints that no compiler would take its code.
+    TooLarge {
+        /// The function.
+        function: Function,
+        /// Joints of the robot.
+        dof: usize,
+        /// The most operations that are compiled.
+        most: usize,
+    },
     /// A plan that does not fit the robot.
     Plan(String),
 }
+
+/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which nothing
+/// folds. Its text is some 15 MB.
+const LARGEST: usize = 500_000;
 
 /// What may be the cause when a form is refused.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -233,9 +259,31 @@ impl fmt::Display for CompileError {
                     Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
                 }
             }
+            Self::TooLarge { function, dof, most } => write!(
+                f,
+                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler takes in \
+                 reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+            ),
             Self::Plan(why) => f.write_str(why),
         }
     }
 }
 
 impl std::error::Error for CompileError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_large_is_refused_with_what_to_do() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
+        let robot = rne_model::check_bytes("ur5", &std::fs::read(path).unwrap()).unwrap().robot;
+        let function = Function::InverseDynamicsDerivatives;
+        let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
+        assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });
+        let message = error.to_string();
+        assert!(message.contains("more than 1000 operations") && message.contains("rne::DynArm"), "{message}");
+        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[]).is_ok());
+    }
+}

@@ -107,6 +107,8 @@ impl Choice {
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 match self.compile_planned(robot, function, form, arranged) {
+                    // fewer choices make no program shorter
+                    Err(error @ CompileError::TooLarge { .. }) => Err(error),
                     Err(_) if self.maker == Maker::Build => self.compile_with_less(robot, function, form, arranged),
                     done => done.map_err(|error| error.suspecting(robot, self.maker == Maker::PlanFile)),
                 }
