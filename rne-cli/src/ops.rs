@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_codegen::plan::{self, Choice, Trick};
-use rne_codegen::{Form, Function, Operations, Program};
+use rne_codegen::{CompileError, Form, Function, Operations, Program};
 use rne_model::Robot;
 use serde::Serialize;
 
@@ -72,6 +72,7 @@ pub(crate) struct Count {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut counted = Vec::new();
+    let mut remarks = String::new();
     let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
@@ -83,7 +84,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
                 let functions: Vec<Function> = functions::of(&robot)
                     .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
                     .collect();
-                counted.push((robot.name.clone(), counts(path, &robot, &compiler, &functions, &arguments.without)?));
+                let counts = counts(path, &robot, &compiler, &functions, &arguments.without, &mut remarks)?;
+                counted.push((robot.name.clone(), counts));
             }
             Ok(())
         });
@@ -93,18 +95,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match failures.first() {
         Some(first) => Err(Failure { text: complaints.join("\n\n"), status: first.status }),
         None if arguments.tricks => Ok(Outcome::text(savings)),
-        None if arguments.json => Outcome::json(&entries(&counted)),
-        None => Ok(Outcome::text(table(&counted))),
+        None if arguments.json => Ok(Outcome { remark: remarks, ..Outcome::json(&entries(&counted))? }),
+        None => Ok(Outcome { remark: remarks, ..Outcome::text(table(&counted)) }),
     }
 }
 
-/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any.
+/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any. What is too large
+/// to be compiled is left out, with a line in `remarks`.
 pub(crate) fn counts(
     file: &Path,
     robot: &Robot,
     compiler: &Compiler<'_>,
     functions: &[Function],
     without: &[Trick],
+    remarks: &mut String,
 ) -> Result<Vec<Count>, Failure> {
     let mut counts = Vec::new();
     let count = |function, form, program: &Program| Count {
@@ -124,9 +128,17 @@ pub(crate) fn counts(
         return Ok(counts);
     }
     for &function in functions {
-        for form in [Form::SevenSteps, Form::Reduced] {
-            counts.push(count(function, form, &compiler.compile(function, form)?));
+        match compiler.compiled(function, Form::SevenSteps)? {
+            Err(error @ CompileError::TooLarge { .. }) => {
+                let _ = writeln!(remarks, "{}: {error}", file.display());
+                continue;
+            }
+            program => {
+                let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
+                counts.push(count(function, Form::SevenSteps, &program));
+            }
         }
+        counts.push(count(function, Form::Reduced, &compiler.compile(function, Form::Reduced)?));
         if function == Function::InverseDynamics && compiler.choice()?.rewritten.is_some() {
             counts.push(count(function, Form::Rewritten, &compiler.compile(function, Form::Rewritten)?));
         }

@@ -4,9 +4,11 @@ use std::cell::OnceCell;
 use std::fs::File;
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
+use indicatif::ProgressBar;
 use rne_codegen::plan::{Choice, PlanFile};
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::{CompileError, Form, Function, Program, compile};
 use rne_model::Robot;
 
 use crate::outcome::Failure;
@@ -109,10 +111,28 @@ impl<'a> Compiler<'a> {
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
+        self.compiled(function, form)?.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+    }
+
+    /// The program, or why there is none.
+    pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
+        let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
         let compiled = match form {
             Form::SevenSteps => compile(self.robot, function, form),
             Form::Reduced | Form::Rewritten => self.choice()?.compile(self.robot, function, form),
         };
-        compiled.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+        bar.finish_and_clear();
+        Ok(compiled)
+    }
+
+    /// On a terminal, what an arm that is not done at once is at.
+    fn sign_of_life(&self, what: String) -> ProgressBar {
+        const SOON_DONE: usize = 8;
+        if self.robot.dof() <= SOON_DONE {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new_spinner().with_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        bar
     }
 }

@@ -56,7 +56,14 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
          The functions that leave velocities or accelerations out are compiled for themselves.",
     );
     let file = Path::new(FILE);
-    let counts = ops::counts(file, &robot, &Compiler::built_in(file, &robot, PLAN)?, &Function::TORQUES, &[])?;
+    let counts = ops::counts(
+        file,
+        &robot,
+        &Compiler::built_in(file, &robot, PLAN)?,
+        &Function::TORQUES,
+        &[],
+        &mut String::new(),
+    )?;
     text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
     chapter(
         &mut text,

@@ -11,7 +11,8 @@
 //! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of operations: there
 //! the term that comes last should be added last ([`soonest`]).
 
-use std::collections::BTreeMap;
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 
 use crate::ir::name::Name;
 use crate::latency;
@@ -33,7 +34,7 @@ use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
 pub fn fused(program: &Program) -> Program {
     let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Too);
-    graph.choose_products();
+    let _ = graph.choose_products();
     graph.program(program, &outputs)
 }
 
@@ -224,8 +225,8 @@ impl Graph {
         }
     }
 
-    /// Decides which products are computed by themselves.
-    fn choose_products(&mut self) {
+    /// Decides which products are computed by themselves; how many candidates it looked at.
+    fn choose_products(&mut self) -> usize {
         // uses as terms of sums; a product with other uses has to be computed
         let mut in_sums = vec![0; self.nodes.len()];
         let sums: Vec<_> = self
@@ -236,21 +237,39 @@ impl Graph {
         for term in sums.iter().copied().flatten() {
             in_sums[term.node] += 1;
         }
+        let mut steps = 0;
         let mut is_computed: Vec<_> = (0..self.nodes.len())
             .map(|node| {
                 self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
             })
             .collect();
-        let mut unstarted: Vec<_> = sums.into_iter().filter(|terms| !terms.is_empty()).collect();
-        loop {
-            unstarted.retain(|terms| !terms.iter().any(|term| is_computed[term.node]));
-            let mut starts = BTreeMap::<usize, usize>::new();
-            for term in unstarted.iter().copied().flatten() {
-                *starts.entry(term.node).or_default() += 1;
+        // sums that nothing begins yet, by their terms, and how many of them each term is in
+        let mut is_started: Vec<_> = sums.iter().map(|terms| terms.iter().any(|term| is_computed[term.node])).collect();
+        let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); self.nodes.len()];
+        let mut counts = vec![0_usize; self.nodes.len()];
+        for (index, terms) in sums.iter().enumerate().filter(|(index, _)| !is_started[*index]) {
+            for term in *terms {
+                counts[term.node] += 1;
+                sums_of[term.node].push(index);
             }
-            // the first of those that start most sums
-            let Some((&best, _)) = starts.iter().rev().max_by_key(|&(_, &count)| count) else { break };
-            is_computed[best] = true;
+        }
+        // the first of those that begin most sums; counts fall, so what is too high in the queue goes back
+        let counted = counts.iter().enumerate().filter(|(_, count)| **count > 0);
+        let mut queue: BinaryHeap<_> = counted.map(|(node, &count)| (count, Reverse(node))).collect();
+        while let Some((count, Reverse(node))) = queue.pop() {
+            steps += 1;
+            if count != counts[node] {
+                if counts[node] > 0 {
+                    queue.push((counts[node], Reverse(node)));
+                }
+                continue;
+            }
+            is_computed[node] = true;
+            for &sum in &sums_of[node] {
+                if !std::mem::replace(&mut is_started[sum], true) {
+                    sums[sum].iter().for_each(|term| counts[term.node] -= 1);
+                }
+            }
         }
         for (index, node) in self.nodes.iter_mut().enumerate() {
             node.is_computed = is_computed[index];
@@ -258,6 +277,7 @@ impl Graph {
                 terms.sort_by_key(|term| !is_computed[term.node]);
             }
         }
+        steps
     }
 
     fn sort_terms(&mut self, turns: &[Turn]) {
@@ -295,7 +315,7 @@ impl Graph {
         }
         let outputs = program.outputs.iter().zip(outputs);
         let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
-        Program { statements, outputs, ..program.clone() }
+        program.computed_by(statements, outputs)
     }
 
     /// A product whose factors are not computed once more wherever it is fused.
@@ -377,5 +397,22 @@ impl Term {
     fn opposite(self) -> Self {
         let sign = if self.sign == Sign::Plus { Sign::Minus } else { Sign::Plus };
         Self { sign, ..self }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Form, Function, compile};
+
+    #[test]
+    fn the_choice_of_products_is_not_quadratic() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/dense/dense7.yaml");
+        let robot = rne_model::check_bytes("dense7", &std::fs::read(path).unwrap()).unwrap().robot;
+        let program = compile(&robot, Function::Regressor, Form::SevenSteps).unwrap();
+        let (mut graph, _) = Graph::new(&program);
+        graph.flatten(Named::Too);
+        let (steps, nodes) = (graph.choose_products(), graph.nodes.len());
+        assert!(steps > 100 && steps < 2 * nodes, "{steps} of {nodes}");
     }
 }

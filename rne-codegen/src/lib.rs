@@ -59,16 +59,29 @@ pub fn compile_keeping(
     if form != Form::SevenSteps {
         return plan::Choice::default_of(robot).compile(robot, function, form);
     }
+    seven_steps_within(LARGEST, robot, function, keep)
+}
+
+/// The seven steps, if they are not more than `most` operations.
+fn seven_steps_within(
+    most: usize,
+    robot: &Robot,
+    function: Function,
+    keep: &[Quantity],
+) -> Result<Program, CompileError> {
     let builder = Builder::traced(Policy::Structure, Reading::default(), function);
     let (mut names, outputs): (Vec<Name>, Vec<_>) = formulate::outputs(&builder, robot, function).into_iter().unzip();
     let mut written = builder.finish(outputs);
+    if written.graph.operations() > most {
+        return Err(CompileError::TooLarge { function, dof: robot.dof(), most });
+    }
     for definition in &written.trace.definitions {
         if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {
             names.push(definition.name);
             written.graph.outputs.push(definition.at);
         }
     }
-    Ok(lower::lower(&lower::Heading { robot, function, form }, written, &names)?.0)
+    Ok(lower::lower(&lower::Heading { robot, function, form: Form::SevenSteps }, written, &names)?.0)
 }
 
 /// Why a robot cannot be compiled.
@@ -104,9 +117,22 @@ pub enum CompileError {
         /// The name.
         name: String,
     },
+    /// A function of so many joints that no compiler would take its code.
+    TooLarge {
+        /// The function.
+        function: Function,
+        /// Joints of the robot.
+        dof: usize,
+        /// The most operations that are compiled.
+        most: usize,
+    },
     /// A plan that does not fit the robot.
     Plan(String),
 }
+
+/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which nothing
+/// folds. Its text is some 15 MB.
+const LARGEST: usize = 500_000;
 
 /// What may be the cause when a form is refused.
 #[derive(Clone, Debug, PartialEq, Default)]
@@ -225,9 +251,31 @@ impl fmt::Display for CompileError {
                 "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \
                  meant. No code is written. Please report this robot"
             ),
+            Self::TooLarge { function, dof, most } => write!(
+                f,
+                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler takes in \
+                 reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+            ),
             Self::Plan(why) => f.write_str(why),
         }
     }
 }
 
 impl std::error::Error for CompileError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_large_is_refused_with_what_to_do() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
+        let robot = rne_model::check_bytes("ur5", &std::fs::read(path).unwrap()).unwrap().robot;
+        let function = Function::InverseDynamicsDerivatives;
+        let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
+        assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });
+        let message = error.to_string();
+        assert!(message.contains("more than 1000 operations") && message.contains("rne::DynArm"), "{message}");
+        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[]).is_ok());
+    }
+}

@@ -203,6 +203,23 @@ impl Program {
         }
     }
 
+    /// The same program with other statements.
+    pub(crate) fn computed_by(&self, statements: Vec<Statement>, outputs: Vec<Output>) -> Self {
+        Self {
+            robot: self.robot.clone(),
+            arguments: self.arguments.clone(),
+            constants: self.constants.clone(),
+            angles: self.angles.clone(),
+            turns: self.turns.clone(),
+            statements,
+            outputs,
+            findings: self.findings.clone(),
+            ledger: self.ledger.clone(),
+            choices: self.choices.clone(),
+            ..*self
+        }
+    }
+
     /// (products, sums) of the seven steps before folding, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {
@@ -319,7 +336,7 @@ mod tests {
     use rne_model::Robot;
 
     use super::*;
-    use crate::quantity::Quantity;
+    use crate::ir::quantity::Quantity;
     use crate::{Interpreter, compile};
 
     fn rod() -> Program {

@@ -54,9 +54,24 @@ pub(crate) fn prove(
     constants: &Exactly,
     reading: Reading,
 ) -> Result<Proof, CompileError> {
+    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+    prove_beside(&faithful, robot, program, constants, reading)
+}
+
+/// The same when the seven steps are at hand.
+///
+/// # Errors
+/// As [`prove`].
+pub(crate) fn prove_beside(
+    faithful: &Program,
+    robot: &Robot,
+    program: &Program,
+    constants: &Exactly,
+    reading: Reading,
+) -> Result<Proof, CompileError> {
     program.check_names()?;
     identical(robot, program, constants, reading)?;
-    let proof = rounding(robot, program, STATES)?;
+    let proof = rounding(robot, program, faithful, STATES)?;
     if proof.rounding <= largest_rounding(program.function) {
         Ok(proof)
     } else {
@@ -246,8 +261,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
 ///
 /// # Errors
 /// When the seven steps of the robot cannot be compiled.
-fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, CompileError> {
-    let faithful = compile(robot, program.function, Form::SevenSteps)?;
+fn rounding(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Proof, CompileError> {
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
         states,
@@ -256,7 +270,7 @@ fn rounding(robot: &Robot, program: &Program, states: usize) -> Result<Proof, Co
         single_of_seven_steps: 0.0,
         before: faithful.ledger.before(),
     };
-    for errors in errors(robot, program, &faithful, states)? {
+    for errors in errors(robot, program, faithful, states)? {
         proof.rounding = larger(proof.rounding, errors.double);
         proof.single = larger(proof.single, errors.single);
         proof.single_of_seven_steps = larger(proof.single_of_seven_steps, errors.single_of_seven_steps);

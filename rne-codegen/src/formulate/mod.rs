@@ -134,7 +134,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
-        let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.builder.derivatives(&torques, By::Rate(joint))).collect();
+        let columns = self.builder.derivatives(&torques, (1..=dof).map(By::Rate));
         square(dof, |row, column| {
             let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
             let line = self.builder.joint(row + 1);
@@ -232,7 +232,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
         let dof = torques.len();
         let by = |kind: fn(usize) -> By| {
-            let columns: Vec<Vec<_>> = (1..=dof).map(|joint| self.builder.derivatives(&torques, kind(joint))).collect();
+            let columns = self.builder.derivatives(&torques, (1..=dof).map(kind));
             square(dof, |row, column| {
                 let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                 (name, columns[column][row])

@@ -6,10 +6,18 @@ use super::{Birth, Builder, Definition, Input, Op, Ref, Symbol, mark_live};
 use crate::ir::ledger::{Cause, Place};
 use crate::ir::name::{By, Name};
 
+/// What is differentiated: the graph as it was before.
+struct Formulas {
+    ops: Vec<Op>,
+    births: Vec<Option<Birth>>,
+    definitions: HashMap<usize, Vec<Definition>>,
+    live: Vec<bool>,
+}
+
 impl Builder {
-    /// The partial derivatives of some symbols by a variable, each product by the product rule and so on, in the places of
+    /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the places of
     /// what they are derivatives of and under its names.
-    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: impl Iterator<Item = By>) -> Vec<Vec<Symbol<'s>>> {
         let (births, all) = self.told();
         let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
         for definition in all.into_iter().filter(|definition| definition.name.by.is_none()) {
@@ -22,6 +30,13 @@ impl Builder {
             mark_live(&graph.nodes, &outputs, &mut live);
             graph.nodes().map(|(_, op)| op).collect()
         };
+        // what derivatives add to the graph is none of what they are derivatives of
+        let formulas = Formulas { ops, births, definitions, live };
+        by.map(|by| self.derivatives_of(&formulas, of, by)).collect()
+    }
+
+    fn derivatives_of<'s>(&'s self, formulas: &Formulas, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+        let Formulas { ops, births, definitions, live } = formulas;
         let variable = Input::new(by.variable());
         let symbol = |at: Ref| self.symbol(at);
         let (zero, one) = (self.constant(0.0, Cause::Arithmetic), self.one());

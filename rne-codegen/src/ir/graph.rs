@@ -236,6 +236,11 @@ impl Graph {
         self.nodes.len()
     }
 
+    /// Sums, products and quotients.
+    pub(crate) fn operations(&self) -> usize {
+        self.nodes.iter().filter(|node| node.op.is_operation()).count()
+    }
+
     pub(crate) fn op(&self, at: Ref) -> Op {
         self.nodes[at.index()].op
     }

@@ -17,6 +17,8 @@ pub(crate) struct Image([u64; 2]);
 impl Image {
     pub(crate) const ZERO: Self = Self([0, 0]);
     pub(crate) const ONE: Self = Self([1, 1]);
+    /// 1/10
+    pub(crate) const TENTH: Self = Self([2_075_258_708_292_324_556, 2_075_258_708_292_324_529]);
 
     /// The image of an integer.
     pub(crate) const fn integer(value: u64) -> Self {
@@ -216,5 +218,6 @@ mod tests {
             assert_ne!(image.is_negative(), (-image).is_negative());
         }
         assert_eq!(Image::ZERO.inverse(), None);
+        assert_eq!(Image::TENTH * Image::integer(10), Image::ONE);
     }
 }

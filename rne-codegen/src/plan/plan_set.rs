@@ -108,6 +108,8 @@ impl Choice {
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 match self.compile_planned(robot, function, form, arranged) {
+                    // fewer choices make no program shorter
+                    Err(error @ CompileError::TooLarge { .. }) => Err(error),
                     Err(_) if self.maker == Maker::Build => self.compile_with_less(robot, function, form, arranged),
                     done => done.map_err(|error| error.suspecting(robot, self.maker == Maker::PlanFile)),
                 }
@@ -127,7 +129,7 @@ impl Choice {
         let (plan, way) = self.cheapest(robot, function);
         let (frame, names, written) = written_in(robot, &plan, function, way)?;
         let heading = Heading { robot, function, form };
-        let program = proved(&heading, written, &names, frame.table.reading, arranged)?;
+        let program = proved(&heading, written, &names, frame.table.reading, arranged, None)?;
         let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
         Ok(Program { choices, ..program })
     }
@@ -161,14 +163,15 @@ impl Choice {
     /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without the
     /// choices that it makes joint by joint for the recursion.
     fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Way) {
-        let ways = Way::of(function);
+        let ways = Way::of_so_many(function, robot.dof());
         let first = (self.plan.clone(), ways.first().copied().unwrap_or(Way::Recursion));
         if ways.len() < 2 {
             return first;
         }
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = cost::Evaluator::new(robot, function);
-        let candidates = ways.iter().flat_map(|way| [(self.plan.clone(), *way), (plain.clone(), *way)]);
+        let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        let candidates = ways.iter().flat_map(|way| plans.iter().map(|plan| (plan.clone(), *way)));
         let costs = candidates.filter_map(|(plan, way)| Some((evaluator.cost_of(&plan, way)?.weight(), plan, way)));
         costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, way)| (plan, way))
     }
@@ -184,7 +187,7 @@ impl Choice {
         let function = Function::InverseDynamics;
         let (frame, names, written) = rewritten_graph(robot, plan, graph)?;
         let heading = Heading { robot, function, form: Form::Rewritten };
-        proved(&heading, written, &names, frame.table.reading, arranged)
+        proved(&heading, written, &names, frame.table.reading, arranged, None)
     }
 }
 
@@ -195,10 +198,14 @@ fn proved(
     names: &[Name],
     reading: Reading,
     arranged: fn(Program) -> Program,
+    plain: Option<&Program>,
 ) -> Result<Program, CompileError> {
     let (program, exactly) = lower(heading, written, names)?;
     let mut program = arranged(program);
-    program.proof = Some(prove::prove(heading.robot, &program, &exactly, reading)?);
+    program.proof = Some(match plain {
+        Some(plain) => prove::prove_beside(plain, heading.robot, &program, &exactly, reading)?,
+        None => prove::prove(heading.robot, &program, &exactly, reading)?,
+    });
     Ok(program)
 }
 
@@ -214,7 +221,7 @@ fn compile_merged(
     let builder = Builder::traced(Policy::Value, reading, function);
     let (names, outputs): (Vec<Name>, Vec<_>) = formulate::outputs(&builder, robot, function).into_iter().unzip();
     let written = builder.finish(outputs).numbered();
-    match proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged) {
+    match proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged, Some(&plain)) {
         // a value that is found where it is not used otherwise costs what it takes there
         Ok(merged) if merged.operations().total() <= plain.operations().total() => Ok(merged),
         _ => Ok(plain),

@@ -303,3 +303,27 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         assert!(report.errors().next().unwrap().message.contains(what), "{report}");
     }
 }
+
+/// An arm in which nothing folds.
+fn dense(dof: usize) -> Robot {
+    let mut robot = robot("dense7");
+    let joints: Vec<_> = robot.joints.iter().cycle().take(dof).cloned().collect();
+    robot.joints = joints;
+    robot
+}
+
+#[test]
+fn long_arms_take_no_more_plans_and_no_ways_that_lose() {
+    for dof in [4, 16, 32] {
+        let mut search = Search::new(&dense(dof), &[]);
+        search.greedy(240);
+        assert!(search.plans <= 240, "{} plans for {dof} joints", search.plans);
+    }
+    for function in Function::ALL {
+        use crate::reduced::algorithm::Way;
+        assert_eq!(Way::of_so_many(function, 7), Way::of(function), "{function}");
+        let many = Way::of_so_many(function, 32);
+        assert_eq!(many.is_empty(), Way::of(function).is_empty(), "{function}");
+        assert!(!many.contains(&Way::Columns), "{function}");
+    }
+}

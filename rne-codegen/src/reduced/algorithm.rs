@@ -51,6 +51,18 @@ impl Way {
         }
     }
 
+    /// The ways of a function for so many joints that are worth counting. Those that write the recursion anew for every
+    /// joint grow faster than composite bodies, and lose long before `MANY`.
+    pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
+        const MANY: usize = 10;
+        let is_of_columns = |way: Self| {
+            way == Way::Columns
+                || way == Way::Recursion
+                    && matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives)
+        };
+        Self::of(function).iter().copied().filter(|way| joints < MANY || !is_of_columns(*way)).collect()
+    }
+
     /// In words, for the choices of a program; nothing is said of the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
@@ -119,8 +131,7 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
         (Function::InverseDynamicsDerivatives, _) => {
             let torques = recursion(builder, arm);
             let by = |kind: fn(usize) -> By| {
-                let columns: Vec<_> =
-                    (1..=torques.len()).map(|joint| builder.derivatives(&torques, kind(joint))).collect();
+                let columns = builder.derivatives(&torques, (1..=torques.len()).map(kind));
                 square(torques.len(), |row, column| {
                     let by = Some(kind(column + 1));
                     (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
@@ -131,8 +142,7 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
         (Function::CoriolisMatrix, _) => {
             let torques = recursion(builder, arm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
-            let columns: Vec<_> =
-                (1..=torques.len()).map(|joint| builder.derivatives(&torques, By::Rate(joint))).collect();
+            let columns = builder.derivatives(&torques, (1..=torques.len()).map(By::Rate));
             square(torques.len(), |row, column| {
                 builder.at(Quantity::CoriolisElement, row + 1);
                 let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
