@@ -10,9 +10,11 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::ledger::Cause;
 use crate::links::Arm;
+use crate::name::Name;
 use crate::quantity::{Axis, Quantity};
-use crate::seven_steps::{JointState, Motion, rotation};
+use crate::seven_steps::{self, Base, JointState, Turning, rotation};
 use crate::symbol::{Matrix, Symbol, Vector};
 use crate::worksheet::Worksheet;
 
@@ -89,7 +91,7 @@ pub(crate) fn jacobian<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, frames: &Frames<
                 let lever = line.within(Quantity::JacobianLinear, || frames.tip.origin - frame.origin);
                 (line.within(Quantity::JacobianLinear, || axis.cross(lever)), axis)
             }
-            Prismatic => (axis, sheet.zeros(crate::ledger::Cause::JointAxis)),
+            Prismatic => (axis, sheet.zeros(Cause::JointAxis)),
         };
         let linear = sheet.entry_vector(Quantity::JacobianLinear, index + 1, linear);
         let angular = sheet.entry_vector(Quantity::JacobianAngular, index + 1, angular);
@@ -98,27 +100,52 @@ pub(crate) fn jacobian<'s>(sheet: &'s Worksheet, arm: &Arm<'s>, frames: &Frames<
     columns.collect()
 }
 
-/// Linear and angular acceleration of the tip in world axes, from the motion of the last link.
+/// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step 4 from
+/// joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
+///
+/// p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      (+ 2 q̇_i ω_i × e)
+///
+/// then p̈ and ω̇_n turned by R_n … R_1 and by the base.
 pub(crate) fn tip_acceleration<'s>(
     sheet: &'s Worksheet,
     arm: &Arm<'s>,
-    frames: &Frames<'s>,
-    motions: &[Motion<'s>],
-) -> Option<[Vector<'s>; 2]> {
-    let (motion, link) = motions.last().zip(arm.links.last())?;
-    let axes = frames.joints.last()?.rotation;
-    let line = sheet.joint(motions.len());
-    let Motion { omega, omega_dot, c_ddot, .. } = *motion;
-    let linear = line.within(Quantity::TipAcceleration, || {
-        let at_tip = c_ddot + omega_dot.cross(link.r) + omega.cross(omega.cross(link.r));
-        axes * at_tip
+    states: &[JointState<'s>],
+    base: &Base<'s>,
+) -> [Vector<'s>; 2] {
+    let e = seven_steps::axis(sheet);
+    let dof = states.len();
+    let tip = dof + 1;
+    let mut point = sheet.zeros(Cause::FixedBase);
+    let mut turning = Turning::of_base(sheet, base);
+    let mut rotations = Vec::with_capacity(dof);
+    for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
+        let line = sheet.joint(index + 1);
+        turning = turning.of_next(sheet, index + 1, link, state);
+        let Turning { rotation, omega, omega_dot } = turning;
+        let span = offset(link.offset + link.lever, link.kind, state.q);
+        let twice_qd =
+            || line.scalar(Quantity::TwiceRate, || sheet.entry(Name::scalar(Quantity::Two, 0), 2.0) * state.qd);
+        let next = || {
+            let rigid = rotation.transpose() * point + omega_dot.cross(span) + omega.cross(omega.cross(span));
+            match link.kind {
+                Revolute => rigid,
+                Prismatic => rigid + omega.cross(e) * twice_qd(),
+            }
+        };
+        point = if index + 1 == dof {
+            line.within(Quantity::TipAcceleration, next)
+        } else {
+            line.of_link_after().vector(Quantity::JointPointAcceleration, next)
+        };
+        rotations.push(rotation);
+    }
+    let [linear, angular] = [point, turning.omega_dot].map(|mut vector| {
+        for (index, rotation) in rotations.iter().enumerate().rev() {
+            vector = sheet.joint(index + 1).within(Quantity::TipAcceleration, || *rotation * vector);
+        }
+        sheet.joint(1).within(Quantity::TipAcceleration, || arm.base.rotation * vector)
     });
-    let angular = line.within(Quantity::TipAcceleration, || axes * omega_dot);
-    let tip = motions.len() + 1;
     let linear = sheet.entry_vector(Quantity::TipAcceleration, tip, linear);
-    let name = |axis: Axis, x| {
-        let name = crate::name::Name::vector(Quantity::TipAcceleration, tip, axis);
-        sheet.name(crate::name::Name { part: 1, ..name }, x)
-    };
-    Some([linear, angular.map(name)])
+    let name = |axis: Axis, x| sheet.name(Name { part: 1, ..Name::vector(Quantity::TipAcceleration, tip, axis) }, x);
+    [linear, angular.map(name)]
 }

@@ -8,7 +8,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::QuarterTurns;
 
 use crate::ledger::Cause;
-use crate::links::{Arm, Link};
+use crate::links::{Arm, Link, identity};
 use crate::name::Name;
 use crate::quantity::Quantity;
 use crate::symbol::{Matrix, Symbol, Vector};
@@ -50,6 +50,44 @@ impl<'s> Base<'s> {
     }
 }
 
+/// How a link turns, in its frame: what steps 1 and 2 find.
+#[derive(Clone, Copy)]
+pub(crate) struct Turning<'s> {
+    /// R_i
+    pub(crate) rotation: Matrix<'s>,
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+}
+
+impl<'s> Turning<'s> {
+    /// How the base turns.
+    pub(crate) fn of_base(sheet: &'s Worksheet, base: &Base<'s>) -> Self {
+        Self { rotation: identity(sheet), omega: base.omega, omega_dot: base.omega_dot }
+    }
+
+    /// How the link behind `joint` turns, when this is the link before it.
+    pub(crate) fn of_next(self, sheet: &'s Worksheet, joint: usize, link: &Link<'s>, state: &JointState<'s>) -> Self {
+        let JointState { q, qd, qdd, turn } = *state;
+        let e = axis(sheet);
+        let line = sheet.joint(joint);
+        let rotation = rotation(line, sheet, joint, link, q, turn);
+        let back = rotation.transpose();
+
+        // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
+        let omega = line.vector(Quantity::Omega, || match link.kind {
+            Revolute => back * self.omega + e * qd,
+            Prismatic => back * self.omega,
+        });
+
+        // 2   ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e + q̇_i ω_i × e
+        let omega_dot = line.vector(Quantity::OmegaDot, || match link.kind {
+            Revolute => back * self.omega_dot + e * qdd + omega.cross(e) * qd,
+            Prismatic => back * self.omega_dot,
+        });
+        Self { rotation, omega, omega_dot }
+    }
+}
+
 /// The motion of a link and gravity, in its frame, with what the backward pass needs again.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion<'s> {
@@ -88,8 +126,8 @@ pub(crate) fn forward<'s>(
     states: &[JointState<'s>],
     base: &Base<'s>,
 ) -> Vec<Motion<'s>> {
-    let e = Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)));
-    let (mut omega, mut omega_dot) = (base.omega, base.omega_dot);
+    let e = axis(sheet);
+    let mut turning = Turning::of_base(sheet, base);
     // no function asks how fast the base itself moves
     let (mut c_dot, mut c_ddot) = (sheet.zeros(Cause::FixedBase), base.acceleration);
     let mut r = base.lever;
@@ -97,22 +135,12 @@ pub(crate) fn forward<'s>(
     let mut motions = Vec::with_capacity(arm.links.len());
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         let line = sheet.joint(index + 1);
-        let JointState { q, qd, qdd, turn } = *state;
-        let rotation = rotation(line, sheet, index + 1, link, q, turn);
+        let JointState { q, qd, qdd, .. } = *state;
+        let Turning { omega: omega_before, omega_dot: omega_dot_before, .. } = turning;
+        // 1, 2
+        turning = turning.of_next(sheet, index + 1, link, state);
+        let Turning { rotation, omega, omega_dot } = turning;
         let back = rotation.transpose();
-        let (omega_before, omega_dot_before) = (omega, omega_dot);
-
-        // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
-        omega = line.vector(Quantity::Omega, || match link.kind {
-            Revolute => back * omega_before + e * qd,
-            Prismatic => back * omega_before,
-        });
-
-        // 2   ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e + q̇_i ω_i × e
-        omega_dot = line.vector(Quantity::OmegaDot, || match link.kind {
-            Revolute => back * omega_dot_before + e * qdd + omega.cross(e) * qd,
-            Prismatic => back * omega_dot_before,
-        });
 
         let d = centre_of_mass(line, sheet, index + 1, link, q);
 
@@ -191,6 +219,11 @@ pub(crate) fn backward<'s>(
     }
     loads.reverse();
     loads
+}
+
+/// e, the joint's axis in its frame.
+pub(crate) fn axis(sheet: &Worksheet) -> Vector<'_> {
+    Vector([0.0, 0.0, 1.0].map(|value| sheet.constant(value, Cause::JointAxis)))
 }
 
 /// R_i = Rx(α_{i-1}) Rz(θ_i).

@@ -380,6 +380,11 @@ impl<'s> JointLines<'s> {
         Self { named: self.joint.saturating_sub(1), ..self }
     }
 
+    /// The same lines, for quantities that belong to the link after.
+    pub(crate) fn of_link_after(self) -> Self {
+        Self { named: self.joint + 1, ..self }
+    }
+
     /// A quantity that is one number.
     pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
         let value = self.within(quantity, formula);
