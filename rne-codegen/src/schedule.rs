@@ -349,7 +349,7 @@ impl<'w> Schedule<'w> {
                 let Term { node, negative } = definition.term;
                 let value = match self.written.graph.node(node) {
                     Node::Constant(magnitude) => {
-                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes)
+                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes.clone())
                     }
                     _ if !self.is_live(node) => Found::Unused,
                     _ => match self.names[node.index()] {

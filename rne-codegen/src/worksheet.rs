@@ -7,13 +7,13 @@ use rne_model::{Angle, Joint};
 
 use crate::exact::{Number, Reading};
 use crate::graph::{Graph, Node, NodeId, Outcome, Side, Term};
-use crate::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
+use crate::ledger::{Alternatives, Cause, Causes, Fate, Ledger, Operation, Place};
 use crate::name::{By, Name};
 use crate::quantity::{Axis, Component, Quantity};
 use crate::symbol::{Matrix, Symbol, Vector};
 
 /// A name given to a term, in the order in which the names were given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub(crate) name: Name,
     pub(crate) term: Term,
@@ -53,43 +53,59 @@ pub(crate) struct Snapshot {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct CausesId(usize);
 
-/// Causes and their unions, each kept once.
+/// What numbers are zero or one because of, each kept once, and what they give together.
 #[derive(Default)]
 struct KnownCauses {
-    list: Vec<Causes>,
-    ids: HashMap<Causes, CausesId>,
-    unions: HashMap<(CausesId, CausesId), CausesId>,
+    list: Vec<Alternatives>,
+    ids: HashMap<Alternatives, CausesId>,
+    both: HashMap<(CausesId, CausesId), CausesId>,
+    either: HashMap<(CausesId, CausesId), CausesId>,
 }
 
 impl KnownCauses {
-    fn id(&mut self, causes: Causes) -> CausesId {
+    fn id(&mut self, alternatives: Alternatives) -> CausesId {
         let next = CausesId(self.list.len());
-        let id = *self.ids.entry(causes).or_insert(next);
-        if id == next {
-            self.list.push(causes);
+        if let Some(&known) = self.ids.get(&alternatives) {
+            return known;
         }
-        id
+        self.list.push(alternatives.clone());
+        self.ids.insert(alternatives, next);
+        next
     }
 
-    fn get(&self, id: CausesId) -> Causes {
-        self.list[id.0]
+    fn one(&mut self, cause: Cause) -> CausesId {
+        self.id(Alternatives::one(cause))
     }
 
-    fn union(&mut self, a: CausesId, b: CausesId) -> CausesId {
+    /// The best of the alternatives.
+    fn get(&self, id: CausesId) -> &Causes {
+        self.list[id.0].best()
+    }
+
+    /// Of a sum of two zeros.
+    fn both(&mut self, a: CausesId, b: CausesId) -> CausesId {
         if a == b {
             return a;
         }
-        if let Some(&known) = self.unions.get(&(a, b)) {
+        if let Some(&known) = self.both.get(&(a, b)) {
             return known;
         }
-        let id = self.id(self.get(a).and(self.get(b)));
-        self.unions.insert((a, b), id);
+        let id = self.id(self.list[a.0].and(&self.list[b.0]));
+        self.both.insert((a, b), id);
         id
     }
 
-    /// The weightier of two.
-    fn weightier(&self, a: CausesId, b: CausesId) -> CausesId {
-        if self.get(b) > self.get(a) { b } else { a }
+    /// Of a product of two zeros.
+    fn either(&mut self, a: CausesId, b: CausesId) -> CausesId {
+        if a == b {
+            return a;
+        }
+        if let Some(&known) = self.either.get(&(a, b)) {
+            return known;
+        }
+        let id = self.id(self.list[a.0].or(&self.list[b.0]));
+        self.either.insert((a, b), id);
+        id
     }
 }
 
@@ -144,14 +160,14 @@ impl Worksheet {
     fn exact_number(&self, number: Number, cause: Cause) -> Symbol<'_> {
         let state = &mut *self.state.borrow_mut();
         let term = state.written.graph.constant_number(number);
-        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(cause)) }
+        Symbol { sheet: self, term, causes: state.causes.one(cause) }
     }
 
     /// A number that stands for itself; `cause` tells why it is what it is.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
         let state = &mut *self.state.borrow_mut();
         let term = state.written.graph.constant(value);
-        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(cause)) }
+        Symbol { sheet: self, term, causes: state.causes.one(cause) }
     }
 
     /// A number of the table under its name.
@@ -163,7 +179,7 @@ impl Worksheet {
     pub(crate) fn argument(&self, name: Name) -> Symbol<'_> {
         let state = &mut *self.state.borrow_mut();
         let term = state.written.graph.argument(name);
-        Symbol { sheet: self, term, causes: state.causes.id(Causes::one(Cause::Arithmetic)) }
+        Symbol { sheet: self, term, causes: state.causes.one(Cause::Arithmetic) }
     }
 
     /// The zero vector, with its cause.
@@ -176,9 +192,12 @@ impl Worksheet {
         let state = &mut *self.state.borrow_mut();
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
         let name = if is_entry { name } else { Name { by: name.by.or(state.by), ..name } };
-        let causes = if is_entry { state.causes.id(Causes::one(Cause::Table(name))) } else { symbol.causes };
+        let is_zero = state.written.graph.value(symbol.term) == Some(0.0);
+        // the two halves of a symmetric tensor are zero because of one number of the table
+        let told = if is_zero { name.of_upper_half() } else { name };
+        let causes = if is_entry { state.causes.one(Cause::Table(told)) } else { symbol.causes };
         let after = state.written.graph.len();
-        let told = state.causes.get(causes);
+        let told = state.causes.get(causes).clone();
         state.written.definitions.push(Definition { name, term: symbol.term, causes: told, after });
         Symbol { causes, ..symbol }
     }
@@ -202,7 +221,7 @@ impl Worksheet {
         let state = &mut *self.state.borrow_mut();
         let sine = state.written.graph.sine(angle.term);
         let cosine = state.written.graph.cosine(angle.term);
-        let causes = state.causes.id(Causes::one(Cause::Arithmetic));
+        let causes = state.causes.one(Cause::Arithmetic);
         let symbol = |term| Symbol { sheet: self, term, causes };
         (symbol(sine), symbol(cosine))
     }
@@ -213,9 +232,12 @@ impl Worksheet {
         let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
         let (causes, reason) = match outcome {
             // a sum is zero when both are
-            Outcome::Zero(_) if both_zero => (state.causes.union(a.causes, b.causes), b.causes),
+            Outcome::Zero(_) if both_zero => (state.causes.both(a.causes, b.causes), b.causes),
             Outcome::Zero(Side::Right) => (a.causes, b.causes),
             Outcome::Zero(Side::Left) => (b.causes, a.causes),
+            _ if state.written.graph.value(term) == Some(0.0) => {
+                (state.causes.one(Cause::Cancellation), state.arithmetic())
+            }
             _ => (state.arithmetic(), state.arithmetic()),
         };
         state.record(Operation::Sum, outcome, reason);
@@ -229,7 +251,7 @@ impl Worksheet {
         let both_zero = outcome == Outcome::Zero(Side::Right) && state.written.graph.value(a.term) == Some(0.0);
         let reason = match outcome {
             // a product is zero when either is
-            Outcome::Zero(_) if both_zero => state.causes.weightier(a.causes, b.causes),
+            Outcome::Zero(_) if both_zero => state.causes.either(a.causes, b.causes),
             Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.causes,
             Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.causes,
             _ => state.arithmetic(),
@@ -323,7 +345,7 @@ impl Worksheet {
 
 impl State {
     fn arithmetic(&mut self) -> CausesId {
-        self.causes.id(Causes::one(Cause::Arithmetic))
+        self.causes.one(Cause::Arithmetic)
     }
 
     /// Remembers as what a constant enters a new node: the same number may be a length here and a mass there.
@@ -350,7 +372,7 @@ impl State {
     fn record(&mut self, operation: Operation, outcome: Outcome, causes: CausesId) {
         // Constants of the table are formed outside any step: a runtime forms them once, too.
         let Some(place) = self.place else { return };
-        let cause = self.causes.get(causes);
+        let cause = self.causes.get(causes).main();
         let fate = match outcome {
             Outcome::Computed => Fate::Kept,
             Outcome::Shared => Fate::Shared,
