@@ -27,7 +27,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c --real double --prefix arm     arm_inverse_dynamics(const double q[6], ...
 
 The five functions of the trait InverseDynamics are written unless --function names others; all is every
-function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
+function of the robot (without motors, all but actuator_torques, which is zero then). A file that rne did not generate is overwritten with
 --force only. --check exits with 1 when the file is stale, and says how to refresh it. C needs no library; on standard
 output header and source are one file.")]
 pub(crate) struct Arguments {
@@ -217,23 +217,21 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<
 }
 
 /// The functions asked for, each once, in the order of the traits.
-fn functions(arguments: &Arguments, robot: &Robot) -> Result<Vec<Function>, Failure> {
+fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
     let asked = &arguments.functions;
     if asked.contains(&FunctionOrAll::All) {
-        return Ok(functions::of(robot).collect());
+        return functions::of(robot).collect();
     }
     let is_asked = |function: &Function| match asked.as_slice() {
         [] => Function::TORQUES.contains(function),
         asked => asked.contains(&FunctionOrAll::One(*function)),
     };
-    let functions: Vec<Function> = Function::ALL.into_iter().filter(is_asked).collect();
-    functions.iter().try_for_each(|&function| functions::check(&arguments.file, robot, function))?;
-    Ok(functions)
+    Function::ALL.into_iter().filter(is_asked).collect()
 }
 
 fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
     let compiler = Compiler::new(&arguments.file, robot);
-    let functions = functions(arguments, robot)?;
+    let functions = functions(arguments, robot);
     functions.into_iter().map(|function| compiler.compile(function, arguments.form)).collect()
 }
 

@@ -1,30 +1,11 @@
-//! Which functions a robot has.
-
-use std::path::Path;
+//! Which functions of a robot are worth listing.
 
 use rne_codegen::Function;
 use rne_model::Robot;
 
-use crate::outcome::Failure;
-use crate::terminal::TYPED;
-
-/// The functions that a robot has, in the order of the traits: what motors add needs motors.
+/// The functions that a robot has something to compute for, in the order of the traits: without motors,
+/// `actuator_torques` is zero, and there for who asks for it by name.
 pub(crate) fn of(robot: &Robot) -> impl Iterator<Item = Function> {
-    Function::ALL.into_iter().filter(|&function| function != Function::ActuatorTorques || has_motors(robot))
-}
-
-/// Refuses a function that asks for motors which a robot does not have.
-pub(crate) fn check(file: &Path, robot: &Robot, function: Function) -> Result<(), Failure> {
-    if function != Function::ActuatorTorques || has_motors(robot) {
-        return Ok(());
-    }
-    Err(Failure::input(format_args!(
-        "{} has no motors: no joint of {} has a {TYPED}motor: {{inertia, gear_ratio, viscous, coulomb}}{TYPED:#}",
-        robot.name,
-        file.display()
-    )))
-}
-
-fn has_motors(robot: &Robot) -> bool {
-    robot.joints.iter().any(|joint| joint.motor.is_some())
+    let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
+    Function::ALL.into_iter().filter(move |&function| function != Function::ActuatorTorques || has_motors)
 }

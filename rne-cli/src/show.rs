@@ -11,7 +11,7 @@ use rne_model::Robot;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::QUIET;
-use crate::{arguments, base_parameters, functions, heading, highlight, robot_file};
+use crate::{arguments, base_parameters, heading, highlight, robot_file};
 
 /// Show the generated code of a function, step by step, with what was folded and why
 #[derive(Args)]
@@ -114,7 +114,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Ok(Outcome::text(heading::robot(&robot) + "\n" + &base_parameters::text(&robot)));
     }
     check_joint(&robot, arguments.joint)?;
-    functions::check(&arguments.file, &robot, arguments.function)?;
 
     let mut keep = arguments.keep.clone();
     if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {

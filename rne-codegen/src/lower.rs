@@ -373,7 +373,7 @@ impl<'w> Schedule<'w> {
                 let value = match self.written.graph.op(node) {
                     Op::Constant(_) => {
                         let magnitude = self.magnitude(node);
-                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes)
+                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes.clone())
                     }
                     _ if !self.is_live(node) => Found::Unused,
                     _ => match self.names[node.index()] {

@@ -32,15 +32,6 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
-        if capability == Capability::Actuation && robot.joints.iter().all(|joint| joint.motor.is_none()) {
-            let message = format!(
-                "{} has no motors: `Actuation` needs a `motor` at one joint of the robot file at least, such as \
-                 `motor: {{inertia: 2.0e-4, gear_ratio: -62.6, viscous: 1.5e-3, coulomb: [0.395, -0.435]}}`",
-                robot.name
-            );
-            errors.at_span(span, message);
-            return None;
-        }
         // what makes no choices is compiled without
         let is_planned = capability.functions().iter().any(|&function| plan::is_planned(function));
         let form = if is_planned { attribute.form } else { Form::SevenSteps };

@@ -1,8 +1,6 @@
 //! The expansion itself, away from the compiler.
 
-use std::time::{Duration, Instant};
-
-use proc_macro2::TokenStream;
+use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 
 use rne_codegen::Capability;
@@ -38,19 +36,27 @@ fn what_stands_in_for_an_unknown_robot() {
     insta::assert_snapshot!(stub);
 }
 
-/// The seven-joint arm with the longest code, as every build of a user's crate does it, without optimization.
+/// How many tokens the compiler gets to read.
+fn tokens(stream: TokenStream) -> usize {
+    let count = |tree| match tree {
+        TokenTree::Group(group) => 2 + tokens(group.stream()),
+        _ => 1,
+    };
+    stream.into_iter().map(count).sum()
+}
+
+/// The seven-joint arm with the longest code: what an expansion costs follows what it writes.
 #[test]
-fn an_expansion_takes_no_time() {
+fn an_expansion_is_short() {
     let input = quote! {
         #[robot(path = "../robots/panda.yaml")]
         pub struct Panda;
     };
-    let start = Instant::now();
     let expansion = inverse_dynamics(input);
-    let elapsed = start.elapsed();
-    println!("expansion of panda.yaml: {:.1} ms", elapsed.as_secs_f64() * 1e3);
     assert!(!expansion.to_string().contains("compile_error"));
-    assert!(elapsed < Duration::from_millis(300), "{elapsed:?}");
+    let tokens = tokens(expansion);
+    println!("expansion of panda.yaml: {tokens} tokens");
+    assert!(tokens <= 30_000, "{tokens} tokens");
 }
 
 #[test]

@@ -13,7 +13,7 @@ use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
 use crate::quantity::Quantity;
 use crate::source::{inside, quoted, rounded};
-use crate::spelling::did_you_mean;
+use crate::spelling::{LONGEST_WORD, did_you_mean};
 
 /// Reads a mapping by a table of its keys, one line each:
 /// `variable: required "key" reader`, `variable: optional "key" reader` or `variable: or(default) "key" reader`.
@@ -38,6 +38,8 @@ pub(crate) struct Context<'t> {
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// The parameters that stay free until run time, and what is found to depend on them.
     pub(crate) run_time: RefCell<RunTime>,
+    /// How many unknown words were compared with known ones.
+    suggestions: Cell<usize>,
 }
 
 /// A named constant of the file.
@@ -52,18 +54,24 @@ impl Names for Context<'_> {
         let parameters = self.parameters.borrow();
         parameters.get(name).map_or(Meaning::Unknown, |parameter| {
             parameter.used.set(true);
+            if let Meaning::Value(quantity) = &parameter.meaning {
+                self.count(quantity.parts());
+            }
             parameter.meaning.clone()
         })
     }
 
     fn similar(&self, name: &str) -> Option<String> {
         let parameters = self.parameters.borrow();
-        // A bound on the time that a file of nothing but unknown names can take.
-        did_you_mean(name, parameters.keys().take(100).map(String::as_str)).map(str::to_owned)
+        self.did_you_mean(name, parameters.keys().map(String::as_str)).map(str::to_owned)
     }
 
     fn run_time_parameter(&self, index: usize) -> String {
         self.parameter_name(Some(index))
+    }
+
+    fn count(&self, steps: usize) {
+        self.problems.count(steps);
     }
 }
 
@@ -72,7 +80,25 @@ impl<'t> Context<'t> {
     pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
         let names = run_time.iter().map(|&name| name.to_owned()).collect();
         let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
-        Self { text, problems, parameters: RefCell::default(), run_time }
+        Self { text, problems, parameters: RefCell::default(), run_time, suggestions: Cell::new(0) }
+    }
+
+    /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a file
+    /// of nothing but unknown words can cause; a report shows fewer mistakes.
+    pub(crate) fn did_you_mean<'c>(
+        &self,
+        word: &str,
+        candidates: impl IntoIterator<Item = &'c str>,
+    ) -> Option<&'c str> {
+        const MOST: usize = 100;
+        self.suggestions.set(self.suggestions.get() + 1);
+        if self.suggestions.get() > MOST {
+            return None;
+        }
+        // What is so much longer is not meant; a character has at most four bytes.
+        let candidates = candidates.into_iter().take(MOST).filter(|candidate| candidate.len() <= 8 * LONGEST_WORD);
+        let compared = |candidate: &&str| self.problems.count(candidate.len() * word.len().min(LONGEST_WORD));
+        did_you_mean(word, candidates.inspect(compared))
     }
 
     /// Whether a mistake is found already.
@@ -141,10 +167,12 @@ impl<'d> Fields<'d> {
         let Content::Mapping(entries) = &node.content else {
             return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
         };
+        // Each key is compared with those allowed, and looked for by each of them.
+        cx.problems.count(2 * entries.len() * allowed.len());
         let missing: Vec<_> = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none()).collect();
         let mut misspelt = Vec::new();
         for Entry { key, key_span, .. } in entries.iter().filter(|entry| !allowed.contains(&entry.key.as_str())) {
-            let meant = did_you_mean(key, missing.iter().copied());
+            let meant = cx.did_you_mean(key, missing.iter().copied());
             misspelt.extend(meant);
             let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
             let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key));
@@ -231,6 +259,7 @@ fn place_of(key: &str) -> Option<String> {
 /// A finite number: a decimal or an expression. What may vary at run time, and where, is for [`varying`](crate::varying).
 pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
     let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, "a number") };
+    cx.problems.count(scalar.text.len().min(Expression::MAX_BYTES));
     let value = Expression::parse(&scalar.text).map_err(Some).and_then(|it| it.evaluate(&scalar.text, cx));
     match value {
         // -0 is 0: the sign of a zero carries no meaning in a table.
@@ -302,7 +331,8 @@ pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&
         return Some(*value);
     }
     let message = format!("unknown {what} {}; it must be {allowed}", node.described());
-    let meant = did_you_mean(&scalar.text, words.iter().map(|(word, _)| *word))
+    let meant = cx
+        .did_you_mean(&scalar.text, words.iter().map(|(word, _)| *word))
         .or_else(|| synonym(&scalar.text).filter(|meant| words.iter().any(|(word, _)| word == meant)));
     cx.refuse(
         Diagnostic::error(node.span.clone(), message)

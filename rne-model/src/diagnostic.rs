@@ -1,6 +1,6 @@
 //! Mistakes and warnings as data: where, what is wrong, what to do.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use crate::render;
@@ -69,6 +69,7 @@ pub struct Report {
     pub text: String,
     /// What was found.
     pub diagnostics: Vec<Diagnostic>,
+    work: usize,
 }
 
 impl Report {
@@ -90,6 +91,13 @@ impl Report {
     /// The warnings, in the order of the text.
     pub fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Warning)
+    }
+
+    /// How much work the reading was, the same on every machine: events of the parser, characters of expressions, parts of
+    /// formulas, comparisons of keys and letters, characters passed on the way to the lines. It grows with the length of
+    /// the text at most in proportion, and by a bounded amount beyond that.
+    pub fn work(&self) -> usize {
+        self.work
     }
 
     /// Every diagnostic with its source line, caret and help; `color` adds ANSI escapes for a terminal.
@@ -118,17 +126,23 @@ impl std::error::Error for Report {}
 /// It has to be turned into a [`Report`]: dropping it with its contents unread is a mistake of this crate and panics.
 pub(crate) struct Problems {
     found: RefCell<Option<Vec<Diagnostic>>>,
+    work: Cell<usize>,
 }
 
 impl Problems {
     pub(crate) fn new() -> Self {
-        Self { found: RefCell::new(Some(Vec::new())) }
+        Self { found: RefCell::new(Some(Vec::new())), work: Cell::new(0) }
     }
 
     pub(crate) fn push(&self, diagnostic: Diagnostic) {
         if let Some(found) = self.found.borrow_mut().as_mut() {
             found.push(diagnostic);
         }
+    }
+
+    /// Enters `steps` of work, for [`Report::work`].
+    pub(crate) fn count(&self, steps: usize) {
+        self.work.set(self.work.get().saturating_add(steps));
     }
 
     /// Whether an error is found already.
@@ -142,9 +156,9 @@ impl Problems {
         diagnostics.sort_by(|a, b| (a.span.start, a.severity, &a.message).cmp(&(b.span.start, b.severity, &b.message)));
         // A value behind an alias is read once per alias.
         diagnostics.dedup();
-        locate(&mut diagnostics, text);
+        self.count(locate(&mut diagnostics, text));
         diagnostics.sort_by_key(|found| found.severity);
-        Report { name: name.to_owned(), text: text.to_owned(), diagnostics }
+        Report { name: name.to_owned(), text: text.to_owned(), diagnostics, work: self.work.get() }
     }
 }
 
@@ -155,19 +169,23 @@ impl Drop for Problems {
     }
 }
 
-/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position.
-fn locate(diagnostics: &mut [Diagnostic], text: &str) {
+/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position. Returns how many characters
+/// it looked at.
+fn locate(diagnostics: &mut [Diagnostic], text: &str) -> usize {
     let (mut line, mut column, mut at) = (1, 1, 0);
+    let mut passed = 0;
     for found in diagnostics {
         // Never beyond the text, nor inside a character.
         let start = char_boundary(text, found.span.start);
         let end = char_boundary(text, found.span.end).max(start);
         for character in text.get(at..start).unwrap_or_default().chars() {
             (line, column) = if character == '\n' { (line + 1, 1) } else { (line, column + 1) };
+            passed += 1;
         }
         at = start;
         (found.span, found.line, found.column) = (start..end, line, column);
     }
+    passed
 }
 
 /// The start of the character that `index` points at or into; the end of the text for anything beyond.

@@ -146,6 +146,7 @@ impl<'t> Builder<'t> {
         let mut parser = Parser::new_from_str(self.text);
         let mut documents = 0;
         while let Some(event) = parser.next_event() {
+            self.problems.count(1);
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
                 syntax_error(at, error.info()).maybe_help(self.open_bracket())

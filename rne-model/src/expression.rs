@@ -186,13 +186,23 @@ pub(crate) trait Names {
     fn similar(&self, name: &str) -> Option<String>;
     /// The name of a run-time parameter.
     fn run_time_parameter(&self, index: usize) -> String;
+    /// Enters steps of work.
+    fn count(&self, steps: usize);
 }
 
 impl Expression {
+    /// Bytes of one expression, ten for each of its parts; bounds the work of reading it again for every alias.
+    pub(crate) const MAX_BYTES: usize = 10_000;
+
     /// Reads a whole text as one expression.
     pub(crate) fn parse(text: &str) -> Result<Self, Mistake> {
         if text.trim().is_empty() {
             return Err(Mistake::new(0..text.len(), "a number is missing"));
+        }
+        if text.len() > Self::MAX_BYTES {
+            let (bytes, most) = (text.len(), Self::MAX_BYTES);
+            let message = format!("the expression is too long: {bytes} bytes, at most {most} are allowed");
+            return Err(Mistake::new(0..text.len(), message).help("name parts of it under `parameters`"));
         }
         let mut parser = Parser { text, at: 0, depth: 0, parts: 0 };
         let expression = parser.operand_and_operators(0)?;
@@ -249,7 +259,10 @@ impl Expression {
         };
         let parameter = a.first_parameter().or(b.first_parameter());
         match operator.apply(a, b) {
-            Some(quantity) => self.finite(quantity, divides_by_zero, text),
+            Some(quantity) => {
+                names.count(quantity.parts());
+                self.finite(quantity, divides_by_zero, text)
+            }
             None => Err(self.only_in_the_file(text, parameter, names)),
         }
     }
@@ -334,6 +347,7 @@ pub fn number(text: &str) -> Result<f64, Diagnostic> {
         fn run_time_parameter(&self, _: usize) -> String {
             String::new()
         }
+        fn count(&self, _: usize) {}
     }
     let value = Expression::parse(text).map_err(Some).and_then(|expression| expression.evaluate(text, &Nameless));
     match value {

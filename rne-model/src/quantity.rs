@@ -42,6 +42,11 @@ impl Quantity {
         (!matches!(self.formula, Formula::Number(_))).then_some(&self.formula)
     }
 
+    /// Numbers, parameters and operations of its formula.
+    pub(crate) fn parts(&self) -> usize {
+        self.formula.parts()
+    }
+
     /// The first run-time parameter it depends on.
     pub(crate) fn first_parameter(&self) -> Option<usize> {
         self.formula.first_parameter()

@@ -1,9 +1,11 @@
 //! "Did you mean …?"
 
+/// Nothing longer is a slip of one of our words, and the distance costs time.
+pub(crate) const LONGEST_WORD: usize = 32;
+
 /// The candidate that `word` was probably meant to be.
 pub(crate) fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
-    // Nothing so long is a slip of one of our words, and the distance costs time.
-    if word.is_empty() || word.chars().count() > 32 {
+    if word.is_empty() || word.chars().count() > LONGEST_WORD {
         return None;
     }
     let word = word.to_lowercase().replace('-', "_");

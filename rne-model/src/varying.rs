@@ -7,7 +7,6 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::quantity::Quantity;
 use crate::source::quoted;
-use crate::spelling::did_you_mean;
 use crate::{Entry, Inertia, InertiaElement, InertiaReference, inertia};
 
 /// More parameters than a message should list.
@@ -150,7 +149,7 @@ pub(crate) fn unknown_names(cx: &Context, root: &Node) {
         }
         let place = parameters.map_or(root.head(), Node::head);
         let message = format!("no parameter {} for run time; under `parameters` {listed}", quoted(name));
-        let help = did_you_mean(name, known.iter().take(100).copied()).map_or_else(
+        let help = cx.did_you_mean(name, known.iter().copied()).map_or_else(
             || format!("define `{name}: …` under `parameters`"),
             |meant| format!("did you mean `{meant}`?"),
         );

@@ -1,8 +1,6 @@
-//! Whatever the bytes, the answer is a robot or a report, never a panic, and it comes soon.
+//! Whatever the bytes, the answer is a robot or a report, never a panic, and little work is done for it.
 
 mod common;
-
-use std::time::Instant;
 
 use common::BASE;
 use proptest::prelude::*;
@@ -10,7 +8,6 @@ use rne_model::{Report, check, check_bytes, check_bytes_with_run_time};
 
 /// Reads, renders every way, and checks what must hold of every report.
 fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
-    let start = Instant::now();
     let result = check_bytes("x.yaml", bytes);
     let valid = result.is_ok();
     let report = result.map_or_else(|report| report, |checked| checked.lints);
@@ -19,7 +16,8 @@ fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
     let varying = check_bytes_with_run_time("x.yaml", bytes, &["m", "r"]);
     prop_assert!(valid || varying.is_err(), "no error is forgiven at run time");
     well_formed(&varying.map_or_else(|report| report, |checked| checked.lints))?;
-    prop_assert!(start.elapsed().as_secs() < 5, "took {:?}", start.elapsed());
+    let most = 1000 + 100 * bytes.len();
+    prop_assert!(report.work() <= most, "{} steps for {} bytes", report.work(), bytes.len());
     Ok(())
 }
 

@@ -164,7 +164,7 @@ pub trait MovingBase<const DOF: usize> {
 /// What the motors need for themselves: rotor inertia and friction, seen at the joints.
 pub trait Actuation<const DOF: usize> {
     /// The motor terms alone, to be added to the torques of the links: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇) per joint, N m or
-    /// N. A joint without a motor needs nothing; Coulomb friction is zero at rest.
+    /// N. A joint without a motor needs nothing, so a robot without motors gets zeros; Coulomb friction is zero at rest.
     ///
     /// The sign is [`Scalar::by_sign`], which a scalar of your own must implement for it.
     #[must_use]

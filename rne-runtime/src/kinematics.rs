@@ -131,21 +131,27 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         })
     }
 
-    /// The tip's acceleration at q̈ = 0: steps 1, 2 and 4 without gravity, and from the last centre of mass to the tip as
-    /// step 4 goes on to the next joint,
+    /// The tip's acceleration at q̈ = 0: steps 1 and 2, and step 4 from joint to joint instead of by centres of mass, which
+    /// may be far away and have no part in it. s_i leads from joint i to joint i+1, the last to the tip:
     ///
-    /// p̈ = c̈_n + ω̇_n × r_n + ω_n × (ω_n × r_n),
+    /// - R: p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      p̈_1 = 0
+    /// - P: the same + 2 q̇_i ω_i × e_i
     ///
-    /// then p̈ and ω̇_n turned by R_n … R_1 and by the base.
+    /// then the last p̈ and ω̇_n turned by R_n … R_1 and by the base.
     pub(crate) fn jacobian_rate_times_velocity<T: Scalar>(self, q: &[T], qd: &[T]) -> [T; 6] {
         let zeros = self.zeros();
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let motions = self.motions(JointMotions::new(q, qd, zeros.as_ref()), &weightless);
         let (mut linear, mut angular) = (Vector3::zeros(), Vector3::zeros());
-        if let Some(last) = motions.as_ref().last() {
-            let centripetal = last.omega.cross(&last.omega.cross(&last.r));
-            linear = (last.acceleration + last.omega_dot.cross(&last.r)) + centripetal;
-            angular = last.omega_dot;
+        for ((link, this), (&q, &qd)) in self.chain.links().zip(motions.as_ref()).zip(q.iter().zip(qd)) {
+            let span = link.span(q);
+            let centripetal = this.omega.cross(&this.omega.cross(&span));
+            let as_if_rigid = (this.rotation.tr_mul(&linear) + this.omega_dot.cross(&span)) + centripetal;
+            linear = match link.kind {
+                JointKind::Revolute => as_if_rigid,
+                JointKind::Prismatic => as_if_rigid + this.omega.cross(&Vector3::z()) * (qd + qd),
+            };
+            angular = this.omega_dot;
         }
         for motion in motions.as_ref().iter().rev() {
             linear = motion.rotation * linear;

@@ -36,6 +36,8 @@ pub(crate) struct LinkFrame<S> {
     d: Vector3<S>,
     /// C_i → J_{i+1}.
     pub(crate) r: Vector3<S>,
+    /// From the end of the offset to J_{i+1}, or to the origin of the tip frame.
+    lever: Vector3<S>,
     /// Inertia about C_i, kg m².
     pub(crate) inertia: Matrix3<S>,
     /// Mass, kg.
@@ -67,7 +69,7 @@ impl<S: Constant> LinkFrame<S> {
         let written_com = Vector3::from(link.com);
         let written_inertia = Matrix3::from(link.inertia.rows()).transpose();
 
-        let (twist, offset, com, inertia, lever, tool_lever);
+        let (twist, offset, com, inertia, mut r, mut lever);
         match convention {
             Convention::Standard => {
                 let rx = rotation_x(&dh.alpha);
@@ -75,23 +77,30 @@ impl<S: Constant> LinkFrame<S> {
                 offset = Vector3::new(dh.a, zero, dh.d);
                 com = rx * written_com;
                 inertia = (rx * written_inertia) * rx.transpose();
-                lever = -com;
-                tool_lever = rx * Vector3::from(tool.xyz);
+                (r, lever) = (-com, Vector3::zeros());
+                if is_last {
+                    lever = rx * Vector3::from(tool.xyz);
+                    r += lever;
+                }
             }
             Convention::Modified => {
                 twist = rotation_x(&dh.alpha);
                 offset = Vector3::new(zero, zero, dh.d);
                 com = written_com;
                 inertia = written_inertia;
-                lever = match rows.get(index + 1) {
-                    Some(next) => Vector3::new(next.dh.a, zero, zero) - com,
-                    None => -com,
+                (r, lever) = match rows.get(index + 1) {
+                    Some(next) => {
+                        let lever = Vector3::new(next.dh.a, zero, zero);
+                        (lever - com, lever)
+                    }
+                    None => {
+                        let lever = Vector3::from(tool.xyz);
+                        (-com + lever, lever)
+                    }
                 };
-                tool_lever = Vector3::from(tool.xyz);
             }
         }
-        let r = if is_last { lever + tool_lever } else { lever };
-        Self { kind, twist, theta: dh.theta, offset, com, d: offset + com, r, inertia, mass: link.mass }
+        Self { kind, twist, theta: dh.theta, offset, com, d: offset + com, r, lever, inertia, mass: link.mass }
     }
 
     /// The same constants in the scalar of a computation.
@@ -106,6 +115,7 @@ impl<S: Constant> LinkFrame<S> {
             com: self.com.map(S::to),
             d: self.d.map(S::to),
             r: self.r.map(S::to),
+            lever: self.lever.map(S::to),
             inertia: self.inertia.map(S::to),
             mass: self.mass.to(),
         }
@@ -140,6 +150,16 @@ impl<T: Scalar> LinkFrame<T> {
         match self.kind {
             JointKind::Revolute => self.d,
             JointKind::Prismatic => Vector3::new(self.offset.x, self.offset.y, self.offset.z + q) + self.com,
+        }
+    }
+
+    /// J_i → J_{i+1}, or to the origin of the tip frame, m.
+    #[inline]
+    pub(crate) fn span(&self, q: T) -> Vector3<T> {
+        let span = self.offset + self.lever;
+        match self.kind {
+            JointKind::Revolute => span,
+            JointKind::Prismatic => Vector3::new(span.x, span.y, span.z + q),
         }
     }
 

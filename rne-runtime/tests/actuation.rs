@@ -40,6 +40,8 @@ fn inertia_viscous_and_coulomb_friction() {
     let dyn_arm = DynArm::new(&six_joints(Standard)).with_motors(MOTORS.to_vec()).expect("six");
     assert_eq!(dyn_arm.actuator_torques(&QD, &QDD), Ok(found.to_vec()));
     assert_eq!(Arm::new(six_joints(Standard)).actuator_torques(&QD, &QDD), [0.0; 6], "no motors");
+    let without = DynArm::new(&six_joints(Standard));
+    assert_eq!(without.actuator_torques(&QD, &QDD), Ok(vec![0.0; 6]), "no motors");
 }
 
 #[test]

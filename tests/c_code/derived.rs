@@ -1,8 +1,8 @@
 //! Every shipped robot with everything derived, and its functions by their names.
 
 use rne::{
-    BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
+    Actuation, BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
 };
 use rne_codegen::{Form, Function};
 
@@ -13,11 +13,6 @@ pub(crate) trait Derived: Send + Sync {
     /// All numbers that a function returns, in their order.
     fn single(&self, function: Function, given: &Numbers<f32>) -> Vec<f32>;
     fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64>;
-}
-
-/// Motors, of those robots that have them.
-trait Motors<const DOF: usize> {
-    fn motors<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF];
 }
 
 trait Everything<const DOF: usize>:
@@ -31,7 +26,7 @@ trait Everything<const DOF: usize>:
     + InverseDynamicsDerivatives<DOF>
     + JointWrenches<DOF>
     + MovingBase<DOF>
-    + Motors<DOF>
+    + Actuation<DOF>
 {
 }
 
@@ -82,7 +77,7 @@ fn numbers<const DOF: usize, T: Scalar>(
             wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()
         }
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
-        Function::ActuatorTorques => robot.motors(qd, qdd).to_vec(),
+        Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
     }
 }
 
@@ -93,7 +88,7 @@ fn torques<const DOF: usize, T: Scalar>(robot: &impl InverseDynamics<DOF>, given
 }
 
 macro_rules! robot {
-    ($robot:ident $dof:literal $path:literal $form:literal $($motors:ident)?) => {
+    ($robot:ident $dof:literal $path:literal $form:literal) => {
         #[derive(
             rne::InverseDynamics,
             rne::MassMatrix,
@@ -105,14 +100,10 @@ macro_rules! robot {
             rne::InverseDynamicsDerivatives,
             rne::JointWrenches,
             rne::MovingBase,
-            $(rne::$motors,)?
+            rne::Actuation,
         )]
         #[robot(path = $path, form = $form)]
         pub(super) struct $robot;
-
-        impl super::Motors<$dof> for $robot {
-            robot!(motors $dof $($motors)?);
-        }
 
         impl super::Everything<$dof> for $robot {}
 
@@ -126,26 +117,16 @@ macro_rules! robot {
             }
         }
     };
-    (motors $dof:literal) => {
-        fn motors<T: rne::Scalar>(&self, _: &[T; $dof], _: &[T; $dof]) -> [T; $dof] {
-            unreachable!("it has none")
-        }
-    };
-    (motors $dof:literal $motors:ident) => {
-        fn motors<T: rne::Scalar>(&self, qd: &[T; $dof], qdd: &[T; $dof]) -> [T; $dof] {
-            rne::Actuation::actuator_torques(self, qd, qdd)
-        }
-    };
 }
 
 macro_rules! robots {
-    ($($robot:ident $dof:literal $path:literal $($motors:ident)?;)*) => {
+    ($($robot:ident $dof:literal $path:literal;)*) => {
         mod seven_steps {
-            $(robot!($robot $dof $path "seven_steps" $($motors)?);)*
+            $(robot!($robot $dof $path "seven_steps");)*
         }
 
         mod reduced {
-            $(robot!($robot $dof $path "reduced" $($motors)?);)*
+            $(robot!($robot $dof $path "reduced");)*
         }
 
         mod rewritten {
@@ -184,12 +165,12 @@ robots! {
     Panda 7 "../../robots/panda.yaml";
     Wam7 7 "../../robots/wam7.yaml";
     Iiwa14 7 "../../robots/iiwa14.yaml";
-    Puma560 6 "../../robots/puma560.yaml" Actuation;
-    Puma560Mdh 6 "../../robots/puma560_mdh.yaml" Actuation;
-    Stanford 6 "../../robots/stanford.yaml" Actuation;
+    Puma560 6 "../../robots/puma560.yaml";
+    Puma560Mdh 6 "../../robots/puma560_mdh.yaml";
+    Stanford 6 "../../robots/stanford.yaml";
     Ur5 6 "../../robots/ur5.yaml";
     Ur5e 6 "../../robots/ur5e.yaml";
-    ScaraCobra600 4 "../../robots/scara_cobra600.yaml" Actuation;
+    ScaraCobra600 4 "../../robots/scara_cobra600.yaml";
     CylindricalRpp 3 "../../robots/cylindrical_rpp.yaml";
     GantryPpp 3 "../../robots/gantry_ppp.yaml";
     Planar3 3 "../../robots/planar3.yaml";

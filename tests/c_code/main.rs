@@ -25,10 +25,9 @@ const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
 /// The functions of a robot in a form; the rewritten form has one.
 fn programs(robot: &Robot, choice: &Choice, form: Form) -> Vec<Program> {
-    let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
     let is_there = |function: &Function| match form {
         Form::Rewritten => *function == Function::InverseDynamics,
-        _ => has_motors || *function != Function::ActuatorTorques,
+        _ => true,
     };
     let compiled = |function| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
     Function::ALL.into_iter().filter(is_there).map(compiled).collect()

@@ -13,7 +13,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 12] = [
+const SAME_BITS: [Function; 13] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsSc,
@@ -21,6 +21,7 @@ const SAME_BITS: [Function; 12] = [
     Function::BiasTorques,
     Function::MassMatrix,
     Function::ForwardDynamics,
+    Function::JacobianRateTimesVelocity,
     Function::KineticEnergy,
     Function::InverseDynamicsDerivatives,
     Function::JointWrenches,

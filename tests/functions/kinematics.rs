@@ -39,6 +39,29 @@ fn the_jacobian_moves_the_tip_and_carries_its_wrench() {
     });
 }
 
+/// J̇ q̇ has to do with the arm's geometry alone: no digit is lost to a centre of mass 200 km away.
+#[test]
+fn centres_of_mass_have_no_part_in_the_acceleration_of_the_tip() {
+    for (maker, case) in
+        Maker::ALL.into_iter().flat_map(|maker| cases(maker).iter().step_by(6).map(move |case| (maker, case)))
+    {
+        let Case { robot, q, qd, .. } = case;
+        let with_com = |com: [f64; 3]| {
+            let mut robot = robot.clone();
+            for joint in &mut robot.joints {
+                joint.row.link.com = com;
+            }
+            Arm::new(&robot, maker)
+        };
+        let near = with_com([0.0; 3]).jacobian_rate_times_velocity(q, qd);
+        for com in [[1e3, -1e3, 1e3], [-2e5, 2e5, 1e5], [1e30, 0.0, -1e30]] {
+            let far = with_com(com).jacobian_rate_times_velocity(q, qd);
+            let error = relative_error(&far, &near);
+            assert!(error <= 1e-15, "{maker}, {}, com {com:?}: {error:e}", robot.name);
+        }
+    }
+}
+
 #[test]
 fn the_base_turns_what_is_seen_from_the_world_and_no_torque() {
     let moved = |maker| {

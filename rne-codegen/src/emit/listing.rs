@@ -13,7 +13,7 @@ use super::text::returned;
 use crate::function::{Form, Function};
 use crate::ir::ledger::{Cause, Causes, Fate, Ledger, Place};
 use crate::ir::name::{By, Name};
-use crate::ir::quantity::{Component, Quantity, Step};
+use crate::ir::quantity::{Quantity, Step};
 use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
 
 /// Width of a comment.
@@ -320,8 +320,8 @@ fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: O
     for line in ledger.lines().filter(|line| here(&line.place)) {
         let reason = match line.fate {
             Fate::Kept => continue,
-            Fate::Zero(causes) => mainly(robot, &causes, 0),
-            Fate::One(causes) => mainly(robot, &causes, 1),
+            Fate::Zero(cause) => one_cause(robot, cause, 0),
+            Fate::One(cause) => one_cause(robot, cause, 1),
             Fate::Constant => "constants".to_owned(),
             Fate::Cancelled => "x - x".to_owned(),
             Fate::Shared => "computed before".to_owned(),
@@ -366,19 +366,9 @@ fn why(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
     words.join(" and ")
 }
 
-/// The weightiest of several causes, for a tally.
-fn mainly(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
-    causes.iter().next().map_or_else(String::new, |cause| one_cause(robot, cause, magnitude))
-}
-
 fn one_cause(robot: &Robot, cause: Cause, magnitude: u8) -> String {
-    let Cause::Table(mut name) = cause else { return cause.to_string() };
-    if let (Quantity::Inertia, Component::Matrix(row, column)) = (name.quantity, name.component)
-        && row > column
-    {
-        // a symmetric tensor, and the file writes the upper half
-        name.component = Component::Matrix(column, row);
-    }
+    let Cause::Table(name) = cause else { return cause.to_string() };
+    let name = name.of_upper_half();
     let row = robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| &joint.row.dh);
     match (name.quantity, row) {
         (Quantity::TwistSine | Quantity::TwistCosine, Some(dh)) => {

@@ -11,10 +11,11 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::Arm;
-use crate::formulate::seven_steps::{JointState, Motion, rotation};
-use crate::ir::Builder;
+use crate::formulate::seven_steps::{self, Base, JointState, Turning, rotation};
+use crate::ir::ledger::Cause;
+use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Matrix, Symbol, Vector};
+use crate::ir::{Builder, Matrix, Symbol, Vector};
 
 /// A frame in the world.
 #[derive(Clone, Copy)]
@@ -89,7 +90,7 @@ pub(crate) fn jacobian<'s>(builder: &'s Builder, arm: &Arm<'s>, frames: &Frames<
                 let lever = line.within(Quantity::JacobianLinear, || frames.tip.origin - frame.origin);
                 (line.within(Quantity::JacobianLinear, || axis.cross(lever)), axis)
             }
-            Prismatic => (axis, builder.zeros(crate::ir::ledger::Cause::JointAxis)),
+            Prismatic => (axis, builder.zeros(Cause::JointAxis)),
         };
         let linear = builder.name_vector(Quantity::JacobianLinear, index + 1, linear);
         let angular = builder.name_vector(Quantity::JacobianAngular, index + 1, angular);
@@ -98,27 +99,53 @@ pub(crate) fn jacobian<'s>(builder: &'s Builder, arm: &Arm<'s>, frames: &Frames<
     columns.collect()
 }
 
-/// Linear and angular acceleration of the tip in world axes, from the motion of the last link.
+/// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step 4 from
+/// joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
+///
+/// p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      (+ 2 q̇_i ω_i × e)
+///
+/// then p̈ and ω̇_n turned by R_n … R_1 and by the base.
 pub(crate) fn tip_acceleration<'s>(
     builder: &'s Builder,
     arm: &Arm<'s>,
-    frames: &Frames<'s>,
-    motions: &[Motion<'s>],
-) -> Option<[Vector<'s>; 2]> {
-    let (motion, link) = motions.last().zip(arm.links.last())?;
-    let axes = frames.joints.last()?.rotation;
-    let line = builder.joint(motions.len());
-    let Motion { omega, omega_dot, c_ddot, .. } = *motion;
-    let linear = line.within(Quantity::TipAcceleration, || {
-        let at_tip = c_ddot + omega_dot.cross(link.r) + omega.cross(omega.cross(link.r));
-        axes * at_tip
+    states: &[JointState<'s>],
+    base: &Base<'s>,
+) -> [Vector<'s>; 2] {
+    let e = seven_steps::axis(builder);
+    let dof = states.len();
+    let tip = dof + 1;
+    let mut point = builder.zeros(Cause::FixedBase);
+    let mut turning = Turning::of_base(builder, base);
+    let mut rotations = Vec::with_capacity(dof);
+    for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
+        let line = builder.joint(index + 1);
+        turning = turning.of_next(builder, index + 1, link, state);
+        let Turning { rotation, omega, omega_dot } = turning;
+        let span = offset(link.offset + link.lever, link.kind, state.q);
+        let twice_qd =
+            || line.scalar(Quantity::TwiceRate, || builder.entry(Name::scalar(Quantity::Two, 0), 2.0) * state.qd);
+        let next = || {
+            let rigid = rotation.transpose() * point + omega_dot.cross(span) + omega.cross(omega.cross(span));
+            match link.kind {
+                Revolute => rigid,
+                Prismatic => rigid + omega.cross(e) * twice_qd(),
+            }
+        };
+        point = if index + 1 == dof {
+            line.within(Quantity::TipAcceleration, next)
+        } else {
+            line.of_link_after().vector(Quantity::JointPointAcceleration, next)
+        };
+        rotations.push(rotation);
+    }
+    let [linear, angular] = [point, turning.omega_dot].map(|mut vector| {
+        for (index, rotation) in rotations.iter().enumerate().rev() {
+            vector = builder.joint(index + 1).within(Quantity::TipAcceleration, || *rotation * vector);
+        }
+        builder.joint(1).within(Quantity::TipAcceleration, || arm.base.rotation * vector)
     });
-    let angular = line.within(Quantity::TipAcceleration, || axes * omega_dot);
-    let tip = motions.len() + 1;
     let linear = builder.name_vector(Quantity::TipAcceleration, tip, linear);
-    let name = |axis: Axis, x| {
-        let name = crate::ir::name::Name::vector(Quantity::TipAcceleration, tip, axis);
-        builder.name(crate::ir::name::Name { indices: [1, 0], ..name }, x)
-    };
-    Some([linear, angular.map(name)])
+    let name =
+        |axis: Axis, x| builder.name(Name { indices: [1, 0], ..Name::vector(Quantity::TipAcceleration, tip, axis) }, x);
+    [linear, angular.map(name)]
 }

@@ -180,11 +180,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn tip_acceleration(&self) -> Outputs<'s> {
-        let frames = self.frames();
-        let motions = self.motions();
-        let Some(parts) = kinematics::tip_acceleration(self.builder, &self.arm, &frames, &motions) else {
-            return Vec::new();
-        };
+        let parts = kinematics::tip_acceleration(self.builder, &self.arm, &self.states, &self.base);
         let tip = self.states.len() + 1;
         parts
             .into_iter()

@@ -7,12 +7,11 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::QuarterTurns;
 
-use crate::formulate::arm::{Arm, Link};
+use crate::formulate::arm::{Arm, Link, identity};
 use crate::ir::ledger::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, JointLines};
-use crate::ir::{Matrix, Symbol, Vector};
+use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
 
 /// Position, rate and acceleration of one joint.
 #[derive(Clone, Copy)]
@@ -47,6 +46,44 @@ impl<'s> Base<'s> {
     pub(crate) fn fixed(builder: &'s Builder, gravity: Vector<'s>) -> Self {
         let at_rest = builder.zeros(Cause::FixedBase);
         Self { omega: at_rest, omega_dot: at_rest, acceleration: at_rest, gravity, lever: at_rest }
+    }
+}
+
+/// How a link turns, in its frame: what steps 1 and 2 find.
+#[derive(Clone, Copy)]
+pub(crate) struct Turning<'s> {
+    /// R_i
+    pub(crate) rotation: Matrix<'s>,
+    pub(crate) omega: Vector<'s>,
+    pub(crate) omega_dot: Vector<'s>,
+}
+
+impl<'s> Turning<'s> {
+    /// How the base turns.
+    pub(crate) fn of_base(builder: &'s Builder, base: &Base<'s>) -> Self {
+        Self { rotation: identity(builder), omega: base.omega, omega_dot: base.omega_dot }
+    }
+
+    /// How the link behind `joint` turns, when this is the link before it.
+    pub(crate) fn of_next(self, builder: &'s Builder, joint: usize, link: &Link<'s>, state: &JointState<'s>) -> Self {
+        let JointState { q, qd, qdd, turn } = *state;
+        let e = axis(builder);
+        let line = builder.joint(joint);
+        let rotation = rotation(line, builder, joint, link, q, turn);
+        let back = rotation.transpose();
+
+        // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
+        let omega = line.vector(Quantity::Omega, || match link.kind {
+            Revolute => back * self.omega + e * qd,
+            Prismatic => back * self.omega,
+        });
+
+        // 2   ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e + q̇_i ω_i × e
+        let omega_dot = line.vector(Quantity::OmegaDot, || match link.kind {
+            Revolute => back * self.omega_dot + e * qdd + omega.cross(e) * qd,
+            Prismatic => back * self.omega_dot,
+        });
+        Self { rotation, omega, omega_dot }
     }
 }
 
@@ -88,8 +125,8 @@ pub(crate) fn forward<'s>(
     states: &[JointState<'s>],
     base: &Base<'s>,
 ) -> Vec<Motion<'s>> {
-    let e = Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis)));
-    let (mut omega, mut omega_dot) = (base.omega, base.omega_dot);
+    let e = axis(builder);
+    let mut turning = Turning::of_base(builder, base);
     // no function asks how fast the base itself moves
     let (mut c_dot, mut c_ddot) = (builder.zeros(Cause::FixedBase), base.acceleration);
     let mut r = base.lever;
@@ -97,22 +134,12 @@ pub(crate) fn forward<'s>(
     let mut motions = Vec::with_capacity(arm.links.len());
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         let line = builder.joint(index + 1);
-        let JointState { q, qd, qdd, turn } = *state;
-        let rotation = rotation(line, builder, index + 1, link, q, turn);
+        let JointState { q, qd, qdd, .. } = *state;
+        let Turning { omega: omega_before, omega_dot: omega_dot_before, .. } = turning;
+        // 1, 2
+        turning = turning.of_next(builder, index + 1, link, state);
+        let Turning { rotation, omega, omega_dot } = turning;
         let back = rotation.transpose();
-        let (omega_before, omega_dot_before) = (omega, omega_dot);
-
-        // 1   ω_i = R_iᵀ ω_{i-1} + q̇_i e
-        omega = line.vector(Quantity::Omega, || match link.kind {
-            Revolute => back * omega_before + e * qd,
-            Prismatic => back * omega_before,
-        });
-
-        // 2   ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e + q̇_i ω_i × e
-        omega_dot = line.vector(Quantity::OmegaDot, || match link.kind {
-            Revolute => back * omega_dot_before + e * qdd + omega.cross(e) * qd,
-            Prismatic => back * omega_dot_before,
-        });
 
         let d = centre_of_mass(line, builder, index + 1, link, q);
 
@@ -191,6 +218,11 @@ pub(crate) fn backward<'s>(
     }
     loads.reverse();
     loads
+}
+
+/// e, the joint's axis in its frame.
+pub(crate) fn axis(builder: &Builder) -> Vector<'_> {
+    Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis)))
 }
 
 /// R_i = Rx(α_{i-1}) Rz(θ_i).

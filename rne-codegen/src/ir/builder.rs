@@ -146,9 +146,12 @@ impl Builder {
         let trace = &mut *trace.borrow_mut();
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
         let name = if is_entry { name } else { Name { by: name.by.or(self.by.get()), ..name } };
-        let causes = if is_entry { trace.causes.one(Cause::Table(name)) } else { symbol.causes };
-        let after = self.graph.borrow().len();
-        let told = trace.causes.get(causes);
+        let graph = self.graph.borrow();
+        // the two halves of a symmetric tensor are zero because of one number of the table
+        let told = if graph.is_zero(symbol.at) { name.of_upper_half() } else { name };
+        let causes = if is_entry { trace.causes.one(Cause::Table(told)) } else { symbol.causes };
+        let after = graph.len();
+        let told = trace.causes.get(causes).clone();
         trace.definitions.push(Definition { name, at: symbol.at, causes: told, after });
         Symbol { causes, ..symbol }
     }
@@ -186,9 +189,10 @@ impl Builder {
         let none = CausesId::ARITHMETIC;
         let (causes, reason) = match outcome {
             // a sum is zero when both are
-            Outcome::Zero(_) if both_zero => (trace.causes.union(a.causes, b.causes), b.causes),
+            Outcome::Zero(_) if both_zero => (trace.causes.both(a.causes, b.causes), b.causes),
             Outcome::Zero(Side::Right) => (a.causes, b.causes),
             Outcome::Zero(Side::Left) => (b.causes, a.causes),
+            _ if graph.is_zero(at) => (trace.causes.one(Cause::Cancellation), none),
             _ => (none, none),
         };
         trace.record(graph.len(), Operation::Sum, outcome, reason);
@@ -204,7 +208,7 @@ impl Builder {
         let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(a.at);
         let reason = match outcome {
             // a product is zero when either is
-            Outcome::Zero(_) if both_zero => trace.causes.weightier(a.causes, b.causes),
+            Outcome::Zero(_) if both_zero => trace.causes.either(a.causes, b.causes),
             Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.causes,
             Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.causes,
             _ => CausesId::ARITHMETIC,
@@ -319,6 +323,11 @@ impl<'s> JointLines<'s> {
     /// The same lines, for quantities that belong to the link before.
     pub(crate) fn of_link_before(self) -> Self {
         Self { named: self.joint.saturating_sub(1), ..self }
+    }
+
+    /// The same lines, for quantities that belong to the link after.
+    pub(crate) fn of_link_after(self) -> Self {
+        Self { named: self.joint + 1, ..self }
     }
 
     /// A quantity that is one number.

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
 use crate::ir::name::{By, Name};
 use crate::ir::quantity::{Axis, Quantity, Step};
@@ -35,6 +36,8 @@ pub enum Cause {
     UnitAcceleration,
     /// The function has nothing to do with gravity.
     NoGravity,
+    /// Terms that are not zero cancel, as x - x does; what makes them equal is not told.
+    Cancellation,
 }
 
 impl fmt::Display for Cause {
@@ -53,46 +56,105 @@ impl fmt::Display for Cause {
             Self::NoAcceleration => f.write_str("the joints do not accelerate"),
             Self::UnitAcceleration => f.write_str("one joint alone accelerates"),
             Self::NoGravity => f.write_str("gravity has no part in it"),
+            Self::Cancellation => f.write_str("its terms cancel"),
         }
     }
 }
 
-/// Everything because of which a number is exactly zero or one: a product needs one zero, a sum needs all.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct Causes([Option<Cause>; Self::MOST]);
+/// Everything because of which a number is exactly zero or one: a set that suffices, and of which nothing can be left out.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Causes(Arc<[Cause]>);
 
 impl Causes {
-    /// More than three are not told apart.
-    const MOST: usize = 3;
-
-    pub(crate) const fn one(cause: Cause) -> Self {
-        Self([Some(cause), None, None])
+    pub(crate) fn one(cause: Cause) -> Self {
+        Self(Arc::new([cause]))
     }
 
     /// The causes, the weightiest first.
     pub fn iter(&self) -> impl Iterator<Item = Cause> {
-        self.0.into_iter().flatten()
+        self.0.iter().copied()
+    }
+
+    /// The weightiest.
+    pub(crate) fn main(&self) -> Cause {
+        self.0.first().copied().unwrap_or(Cause::Arithmetic)
     }
 
     /// The name of the one table entry that is the cause, if it is one alone.
     pub(crate) fn entry(&self) -> Option<Name> {
-        match self.0 {
-            [Some(Cause::Table(name)), None, _] => Some(name),
-            [Some(Cause::GravityDirection(axis)), None, _] => Some(Name::vector(Quantity::Gravity, 0, axis)),
+        match *self.0 {
+            [Cause::Table(name)] => Some(name),
+            [Cause::GravityDirection(axis)] => Some(Name::vector(Quantity::Gravity, 0, axis)),
             _ => None,
         }
     }
 
     /// Both together, as a sum of two zeros needs them. That a frame turns about its own axis goes without saying.
-    pub(crate) fn and(self, other: Self) -> Self {
+    fn and(&self, other: &Self) -> Self {
         let mut all: Vec<Cause> = self.iter().chain(other.iter()).collect();
         all.sort_unstable_by(|a, b| b.weight().cmp(&a.weight()).then(a.cmp(b)));
         all.dedup();
         if all.first().is_some_and(|cause| !cause.is_geometry()) {
             all.retain(|cause| !cause.is_geometry());
+        } else {
+            // one reason that holds for every arm is as good as two
+            all.truncate(1);
         }
-        let mut causes = all.into_iter();
-        Self([causes.next(), causes.next(), causes.next()])
+        Self(all.into())
+    }
+
+    /// Those that hold for this arm and not for every arm.
+    fn facts(&self) -> impl Iterator<Item = Cause> {
+        self.iter().filter(|cause| !cause.is_geometry())
+    }
+
+    /// Whether it says no more than the other, so that the other can be left out.
+    fn is_within(&self, other: &Self) -> bool {
+        self.facts().all(|fact| other.0.contains(&fact))
+    }
+}
+
+/// The sets of causes each of which suffices for a zero, the best first: a product is zero because of one factor or the
+/// other, so a sum of products has its choice. None of them contains another.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct Alternatives(Vec<Causes>);
+
+impl Alternatives {
+    /// So many are kept; the fewest causes are found among them.
+    const MOST: usize = 8;
+
+    pub(crate) fn one(cause: Cause) -> Self {
+        Self(vec![Causes::one(cause)])
+    }
+
+    /// The best of them.
+    pub(crate) fn best(&self) -> &Causes {
+        &self.0[0]
+    }
+
+    /// Each alone suffices: of a product of two zeros.
+    pub(crate) fn or(&self, other: &Self) -> Self {
+        Self::of(self.0.iter().chain(&other.0).cloned())
+    }
+
+    /// One of each is needed: for a sum of two zeros.
+    pub(crate) fn and(&self, other: &Self) -> Self {
+        Self::of(self.0.iter().flat_map(|a| other.0.iter().map(|b| a.and(b))))
+    }
+
+    /// The fewest numbers of the robot file first, for what the function says holds whatever the robot; then the fewest
+    /// facts; of as many, those that tell more.
+    fn of(sets: impl Iterator<Item = Causes>) -> Self {
+        let mut sets: Vec<Causes> = sets.collect();
+        let size = |set: &Causes| (set.facts().filter(Cause::is_of_file).count(), set.facts().count());
+        sets.sort_unstable_by(|a, b| size(a).cmp(&size(b)).then(b.cmp(a)));
+        let mut kept: Vec<Causes> = Vec::new();
+        for set in sets {
+            if kept.len() < Self::MOST && !kept.iter().any(|known| known.is_within(&set)) {
+                kept.push(set);
+            }
+        }
+        Self(kept)
     }
 }
 
@@ -121,8 +183,14 @@ impl Cause {
             | Self::AtRest
             | Self::NoAcceleration
             | Self::UnitAcceleration
-            | Self::NoGravity => 4,
+            | Self::NoGravity
+            | Self::Cancellation => 4,
         }
+    }
+
+    /// Whether a robot file could say otherwise.
+    const fn is_of_file(&self) -> bool {
+        matches!(self, Self::Table(_) | Self::GravityDirection(_))
     }
 
     /// Whether it holds for every arm: zeros of Rx, Rz and e.
@@ -161,10 +229,10 @@ pub enum Operation {
 pub enum Fate {
     /// It stands in the generated code.
     Kept,
-    /// A factor or summand is zero.
-    Zero(Causes),
-    /// A factor is 1 or -1.
-    One(Causes),
+    /// A factor or summand is zero, mainly because of this.
+    Zero(Cause),
+    /// A factor is 1 or -1, because of this.
+    One(Cause),
     /// Both operands are constants: done at compile time.
     Constant,
     /// x - x.

@@ -85,6 +85,18 @@ impl Name {
     }
 }
 
+impl Name {
+    /// The name under which the table has an element of an inertia: that of the upper half.
+    pub(crate) fn of_upper_half(self) -> Self {
+        match (self.quantity, self.component) {
+            (Quantity::Inertia, Component::Matrix(row, column)) if row > column => {
+                Self { component: Component::Matrix(column, row), ..self }
+            }
+            _ => self,
+        }
+    }
+}
+
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;

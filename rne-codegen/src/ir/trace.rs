@@ -10,7 +10,7 @@ use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Component};
 
 /// A name given to a value, in the order in which the names were given.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Definition {
     pub(crate) name: Name,
     pub(crate) at: Ref,
@@ -89,7 +89,7 @@ impl Trace {
     pub(super) fn record(&mut self, nodes: usize, operation: Operation, outcome: Outcome, causes: CausesId) {
         // Constants of the table are formed outside any step: a runtime forms them once, too.
         let Some(place) = self.place else { return };
-        let cause = self.causes.get(causes);
+        let cause = self.causes.get(causes).main();
         let fate = match outcome {
             Outcome::Computed => Fate::Kept,
             Outcome::Shared => Fate::Shared,

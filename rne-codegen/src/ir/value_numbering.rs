@@ -58,7 +58,7 @@ impl Traced {
         let after = self.graph.len();
         for definition in &other.trace.definitions {
             if let Some(at) = self.graph.valued(other.graph.image(definition.at)).filter(|at| at.index() > 1) {
-                self.trace.definitions.push(Definition { at, after, ..*definition });
+                self.trace.definitions.push(Definition { at, after, ..definition.clone() });
             }
         }
         self

@@ -6,6 +6,9 @@ use rne_model::{Diagnostic, Report, check};
 /// A valid file; the tests count on its lines.
 pub const BASE: &str = include_str!("../robots/base.yaml");
 
+/// So many steps of work the worst files of 1 MiB may cost.
+pub const MOST_WORK: usize = 32 << 20;
+
 /// The valid file with one passage replaced.
 pub fn with(old: &str, new: &str) -> String {
     assert_eq!(BASE.matches(old).count(), 1, "`{old}` must occur once");
