@@ -69,7 +69,7 @@ fn yaml(seed: u64, most: usize) -> String {
     let (zeros, right) = (*rng.choice(&[0.0, 0.3, 0.6]).unwrap_or(&0.3), *rng.choice(&[0.6, 1.0]).unwrap_or(&1.0));
     let prismatic = *rng.choice(&[0.0, 0.0, 0.3, 0.6]).unwrap_or(&0.0);
     let gravity = if rng.f64() < 0.8 { "[0, 0, -9.81]" } else { "[1.2, -3.4, 9.1]" };
-    let joints: String = (0..joints)
+    let joints: Vec<String> = (0..joints)
         .map(|_| {
             let kind = if rng.f64() < prismatic { "prismatic" } else { "revolute" };
             let [d, a] = [(); 2].map(|()| decimal(number(&mut rng, zeros, 50), 2));
@@ -77,6 +77,7 @@ fn yaml(seed: u64, most: usize) -> String {
             format!("  - {{type: {kind}, dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}, link: {link}}}\n")
         })
         .collect();
+    let joints = joints.concat();
     format!(
         "format: 1\nname: cad_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\n\
          gravity: {gravity}\njoints:\n{joints}"
