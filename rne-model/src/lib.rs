@@ -91,4 +91,4 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
-pub use source::read_limited;
+pub use source::{is_control, one_line, read_limited};

@@ -70,9 +70,25 @@ pub(crate) fn is_line_break(c: char) -> bool {
 }
 
 /// Whether a character does something instead of showing something: controls terminals, or turns the direction of text,
-/// which compilers refuse in source code.
-pub(crate) fn is_control(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+/// which compilers refuse in source code, or breaks the line for some program.
+#[must_use]
+pub fn is_control(c: char) -> bool {
+    let turns_direction =
+        matches!(c, '\u{61C}' | '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || is_line_break(c) || turns_direction
+}
+
+/// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any other
+/// [control character](is_control) U+FFFD.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\t' => ' ',
+        c if is_line_break(c) => ' ',
+        c if is_control(c) => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    text.chars().map(shown).collect()
 }
 
 /// A value for a message: shortened, control characters escaped, in backticks.
