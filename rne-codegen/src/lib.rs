@@ -115,6 +115,15 @@ pub enum CompileError {
     },
     /// A plan that does not fit the robot.
     Plan(String),
+    /// A rewritten graph that cannot be read.
+    Graph {
+        /// The robot's name.
+        robot: String,
+        /// The line of the graph, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        message: String,
+    },
 }
 
 impl fmt::Display for CompileError {
@@ -139,6 +148,11 @@ impl fmt::Display for CompileError {
                  torque. `rne search` finds another plan, `form = \"seven_steps\"` needs none"
             ),
             Self::Plan(why) => f.write_str(why),
+            Self::Graph { robot, line, message } => write!(
+                f,
+                "line {line} of the rewritten graph in the plan of `{robot}`: {message}; `rne search --rewrite --fresh` writes \
+                 the plan anew"
+            ),
         }
     }
 }

@@ -1,24 +1,9 @@
 //! From bytes to text: what must hold before YAML is spoken of.
 
-use std::io::{self, Read};
 use std::ops::Range;
 
+use crate::data_file::MAX_BYTES;
 use crate::diagnostic::{Diagnostic, Problems};
-
-/// The largest file that is read. The longest table, 64 joints, needs a fiftieth of it.
-const MAX_BYTES: usize = 1 << 20;
-
-/// The bytes of a robot file for [`check_bytes`](crate::check_bytes), and no more of them than tell that a file is too
-/// long: a device without an end, or a huge file, takes neither memory nor time.
-///
-/// # Errors
-///
-/// As [`Read::read_to_end`].
-pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    reader.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
 
 /// Whether a file of `length` bytes is read at all.
 pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {

@@ -6,7 +6,7 @@ use super::evaluator::{self, Frame};
 use super::graph_text;
 use super::merged;
 use super::plan::Plan;
-use super::plan_file::{PlanFile, Remark, Rewritten, fingerprint};
+use super::plan_file::{Accuracy, PlanFile, Reduced, Rewritten};
 use super::rewrite::Rewriting;
 use super::search::{Clock, Over, Progress, Search, default_plan};
 use super::sheet::{Cost, Dag};
@@ -120,7 +120,7 @@ impl Choice {
     }
 
     fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
-        let Some(Rewritten { plan, graph }) = &self.rewritten else {
+        let Some(Rewritten { plan, graph, .. }) = &self.rewritten else {
             return Err(CompileError::Plan(format!(
                 "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot file, which \
                  `path = \"…\"` finds",
@@ -137,17 +137,13 @@ impl Choice {
 
 impl From<PlanFile> for Choice {
     fn from(file: PlanFile) -> Self {
-        Self { plan: file.plan, rewritten: file.rewritten }
+        Self { plan: file.reduced.plan, rewritten: file.rewritten }
     }
 }
 
 /// A graph that cannot be read stands in a plan file; a fresh search replaces it.
 fn misread(robot: &Robot, line: usize, message: &str) -> CompileError {
-    CompileError::Plan(format!(
-        "line {line} of the rewritten graph in the plan of `{}`: {message}; `rne search --rewrite --fresh` writes the plan \
-         anew",
-        robot.name
-    ))
+    CompileError::Graph { robot: robot.name.clone(), line, message: message.to_owned() }
 }
 
 /// The recursion of a function.
@@ -208,17 +204,13 @@ pub struct Wanted {
 pub struct Found {
     /// The plan file.
     pub file: PlanFile,
-    /// What it says of the reduced form.
-    pub reduced: Remark,
-    /// What it says of the rewritten form.
-    pub rewritten: Option<Remark>,
 }
 
 impl Found {
     /// The text of the plan file.
     #[must_use]
     pub fn to_yaml(&self) -> String {
-        self.file.to_yaml(&self.reduced, self.rewritten.as_ref())
+        self.file.to_yaml()
     }
 }
 
@@ -243,7 +235,7 @@ pub fn search(
     });
     search.greedy(usize::MAX);
     if let Some(known) = known {
-        search.start_from(&known.plan);
+        search.start_from(&known.reduced.plan);
         if let Some(rewritten) = &known.rewritten {
             search.start_from(&rewritten.plan);
         }
@@ -270,21 +262,17 @@ pub fn search(
     if wanted.rewrite {
         rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
     }
-    let file = PlanFile {
-        robot: robot.name.clone(),
-        fingerprint: fingerprint(robot),
-        plan,
-        rewritten: best.as_ref().map(|(_, rewritten)| rewritten.clone()),
-    };
-    let choice = Choice::from(file.clone());
-    let remark = |form, cost| {
+    let choice = Choice { plan: plan.clone(), rewritten: best.as_ref().map(|(_, rewritten)| rewritten.clone()) };
+    let accuracy = |form| {
         let program = choice.compile(robot, Function::InverseDynamics, form)?;
         let proof = program.proof.ok_or_else(|| CompileError::Plan("a program without proof".to_owned()))?;
-        Ok(Remark { cost, proof })
+        Ok(Accuracy::from(&proof))
     };
-    let reduced = remark(Form::Reduced, reduced_cost)?;
-    let rewritten = best.map(|(cost, _)| remark(Form::Rewritten, cost)).transpose()?;
-    Ok(Found { file, reduced, rewritten })
+    let reduced = Reduced { operations: reduced_cost, accuracy: accuracy(Form::Reduced)?, plan };
+    let rewritten = best
+        .map(|(operations, rewritten)| Ok(Rewritten { operations, accuracy: accuracy(Form::Rewritten)?, ..rewritten }))
+        .transpose()?;
+    Ok(Found { file: PlanFile::new(robot, reduced, rewritten) })
 }
 
 /// How much less precise than the seven steps a form may be in single precision, on the average.
@@ -397,7 +385,8 @@ fn rewritten(
         if best.as_ref().is_some_and(|(least, _)| cost.weight() >= least.weight()) {
             break;
         }
-        let rewritten = Rewritten { plan, graph: graph_text::written(&dag, given) };
+        let graph = graph_text::written(&dag, given);
+        let rewritten = Rewritten { operations: cost, accuracy: Accuracy::default(), plan, graph };
         let choice = Choice { plan: rewritten.plan.clone(), rewritten: Some(rewritten.clone()) };
         if is_precise(robot, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));

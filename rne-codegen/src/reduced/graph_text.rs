@@ -12,6 +12,7 @@ use std::fmt::Write;
 
 use super::evaluator::Frame;
 use super::numbers::{Numbers, Source};
+use super::plan::count;
 use super::point::Point;
 use super::sheet::{Dag, Identity, Leaf, Op, Ref, Sheet, mark_live};
 use super::writer::Angle;
@@ -136,9 +137,17 @@ pub(crate) fn read(text: &str, frame: &Frame, numbers: &Numbers) -> Result<Dag, 
         let term = reader.operation(value).map_err(|message| (at, message))?;
         // a constant is kept without its sign
         let term = if name.starts_with('d') { term.magnitude() } else { term };
-        if let Some(joint) = name.strip_prefix("tau").and_then(|joint| joint.parse::<usize>().ok()) {
+        if let Some(joint) = name.strip_prefix("tau").and_then(count) {
             let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
-            *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term);
+            let slot = slot.ok_or_else(|| (at, format!("there is no joint {joint}")))?;
+            if slot.replace(term).is_some() {
+                return Err((at, format!("`{name}` stands there twice")));
+            }
+        } else if !is_name(name) {
+            return Err((
+                at,
+                format!("`{name}` is no name of a graph: `d1` is a constant, `t1` a term, `tau1` a torque"),
+            ));
         } else if reader.known.insert(name.to_owned(), term).is_some() {
             return Err((at, format!("`{name}` stands there twice")));
         }
@@ -146,6 +155,11 @@ pub(crate) fn read(text: &str, frame: &Frame, numbers: &Numbers) -> Result<Dag, 
     let outputs: Option<Vec<Ref>> = outputs.into_iter().collect();
     let end = text.lines().count();
     outputs.map(|outputs| Dag { sheet: reader.sheet, outputs }).ok_or_else(|| (end, "a torque is missing".to_owned()))
+}
+
+/// Whether a line may define this name.
+fn is_name(name: &str) -> bool {
+    ["d", "t"].iter().any(|letter| name.strip_prefix(letter).and_then(count).is_some())
 }
 
 /// A graph that was read, with the numbers of its plan in their places and its own behind them.
@@ -257,11 +271,11 @@ impl Reader<'_> {
         let (letters, digits) = name.split_at(digits);
         let rows = &self.frame.table.rows;
         let joint = |text: &str| {
-            let at = text.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < rows.len())?;
+            let at = count(text)?.checked_sub(1).filter(|&at| at < rows.len())?;
             Some((at, u8::try_from(at).ok()?))
         };
         let (leaf, image) = match letters {
-            "k" => return Some(self.sheet.constant(*self.given.get(digits.parse::<usize>().ok()?)?)),
+            "k" => return Some(self.sheet.constant(*self.given.get(count(digits)?)?)),
             "q" => joint(digits).map(|(at, byte)| (Leaf::Position(byte), self.point.position(at)))?,
             "qd" => joint(digits).map(|(at, byte)| (Leaf::Rate(byte), self.point.rate(at)))?,
             "qdd" => joint(digits).map(|(at, byte)| (Leaf::RateDot(byte), self.point.rate_dot(at)))?,

@@ -36,7 +36,7 @@ mod writer;
 
 pub use choice::{Choice, Found, Wanted, cost, is_planned, savings, search};
 pub use plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
-pub use plan_file::{PlanFile, Remark, Rewritten, fingerprint};
+pub use plan_file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
 pub(crate) use point::Point;
 pub use search::{Clock, Progress};
 pub use sheet::Cost;
