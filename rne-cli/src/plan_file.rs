@@ -1,7 +1,6 @@
 //! Plan files beside robot files.
 
 use std::cell::OnceCell;
-use std::fs::File;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -67,14 +66,11 @@ pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<Plan
 
 /// Whether a plan can be written there: better known before a search than after it.
 pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let probe = folder.join(format!(".{}.rne-search.tmp", std::process::id()));
     let failure = |error| Failure::input(format_args!("{} cannot be written: {error}", path.display()));
     if path.is_dir() {
         return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
     }
-    File::create(&probe).map_err(failure)?;
-    std::fs::remove_file(&probe).map_err(failure)
+    output_file::beside(path).map(drop).map_err(failure)
 }
 
 /// Compiles the function that a plan is of in every form that it describes, and proves them; each form with its operations. What a

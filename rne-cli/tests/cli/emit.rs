@@ -284,3 +284,20 @@ fn a_title_is_no_code() {
     let c = emitted(&format!("{}???/ next", "x".repeat(93)), "c");
     assert!(c.starts_with(&format!("// {}?/\n// next: straight-line", "x".repeat(93))), "{c}");
 }
+
+/// A file that is written through a temporary one is a file like any other.
+#[test]
+#[cfg(unix)]
+fn a_new_file_has_the_permissions_of_any_new_file() {
+    use std::os::unix::fs::PermissionsExt as _;
+    let folder = folder("permissions");
+    let (plain, emitted) = (path(&folder, "plain.rs"), path(&folder, "emitted.rs"));
+    fs::write(&plain, "").expect("written");
+    rne(&["emit", ROBOT, "-o", &emitted]);
+    let mode = |file: &str| fs::metadata(file).expect("a file").permissions().mode();
+    assert_eq!(mode(&emitted), mode(&plain));
+    fs::set_permissions(&emitted, fs::Permissions::from_mode(0o640)).expect("permitted");
+    rne(&["emit", "robots/planar3.yaml", "-o", &emitted]);
+    assert_eq!(mode(&emitted) & 0o777, 0o640, "those of the file that is replaced");
+    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 2, "no temporary file is left");
+}
