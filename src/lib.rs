@@ -41,8 +41,11 @@
 //! # A robot at run time
 //!
 //! [`Arm`] implements the same traits for a robot that is loaded when the program runs, by the recursion as a textbook
-//! writes it, with loops and vectors. Generated code computes the same bits and is tested against it. `DynArm` does so for
-//! a number of joints that is not known either.
+//! writes it, with loops and vectors. Generated code is tested against it: in `f64`, without fused multiply-add, the seven
+//! steps give the same bits for the torques of all traits, the mass matrix, forward dynamics, kinetic energy, the
+//! derivatives and the joint wrenches. [`Kinematics`], potential energy, [`CoriolisMatrix`] and [`Regressor`] sum in another order
+//! and agree to rounding, and so does `f32`, for an `Arm` keeps its constants in `f64`. `DynArm` is for a number of joints that is
+//! not known either.
 //!
 //! ```
 //! # #[cfg(feature = "std")] {

@@ -4,12 +4,10 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::{Form, Function};
-use rne_model::{Checked, Convention, JointKind, Robot};
+use rne_model::{Checked, Convention, JointKind, Robot, plan_of, robot_of};
 
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome};
-use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, QUIET};
 use crate::{plan_file, robot_file};
 
@@ -19,7 +17,7 @@ use crate::{plan_file, robot_file};
 Example:
   rne check robots/*.yaml
 
-Exit status 1 when a file has errors; lints are warnings and leave it at 0.")]
+A plan is compiled and proved, the one beside a robot file too. Exit status 1 when a file has errors; lints are warnings and leave it at 0.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]
@@ -31,30 +29,16 @@ pub(crate) fn run(arguments: &Arguments) -> Outcome {
     let mut bad = 0;
     let widest = arguments.files.iter().map(|path| width(&path.display().to_string())).max().unwrap_or(0);
     for path in &arguments.files {
-        if plan_file::robot_of(path).is_some() {
-            match plan(path) {
-                Ok(about) => {
-                    let file = left(&path.display().to_string(), widest);
-                    let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{about}{QUIET:#}");
-                }
-                Err(failure) => {
-                    bad += 1;
-                    let _ = writeln!(text, "\n{}\n", failure.text);
-                }
-            }
-            continue;
-        }
-        match robot_file::read(path) {
-            Ok(Checked { robot, lints }) => {
+        let checked = match robot_of(path) {
+            Some(robot_file) => plan(&robot_file),
+            None => robot(path, &arguments.files),
+        };
+        match checked {
+            Ok(Good { about, lints }) => {
                 let file = left(&path.display().to_string(), widest);
-                let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{}{QUIET:#}", about(&robot));
-                if !lints.is_empty() {
-                    let _ = writeln!(text, "\n{}\n", lints.render(true));
-                }
-                // its plan goes with it
-                if let Err(failure) = plan_file::read(path, &robot) {
-                    bad += 1;
-                    let _ = writeln!(text, "\n{}\n", failure.text);
+                let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{about}{QUIET:#}");
+                if let Some(lints) = lints {
+                    let _ = writeln!(text, "\n{lints}\n");
                 }
             }
             Err(failure) => {
@@ -69,20 +53,34 @@ pub(crate) fn run(arguments: &Arguments) -> Outcome {
     Outcome { text: text.trim_start_matches('\n').to_owned(), at_fault: bad > 0, ..Outcome::default() }
 }
 
-/// Whether a plan belongs to its robot and gives what the seven steps give; what it costs, in a few words.
-fn plan(path: &Path) -> Result<String, Failure> {
-    let file = plan_file::robot_of(path).unwrap_or_default();
-    let robot = robot_file::robot(&file)?;
-    let compiler = Compiler::new(&file, &robot);
-    let count = |form: Form| -> Result<String, Failure> {
-        let operations = compiler.compile(Function::InverseDynamics, form)?.operations();
-        Ok(format!("{form} {}", operations.total()))
-    };
-    let mut words = vec![count(Form::Reduced)?];
-    if compiler.choice()?.rewritten.is_some() {
-        words.push(count(Form::Rewritten)?);
+/// A file in order.
+struct Good {
+    /// It in a few words.
+    about: String,
+    lints: Option<String>,
+}
+
+/// A robot file, and its plan with it, unless that is among the files to be checked itself.
+fn robot(path: &Path, files: &[PathBuf]) -> Result<Good, Failure> {
+    let Checked { robot, lints } = robot_file::read(path)?;
+    if !files.contains(&plan_of(path))
+        && let Some(read) = plan_file::read(path, &robot)?
+    {
+        plan_file::verify(&robot, &read)?;
     }
-    Ok(format!("plan of {}: {} operations, proved", robot.name, words.join(", ")))
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.render(true)) })
+}
+
+/// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
+fn plan(robot_file: &Path) -> Result<Good, Failure> {
+    let robot = robot_file::robot(robot_file)?;
+    let Some(read) = plan_file::read(robot_file, &robot)? else {
+        return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
+    };
+    let counts = plan_file::verify(&robot, &read)?;
+    let words: Vec<String> = counts.iter().map(|(form, total)| format!("{form} {total}")).collect();
+    let about = format!("plan of {}: {} operations, proved", robot.name, words.join(", "));
+    Ok(Good { about, lints: None })
 }
 
 /// The robot in a few words: `puma560, RRRRRR, standard`.

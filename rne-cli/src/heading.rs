@@ -10,8 +10,7 @@ use crate::terminal::{QUIET, TITLE};
 /// Title, convention, gravity, and the Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
     let mut text = String::new();
-    let title = robot.title.as_deref().unwrap_or(&robot.name);
-    let _ = writeln!(text, "{TITLE}{title}{TITLE:#}");
+    let _ = writeln!(text, "{TITLE}{}{TITLE:#}", emit::title(robot));
     let _ = writeln!(text, "{}", emit::convention(robot));
     let [x, y, z] = robot.gravity;
     let _ = writeln!(text, "acceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²");

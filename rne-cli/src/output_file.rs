@@ -1,9 +1,10 @@
 //! Files that are written: whole or not at all.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::path::{Path, PathBuf};
-use std::process;
+use std::path::Path;
+
+use tempfile::NamedTempFile;
 
 /// What stands where a file is to be written.
 pub(crate) enum Existing {
@@ -69,30 +70,27 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
     if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
         return Err(io::Error::new(ErrorKind::PermissionDenied, "it is write-protected"));
     }
-    let temporary = beside(&path)?;
-    let written = (|| {
-        let mut file = OpenOptions::new().write(true).create_new(true).open(&temporary)?;
-        file.write_all(text.as_bytes())?;
-        if let Some(permissions) = permissions {
-            file.set_permissions(permissions)?;
-        }
-        file.sync_all()?;
-        drop(file);
-        fs::rename(&temporary, &path)
-    })();
-    if let Err(error) = written {
-        // The first error is the one to tell.
-        let _ = fs::remove_file(&temporary);
-        return Err(error);
+    let mut file = beside(&path)?;
+    file.write_all(text.as_bytes())?;
+    if let Some(permissions) = permissions {
+        file.as_file().set_permissions(permissions)?;
     }
+    file.as_file().sync_all()?;
+    file.persist(&path)?;
     Ok(Written::Anew)
 }
 
-/// The name of a temporary file in the same folder, so that renaming it is one step.
-fn beside(path: &Path) -> io::Result<PathBuf> {
+/// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the permissions that
+/// any new file has.
+pub(crate) fn beside(path: &Path) -> io::Result<NamedTempFile> {
     let name = path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is no name of a file"))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut hidden = std::ffi::OsString::from(".");
     hidden.push(name);
-    hidden.push(format!(".{}.tmp", process::id()));
-    Ok(path.with_file_name(hidden))
+    hidden.push(".");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&hidden).suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
 }

@@ -1,32 +1,17 @@
 //! Plan files beside robot files.
 
 use std::cell::OnceCell;
-use std::fs::File;
-use std::io::{ErrorKind, Read as _};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::ProgressBar;
 use rne_codegen::plan::{Choice, PlanFile};
 use rne_codegen::{CompileError, Form, Function, Program, compile};
-use rne_model::Robot;
+use rne_model::{Robot, plan_of, read_file, robot_of};
 
 use crate::outcome::Failure;
 use crate::output_file::{self, Existing};
-
-/// Far more than the largest plan.
-const LONGEST: u64 = 16 << 20;
-
-/// `NAME.plan.yaml` beside `NAME.yaml`.
-pub(crate) fn path(robot_file: &Path) -> PathBuf {
-    robot_file.with_extension("plan.yaml")
-}
-
-/// `NAME.yaml` of `NAME.plan.yaml`; `None` when a path is not that of a plan.
-pub(crate) fn robot_of(path: &Path) -> Option<PathBuf> {
-    let name = path.file_name()?.to_str()?.strip_suffix(".plan.yaml")?;
-    Some(path.with_file_name(format!("{name}.yaml")))
-}
 
 /// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
 pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
@@ -34,24 +19,35 @@ pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
     paths.iter().filter(move |path| all_are_plans || robot_of(path).is_none())
 }
 
+/// A plan file with what messages need of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Read {
+    /// What messages call it.
+    pub(crate) name: String,
+    pub(crate) text: String,
+    pub(crate) plan: PlanFile,
+}
+
 /// The plan file of a robot file, if there is one.
-pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
+pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Failure> {
     if robot_file == Path::new("-") {
         return Ok(None);
     }
-    let path = path(robot_file);
-    let shown = path.display();
-    let mut text = String::new();
-    match File::open(&path).and_then(|file| file.take(LONGEST).read_to_string(&mut text)) {
-        Ok(_) => PlanFile::read(&shown.to_string(), &text, robot).map(Some).map_err(|report| Failure::from(&report)),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
-    }
+    let path = plan_of(robot_file);
+    let name = path.display().to_string();
+    let bytes = match read_file(&path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Failure::input(format_args!("{name} cannot be read: {error}"))),
+    };
+    let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is no text in UTF-8")))?;
+    let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::from(&report))?;
+    Ok(Some(Read { name, text, plan }))
 }
 
 /// The plan that a fresh search starts from: one that fits, or none where it is stale or broken. What is no plan at all stays.
 pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
-    let path = path(robot_file);
+    let path = plan_of(robot_file);
     match output_file::existing(&path) {
         Existing::Nothing => Ok(None),
         Existing::Text(text) if text.contains("\nfingerprint: ") || text.trim().is_empty() => {
@@ -72,14 +68,25 @@ pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<Plan
 
 /// Whether a plan can be written there: better known before a search than after it.
 pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let probe = folder.join(format!(".{}.rne-search.tmp", std::process::id()));
     let failure = |error| Failure::input(format_args!("{} cannot be written: {error}", path.display()));
     if path.is_dir() {
         return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
     }
-    File::create(&probe).map_err(failure)?;
-    std::fs::remove_file(&probe).map_err(failure)
+    output_file::beside(path).map(drop).map_err(failure)
+}
+
+/// Compiles the function that a plan is of in every form that it describes, and proves them; each form with its operations. What a
+/// build would refuse is an error at its place in the plan file.
+pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Form, usize)>, Failure> {
+    let choice = Choice::from(plan.clone());
+    let forms = [Some(Form::Reduced), plan.rewritten.as_ref().map(|_| Form::Rewritten)];
+    let count = |form| {
+        let program = choice.compile(robot, Function::InverseDynamics, form);
+        let program = program.map_err(|error| Failure::from(&PlanFile::located(name, text, form, &error)))?;
+        plan.counts(name, text, &program).map_err(|report| Failure::from(&report))?;
+        Ok((form, program.operations().total()))
+    };
+    forms.into_iter().flatten().map(count).collect()
 }
 
 /// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are needed.
@@ -96,7 +103,7 @@ impl<'a> Compiler<'a> {
 
     /// For a robot that is part of this program, with the text of its plan.
     pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
-        let name = path(file).display().to_string();
+        let name = plan_of(file).display().to_string();
         let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
         Ok(Self { robot, file, choice: OnceCell::from(Choice::from(plan)) })
     }
@@ -106,8 +113,8 @@ impl<'a> Compiler<'a> {
         if let Some(choice) = self.choice.get() {
             return Ok(choice);
         }
-        let plan = read(self.file, self.robot)?;
-        Ok(self.choice.get_or_init(|| plan.map_or_else(|| Choice::default_of(self.robot), Choice::from)))
+        let plan = read(self.file, self.robot)?.map(|read| Choice::from(read.plan));
+        Ok(self.choice.get_or_init(|| plan.unwrap_or_else(|| Choice::default_of(self.robot))))
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {

@@ -1,14 +1,13 @@
 //! Reading robot files, and what to say when that fails.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
+use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Robot, check_bytes, read_limited};
+use rne_model::{Checked, Robot, check_bytes, read_file, read_limited, robot_of};
 
 use crate::outcome::Failure;
-use crate::plan_file;
 use crate::terminal::TYPED;
 
 /// So many files of a folder are named where one is missing.
@@ -16,7 +15,7 @@ const NAMED: usize = 16;
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
-    if let Some(robot) = plan_file::robot_of(path) {
+    if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
             path.display(),
@@ -26,7 +25,7 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
     let (name, bytes) = if path == Path::new("-") {
         ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
     } else {
-        (path.display().to_string(), File::open(path).and_then(read_limited))
+        (path.display().to_string(), read_file(path))
     };
     let bytes = bytes.map_err(|error| match error.kind() {
         ErrorKind::NotFound => Failure::input(missing(path)),
@@ -71,11 +70,8 @@ fn candidates(path: &Path) -> Vec<PathBuf> {
 /// The names of the robot files of a folder, sorted; a plan, `NAME.plan.yaml`, is none.
 fn robots_in(folder: &Path) -> Vec<String> {
     let paths = fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
-    let is_robot = |path: &PathBuf| {
-        let stem = path.file_stem().map(Path::new);
-        path.extension().is_some_and(|extension| extension == "yaml")
-            && stem.and_then(Path::extension).is_none_or(|extension| extension != "plan")
-    };
+    let is_robot =
+        |path: &PathBuf| path.extension().is_some_and(|extension| extension == "yaml") && robot_of(path).is_none();
     let name = |path: PathBuf| path.file_name().map(|name| name.to_string_lossy().into_owned());
     let mut names: Vec<String> = paths.filter(is_robot).filter_map(name).collect();
     names.sort();

@@ -9,7 +9,9 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::plan::{self, Cost, Found, PlanFile, Progress, Wanted};
+use rne_codegen::Form;
+use rne_codegen::plan::{self, Accuracy, Cost, Found, PlanFile, Progress, Wanted};
+use rne_model::plan_of;
 
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
@@ -60,11 +62,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
     }
     let robot = robot_file::robot(&arguments.file)?;
-    let path = plan_file::path(&arguments.file);
+    let path = plan_of(&arguments.file);
     let known = if arguments.fresh {
         plan_file::to_replace(&arguments.file, &robot)?
     } else {
-        plan_file::read(&arguments.file, &robot)?
+        plan_file::read(&arguments.file, &robot)?.map(|read| read.plan)
     };
     plan_file::is_writable(&path)?;
     // the first Ctrl-C ends the search, the second one the program, if a handler can be had at all
@@ -122,21 +124,22 @@ fn watched(
 fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
-    let mut line = |form: &str, remark: &plan::Remark| {
+    let mut line = |form: Form, operations: &Cost, accuracy: &Accuracy| {
         let _ = writeln!(
             text,
             "{form:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
              largest torque{QUIET:#}",
-            count(&remark.cost),
-            remark.cost.sincos,
-            remark.proof.rounding,
-            remark.proof.single,
-            remark.proof.single_of_seven_steps,
+            count(operations),
+            operations.sincos,
+            accuracy.double,
+            accuracy.single,
+            accuracy.single_of_seven_steps,
+            form = form.name(),
         );
     };
-    line("reduced", &found.reduced);
-    if let Some(rewritten) = &found.rewritten {
-        line("rewritten", rewritten);
+    line(Form::Reduced, &found.file.reduced.operations, &found.file.reduced.accuracy);
+    if let Some(rewritten) = &found.file.rewritten {
+        line(Form::Rewritten, &rewritten.operations, &rewritten.accuracy);
     }
     let state = match (written, known) {
         (Written::Unchanged, _) => "is as good as it was",

@@ -10,6 +10,7 @@ use std::process::ExitCode;
 use anstream::AutoStream;
 use anstyle::{AnsiColor, Style};
 use clap::builder::Styles;
+use rne_model::{is_control, one_line};
 
 use crate::outcome::{Failure, INPUT, Outcome, USAGE};
 
@@ -66,6 +67,75 @@ pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
 }
 
 fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
-    stream.write_all(text.as_bytes())?;
+    stream.write_all(inert(text).as_bytes())?;
     stream.flush()
+}
+
+/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences that colour. Whatever a file or
+/// its name holds, a terminal shows it and does nothing else.
+fn inert(text: &str) -> String {
+    let mut inert = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find(|c: char| c != '\n' && is_control(c)) {
+        let (before, from) = rest.split_at(at);
+        inert.push_str(before);
+        let coloured = colour(from);
+        let taken = if coloured > 0 { coloured } else { from.chars().next().map_or(0, char::len_utf8) };
+        let (control, after) = from.split_at(taken);
+        inert.push_str(&if coloured > 0 { control.to_owned() } else { one_line(control) });
+        rest = after;
+    }
+    inert + rest
+}
+
+/// The length of the sequence that chooses a colour with which a text starts, such as `ESC [ 1 ; 31 m`; 0 where there is none.
+fn colour(text: &str) -> usize {
+    let parameters = text.strip_prefix("\u{1B}[").unwrap_or_default();
+    let end = parameters.find(|c: char| !c.is_ascii_digit() && c != ';');
+    end.filter(|&end| parameters[end..].starts_with('m')).map_or(0, |end| "\u{1B}[".len() + end + "m".len())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    #[test]
+    fn commands_to_a_terminal_are_shown_and_colours_kept() {
+        let text = format!("{ERROR}error{ERROR:#}: a\u{1B}]0;title\u{7}b\r\u{9B}2J\u{202E}c\td\u{2028}e\u{1B}[2J\n");
+        let shown = "a\u{FFFD}]0;title\u{FFFD}b \u{FFFD}2J\u{FFFD}c d e\u{FFFD}[2J\n";
+        assert_eq!(inert(&text), format!("{ERROR}error{ERROR:#}: {shown}"));
+    }
+
+    fn piece() -> impl Strategy<Value = String> {
+        let nasty = [
+            "\u{1B}",
+            "\u{1B}[",
+            "\u{1B}[1;31m",
+            "1",
+            ";",
+            "m",
+            "\u{9B}",
+            "\u{7}",
+            "\u{202E}",
+            "\u{2028}",
+            "\r",
+            "\t",
+            "\n",
+        ];
+        prop_oneof![any::<char>().prop_map(String::from), prop::sample::select(nasty.to_vec()).prop_map(str::to_owned)]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn no_text_controls_the_terminal(pieces in prop::collection::vec(piece(), 0..20)) {
+            let text = inert(&pieces.concat());
+            let plain = anstream::adapter::strip_str(&text).to_string();
+            prop_assert!(!plain.chars().any(|c| c != '\n' && is_control(c)), "{text:?}");
+            prop_assert_eq!(inert(&text), text, "once is enough");
+        }
+    }
 }

@@ -128,6 +128,15 @@ pub enum CompileError {
     },
     /// A plan that does not fit the robot.
     Plan(String),
+    /// A rewritten graph that cannot be read.
+    Graph {
+        /// The robot's name.
+        robot: String,
+        /// The line of the graph, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        message: String,
+    },
 }
 
 /// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which nothing
@@ -257,6 +266,11 @@ impl fmt::Display for CompileError {
                  reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
             Self::Plan(why) => f.write_str(why),
+            Self::Graph { robot, line, message } => write!(
+                f,
+                "line {line} of the rewritten graph in the plan of `{robot}`: {message}; `rne search --rewrite --fresh` writes \
+                 the plan anew"
+            ),
         }
     }
 }

@@ -7,7 +7,7 @@ use rne_model::{Convention, Robot};
 
 /// Which arm this is, and its Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
-    let mut text = format!("{}\n", robot.title.as_deref().unwrap_or(&robot.name));
+    let mut text = format!("{}\n", emit::title(robot));
     let convention = match robot.convention {
         Convention::Standard => "standard (distal) Denavit-Hartenberg",
         Convention::Modified => "modified (proximal) Denavit-Hartenberg",
@@ -19,7 +19,7 @@ pub(crate) fn robot(robot: &Robot) -> String {
         wrapped(&format!("Source: {}", robot.source.trim_end())),
         emit::dh_table(robot)
     );
-    format!("The robot that this type stands for, at compile time.\n\n{}", verbatim(&text))
+    format!("The robot that this type stands for, at compile time.\n\n{}", emit::verbatim(&text))
 }
 
 /// What folding made of each program.
@@ -42,7 +42,7 @@ pub(crate) fn operations(programs: &[Program]) -> String {
 /// Why a form that is not the seven steps can be trusted.
 pub(crate) fn evidence(programs: &[Program]) -> Option<String> {
     let (program, proof) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)))?;
-    Some(verbatim(&emit::evidence(program, proof).join("\n")))
+    Some(emit::verbatim(&emit::evidence(program, proof).join("\n")))
 }
 
 /// The documentation of one method.
@@ -60,7 +60,7 @@ pub(crate) fn method(program: &Program) -> String {
 
 /// The values of a constant, which rustdoc does not show of an array.
 pub(crate) fn values(values: &[impl Debug]) -> String {
-    format!("\n\n{}", verbatim(&format!("{values:?}")))
+    format!("\n\n{}", emit::verbatim(&format!("{values:?}")))
 }
 
 /// Text in lines of a width that a page has room for.
@@ -79,11 +79,4 @@ fn wrapped(text: &str) -> String {
         column += width;
     }
     lines
-}
-
-/// Text that rustdoc shows as it stands: names and sources are no Markdown.
-fn verbatim(text: &str) -> String {
-    let longest = text.split(|c| c != '`').map(str::len).max().unwrap_or(0);
-    let fence = "`".repeat(longest.max(2) + 1);
-    format!("{fence}text\n{}\n{fence}", text.trim_end())
 }

@@ -1,10 +1,11 @@
 //! Mistakes, collected, and how they reach the user.
 
 use std::fmt::Display;
+use std::path::Path;
 
 use proc_macro2::{Span, TokenStream};
 use quote::ToTokens;
-use rne_model::{Report, Severity};
+use rne_model::{Report, Severity, robot_of};
 
 /// The mistakes found so far, in order.
 #[derive(Default)]
@@ -41,6 +42,6 @@ impl Errors {
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
     // An empty line keeps the second `error:` apart from the compiler's own.
-    let what = if report.name.ends_with(".plan.yaml") { "plan of this robot" } else { "robot file" };
+    let what = if robot_of(Path::new(&report.name)).is_some() { "plan of this robot" } else { "robot file" };
     format!("`{}` is no valid {what}\n\n{}\n", report.name, report.render(false))
 }

@@ -5,7 +5,7 @@ use std::sync::{Mutex, PoisonError};
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::plan::{self, Choice, PlanFile};
+use rne_codegen::plan::{self, Choice, Fingerprint, PlanFile};
 use rne_codegen::{Capability, Form, Program};
 use rne_model::{Report, Robot, check_bytes, check_bytes_with_run_time};
 use syn::{Data, DeriveInput};
@@ -174,7 +174,7 @@ pub(crate) fn choice(
 
 /// The choice that a build makes by itself. The derives of one crate are expanded in one process, so it is made once per robot.
 fn default_choice(robot: &Robot) -> Choice {
-    static KNOWN: Mutex<Vec<(u64, Choice)>> = Mutex::new(Vec::new());
+    static KNOWN: Mutex<Vec<(Fingerprint, Choice)>> = Mutex::new(Vec::new());
     let print = plan::fingerprint(robot);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, choice)) = known.iter().find(|(other, _)| *other == print) {

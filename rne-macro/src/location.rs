@@ -1,11 +1,10 @@
 //! From the path in the attribute to the bytes of the file.
 
-use std::fs::File;
 use std::path::{Component, Path, PathBuf};
 use std::{env, fmt, io};
 
 use proc_macro2::Span;
-use rne_model::read_limited;
+use rne_model::{plan_of, read_file};
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -71,7 +70,7 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     let short = |file: &Path| short(&working_directory.join(file), &working_directory, package.as_deref());
     for Place { file, .. } in &places {
         let shown = || short(file).map_or_else(|| written.clone(), |file| file.display().to_string());
-        match File::open(file).and_then(read_limited) {
+        match read_file(file) {
             Ok(bytes) => return Ok(RobotFile { absolute: working_directory.join(file), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(Missing::Unreadable { shown: shown(), error }),
@@ -88,10 +87,9 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
 
 /// The plan file beside a robot file, if there is one.
 pub(crate) fn plan_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
-    const EXTENSION: &str = "plan.yaml";
-    let absolute = file.absolute.with_extension(EXTENSION);
-    let shown = Path::new(&file.shown).with_extension(EXTENSION).display().to_string();
-    match File::open(&absolute).and_then(read_limited) {
+    let absolute = plan_of(&file.absolute);
+    let shown = plan_of(Path::new(&file.shown)).display().to_string();
+    match read_file(&absolute) {
         Ok(bytes) => Ok(Some(RobotFile { absolute, shown, bytes })),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Missing::Unreadable { shown, error }),

@@ -27,10 +27,15 @@ impl Parameters {
             if is_skipped(field, errors) || is_phantom(&field.ty) {
                 continue;
             }
-            // a field without a name can be no parameter
-            if let Some(ident) = &field.ident {
-                fields.push(Field { ident: ident.clone(), kind: field.ty.clone() });
-            }
+            let Some(ident) = &field.ident else {
+                errors.at(
+                    field,
+                    "a field without a name can be no parameter of the robot file. A field is a parameter that stays free \
+                     until run time, by its name; a field for other purposes says `#[robot(skip)]`",
+                );
+                continue;
+            };
+            fields.push(Field { ident: ident.clone(), kind: field.ty.clone() });
         }
         Self { fields }
     }

@@ -1,83 +1,91 @@
-//! Other files in YAML than robot files, read as plain data: every value knows its place, for messages.
+//! Files on disk: which are read at all, how much of them, and what the plan of a robot file is called.
 
-use std::rc::Rc;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
 
-use crate::diagnostic::{Diagnostic, Problems, Report};
-use crate::document::{self, Content, Node};
+/// The largest robot file or plan that is read. The longest table, 64 joints, needs a fiftieth of it, a plan with a graph of as
+/// many dense joints a half.
+pub const MAX_BYTES: usize = 1 << 20;
 
-/// A YAML document of mappings, lists and texts.
-#[derive(Debug)]
-pub struct DataFile {
-    name: String,
-    text: String,
-    root: Rc<Node>,
+/// What the name of a plan file ends with, in place of the extension of its robot file.
+const PLAN: &str = "plan.yaml";
+
+/// The bytes of a robot file for [`check_bytes`](crate::check_bytes), and no more of them than tell that a file is too
+/// long: a stream without an end, or a huge file, takes neither memory nor time.
+///
+/// # Errors
+///
+/// As [`Read::read_to_end`].
+pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    reader.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
-/// A value in a [`DataFile`].
-#[derive(Clone, Copy, Debug)]
-pub struct Value<'a> {
-    file: &'a DataFile,
-    node: &'a Node,
+/// The bytes of a robot file or a plan, [limited](read_limited). What is no regular file is not opened: a pipe would keep
+/// its reader waiting, a device may have no end.
+///
+/// # Errors
+///
+/// As [`fs::read`]; a file that is not regular.
+pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    let metadata = fs::metadata(path)?;
+    // of a folder, reading says best what is wrong
+    if !metadata.is_file() && !metadata.is_dir() {
+        let message = "it is a pipe, a socket or a device, not a regular file";
+        return Err(io::Error::new(ErrorKind::InvalidInput, message));
+    }
+    File::open(path).and_then(read_limited)
 }
 
-impl DataFile {
-    /// Reads a document; `name` is what messages call it.
-    ///
-    /// # Errors
-    /// What is wrong with the YAML.
-    pub fn read(name: &str, text: &str) -> Result<Self, Report> {
-        let problems = Problems::new();
-        let root = document::parse(text, &problems);
-        let report = problems.finish(name, text);
-        match root {
-            Some(root) if !report.has_errors() => Ok(Self { name: name.to_owned(), text: text.to_owned(), root }),
-            _ => Err(report),
+/// The plan of a robot file: `NAME.plan.yaml` beside `NAME.yaml`.
+pub fn plan_of(robot_file: &Path) -> PathBuf {
+    robot_file.with_extension(PLAN)
+}
+
+/// The robot file of a plan: `NAME.yaml` beside `NAME.plan.yaml`; `None` when a path is not that of a plan.
+pub fn robot_of(plan: &Path) -> Option<PathBuf> {
+    let name = plan.file_name()?.to_str()?.strip_suffix(PLAN)?.strip_suffix('.')?;
+    Some(plan.with_file_name(format!("{name}.yaml")))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robot_files_and_their_plans() {
+        let (robot, plan) = (Path::new("robots/arm.yaml"), Path::new("robots/arm.plan.yaml"));
+        assert_eq!((plan_of(robot).as_path(), robot_of(plan).as_deref()), (plan, Some(robot)));
+        for other in ["arm.yaml", "plan.yaml", "armplan.yaml", "-", "robots/"] {
+            assert_eq!(robot_of(Path::new(other)), None, "{other}");
         }
     }
 
-    /// The whole document.
-    pub fn root(&self) -> Value<'_> {
-        Value { file: self, node: &self.root }
-    }
-}
-
-impl<'a> Value<'a> {
-    /// The value of a key of a mapping.
-    pub fn get(&self, key: &str) -> Option<Value<'a>> {
-        Some(Value { file: self.file, node: self.node.get(key)? })
+    #[test]
+    fn a_folder_is_no_file() {
+        assert_eq!(read_file(Path::new(".")).unwrap_err().kind(), ErrorKind::IsADirectory);
+        assert_eq!(read_file(Path::new("nowhere.yaml")).unwrap_err().kind(), ErrorKind::NotFound);
     }
 
-    /// The keys of a mapping with their values; empty for anything else.
-    pub fn entries(&self) -> impl Iterator<Item = (&'a str, Value<'a>)> {
-        let (file, node) = (self.file, self.node);
-        let entries = match &node.content {
-            Content::Mapping(entries) => entries.as_slice(),
-            _ => &[],
-        };
-        entries.iter().map(move |entry| (entry.key.as_str(), Value { file, node: &entry.value }))
-    }
-
-    /// The items of a list; `None` for anything else.
-    pub fn items(&self) -> Option<impl ExactSizeIterator<Item = Value<'a>>> {
-        let file = self.file;
-        match &self.node.content {
-            Content::Sequence(items) => Some(items.iter().map(move |node| Value { file, node })),
-            _ => None,
+    #[test]
+    #[cfg(unix)]
+    fn a_device_is_not_opened() {
+        // a pipe without a writer would keep this test waiting for ever
+        let pipe = std::env::temp_dir().join(format!("rne-pipe-{}", std::process::id()));
+        let made = std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success());
+        if made {
+            let error = read_file(&pipe).unwrap_err();
+            assert!(error.to_string().contains("a pipe"), "{error}");
+            fs::remove_file(&pipe).unwrap();
         }
-    }
-
-    /// The text of a scalar.
-    pub fn text(&self) -> Option<&'a str> {
-        match &self.node.content {
-            Content::Scalar(scalar) => Some(&scalar.text),
-            _ => None,
+        for device in ["/dev/zero", "/dev/null"] {
+            let error = read_file(Path::new(device)).unwrap_err();
+            assert!(
+                error.kind() == ErrorKind::InvalidInput && error.to_string().contains("not a regular file"),
+                "{error}"
+            );
         }
-    }
-
-    /// A report of one error at this value.
-    pub fn error(&self, message: impl Into<String>, help: Option<String>) -> Report {
-        let problems = Problems::new();
-        problems.push(Diagnostic::error(self.node.head(), message).maybe_help(help));
-        problems.finish(&self.file.name, &self.file.text)
     }
 }

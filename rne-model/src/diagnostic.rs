@@ -73,6 +73,19 @@ pub struct Report {
 }
 
 impl Report {
+    /// A report of one error in a text, at the bytes of `span`: for what other readers than that of robot files find.
+    pub fn of_error(
+        name: &str,
+        text: &str,
+        span: Range<usize>,
+        message: impl Into<String>,
+        help: Option<&str>,
+    ) -> Self {
+        let problems = Problems::new();
+        problems.push(Diagnostic::error(span, message).maybe_help(help.map(str::to_owned)));
+        problems.finish(name, text)
+    }
+
     /// Whether nothing was found.
     pub fn is_empty(&self) -> bool {
         self.diagnostics.is_empty()

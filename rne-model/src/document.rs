@@ -7,6 +7,7 @@ use std::rc::Rc;
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use crate::diagnostic::{Diagnostic, Problems};
+use crate::schema::MAX_JOINTS;
 use crate::source::quoted;
 
 /// A robot file is six levels deep.
@@ -297,6 +298,15 @@ impl<'t> Builder<'t> {
         self.nodes = self.nodes.saturating_add(nodes);
         if self.nodes <= MAX_NODES {
             return Ok(());
+        }
+        // the list of joints is told by its own limit
+        if let [Open { children: Children::Mapping { pending: Some((key, place)), .. }, .. }, joints, ..] =
+            self.stack.as_slice()
+            && key == "joints"
+            && matches!(&joints.children, Children::Sequence(items) if items.len() > MAX_JOINTS)
+        {
+            let message = format!("more than {MAX_JOINTS} joints; 1 to {MAX_JOINTS} joints are allowed");
+            return Err(Diagnostic::error(place.clone(), message).help("one file describes one robot"));
         }
         let message = format!("more than {MAX_NODES} values, aliases (`*name`) written out; a robot file has fewer");
         Err(Diagnostic::error(span.clone(), message).help("write each joint out once"))

@@ -2,7 +2,7 @@
 //!
 //! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every
 //! mistake with line, column and what is allowed. Strings in, data out: nothing here opens a file; who does reads it with
-//! [`read_limited`].
+//! [`read_file`].
 //!
 //! ```
 //! # #[cfg(feature = "std")] {
@@ -79,7 +79,7 @@ mod varying;
 #[cfg(feature = "std")]
 pub use check::{Checked, check, check_bytes, check_bytes_with_run_time};
 #[cfg(feature = "std")]
-pub use data_file::{DataFile, Value};
+pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
@@ -91,4 +91,4 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
-pub use source::read_limited;
+pub use source::{is_control, one_line};

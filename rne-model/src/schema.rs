@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// More joints than any serial arm has; bounds the work of everything that follows.
-const MAX_JOINTS: usize = 64;
+pub(crate) const MAX_JOINTS: usize = 64;
 
 /// More than every number of 64 joints with a name of its own.
 const MAX_PARAMETERS: usize = 2000;

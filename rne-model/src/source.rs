@@ -1,24 +1,9 @@
 //! From bytes to text: what must hold before YAML is spoken of.
 
-use std::io::{self, Read};
 use std::ops::Range;
 
+use crate::data_file::MAX_BYTES;
 use crate::diagnostic::{Diagnostic, Problems};
-
-/// The largest file that is read. The longest table, 64 joints, needs a fiftieth of it.
-const MAX_BYTES: usize = 1 << 20;
-
-/// The bytes of a robot file for [`check_bytes`](crate::check_bytes), and no more of them than tell that a file is too
-/// long: a device without an end, or a huge file, takes neither memory nor time.
-///
-/// # Errors
-///
-/// As [`Read::read_to_end`].
-pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    reader.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
 
 /// Whether a file of `length` bytes is read at all.
 pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {
@@ -70,9 +55,25 @@ pub(crate) fn is_line_break(c: char) -> bool {
 }
 
 /// Whether a character does something instead of showing something: controls terminals, or turns the direction of text,
-/// which compilers refuse in source code.
-pub(crate) fn is_control(c: char) -> bool {
-    c.is_control() || matches!(c, '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}')
+/// which compilers refuse in source code, or breaks the line for some program.
+#[must_use]
+pub fn is_control(c: char) -> bool {
+    let turns_direction =
+        matches!(c, '\u{61C}' | '\u{200E}' | '\u{200F}' | '\u{202A}'..='\u{202E}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || is_line_break(c) || turns_direction
+}
+
+/// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any other
+/// [control character](is_control) U+FFFD.
+#[must_use]
+pub fn one_line(text: &str) -> String {
+    let shown = |c: char| match c {
+        '\t' => ' ',
+        c if is_line_break(c) => ' ',
+        c if is_control(c) => char::REPLACEMENT_CHARACTER,
+        c => c,
+    };
+    text.chars().map(shown).collect()
 }
 
 /// A value for a message: shortened, control characters escaped, in backticks.

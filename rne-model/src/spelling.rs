@@ -3,55 +3,33 @@
 /// Nothing longer is a slip of one of our words, and the distance costs time.
 pub(crate) const LONGEST_WORD: usize = 32;
 
+/// A word with more slips than these is another word.
+const MOST: usize = 2;
+
 /// The candidate that `word` was probably meant to be.
 pub(crate) fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.is_empty() || word.chars().count() > LONGEST_WORD {
         return None;
     }
     let word = word.to_lowercase().replace('-', "_");
+    let length = word.chars().count();
     candidates
         .into_iter()
+        // a word that is longer by three is three slips away at least
+        .filter(|candidate| candidate.chars().count().abs_diff(length) <= MOST)
         .filter_map(|candidate| {
-            let distance = distance(&word, &candidate.to_lowercase());
-            let shorter = word.chars().count().min(candidate.chars().count());
-            let close = distance == 0 || (distance <= shorter.div_ceil(3).min(2) && distance < shorter);
+            let distance = strsim::levenshtein(&word, &candidate.to_lowercase());
+            let shorter = length.min(candidate.chars().count());
+            let close = distance == 0 || (distance <= shorter.div_ceil(3).min(MOST) && distance < shorter);
             close.then_some((distance, candidate))
         })
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)
 }
 
-/// Levenshtein's distance: insertions, deletions and substitutions.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, from) in a.chars().enumerate() {
-        let mut diagonal = i;
-        let mut left = i + 1;
-        for (cell, to) in row.iter_mut().skip(1).zip(&b) {
-            let substitution = diagonal + usize::from(from != *to);
-            diagonal = *cell;
-            left = substitution.min(*cell + 1).min(left + 1);
-            *cell = left;
-        }
-        if let Some(first) = row.first_mut() {
-            *first = i + 1;
-        }
-    }
-    row.last().copied().unwrap_or_default()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn distances() {
-        assert_eq!(distance("mass", "mass"), 0);
-        assert_eq!(distance("masss", "mass"), 1);
-        assert_eq!(distance("kitten", "sitting"), 3);
-        assert_eq!(distance("", "abc"), 3);
-    }
 
     #[test]
     fn near_words_are_found_and_far_ones_are_not() {

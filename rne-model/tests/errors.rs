@@ -467,3 +467,16 @@ fn hostile_files() {
         assert!(report.work() <= MOST_WORK, "{what}: {} steps", report.work());
     }
 }
+
+/// So many joints that reading ends before all are read: the limit that is told is that of joints.
+#[test]
+fn thousands_of_joints() {
+    let joint = "  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}}\n";
+    let head = "format: 1\nname: x\nsource: s\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+    for (count, message) in
+        [(65, "65 joints; 1 to 64 joints"), (10_000, "more than 64 joints; 1 to 64 joints are allowed")]
+    {
+        let report = check("x.yaml", &format!("{head}{}", joint.repeat(count))).unwrap_err();
+        assert!(report.errors().next().unwrap().message.contains(message), "{report}");
+    }
+}

@@ -4,7 +4,7 @@ mod common;
 
 use common::BASE;
 use proptest::prelude::*;
-use rne_model::{Report, check, check_bytes, check_bytes_with_run_time};
+use rne_model::{Report, check, check_bytes, check_bytes_with_run_time, is_control};
 
 /// Reads, renders every way, and checks what must hold of every report.
 fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
@@ -32,6 +32,11 @@ fn well_formed(report: &Report) -> Result<(), TestCaseError> {
     let full = report.to_string();
     prop_assert_eq!(full.is_empty(), report.is_empty());
     prop_assert!(!full.contains('\u{1B}'), "{:?}", full);
+    let words =
+        report.diagnostics.iter().flat_map(|found| [Some(&found.message), found.label.as_ref(), found.help.as_ref()]);
+    for words in words.flatten() {
+        prop_assert!(!words.chars().any(is_control), "what a file holds is quoted: {words:?}");
+    }
     report.render(true);
     report.short();
     Ok(())
@@ -93,6 +98,8 @@ fn pieces() -> impl Strategy<Value = String> {
         "\u{FEFF}",
         "\u{85}",
         "\u{2028}",
+        "\u{202E}",
+        "\u{200F}",
         "😀",
     ])
     .prop_map(str::to_owned)

@@ -1,10 +1,9 @@
 //! Robots from robot files, at run time.
 
 use core::array;
-use std::fs::File;
 use std::path::Path;
 
-use rne_model::{Robot, check_bytes, read_limited};
+use rne_model::{Robot, check_bytes, read_file};
 
 use crate::{Arm, DynArm, LoadError, WrongJointCount};
 
@@ -54,7 +53,7 @@ impl DynArm {
 }
 
 fn read(path: &Path) -> Result<Robot, LoadError> {
-    let bytes = File::open(path).and_then(read_limited);
+    let bytes = read_file(path);
     let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
     Ok(check_bytes(&path.display().to_string(), &bytes)?.robot)
 }

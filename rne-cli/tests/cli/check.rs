@@ -50,11 +50,60 @@ fn standard_input() {
     assert!(called.status == 1 && called.out.contains("--> <standard input>:"), "{called:?}");
 }
 
-/// A device without an end, and a file far too long, are refused at once.
+/// A plan that no build accepts is not in order, whether the plan is named or its robot.
+#[test]
+fn plans_are_compiled() {
+    let folder = folder("plans_are_compiled");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let (robot, plan) = (path("arm.yaml"), path("arm.plan.yaml"));
+    fs::copy(format!("{ROOT}/robots/planar3.yaml"), &robot).expect("a copy");
+    let good = fs::read_to_string(format!("{ROOT}/robots/planar3.plan.yaml")).expect("a plan");
+    fs::write(&plan, &good).expect("written");
+    assert!(fine(&["check", &robot]).starts_with("ok "));
+    assert!(fine(&["check", &plan, &robot]).contains("plan of planar3: reduced "));
+
+    let last = |start: &str| good.lines().rfind(|line| line.trim_start().starts_with(start)).expect(start).to_owned();
+    let replaced = |from: &str, to: &str| good.replacen(from, to, 1);
+    let (torque, sum) = (last("tau3 = "), good.lines().find(|line| line.contains(" + t")).expect("a sum"));
+    let products = good.lines().find(|line| line.contains("mul: ")).expect("products");
+    for (wrong, at, what) in [
+        (replaced(sum, &sum.replace('+', "-")), "graph: |", "is not the seven steps"),
+        (replaced(&format!("{torque}\n"), ""), "tau2", "a torque is missing"),
+        (replaced(&torque, &format!("{torque}\n{torque}")), "tau3", "`tau3` stands there twice"),
+        (replaced(&torque, &torque.replace("tau3", "tau+3")), "tau+3", "`tau+3` is no name of a graph"),
+        (replaced(&torque, &torque.replace("tau3", "tau4")), "tau4", "there is no joint 4"),
+        (replaced(&torque, "    tau3 = k99"), "tau3 = k99", "there is no `k99` before this line"),
+        (replaced(&torque, "    tau3 = k+1"), "tau3 = k+1", "there is no `k+1` before this line"),
+        (replaced(&torque, "    tau3 = t1 ^ t2"), "t1 ^ t2", "`^` is no operation"),
+        (replaced("length_scale: a2", "length_scale: a99"), "  plan:", "does not fit"),
+        (replaced("    joints:", "    gyrostat: true\n    joints:"), "  plan:", "does not fit"),
+        (replaced(products, "    mul: 1"), "  operations:", "the file says 1 products"),
+        (replaced("robot: planar3", "robot: planar2"), "robot: planar2", "this plan is of `planar2`"),
+        (String::new(), "", "the plan file is empty"),
+    ] {
+        assert_ne!(wrong, good, "{what}");
+        fs::write(&plan, &wrong).expect("written");
+        for file in [&robot, &plan] {
+            let called = rne(&["check", file]);
+            assert_eq!((called.status, called.err.as_str()), (1, ""), "{what}: {called:?}");
+            assert!(called.out.contains(what), "no `{what}` in {}", called.out);
+            let (_, place) = called.out.split_once("arm.plan.yaml:").expect("a place");
+            let line: usize = place.split(':').next().and_then(|line| line.parse().ok()).expect("a line");
+            assert!(
+                wrong.lines().nth(line - 1).unwrap_or_default().contains(at),
+                "no `{at}` in line {line}: {called:?}"
+            );
+        }
+    }
+    fs::remove_file(&plan).expect("it was there");
+    assert!(rne(&["check", &plan]).out.contains("there is no plan"));
+}
+
+/// A device may have no end, a pipe keeps its reader waiting, and a file may be far too long.
 #[test]
 #[cfg(unix)]
 fn files_without_an_end() {
-    fails(1, &["show", "/dev/zero"], &["/dev/zero:1:1", "more than 1048576 bytes"]);
+    fails(1, &["show", "/dev/zero"], &["/dev/zero cannot be read", "not a regular file"]);
     let huge = folder("huge").join("huge.yaml");
     fs::File::create(&huge).and_then(|file| file.set_len(3 << 30)).expect("a sparse file");
     fails(1, &["show", huge.to_str().expect("UTF-8")], &["huge.yaml:1:1", "more than 1048576 bytes"]);

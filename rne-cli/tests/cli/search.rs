@@ -74,7 +74,7 @@ fn a_stale_plan_is_refused_and_stays_as_it_is() {
     assert_ne!(text, heavier);
     fs::write(&robot, &heavier).expect("written");
 
-    let parts = ["arm.plan.yaml:5:14", "the numbers of its robot file have changed", "--fresh"];
+    let parts = ["arm.plan.yaml:7:14", "the numbers of its robot file have changed", "--fresh"];
     for call in [
         &["search", &robot, "--seconds", "0"][..],
         &["show", &robot, "--form", "reduced"],

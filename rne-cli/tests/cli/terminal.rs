@@ -3,7 +3,7 @@
 use std::io::Read as _;
 use std::process::Stdio;
 
-use crate::call::{command, fine, rne};
+use crate::call::{command, fine, folder, rne};
 
 #[test]
 fn pipes_get_plain_text() {
@@ -67,5 +67,27 @@ fn commands_of_the_tour_work() {
         let line = line.split("  ").next().unwrap_or_default().replace('*', "planar1");
         let arguments: Vec<&str> = line.split(' ').collect();
         assert!(!fine(&arguments).is_empty(), "{line}");
+    }
+}
+
+/// A folder may hold files with any name.
+#[test]
+#[cfg(unix)]
+fn the_name_of_a_file_is_no_command() {
+    let folder = folder("names");
+    let file = folder.join("arm\u{1B}]0;title\u{7}\u{9B}2J\u{202E}.yaml");
+    std::fs::write(&file, "format: 1\nname: \"\\e[2J\\u202E\"\n").expect("written");
+    for colour in [false, true] {
+        let mut command = command(&["check", file.to_str().expect("UTF-8")]);
+        if colour {
+            command.env("CLICOLOR_FORCE", "1");
+        }
+        let output = command.output().expect("rne starts");
+        let text = String::from_utf8(output.stdout).expect("UTF-8").replace("\u{1B}[0m", "");
+        assert!(text.contains("arm\u{FFFD}]0;title\u{FFFD}"), "{text:?}");
+        assert_eq!(text.contains('\u{1B}'), colour, "{text:?}");
+        let controls: Vec<&str> = text.split('\u{1B}').skip(1).filter(|rest| !rest.starts_with('[')).collect();
+        assert!(controls.is_empty() && !text.contains(['\u{7}', '\u{9B}', '\u{202E}']), "{text:?}");
+        assert!(!text.contains("[2J\u{1B}") && !text.contains("\u{1B}[2J"), "{text:?}");
     }
 }

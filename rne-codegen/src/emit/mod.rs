@@ -4,6 +4,7 @@ mod c;
 mod evidence;
 mod expression;
 mod formula;
+mod inert;
 mod listing;
 mod signature;
 mod syntax;
@@ -13,6 +14,7 @@ mod tokens;
 
 pub use c::{BadPrefix, CCode, ConstantTooLarge, Prefix, c_code};
 pub use evidence::evidence;
+pub use inert::{markdown, title, verbatim};
 pub use listing::{Listing, listing};
 pub use syntax::Precision;
 pub use table::{angle, convention, dh_table};

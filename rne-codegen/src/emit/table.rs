@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot};
+use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, one_line};
 
 /// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
 #[must_use]
@@ -21,7 +21,7 @@ pub fn dh_table(robot: &Robot) -> String {
         };
         lines.push([
             i.to_string(),
-            joint.name.clone(),
+            one_line(&joint.name),
             kind.to_owned(),
             theta,
             d,

@@ -680,7 +680,8 @@ impl Graph {
 }
 
 /// Products, sums and angles of a graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Cost {
     /// Products.
     pub mul: usize,

@@ -1,50 +1,124 @@
 //! Plan files: the choices for one robot, replayed by every build.
 
-use std::fmt::Write;
+use std::ops::Range;
+use std::str::FromStr;
 
-use rne_model::{Convention, DataFile, JointKind, Report, Robot, Value};
+use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot};
+use serde::{Deserialize, Deserializer, Serialize};
 
+use super::choices::{Plan, parsed};
 use crate::ir::Cost;
-use crate::plan::{JointPlan, Plan, Side, Switches};
-use crate::program::Proof;
+use crate::program::{Program, Proof};
+use crate::{CompileError, Form};
 
-/// A plan file.
-#[derive(Clone, Debug, PartialEq)]
+/// A plan file, as it stands on disk.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct PlanFile {
+    format: u32,
     /// The robot's name.
     pub robot: String,
     /// Fingerprint of the robot's numbers.
-    pub fingerprint: u64,
-    /// The choices.
-    pub plan: Plan,
+    pub fingerprint: Fingerprint,
+    /// The reduced form.
+    pub reduced: Reduced,
     /// A graph that has been rewritten, with the plan of the graph that it was made from.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rewritten: Option<Rewritten>,
 }
 
+/// What decides whether the rest of a plan file is to be read at all.
+#[derive(Deserialize)]
+struct Heading {
+    format: u32,
+    robot: String,
+    fingerprint: Fingerprint,
+}
+
+/// The choices of the reduced form.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Reduced {
+    /// Operations of `inverse_dynamics`.
+    pub operations: Cost,
+    /// How precise it is.
+    pub accuracy: Accuracy,
+    /// The choices.
+    pub plan: Plan,
+}
+
 /// A rewritten graph.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Rewritten {
+    /// Operations of `inverse_dynamics`.
+    pub operations: Cost,
+    /// How precise it is.
+    pub accuracy: Accuracy,
     /// The plan that gives the graph its numbers.
     pub plan: Plan,
     /// One operation per line.
     pub graph: String,
 }
 
-/// What a plan file says of itself, for people.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Remark {
-    /// Operations of `inverse_dynamics`.
-    pub cost: Cost,
-    /// Why it is right, and how precise.
-    pub proof: Proof,
+/// Largest differences from the seven steps, in parts of the largest torque, with two digits: for people.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Accuracy {
+    /// In double precision.
+    pub double: f64,
+    /// In single precision.
+    pub single: f64,
+    /// Of the seven steps themselves in single precision.
+    pub single_of_seven_steps: f64,
+}
+
+impl From<&Proof> for Accuracy {
+    fn from(proof: &Proof) -> Self {
+        let rounded = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
+        Self {
+            double: rounded(proof.rounding),
+            single: rounded(proof.single),
+            single_of_seven_steps: rounded(proof.single_of_seven_steps),
+        }
+    }
+}
+
+/// A number that stands for all numbers of a robot that its torques depend on: 16 hexadecimal digits in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(into = "String")]
+pub struct Fingerprint(u64);
+
+impl From<Fingerprint> for String {
+    fn from(Fingerprint(number): Fingerprint) -> Self {
+        format!("{number:016x}")
+    }
+}
+
+impl<'de> Deserialize<'de> for Fingerprint {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        parsed(deserializer)
+    }
+}
+
+impl FromStr for Fingerprint {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let number = u64::from_str_radix(text, 16).ok().map(Self);
+        // the same digits, and nothing else: no sign, no capitals
+        number
+            .filter(|&number| String::from(number) == text)
+            .ok_or_else(|| format!("`{}` is no fingerprint, which has 16 hexadecimal digits", text.escape_debug()))
+    }
 }
 
 /// The format of plan files.
-const FORMAT: &str = "1";
+const FORMAT: u32 = 1;
 
 /// A fingerprint of all numbers of a robot that its torques depend on.
 #[must_use]
-pub fn fingerprint(robot: &Robot) -> u64 {
+pub fn fingerprint(robot: &Robot) -> Fingerprint {
     let mut numbers: Vec<f64> = vec![match robot.convention {
         Convention::Standard => 1.0,
         Convention::Modified => 2.0,
@@ -62,233 +136,174 @@ pub fn fingerprint(robot: &Robot) -> u64 {
     }
     // FNV-1a; -0 is 0
     let bytes = numbers.iter().flat_map(|x| (x + 0.0).to_bits().to_le_bytes());
-    bytes.fold(0xCBF2_9CE4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3))
+    let hash =
+        bytes.fold(0xCBF2_9CE4_8422_2325_u64, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01B3));
+    Fingerprint(hash)
 }
 
 impl PlanFile {
+    /// What a search found for a robot.
+    pub(super) fn new(robot: &Robot, reduced: Reduced, rewritten: Option<Rewritten>) -> Self {
+        Self { format: FORMAT, robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
+    }
+
     /// Reads a plan file and checks that it belongs to `robot`; `name` is what messages call it.
     ///
     /// # Errors
     /// What is wrong with it, with line and column.
     pub fn read(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
-        let file = DataFile::read(name, text)?;
-        let root = file.root();
-        known_keys(&root, &["format", "robot", "fingerprint", "reduced", "rewritten"])?;
-        let format = required(&root, "format")?;
-        if format.text() != Some(FORMAT) {
-            return Err(refreshable(&format, "a plan file of this version of rne has `format: 1`"));
+        let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
+        let refused =
+            |keys: &[&str], message: String| Report::of_error(name, text, value_of(text, keys), message, Some(REFRESH));
+        if text.len() > MAX_BYTES {
+            let message = format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a plan may have");
+            return Err(Report::of_error(name, "", 0..0, message, Some(REFRESH)));
         }
-        let fingerprint_value = required(&root, "fingerprint")?;
-        let written = fingerprint_value.text().and_then(|text| u64::from_str_radix(text, 16).ok());
-        if written != Some(fingerprint(robot)) {
-            return Err(refreshable(
-                &fingerprint_value,
-                &format!(
-                    "this plan is not of `{}` as it is now: the numbers of its robot file have changed",
-                    robot.name
-                ),
-            ));
+        if text.trim().is_empty() {
+            return Err(refused(&[], "the plan file is empty".to_owned()));
         }
-        let reduced = required(&root, "reduced")?;
-        known_keys(&reduced, &["operations", "accuracy", "plan"])?;
-        let rewritten = match root.get("rewritten") {
-            None => None,
-            Some(value) => {
-                known_keys(&value, &["operations", "accuracy", "plan", "graph"])?;
-                let graph = required(&value, "graph")?;
-                let text =
-                    graph.text().ok_or_else(|| graph.error("a graph is a text, one operation per line", None))?;
-                Some(Rewritten { plan: plan(&required(&value, "plan")?, robot)?, graph: text.to_owned() })
+        let invalid = |error: serde_yaml::Error| invalid(name, text, &error);
+        // a plan of another version, or of another robot, may have other keys
+        let heading: Heading = serde_yaml::from_str(text).map_err(invalid)?;
+        if heading.format != FORMAT {
+            let message = format!("a plan file of this version of rne has `format: {FORMAT}`");
+            return Err(refused(&["format"], message));
+        }
+        if heading.robot != robot.name {
+            let message = format!("this plan is of `{}`, not of `{}`", heading.robot.escape_debug(), robot.name);
+            return Err(refused(&["robot"], message));
+        }
+        if heading.fingerprint != fingerprint(robot) {
+            let message = format!(
+                "this plan is not of `{}` as it is now: the numbers of its robot file have changed",
+                robot.name
+            );
+            return Err(refused(&["fingerprint"], message));
+        }
+        let file: Self = serde_yaml::from_str(text).map_err(invalid)?;
+        let plans = [("reduced", Some(&file.reduced.plan)), ("rewritten", file.rewritten.as_ref().map(|of| &of.plan))];
+        for (form, plan) in plans {
+            if let Some(count) = plan.map(|plan| plan.joints.len()).filter(|&count| count != robot.dof()) {
+                let message = format!("this plan has {count} joints, `{}` has {}", robot.name, robot.dof());
+                return Err(refused(&[form, "joints"], message));
             }
+        }
+        Ok(file)
+    }
+
+    /// Where in the text of a plan file the cause of an error is that the compiler found.
+    #[must_use]
+    pub fn located(name: &str, text: &str, form: Form, error: &CompileError) -> Report {
+        let section = form.name();
+        let (place, message) = match error {
+            CompileError::Graph { line, message, .. } => (line_of_graph(text, *line), message.clone()),
+            CompileError::NotIdentical { .. } if form == Form::Rewritten => {
+                (value_of(text, &[section, "graph"]), error.to_string())
+            }
+            _ => (value_of(text, &[section, "plan"]), error.to_string()),
         };
-        Ok(Self {
-            robot: robot.name.clone(),
-            fingerprint: fingerprint(robot),
-            plan: plan(&required(&reduced, "plan")?, robot)?,
-            rewritten,
-        })
+        Report::of_error(name, text, place, message, Some(REFRESH))
+    }
+
+    /// Checks that a form takes as many operations as the file says.
+    ///
+    /// # Errors
+    /// The operations that are not those of the program.
+    pub fn counts(&self, name: &str, text: &str, program: &Program) -> Result<(), Report> {
+        let written = match (program.form, &self.rewritten) {
+            (Form::Rewritten, Some(rewritten)) => rewritten.operations,
+            _ => self.reduced.operations,
+        };
+        let counted = program.operations();
+        let counted = Cost { mul: counted.mul, add: counted.add, sincos: counted.sincos };
+        if counted == written {
+            return Ok(());
+        }
+        let message = format!(
+            "the file says {} products, {} sums and {} angles; the code that its plan gives has {}, {} and {}",
+            written.mul, written.add, written.sincos, counted.mul, counted.add, counted.sincos
+        );
+        let place = value_of(text, &[program.form.name(), "operations"]);
+        Err(Report::of_error(name, text, place, message, Some("`rne search ROBOT.yaml` counts anew")))
     }
 
     /// The text of the file.
     #[must_use]
-    pub fn to_yaml(&self, reduced: &Remark, rewritten: Option<&Remark>) -> String {
-        let mut text = format!(
-            "# Choices of the reduced form of {0}, found by `rne search`, replayed by every build. Names only, no numbers:\n\
-             # what they mean, `rne show {0}.yaml --form reduced` and docs/reduced-form.md say.\n\
-             format: {FORMAT}\n\
-             robot: {0}\n\
-             fingerprint: {1:016x}   # of the numbers of the robot file\n",
-            self.robot, self.fingerprint
-        );
-        text.push_str("reduced:\n");
-        remark(&mut text, reduced);
-        write_plan(&mut text, &self.plan);
-        if let (Some(Rewritten { plan, graph }), Some(remarks)) = (&self.rewritten, rewritten) {
-            text.push_str("rewritten:\n");
-            remark(&mut text, remarks);
-            write_plan(&mut text, plan);
-            text.push_str("  graph: |\n");
-            for line in graph.lines() {
-                let _ = writeln!(text, "    {line}");
-            }
-        }
-        text
+    pub fn to_yaml(&self) -> String {
+        // names, numbers and lists of them: nothing that YAML has no form for
+        let plan = serde_yaml::to_string(self).unwrap_or_default();
+        format!("{}{plan}", HEADING.replace("ROBOT", &self.robot))
     }
 }
 
-fn remark(text: &mut String, Remark { cost, proof }: &Remark) {
-    let _ = writeln!(text, "  operations: {{mul: {}, add: {}, sincos: {}}}", cost.mul, cost.add, cost.sincos);
-    let _ = writeln!(
-        text,
-        "  # largest difference from the seven steps, in parts of the largest torque: double precision; single precision,\n  \
-         # and that of the seven steps themselves in single precision"
-    );
-    let _ = writeln!(
-        text,
-        "  accuracy: {{double: {:.1e}, single: {:.1e}, single_of_seven_steps: {:.1e}}}",
-        proof.rounding, proof.single, proof.single_of_seven_steps
-    );
-}
-
-fn write_plan(text: &mut String, plan: &Plan) {
-    text.push_str("  plan:\n");
-    for (name, on) in [
-        ("gyrostat", plan.gyrostat),
-        ("turned_last_frame", plan.turned_last_frame),
-        ("carried_prismatics", plan.carried_prismatics),
-    ] {
-        if on {
-            let _ = writeln!(text, "    {name}: true");
-        }
-    }
-    let plain = Plan::new(plan.joints.len());
-    if plan.length_scale != plain.length_scale {
-        let _ = writeln!(text, "    length_scale: {}", plan.length_scale);
-    }
-    if plan.force_scale != plain.force_scale {
-        let _ = writeln!(text, "    force_scale: {}", plan.force_scale);
-    }
-    text.push_str("    joints:\n");
-    for joint in &plan.joints {
-        let plain = JointPlan::default();
-        let mut parts = Vec::new();
-        if joint.gauge != plain.gauge {
-            let [first, second, third] = joint.gauge;
-            parts.push(format!("gauge: [{first}, {second}, {third}]"));
-        }
-        if joint.slide != plain.slide {
-            parts.push(format!("slide: {}", joint.slide));
-        }
-        if joint.outward_offset != plain.outward_offset {
-            parts.push(format!("outward_offset: {}", joint.outward_offset));
-        }
-        if joint.inward_offset != plain.inward_offset {
-            parts.push(format!("inward_offset: {}", joint.inward_offset));
-        }
-        if joint.moment != plain.moment {
-            parts.push(format!("moment: {}", joint.moment));
-        }
-        let on: Vec<&str> = joint.switches.list().iter().filter(|(_, on)| *on).map(|(name, _)| *name).collect();
-        if !on.is_empty() {
-            parts.push(format!("on: [{}]", on.join(", ")));
-        }
-        let _ = writeln!(text, "      - {{{}}}", parts.join(", "));
-    }
-}
-
-fn plan(value: &Value<'_>, robot: &Robot) -> Result<Plan, Report> {
-    let mut plan = Plan::new(robot.dof());
-    for (key, value) in value.entries() {
-        match key {
-            "gyrostat" => plan.gyrostat = boolean(&value)?,
-            "turned_last_frame" => plan.turned_last_frame = boolean(&value)?,
-            "carried_prismatics" => plan.carried_prismatics = boolean(&value)?,
-            "length_scale" => plan.length_scale = parsed(&value)?,
-            "force_scale" => plan.force_scale = parsed(&value)?,
-            "joints" => {
-                let items = value.items().ok_or_else(|| value.error("the joints of a plan are a list", None))?;
-                if items.len() != robot.dof() {
-                    let count = items.len();
-                    return Err(refreshable(
-                        &value,
-                        &format!("this plan has {count} joints, `{}` has {}", robot.name, robot.dof()),
-                    ));
-                }
-                for (joint, item) in plan.joints.iter_mut().zip(items) {
-                    *joint = joint_plan(&item)?;
-                }
-            }
-            _ => return Err(value.error(format!("`{key}` is no choice of a plan"), Some(REFRESH.to_owned()))),
-        }
-    }
-    Ok(plan)
-}
-
-fn joint_plan(value: &Value<'_>) -> Result<JointPlan, Report> {
-    let mut joint = JointPlan::default();
-    for (key, value) in value.entries() {
-        match key {
-            "gauge" => {
-                let items: Vec<Value<'_>> = value.items().map(Iterator::collect).unwrap_or_default();
-                let [first, second, third] = items[..] else {
-                    return Err(value.error("a gauge is a list of three targets", None));
-                };
-                joint.gauge = [parsed(&first)?, parsed(&second)?, parsed(&third)?];
-            }
-            "slide" => joint.slide = parsed(&value)?,
-            "outward_offset" => joint.outward_offset = parsed(&value)?,
-            "inward_offset" => {
-                joint.inward_offset = parsed(&value)?;
-                if joint.inward_offset == Side::Joint {
-                    return Err(value.error("on the way back an offset acts in `link` or `parent`", None));
-                }
-            }
-            "moment" => joint.moment = parsed(&value)?,
-            "on" => {
-                let items = value.items().ok_or_else(|| value.error("`on` is a list of choices", None))?;
-                for item in items {
-                    let name = item.text().unwrap_or_default();
-                    if !joint.switches.set(name, true) {
-                        let names: Vec<_> = Switches::NAMES.iter().map(|name| format!("`{name}`")).collect();
-                        return Err(item.error(
-                            format!("`{name}` is no choice of a joint"),
-                            Some(format!("there are {}", names.join(", "))),
-                        ));
-                    }
-                }
-            }
-            _ => return Err(value.error(format!("`{key}` is no choice of a joint"), Some(REFRESH.to_owned()))),
-        }
-    }
-    Ok(joint)
-}
-
-fn required<'a>(value: &Value<'a>, key: &str) -> Result<Value<'a>, Report> {
-    value.get(key).ok_or_else(|| value.error(format!("`{key}` is missing in this plan file"), Some(REFRESH.to_owned())))
-}
-
-fn known_keys(value: &Value<'_>, known: &[&str]) -> Result<(), Report> {
-    match value.entries().find(|(key, _)| !known.contains(key)) {
-        None => Ok(()),
-        Some((key, at)) => Err(at.error(format!("`{key}` is no key of a plan file"), Some(REFRESH.to_owned()))),
-    }
-}
-
-fn boolean(value: &Value<'_>) -> Result<bool, Report> {
-    match value.text() {
-        Some("true") => Ok(true),
-        Some("false") => Ok(false),
-        _ => Err(value.error("this is `true` or `false`", None)),
-    }
-}
-
-fn parsed<T: std::str::FromStr<Err = String>>(value: &Value<'_>) -> Result<T, Report> {
-    value.text().unwrap_or_default().parse().map_err(|message: String| value.error(message, None))
-}
+/// What a plan file says of itself.
+const HEADING: &str = "\
+# Choices of the reduced form of ROBOT, found by `rne search`, replayed by every build. Names only, no numbers:
+# what they mean, `rne show ROBOT.yaml --form reduced` and docs/reduced-form.md say.
+# `fingerprint` is that of the numbers of the robot file. `accuracy` is the largest difference from the seven steps, in
+# parts of the largest torque: in double precision, in single precision, and of the seven steps in single precision.
+";
 
 const REFRESH: &str =
     "`rne search ROBOT.yaml --fresh` writes the plan anew; without the file, a build chooses by itself";
 
-fn refreshable(value: &Value<'_>, message: &str) -> Report {
-    value.error(message, Some(REFRESH.to_owned()))
+/// What the reader of YAML says, at its place.
+fn invalid(name: &str, text: &str, error: &serde_yaml::Error) -> Report {
+    let (at, message) = match error.location() {
+        Some(location) => {
+            let suffix = format!(" at line {} column {}", location.line(), location.column());
+            let message = error.to_string();
+            (
+                byte(text, location.line(), location.column()),
+                message.strip_suffix(&suffix).unwrap_or(&message).to_owned(),
+            )
+        }
+        None => (0, error.to_string()),
+    };
+    // the word that begins there
+    let rest = text.get(at..).unwrap_or_default();
+    let length = rest.find(|c: char| c.is_whitespace() || ",:]}".contains(c)).unwrap_or(rest.len());
+    let message: String = message.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    Report::of_error(name, text, at..at + length, message, Some(REFRESH))
+}
+
+/// The byte at a line and a column, both counted from 1.
+fn byte(text: &str, line: usize, column: usize) -> usize {
+    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
+    let rest = text.get(start..).unwrap_or_default();
+    start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(at, _)| at)
+}
+
+/// The value of a key in a key …, each on a line of its own, as far as the keys are found.
+fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
+    let mut found = 0..0;
+    let mut at = 0;
+    let mut keys = keys.iter().peekable();
+    for line in text.split_inclusive('\n') {
+        let Some(key) = keys.peek() else { break };
+        if let Some(value) = line.trim_start().strip_prefix(**key).and_then(|rest| rest.strip_prefix(':')) {
+            keys.next();
+            let value = value.split(" #").next().unwrap_or_default().trim();
+            let key = at + line.len() - line.trim_start().len();
+            let start = if value.is_empty() { key } else { at + line.find(": ").map_or(0, |colon| colon + 2) };
+            let blank = text.get(start..).map_or(0, |rest| rest.len() - rest.trim_start_matches(' ').len());
+            found = if value.is_empty() {
+                key..at + line.trim_end().len()
+            } else {
+                start + blank..start + blank + value.len()
+            };
+        }
+        at += line.len();
+    }
+    found
+}
+
+/// A line of the graph, counted from 1.
+fn line_of_graph(text: &str, line: usize) -> Range<usize> {
+    let graph = value_of(text, &["rewritten", "graph"]);
+    let before = text.get(..graph.start).map_or(0, |before| before.matches('\n').count());
+    let start = byte(text, before + 1 + line, 1);
+    let content = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
+    let blank = content.len() - content.trim_start().len();
+    start + blank..start + content.len()
 }

@@ -14,6 +14,7 @@ use crate::function::Function;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol, Traced, mark_live_outside_angles};
+use crate::plan::choices::count;
 use crate::plan::cost::Frame;
 
 /// A graph as text, when the numbers in the places `given` are those of its plan.
@@ -129,9 +130,17 @@ pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function)
         let term = reader.operation(value).map_err(|message| (at, message))?;
         // a constant is kept without its sign
         let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
-        if let Some(joint) = name.strip_prefix("tau").and_then(|joint| joint.parse::<usize>().ok()) {
+        if let Some(joint) = name.strip_prefix("tau").and_then(count) {
             let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
-            *slot.ok_or_else(|| (at, format!("there is no joint {joint}")))? = Some(term.at);
+            let slot = slot.ok_or_else(|| (at, format!("there is no joint {joint}")))?;
+            if slot.replace(term.at).is_some() {
+                return Err((at, format!("`{name}` stands there twice")));
+            }
+        } else if !is_name(name) {
+            return Err((
+                at,
+                format!("`{name}` is no name of a graph: `d1` is a constant, `t1` a term, `tau1` a torque"),
+            ));
         } else if reader.known.insert(name.to_owned(), term).is_some() {
             return Err((at, format!("`{name}` stands there twice")));
         }
@@ -139,6 +148,11 @@ pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function)
     let outputs: Option<Vec<Ref>> = outputs.into_iter().collect();
     let end = text.lines().count();
     outputs.map(|outputs| builder.finish(outputs)).ok_or_else(|| (end, "a torque is missing".to_owned()))
+}
+
+/// Whether a line may define this name.
+fn is_name(name: &str) -> bool {
+    ["d", "t"].iter().any(|letter| name.strip_prefix(letter).and_then(count).is_some())
 }
 
 /// A graph that was read, with the numbers of its plan in their places and its own behind them.
@@ -232,10 +246,10 @@ impl<'s> Reader<'_, 's> {
         let digits = name.find(|c: char| c.is_ascii_digit())?;
         let (letters, digits) = name.split_at(digits);
         let rows = &self.frame.table.rows;
-        let joint = |text: &str| text.parse::<usize>().ok()?.checked_sub(1).filter(|&at| at < rows.len());
+        let joint = |text: &str| count(text)?.checked_sub(1).filter(|&at| at < rows.len());
         let argument = |quantity| Some(self.builder.argument(Name::scalar(quantity, joint(digits)? + 1)));
         match letters {
-            "k" => Some(self.builder.number(*self.given.get(digits.parse::<usize>().ok()?)?)),
+            "k" => Some(self.builder.number(*self.given.get(count(digits)?)?)),
             "q" => argument(Quantity::Position),
             "qd" => argument(Quantity::Rate),
             "qdd" => argument(Quantity::RateDot),

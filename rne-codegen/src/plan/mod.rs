@@ -14,7 +14,7 @@ mod trick;
 
 pub use crate::ir::Cost;
 pub use choices::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
-pub use file::{PlanFile, Remark, Rewritten, fingerprint};
+pub use file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
 pub use plan_set::{Choice, Found, Maker, Wanted, cost, is_planned, savings, search};
 pub use search::{Clock, Progress};
 pub use trick::Trick;

@@ -11,7 +11,7 @@ use crate::ir::{Builder, Cost, Graph, Policy, Reading, Traced};
 use crate::lower::{Heading, lower};
 use crate::plan::Plan;
 use crate::plan::cost::{self, Frame};
-use crate::plan::file::{PlanFile, Remark, Rewritten, fingerprint};
+use crate::plan::file::{Accuracy, PlanFile, Reduced, Rewritten};
 use crate::plan::graph_text;
 use crate::plan::rewriting::Rewriting;
 use crate::plan::search::{Clock, Over, Progress, Search, default_plan};
@@ -177,7 +177,7 @@ impl Choice {
     }
 
     fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
-        let Some(Rewritten { plan, graph }) = &self.rewritten else {
+        let Some(Rewritten { plan, graph, .. }) = &self.rewritten else {
             return Err(CompileError::Plan(format!(
                 "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot file, which \
                  `path = \"…\"` finds",
@@ -230,17 +230,13 @@ fn compile_merged(
 
 impl From<PlanFile> for Choice {
     fn from(file: PlanFile) -> Self {
-        Self { plan: file.plan, rewritten: file.rewritten, maker: Maker::PlanFile }
+        Self { plan: file.reduced.plan, rewritten: file.rewritten, maker: Maker::PlanFile }
     }
 }
 
 /// A graph that cannot be read stands in a plan file; a fresh search replaces it.
 fn misread(robot: &Robot, line: usize, message: &str) -> CompileError {
-    CompileError::Plan(format!(
-        "line {line} of the rewritten graph in the plan of `{}`: {message}; `rne search --rewrite --fresh` writes the plan \
-         anew",
-        robot.name
-    ))
+    CompileError::Graph { robot: robot.name.clone(), line, message: message.to_owned() }
 }
 
 /// A function written in one of its ways under a plan.
@@ -315,17 +311,13 @@ pub struct Wanted {
 pub struct Found {
     /// The plan file.
     pub file: PlanFile,
-    /// What it says of the reduced form.
-    pub reduced: Remark,
-    /// What it says of the rewritten form.
-    pub rewritten: Option<Remark>,
 }
 
 impl Found {
     /// The text of the plan file.
     #[must_use]
     pub fn to_yaml(&self) -> String {
-        self.file.to_yaml(&self.reduced, self.rewritten.as_ref())
+        self.file.to_yaml()
     }
 }
 
@@ -347,7 +339,7 @@ pub fn search(
     search.refuse(move |plan| !is_sound(&model, &Choice::of(plan.clone()), Form::Reduced).unwrap_or(false));
     search.greedy(usize::MAX);
     if let Some(known) = known {
-        search.start_from(&known.plan);
+        search.start_from(&known.reduced.plan);
         if let Some(rewritten) = &known.rewritten {
             search.start_from(&rewritten.plan);
         }
@@ -370,23 +362,20 @@ pub fn search(
     if wanted.rewrite {
         rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
     }
-    let file = PlanFile {
-        robot: robot.name.clone(),
-        fingerprint: fingerprint(robot),
-        plan,
-        rewritten: best.as_ref().map(|(_, rewritten)| rewritten.clone()),
-    };
-    let choice = Choice::from(file.clone());
-    let remark = |form, cost| {
+    let rewritten = best.as_ref().map(|(_, rewritten)| rewritten.clone());
+    let choice = Choice { plan: plan.clone(), rewritten, maker: Maker::PlanFile };
+    let accuracy = |form| {
         let program = choice.compile(robot, Function::InverseDynamics, form);
         // the plan was made here
         let program = program.map_err(|error| error.suspecting(robot, false))?;
         let proof = program.proof.ok_or_else(|| CompileError::Plan("a program without proof".to_owned()))?;
-        Ok(Remark { cost, proof })
+        Ok(Accuracy::from(&proof))
     };
-    let reduced = remark(Form::Reduced, reduced_cost)?;
-    let rewritten = best.map(|(cost, _)| remark(Form::Rewritten, cost)).transpose()?;
-    Ok(Found { file, reduced, rewritten })
+    let reduced = Reduced { operations: reduced_cost, accuracy: accuracy(Form::Reduced)?, plan };
+    let rewritten = best
+        .map(|(operations, rewritten)| Ok(Rewritten { operations, accuracy: accuracy(Form::Rewritten)?, ..rewritten }))
+        .transpose()?;
+    Ok(Found { file: PlanFile::new(robot, reduced, rewritten) })
 }
 
 /// How much less precise than the seven steps a form may be in single precision, on the average.
@@ -496,7 +485,8 @@ fn rewritten(
         if best.as_ref().is_some_and(|(least, _)| cost.weight() >= least.weight()) {
             break;
         }
-        let rewritten = Rewritten { plan, graph: graph_text::written(&graph, &given) };
+        let graph = graph_text::written(&graph, &given);
+        let rewritten = Rewritten { operations: cost, accuracy: Accuracy::default(), plan, graph };
         let choice = Choice { rewritten: Some(rewritten.clone()), ..Choice::of(rewritten.plan.clone()) };
         if is_sound(robot, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));

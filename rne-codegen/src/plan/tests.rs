@@ -277,29 +277,68 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     let read = PlanFile::read("ur5.plan.yaml", &text, &robot).unwrap();
     assert_eq!(read, found.file);
     let again = search(&robot, Some(&read), Wanted::default(), &mut |_| None).unwrap();
-    assert!(again.reduced.cost.weight() <= found.reduced.cost.weight(), "never worse");
+    assert!(again.file.reduced.operations.weight() <= found.file.reduced.operations.weight(), "never worse");
 
     let mut other = robot.clone();
     other.joints[2].row.link.mass += 1.0;
     let report = PlanFile::read("ur5.plan.yaml", &text, &other).unwrap_err();
     let error = report.errors().next().unwrap();
-    assert_eq!((error.line, error.column), (5, 14));
+    assert_eq!((error.line, error.column), (7, 14));
     assert!(error.message.contains("numbers of its robot file have changed"), "{}", error.message);
     assert!(error.help.as_ref().unwrap().contains("rne search"), "{report}");
-    for (from, to, what) in [
-        ("format: 1", "format: 2", "format: 1"),
-        ("robot:", "robt:", "`robt` is no key"),
-        ("  plan:\n", "  plam:\n", "`plam` is no key"),
-        ("    joints:\n", "    jonts:\n", "`jonts` is no choice"),
-        ("    joints:\n", "    joints:\n      - {}\n", "7 joints"),
-        ("length_scale: ", "length_scale: zz", "is no scale"),
-        ("    joints:\n", "    turned_last_frame: up\n    joints:\n", "`true` or `false`"),
-        ("    joints:\n      - {", "    joints:\n      - {slide: up, ", "`up` is no rule for a slide"),
-        ("    joints:\n      - {", "    joints:\n      - {on: [light], ", "`light` is no choice of a joint"),
+    for (from, to, what, line) in [
+        ("format: 1", "format: 2", "format: 1", "format: 2"),
+        ("format: 1", "format: one", "invalid type: string \"one\", expected u32", "format: one"),
+        ("robot: ur5", "robot: ur6", "this plan is of `ur6`, not of `ur5`", "robot: ur6"),
+        ("robot:", "robt:", "missing field `robot`", "format: 1"),
+        ("fingerprint: ", "fingerprint: +", "is no fingerprint", "fingerprint: +"),
+        ("fingerprint: ", "fingerprint: 0", "is no fingerprint", "fingerprint: 0"),
+        ("    mul: ", "    mull: ", "unknown field `mull`, expected one of `mul`, `add`, `sincos`", "mull"),
+        ("    mul: ", "    mul: -", "invalid type: integer `-", "mul: -"),
+        ("    double: ", "    double: about ", "expected f64", "double: about"),
+        ("  plan:\n", "  plam:\n", "unknown field `plam`", "plam"),
+        ("    joints:\n", "    jonts:\n", "unknown field `jonts`", "jonts"),
+        ("    joints:\n", "    joints:\n    - {}\n", "7 joints", "    joints:"),
+        ("    joints:\n", "    joints:\n    - 3\n", "invalid type: integer `3`, expected struct JointPlan", "- 3"),
+        ("length_scale: ", "length_scale: zz", "is no scale", "length_scale: zz"),
+        ("length_scale: a", "length_scale: a+", "is no scale", "length_scale: a+"),
+        ("    joints:\n", "    turned_last_frame: up\n    joints:\n", "expected a boolean", "turned_last_frame: up"),
+        (
+            "    joints:\n",
+            "    joints:\n    - slide: up\n",
+            "unknown variant `up`, expected one of `none`",
+            "slide: up",
+        ),
+        (
+            "    joints:\n",
+            "    joints:\n    - on: [light]\n",
+            "unknown variant `light`, expected one of `axis_column`",
+            "light",
+        ),
+        ("    joints:\n", "    joints:\n    - inward_offset: joint\n", "acts in `link` or `parent`", "inward_offset"),
+        ("    joints:\n", "    joints:\n    - gauge: [own]\n", "expected an array of length 3", "gauge: [own]"),
     ] {
         let wrong = text.replacen(from, to, 1);
         assert_ne!(wrong, text, "{from}");
         let report = PlanFile::read("ur5.plan.yaml", &wrong, &robot).unwrap_err();
+        let error = report.errors().next().unwrap();
+        assert!(error.message.contains(what), "{report}");
+        let shown = wrong.lines().nth(error.line - 1).unwrap();
+        assert!(shown.contains(line), "`{shown}` is not at fault, `{line}` is: {report}");
+    }
+    for (wrong, what) in [
+        ("", "the plan file is empty"),
+        ("\n \n", "the plan file is empty"),
+        ("# nothing\n", "missing field `format`"),
+        ("3", "invalid type: integer `3`"),
+        ("- 3", "invalid type: sequence"),
+        ("reduced: {plan: [\n", "did not find expected"),
+        ("format: 1\nformat: 1\n", "duplicate"),
+        (&format!("{text}---\n{text}"), "more than one document"),
+        (&format!("{text}reduced: {{}}\n"), "duplicate"),
+        (&format!("{text}# {}\n", "x".repeat(1 << 20)), "more than 1048576 bytes"),
+    ] {
+        let report = PlanFile::read("ur5.plan.yaml", wrong, &robot).unwrap_err();
         assert!(report.errors().next().unwrap().message.contains(what), "{report}");
     }
 }

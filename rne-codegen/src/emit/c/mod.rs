@@ -10,6 +10,7 @@ use std::fmt;
 
 use rne_model::Robot;
 
+use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
 use crate::function::Function;
 use crate::ir::name::Name;
@@ -122,7 +123,7 @@ const TIED: &str = "\u{A0}";
 fn comment(start: &str, text: &str) -> String {
     let mut comment = String::new();
     let mut line = start.to_owned();
-    for word in harmless(text).split(' ') {
+    for word in c_comment(text).split(' ') {
         if line.len() > start.len() && line.chars().count() + 1 + word.chars().count() > WIDTH {
             comment.push_str(line.trim_end());
             comment.push('\n');
@@ -132,12 +133,6 @@ fn comment(start: &str, text: &str) -> String {
         line.push_str(word);
     }
     (comment + line.trim_end() + "\n").replace(TIED, " ")
-}
-
-/// Text of a robot file in a `//` comment: a backslash at its end would make the next line a comment too, and so would `??/`,
-/// which is one in C99.
-fn harmless(text: &str) -> String {
-    text.replace('\\', "/").replace("??", "?")
 }
 
 /// Items with commas between them, in lines of at most the [width](WIDTH): the first behind `start`, `end` behind the last, further
