@@ -39,7 +39,7 @@ mod angle;
 mod table;
 
 pub use angle::{Angle, QuarterTurns};
-pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform};
+pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent};
 
 #[cfg(feature = "std")]
 mod check;

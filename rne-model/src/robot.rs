@@ -72,6 +72,12 @@ impl Robot {
         self.joints.len()
     }
 
+    /// The joint whose link carries `joint`, both counted from 0; `None` for the base. A robot is a chain.
+    #[must_use]
+    pub const fn parent(&self, joint: usize) -> Option<usize> {
+        crate::parent(joint)
+    }
+
     /// The rows alone, base to tip.
     pub fn rows(&self) -> impl ExactSizeIterator<Item = &Row> + DoubleEndedIterator {
         self.joints.iter().map(|joint| &joint.row)

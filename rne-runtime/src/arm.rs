@@ -4,9 +4,10 @@ use core::array;
 
 use rne_model::{Model, Motor};
 
-use crate::link_frame::{Chain, Ends, LinkFrame};
+use crate::link_frame::{Chain, LinkFrame};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
+use crate::mount::Mount;
 use crate::per_joint::Known;
 use crate::trace::{self, LinkTrace, Trace};
 use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Scalar, Wrench};
@@ -50,7 +51,7 @@ use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Scalar, Wrench};
 pub struct Arm<const DOF: usize, S = f64> {
     model: Model<DOF, S>,
     links: [LinkFrame<S>; DOF],
-    ends: Ends<S>,
+    tip: Mount<S>,
     motors: [Option<Motor<S>>; DOF],
 }
 
@@ -59,9 +60,9 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     #[must_use]
     pub fn new(model: Model<DOF, S>) -> Self {
         let Model { convention, tool, rows, .. } = &model;
-        let links = array::from_fn(|index| LinkFrame::new(*convention, rows, tool, index));
-        let ends = Ends::new(*convention, rows, tool);
-        Self { model, links, ends, motors: [None; DOF] }
+        let links = array::from_fn(|index| LinkFrame::new(*convention, rows, index));
+        let tip = Mount::of_tip(*convention, rows, tool);
+        Self { model, links, tip, motors: [None; DOF] }
     }
 
     /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
@@ -121,13 +122,14 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let mut links = [LinkTrace::empty(); DOF];
         let joints = JointMotions::new(q, qd, qdd);
         let (motions, loads) = self.mechanism().passes(joints, base, wrench);
-        trace::record(self.mechanism().chain, base, joints, &motions, &loads, &mut links);
+        let velocities = self.mechanism().velocities(joints, base, &motions);
+        trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
         Trace { links }
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
         let Model { convention, gravity, base, tool, rows } = &self.model;
-        let chain = Chain { links: &self.links, ends: &self.ends };
+        let chain = Chain { links: &self.links, tip: &self.tip };
         Mechanism { per_joint: Known, chain, convention: *convention, rows, motors: &self.motors, gravity, base, tool }
     }
 }

@@ -2,9 +2,10 @@
 
 use rne_model::{Convention, Model, Motor, Robot, Row, Transform};
 
-use crate::link_frame::{Chain, Ends, LinkFrame};
+use crate::link_frame::{Chain, LinkFrame};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
+use crate::mount::Mount;
 use crate::per_joint::Counted;
 use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
 use crate::{BaseMotion, Constant, Scalar, Wrench, WrongLength};
@@ -21,7 +22,7 @@ pub struct DynArm<S = f64> {
     tool: Transform<S>,
     rows: Vec<Row<S>>,
     links: Vec<LinkFrame<S>>,
-    ends: Ends<S>,
+    tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
 }
 
@@ -57,10 +58,10 @@ impl<S: Constant> DynArm<S> {
         tool: Transform<S>,
         rows: Vec<Row<S>>,
     ) -> Self {
-        let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, &tool, index)).collect();
-        let ends = Ends::new(convention, &rows, &tool);
+        let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, index)).collect();
+        let tip = Mount::of_tip(convention, &rows, &tool);
         let motors = vec![None; rows.len()];
-        Self { convention, gravity, base, tool, rows, links, ends, motors }
+        Self { convention, gravity, base, tool, rows, links, tip, motors }
     }
 
     /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
@@ -220,7 +221,8 @@ impl<S: Constant> DynArm<S> {
         let joints = self.joints(q, qd, qdd)?;
         let (motions, loads) = self.mechanism().passes(joints, base, wrench);
         let mut links = vec![LinkTrace::empty(); self.dof()];
-        trace::record(self.mechanism().chain, base, joints, &motions, &loads, &mut links);
+        let velocities = self.mechanism().velocities(joints, base, &motions);
+        trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
         Ok(DynTrace { links })
     }
 
@@ -245,18 +247,9 @@ impl<S: Constant> DynArm<S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
-        let Self { convention, gravity, base, tool, rows, links, ends, motors } = self;
+        let Self { convention, gravity, base, tool, rows, links, tip, motors } = self;
         let per_joint = Counted(rows.len());
-        Mechanism {
-            per_joint,
-            chain: Chain { links, ends },
-            convention: *convention,
-            rows,
-            motors,
-            gravity,
-            base,
-            tool,
-        }
+        Mechanism { per_joint, chain: Chain { links, tip }, convention: *convention, rows, motors, gravity, base, tool }
     }
 }
 

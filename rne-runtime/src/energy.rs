@@ -13,7 +13,6 @@ use crate::kinematics::Placement;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
-use crate::seven_steps::velocities;
 use crate::{Arm, BaseMotion, Constant, Energy, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
@@ -24,11 +23,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let joints = JointMotions::new(q, qd, zeros.as_ref());
         let base = BaseMotion::fixed([T::zero(); 3]);
         let motions = self.motions(joints, &base);
-        let velocities = velocities(self.chain, &base, joints, motions.as_ref());
+        let velocities = self.velocities(joints, &base, &motions);
         let mut twice = T::zero();
-        for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities) {
+        for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities.as_ref()) {
             let spin = motion.omega.dot(&(link.inertia * motion.omega));
-            twice += link.mass * velocity.dot(&velocity) + spin;
+            twice += link.mass * velocity.dot(velocity) + spin;
         }
         twice * T::from_f64(0.5)
     }

@@ -19,6 +19,7 @@
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, JointKind, Row, Transform};
 
+use crate::joint::JointLaws;
 use crate::link_frame::{LinkFrame, rotation_of, rotation_x, rotation_z};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
@@ -81,12 +82,13 @@ impl<T: Scalar> Placement<T> {
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// The link frames, when frame 0 stands at `start`.
     pub(crate) fn placements<T: Scalar>(self, start: Placement<T>, q: &[T]) -> J::Of<Placement<T>> {
-        let mut placement = start;
-        self.per_joint.of(|i| {
-            let row = Placement::of_row(self.convention, &self.rows[i], &self.chain.links[i], q[i]);
-            placement = placement.then(&row);
-            placement
-        })
+        let mut placements = self.per_joint.all(&start);
+        for (i, link) in self.chain.links.iter().enumerate() {
+            let parent = link.parent.map_or(start, |parent| placements.as_ref()[parent]);
+            let row = Placement::of_row(self.convention, &self.rows[i], link, q[i]);
+            placements.as_mut()[i] = parent.then(&row);
+        }
+        placements
     }
 
     /// The tip frame behind the last of `links`.
@@ -105,16 +107,16 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.per_joint.of(|i| links.as_ref()[i].pose())
     }
 
-    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0. Axis i is the z axis of the link
-    /// frame before row i in a standard table, of the one behind it in a modified table.
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0. Axis i is the z axis of the parent's
+    /// link frame in a standard table, of the link's own in a modified table.
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
         let links = self.placements(base, q);
         let tip = self.tip(links.as_ref());
         let columns = self.per_joint.of(|i| {
-            let frame = match (self.convention, i.checked_sub(1)) {
+            let frame = match (self.convention, self.chain.links[i].parent) {
                 (Convention::Modified, _) => links.as_ref()[i],
-                (Convention::Standard, Some(before)) => links.as_ref()[before],
+                (Convention::Standard, Some(parent)) => links.as_ref()[parent],
                 (Convention::Standard, None) => base,
             };
             let axis = frame.rotation.column(2).into_owned();
@@ -143,14 +145,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let weightless = BaseMotion::fixed([T::zero(); 3]);
         let motions = self.motions(JointMotions::new(q, qd, zeros.as_ref()), &weightless);
         let (mut linear, mut angular) = (Vector3::zeros(), Vector3::zeros());
-        for ((link, this), (&q, &qd)) in self.chain.links().zip(motions.as_ref()).zip(q.iter().zip(qd)) {
-            let span = link.span(q);
+        for (i, (link, this)) in self.chain.links().zip(motions.as_ref()).enumerate() {
+            let span = link.span(q[i], &self.chain.mount_behind(i));
             let centripetal = this.omega.cross(&this.omega.cross(&span));
-            let as_if_rigid = (this.rotation.tr_mul(&linear) + this.omega_dot.cross(&span)) + centripetal;
-            linear = match link.kind {
-                JointKind::Revolute => as_if_rigid,
-                JointKind::Prismatic => as_if_rigid + this.omega.cross(&Vector3::z()) * (qd + qd),
-            };
+            let rigid = (this.rotation.tr_mul(&linear) + this.omega_dot.cross(&span)) + centripetal;
+            linear = link.kind.acceleration(rigid, &this.omega, qd[i], T::zero());
             angular = this.omega_dot;
         }
         for motion in motions.as_ref().iter().rev() {

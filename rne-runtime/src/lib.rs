@@ -20,6 +20,7 @@ mod energy;
 #[cfg(feature = "std")]
 mod error;
 mod forward_dynamics;
+mod joint;
 mod joint_wrenches;
 mod kinematics;
 mod link_frame;
@@ -28,6 +29,7 @@ mod link_state;
 mod load;
 mod mass_matrix;
 mod mechanism;
+mod mount;
 mod operations;
 mod per_joint;
 mod pose;

@@ -5,18 +5,19 @@
 //! constants below and nowhere else:
 //!
 //! ```text
-//!             R_i                     d_i                          r_i                 I_i
-//! standard    Rx(α_{i-1}) Rz(θ_i)     (a_i, 0, b_i) + Rx(α_i) c̄    -Rx(α_i) c̄          Rx(α_i) Ī Rx(α_i)ᵀ
-//!             α_0 = 0, R_{n+1} = Rx(α_n)
-//! modified    Rx(α_{i-1}) Rz(θ_i)     (0, 0, b_i) + c̄              (a_i, 0, 0) - c̄     Ī
-//!             R_{n+1} = 1                                          r_n = -c̄
+//!             R_i                     d_i                          I_i
+//! standard    Rx(α_{i-1}) Rz(θ_i)     (a_i, 0, b_i) + Rx(α_i) c̄    Rx(α_i) Ī Rx(α_i)ᵀ       α_0 = 0
+//! modified    Rx(α_{i-1}) Rz(θ_i)     (0, 0, b_i) + c̄              Ī
 //! ```
 //!
-//! c̄ and Ī are the table's centre of mass and inertia. Row i of a modified table already carries α_{i-1} and a_{i-1}.
+//! c̄ and Ī are the table's centre of mass and inertia. Row i of a modified table already carries α_{i-1} and a_{i-1}. The
+//! twist, and r, the lever from one link's centre of mass to the next joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform};
+use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform, parent};
 
+use crate::joint::JointLaws;
+use crate::mount::Mount;
 use crate::{Constant, Scalar};
 
 /// The constants of link i and of its joint. `S` is the scalar of the table, or that of a computation after
@@ -24,8 +25,10 @@ use crate::{Constant, Scalar};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LinkFrame<S> {
     pub(crate) kind: JointKind,
-    /// Rx(α_{i-1}), the fixed part of R_i.
-    pub(crate) twist: Matrix3<S>,
+    /// The link that carries the joint; `None` for the base.
+    pub(crate) parent: Option<usize>,
+    /// Where the joint stands on that link.
+    pub(crate) mount: Mount<S>,
     /// θ_i without the joint variable.
     theta: Angle<S>,
     /// (a_i, 0, b_i) without the joint variable (modified: a_i = 0).
@@ -34,73 +37,36 @@ pub(crate) struct LinkFrame<S> {
     com: Vector3<S>,
     /// J_i → C_i at joint variable 0.
     d: Vector3<S>,
-    /// C_i → J_{i+1}.
-    pub(crate) r: Vector3<S>,
-    /// From the end of the offset to J_{i+1}, or to the origin of the tip frame.
-    lever: Vector3<S>,
     /// Inertia about C_i, kg m².
     pub(crate) inertia: Matrix3<S>,
     /// Mass, kg.
     pub(crate) mass: S,
 }
 
-/// Where the chain of links begins and ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Ends<S> {
-    /// r_0: from the origin of frame 0 to J_1.
-    pub(crate) base_lever: Vector3<S>,
-    /// R_{n+1}: from the tip frame's axes to those of link n.
-    pub(crate) tip_rotation: Matrix3<S>,
-}
-
 /// All links of a robot, whatever owns them.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chain<'a, S> {
     pub(crate) links: &'a [LinkFrame<S>],
-    pub(crate) ends: &'a Ends<S>,
+    /// Where the tip frame stands on the last link.
+    pub(crate) tip: &'a Mount<S>,
 }
 
 impl<S: Constant> LinkFrame<S> {
-    /// The link of `rows[index]`. The tool belongs to the last one.
-    pub(crate) fn new(convention: Convention, rows: &[Row<S>], tool: &Transform<S>, index: usize) -> Self {
+    /// The link of `rows[index]`.
+    pub(crate) fn new(convention: Convention, rows: &[Row<S>], index: usize) -> Self {
         let Row { kind, dh, link } = rows[index];
-        let is_last = index + 1 == rows.len();
-        let zero = S::zero();
-        let written_com = Vector3::from(link.com);
+        let mount = Mount::of_joint(convention, rows, index);
+        let com = turned_com(convention, &rows[index]);
         let written_inertia = Matrix3::from(link.inertia.rows()).transpose();
-
-        let (twist, offset, com, inertia, mut r, mut lever);
-        match convention {
+        let (offset, inertia) = match convention {
             Convention::Standard => {
                 let rx = rotation_x(&dh.alpha);
-                twist = previous_twist(rows, index);
-                offset = Vector3::new(dh.a, zero, dh.d);
-                com = rx * written_com;
-                inertia = (rx * written_inertia) * rx.transpose();
-                (r, lever) = (-com, Vector3::zeros());
-                if is_last {
-                    lever = rx * Vector3::from(tool.xyz);
-                    r += lever;
-                }
+                (Vector3::new(dh.a, S::zero(), dh.d), (rx * written_inertia) * rx.transpose())
             }
-            Convention::Modified => {
-                twist = rotation_x(&dh.alpha);
-                offset = Vector3::new(zero, zero, dh.d);
-                com = written_com;
-                inertia = written_inertia;
-                (r, lever) = match rows.get(index + 1) {
-                    Some(next) => {
-                        let lever = Vector3::new(next.dh.a, zero, zero);
-                        (lever - com, lever)
-                    }
-                    None => {
-                        let lever = Vector3::from(tool.xyz);
-                        (-com + lever, lever)
-                    }
-                };
-            }
-        }
-        Self { kind, twist, theta: dh.theta, offset, com, d: offset + com, r, lever, inertia, mass: link.mass }
+            Convention::Modified => (Vector3::new(S::zero(), S::zero(), dh.d), written_inertia),
+        };
+        let (parent, d) = (parent(index), offset + com);
+        Self { kind, parent, mount, theta: dh.theta, offset, com, d, inertia, mass: link.mass }
     }
 
     /// The same constants in the scalar of a computation.
@@ -109,13 +75,12 @@ impl<S: Constant> LinkFrame<S> {
         let Angle { radians, sin, cos, right } = self.theta;
         LinkFrame {
             kind: self.kind,
-            twist: self.twist.map(S::to),
+            parent: self.parent,
+            mount: self.mount.to(),
             theta: Angle { radians: radians.to(), sin: sin.to(), cos: cos.to(), right },
             offset: self.offset.map(S::to),
             com: self.com.map(S::to),
             d: self.d.map(S::to),
-            r: self.r.map(S::to),
-            lever: self.lever.map(S::to),
             inertia: self.inertia.map(S::to),
             mass: self.mass.to(),
         }
@@ -126,7 +91,7 @@ impl<T: Scalar> LinkFrame<T> {
     /// R_i = Rx(α_{i-1}) Rz(θ_i): turns components in the axes of link i into those of link i-1.
     #[inline]
     pub(crate) fn rotation(&self, q: T) -> Matrix3<T> {
-        self.twist * rotation_z(self.sin_cos(q))
+        self.mount.rotation * rotation_z(self.sin_cos(q))
     }
 
     /// The same from the sine and cosine of q.
@@ -141,7 +106,7 @@ impl<T: Scalar> LinkFrame<T> {
             }
             (JointKind::Revolute, Some(turns)) => by_quarters(turn, turns),
         };
-        self.twist * rotation_z((s, c))
+        self.mount.rotation * rotation_z((s, c))
     }
 
     /// d_i = J_i → C_i, m; a prismatic joint moves it along its z axis.
@@ -149,18 +114,14 @@ impl<T: Scalar> LinkFrame<T> {
     pub(crate) fn d(&self, q: T) -> Vector3<T> {
         match self.kind {
             JointKind::Revolute => self.d,
-            JointKind::Prismatic => Vector3::new(self.offset.x, self.offset.y, self.offset.z + q) + self.com,
+            JointKind::Prismatic => self.kind.offset(self.offset, q) + self.com,
         }
     }
 
-    /// J_i → J_{i+1}, or to the origin of the tip frame, m.
+    /// From J_i to what is mounted on the link, m.
     #[inline]
-    pub(crate) fn span(&self, q: T) -> Vector3<T> {
-        let span = self.offset + self.lever;
-        match self.kind {
-            JointKind::Revolute => span,
-            JointKind::Prismatic => Vector3::new(span.x, span.y, span.z + q),
-        }
+    pub(crate) fn span(&self, q: T, to: &Mount<T>) -> Vector3<T> {
+        self.kind.offset(self.offset + to.lever, q)
     }
 
     /// Sine and cosine of θ_i. A constant part that is a right angle is not added, its effect is exact: sin(q + 90°) is
@@ -185,36 +146,25 @@ fn by_quarters<T: Scalar>((sin, cos): (T, T), turns: QuarterTurns) -> (T, T) {
     }
 }
 
-impl<S: Constant> Ends<S> {
-    /// The ends of the chain of `rows`, with `tool` after the last of them.
-    pub(crate) fn new(convention: Convention, rows: &[Row<S>], tool: &Transform<S>) -> Self {
-        let zero = S::zero();
-        let turned = rotation_of(tool);
-        match convention {
-            Convention::Standard => {
-                Self { base_lever: Vector3::zeros(), tip_rotation: previous_twist(rows, rows.len()) * turned }
-            }
-            Convention::Modified => {
-                let a_0 = rows.first().map_or(zero, |row| row.dh.a);
-                Self { base_lever: Vector3::new(a_0, zero, zero), tip_rotation: turned }
-            }
-        }
-    }
-}
-
 impl<'a, S: Constant> Chain<'a, S> {
     /// The links from base to tip, in the scalar of a computation.
     #[inline]
     pub(crate) fn links<T: Scalar>(self) -> impl ExactSizeIterator<Item = LinkFrame<T>> + DoubleEndedIterator + 'a {
         self.links.iter().map(|link| link.to())
     }
+
+    /// What is mounted on the link behind which there is no second joint: the next joint, or the tip.
+    pub(crate) fn mount_behind<T: Scalar>(self, link: usize) -> Mount<T> {
+        self.links.iter().find(|other| other.parent == Some(link)).map_or(self.tip, |child| &child.mount).to()
+    }
 }
 
-/// Rx(α) of the row before `rows[index]`; nothing precedes the first.
-fn previous_twist<S: Constant>(rows: &[Row<S>], index: usize) -> Matrix3<S> {
-    match index.checked_sub(1).and_then(|previous| rows.get(previous)) {
-        Some(previous) => rotation_x(&previous.dh.alpha),
-        None => Matrix3::identity(),
+/// The centre of mass of a row's link, from the end of its offset, in form P.
+pub(crate) fn turned_com<S: Constant>(convention: Convention, row: &Row<S>) -> Vector3<S> {
+    let com = Vector3::from(row.link.com);
+    match convention {
+        Convention::Standard => rotation_x(&row.dh.alpha) * com,
+        Convention::Modified => com,
     }
 }
 

@@ -42,8 +42,6 @@ pub(crate) struct LinkMotion<T> {
     pub(crate) rotation: Matrix3<T>,
     /// d_i
     pub(crate) d: Vector3<T>,
-    /// r_i
-    pub(crate) r: Vector3<T>,
     /// ω_i
     pub(crate) omega: Vector3<T>,
     /// ω̇_i
@@ -70,6 +68,17 @@ pub(crate) struct LinkLoad<T> {
     pub(crate) joint: ForceMoment<T>,
     /// τ_i
     pub(crate) tau: T,
+    /// What the joints and the tip that are mounted on the link ask of it; `None` if there are none.
+    pub(crate) carried: Option<Carried<T>>,
+}
+
+/// The wrenches that a link hands on to what is mounted on it, each about its own joint, in the axes of the link.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Carried<T> {
+    /// Σ f, Σ n
+    pub(crate) wrench: ForceMoment<T>,
+    /// Σ r × f
+    pub(crate) of_levers: Vector3<T>,
 }
 
 impl<'a, S: Constant> Chain<'a, S> {
@@ -87,10 +96,9 @@ impl<'a, S: Constant> Chain<'a, S> {
 }
 
 impl<T: Scalar> LinkMotion<T> {
-    /// "Link 0": the frame that carries the arm, with r_0 from its origin to the first joint.
-    pub(crate) fn of_base<S: Constant>(chain: Chain<'_, S>, base: &BaseMotion<T>) -> Self {
+    /// The frame that carries the arm.
+    pub(crate) fn of_base(base: &BaseMotion<T>) -> Self {
         Self {
-            r: chain.ends.base_lever.map(S::to),
             omega: base.omega.into(),
             omega_dot: base.omega_dot.into(),
             acceleration: base.acceleration.into(),
@@ -105,28 +113,34 @@ impl<T: Scalar> LinkMotion<T> {
             Some(turn) => link.rotation_by(*turn),
             None => link.rotation(*q),
         };
-        Self { rotation, d: link.d(*q), r: link.r, ..Self::empty() }
+        Self { rotation, d: link.d(*q), ..Self::empty() }
     }
 
     /// A place for a result.
     pub(crate) fn empty() -> Self {
         let zero = Vector3::zeros();
-        Self {
-            rotation: Matrix3::identity(),
-            d: zero,
-            r: zero,
-            omega: zero,
-            omega_dot: zero,
-            acceleration: zero,
-            gravity: zero,
-        }
+        Self { rotation: Matrix3::identity(), d: zero, omega: zero, omega_dot: zero, acceleration: zero, gravity: zero }
     }
 }
 
 impl<T: Scalar> LinkLoad<T> {
     /// A place for a result.
     pub(crate) fn empty() -> Self {
-        Self { inertia: ForceMoment::zero(), joint: ForceMoment::zero(), tau: T::zero() }
+        Self { inertia: ForceMoment::zero(), joint: ForceMoment::zero(), tau: T::zero(), carried: None }
+    }
+
+    /// The link carries one wrench more, at the end of `r`.
+    pub(crate) fn carry(&mut self, rotation: &Matrix3<T>, r: &Vector3<T>, wrench: &ForceMoment<T>) {
+        let wrench = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
+        let of_levers = r.cross(&wrench.force);
+        self.carried = Some(match &self.carried {
+            None => Carried { wrench, of_levers },
+            Some(others) => {
+                let Carried { wrench: ForceMoment { force, moment }, of_levers: levers } = *others;
+                let wrench = ForceMoment { force: force + wrench.force, moment: moment + wrench.moment };
+                Carried { wrench, of_levers: levers + of_levers }
+            }
+        });
     }
 }
 

@@ -1,5 +1,6 @@
 //! A robot as its functions see it, whatever owns its data: [`Arm`](crate::Arm) and `DynArm` share everything from here on.
 
+use nalgebra::Vector3;
 use rne_model::{Convention, Motor, Row, Transform};
 
 use crate::link_frame::Chain;
@@ -32,6 +33,18 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let mut motions = self.per_joint.all(&LinkMotion::empty());
         seven_steps::forward(self.chain, base, joints, motions.as_mut());
         motions
+    }
+
+    /// Step 3, after the forward pass.
+    pub(crate) fn velocities<T: Scalar>(
+        self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        motions: &J::Of<LinkMotion<T>>,
+    ) -> J::Of<Vector3<T>> {
+        let mut velocities = self.per_joint.all(&Vector3::zeros());
+        seven_steps::velocities(self.chain, base, joints, motions.as_ref(), velocities.as_mut());
+        velocities
     }
 
     /// Both passes.

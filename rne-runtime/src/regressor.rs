@@ -16,11 +16,13 @@
 use core::array;
 
 use nalgebra::{Matrix3, Vector3};
-use rne_model::{Convention, JointKind, Link, Row};
+use rne_model::{Convention, Link, Row};
 
-use crate::link_frame::{Chain, Ends, LinkFrame, rotation_x};
+use crate::joint::JointLaws;
+use crate::link_frame::{Chain, LinkFrame, rotation_x};
 use crate::link_state::{ForceMoment, JointMotions, LinkMotion};
 use crate::mechanism::Mechanism;
+use crate::mount::Mount;
 use crate::per_joint::{PerJoint, Square};
 use crate::{Arm, Constant, Regressor, Scalar};
 #[cfg(feature = "std")]
@@ -35,9 +37,9 @@ const TENSOR: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2,
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn regressor<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> Square<J, [T; PARAMETERS]> {
         let rows = self.per_joint.of(|i| empty(&self.rows[i]));
-        let links = self.per_joint.of(|i| LinkFrame::new(self.convention, rows.as_ref(), self.tool, i));
-        let ends = Ends::new(self.convention, rows.as_ref(), self.tool);
-        let chain = Chain { links: links.as_ref(), ends: &ends };
+        let links = self.per_joint.of(|i| LinkFrame::new(self.convention, rows.as_ref(), i));
+        let tip = Mount::of_tip(self.convention, rows.as_ref(), self.tool);
+        let chain = Chain { links: links.as_ref(), tip: &tip };
         let bare = Mechanism { chain, rows: rows.as_ref(), ..self };
         let motions = bare.motions(JointMotions::new(q, qd, qdd), &self.fixed_base());
         let motions = motions.as_ref();
@@ -47,20 +49,20 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
             let mut wrenches = unit_wrenches(motion, &self.link_axes(j));
             // The link itself: from its link frame's origin to its joint.
             let mut lever = motion.d;
-            for i in (0..=j).rev() {
+            let mut joint = Some(j);
+            while let Some(i) = joint {
                 for (parameter, wrench) in wrenches.iter_mut().enumerate() {
                     wrench.moment += lever.cross(&wrench.force);
-                    matrix.as_mut()[i].as_mut()[j][parameter] = match self.rows[i].kind {
-                        JointKind::Revolute => wrench.moment.z,
-                        JointKind::Prismatic => wrench.force.z,
-                    };
-                    // In the axes of the link before.
+                    matrix.as_mut()[i].as_mut()[j][parameter] = self.rows[i].kind.actuator(wrench);
+                    // In the axes of the parent.
                     let rotation = motions[i].rotation;
                     *wrench = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
                 }
-                // That link carries the wrench from its end to its joint.
-                if let Some(before) = i.checked_sub(1) {
-                    lever = motions[before].d + motions[before].r;
+                // That link carries the wrench from there to its own joint.
+                let link = &chain.links[i];
+                joint = link.parent;
+                if let Some(parent) = joint {
+                    lever = motions[parent].d + link.mount.r.map(S::to);
                 }
             }
         }

@@ -6,89 +6,77 @@
 //! ```text
 //! ω, ω̇         angular velocity and acceleration of a link          e     axis of the joint, (0, 0, 1)
 //! ċ, c̈         velocity and acceleration of its centre of mass      d     from the joint to the centre of mass
-//! g            acceleration of gravity                              r     from the centre of mass to the next joint
+//! g            acceleration of gravity                              r_i   from the parent's centre of mass to joint i
 //! f, n         force and moment that accelerate the link            m, I  mass; inertia about the centre of mass
-//! f_{i-1,i}    force and moment that link i-1 exerts on link i      R_i   turns components in the axes of link i into
-//! n_{i-1,i}                                                               components in the axes of link i-1
+//! f_{p,i}      force and moment that the parent link p exerts       R_i   turns components in the axes of link i into
+//! n_{p,i}      on link i                                                  components in the axes of its parent
 //! τ            torque (N m) or force (N) of the actuator            R, P  revolute, prismatic
 //! ```
 //!
-//! `prev` is link i-1, `this` is link i, `child` is link i+1. The vectors of link i stand in the axes of form P: fixed to
+//! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p is i-1,
+//! and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::mount`]. What a kind of
+//! joint adds stands in [`crate::joint`]. The vectors of link i stand in the axes of form P: fixed to
 //! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and leaves z
 //! elements, so τ, as they are.
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
 use nalgebra::Vector3;
-use rne_model::JointKind::{Prismatic, Revolute};
 
+use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame};
-use crate::link_state::{ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
+use crate::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
 use crate::{BaseMotion, Constant, Scalar, Wrench};
 
 /// Step 1: angular velocity.
 ///
-/// - R: ω_i = R_iᵀ ω_{i-1} + q̇_i e_i
-/// - P: ω_i = R_iᵀ ω_{i-1}
-fn angular_velocity<T: Scalar>(joint: &Joint<T>, prev: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    match joint.link.kind {
-        Revolute => this.rotation.tr_mul(&prev.omega) + e() * joint.qd,
-        Prismatic => this.rotation.tr_mul(&prev.omega),
-    }
+/// - R: ω_i = R_iᵀ ω_p + q̇_i e_i
+/// - P: ω_i = R_iᵀ ω_p
+fn angular_velocity<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
+    joint.link.kind.angular_velocity(this.rotation.tr_mul(&parent.omega), joint.qd)
 }
 
 /// Step 2: angular acceleration.
 ///
-/// - R: ω̇_i = R_iᵀ ω̇_{i-1} + q̈_i e_i + q̇_i ω_i × e_i
-/// - P: ω̇_i = R_iᵀ ω̇_{i-1}
-fn angular_acceleration<T: Scalar>(joint: &Joint<T>, prev: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    match joint.link.kind {
-        Revolute => (this.rotation.tr_mul(&prev.omega_dot) + e() * joint.qdd) + this.omega.cross(&e()) * joint.qd,
-        Prismatic => this.rotation.tr_mul(&prev.omega_dot),
-    }
+/// - R: ω̇_i = R_iᵀ ω̇_p + q̈_i e_i + q̇_i ω_i × e_i
+/// - P: ω̇_i = R_iᵀ ω̇_p
+fn angular_acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
+    let rigid = this.rotation.tr_mul(&parent.omega_dot);
+    joint.link.kind.angular_acceleration(rigid, &this.omega, joint.qd, joint.qdd)
 }
 
 /// Step 3: velocity of the centre of mass. No later step uses it.
 ///
-/// - R: ċ_i = R_iᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i
+/// - R: ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i
 /// - P: the same + q̇_i e_i
 fn velocity<T: Scalar>(
     joint: &Joint<T>,
-    prev: &LinkMotion<T>,
-    prev_velocity: &Vector3<T>,
+    parent: &LinkMotion<T>,
+    parent_velocity: &Vector3<T>,
     this: &LinkMotion<T>,
 ) -> Vector3<T> {
-    let joint_origin = prev_velocity + prev.omega.cross(&prev.r);
-    let as_if_rigid = this.rotation.tr_mul(&joint_origin) + this.omega.cross(&this.d);
-    match joint.link.kind {
-        Revolute => as_if_rigid,
-        Prismatic => as_if_rigid + e() * joint.qd,
-    }
+    let joint_origin = parent_velocity + parent.omega.cross(&joint.link.mount.r);
+    let rigid = this.rotation.tr_mul(&joint_origin) + this.omega.cross(&this.d);
+    joint.link.kind.velocity(rigid, joint.qd)
 }
 
 /// Step 4: acceleration of the centre of mass, gravity not included.
 ///
-/// - R: c̈_i = R_iᵀ (c̈_{i-1} + ω̇_{i-1} × r_{i-1} + ω_{i-1} × (ω_{i-1} × r_{i-1})) + ω̇_i × d_i + ω_i × (ω_i × d_i)
+/// - R: c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i)) + ω̇_i × d_i + ω_i × (ω_i × d_i)
 /// - P: the same + q̈_i e_i + 2 q̇_i ω_i × e_i
-fn acceleration<T: Scalar>(joint: &Joint<T>, prev: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    let joint_origin =
-        (prev.acceleration + prev.omega_dot.cross(&prev.r)) + prev.omega.cross(&prev.omega.cross(&prev.r));
-    let as_if_rigid = (this.rotation.tr_mul(&joint_origin) + this.omega_dot.cross(&this.d))
+fn acceleration<T: Scalar>(joint: &Joint<T>, parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
+    let r = &joint.link.mount.r;
+    let joint_origin = (parent.acceleration + parent.omega_dot.cross(r)) + parent.omega.cross(&parent.omega.cross(r));
+    let rigid = (this.rotation.tr_mul(&joint_origin) + this.omega_dot.cross(&this.d))
         + this.omega.cross(&this.omega.cross(&this.d));
-    match joint.link.kind {
-        Revolute => as_if_rigid,
-        Prismatic => {
-            let two = T::one() + T::one();
-            (as_if_rigid + e() * joint.qdd) + this.omega.cross(&e()) * (two * joint.qd)
-        }
-    }
+    joint.link.kind.acceleration(rigid, &this.omega, joint.qd, joint.qdd)
 }
 
 /// Step 5: gravity.
 ///
-/// - g_i = R_iᵀ g_{i-1}
-fn gravity<T: Scalar>(prev: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
-    this.rotation.tr_mul(&prev.gravity)
+/// - g_i = R_iᵀ g_p
+fn gravity<T: Scalar>(parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T> {
+    this.rotation.tr_mul(&parent.gravity)
 }
 
 /// Step 6, the link alone: force and moment that accelerate it.
@@ -101,90 +89,139 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> Force
     ForceMoment { force, moment }
 }
 
-/// Step 6, the balance: force and moment from link i-1, the moment about the joint's reference point.
+/// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums run over
+/// the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
-/// - f_{i-1,i} = f_i + f_{i,i+1} - m_i g_i
-/// - n_{i-1,i} = n_i + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
+/// - f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
+/// - n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
 ///
 /// f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two.
 fn joint_wrench<T: Scalar>(
     link: &LinkFrame<T>,
     this: &LinkMotion<T>,
     inertia: &ForceMoment<T>,
-    child: &ForceMoment<T>,
+    carried: Option<&Carried<T>>,
 ) -> ForceMoment<T> {
-    let force = (this.acceleration - this.gravity) * link.mass + child.force;
-    let moment = ((inertia.moment + child.moment) + this.d.cross(&force)) + this.r.cross(&child.force);
-    ForceMoment { force, moment }
+    let force = (this.acceleration - this.gravity) * link.mass;
+    match carried {
+        None => ForceMoment { force, moment: inertia.moment + this.d.cross(&force) },
+        Some(Carried { wrench, of_levers }) => {
+            let force = force + wrench.force;
+            let moment = ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers;
+            ForceMoment { force, moment }
+        }
+    }
 }
 
 /// Step 7: what the actuator delivers is the element along the joint's axis.
 ///
-/// - R: τ_i = e_i · n_{i-1,i}
-/// - P: τ_i = e_i · f_{i-1,i}
+/// - R: τ_i = e_i · n_{p,i}
+/// - P: τ_i = e_i · f_{p,i}
 fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
-    match link.kind {
-        Revolute => joint.moment.z,
-        Prismatic => joint.force.z,
-    }
+    link.kind.actuator(joint)
 }
 
-/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip. Links beyond the shortest argument stay as they are.
+/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the shortest
+/// argument stay as they are.
 pub(crate) fn forward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     base: &BaseMotion<T>,
     joints: JointMotions<'_, T>,
     motions: &mut [LinkMotion<T>],
 ) {
-    let mut prev = LinkMotion::of_base(chain, base);
-    for (joint, motion) in chain.joints(joints).zip(motions) {
+    let base = LinkMotion::of_base(base);
+    for (index, joint) in chain.joints(joints).enumerate().take(motions.len()) {
+        let parent = joint.link.parent.map_or(base, |parent| motions[parent]);
         let mut this = LinkMotion::placed(&joint);
-        this.omega = angular_velocity(&joint, &prev, &this);
-        this.omega_dot = angular_acceleration(&joint, &prev, &this);
-        this.acceleration = acceleration(&joint, &prev, &this);
-        this.gravity = gravity(&prev, &this);
-        *motion = this;
-        prev = this;
+        this.omega = angular_velocity(&joint, &parent, &this);
+        this.omega_dot = angular_acceleration(&joint, &parent, &this);
+        this.acceleration = acceleration(&joint, &parent, &this);
+        this.gravity = gravity(&parent, &this);
+        motions[index] = this;
     }
 }
 
 /// Step 3 for every link, from the base to the tip, after the forward pass. It stands apart because no torque needs it.
-pub(crate) fn velocities<'a, S: Constant, T: Scalar>(
-    chain: Chain<'a, S>,
+pub(crate) fn velocities<S: Constant, T: Scalar>(
+    chain: Chain<'_, S>,
     base: &BaseMotion<T>,
-    joints: JointMotions<'a, T>,
-    motions: &'a [LinkMotion<T>],
-) -> impl Iterator<Item = Vector3<T>> + 'a {
-    let start = (LinkMotion::of_base(chain, base), Vector3::from(base.velocity));
-    chain.joints(joints).zip(motions).scan(start, |(prev, prev_velocity), (joint, this)| {
-        *prev_velocity = velocity(&joint, prev, prev_velocity, this);
-        *prev = *this;
-        Some(*prev_velocity)
-    })
+    joints: JointMotions<'_, T>,
+    motions: &[LinkMotion<T>],
+    velocities: &mut [Vector3<T>],
+) {
+    let base_velocity = Vector3::from(base.velocity);
+    let base = LinkMotion::of_base(base);
+    for (index, (joint, this)) in chain.joints(joints).zip(motions).enumerate() {
+        let parent = joint.link.parent.map_or((&base, base_velocity), |parent| (&motions[parent], velocities[parent]));
+        velocities[index] = velocity(&joint, parent.0, &parent.1, this);
+    }
 }
 
-/// The backward pass, steps 6 and 7, from the tip to the base. `tip` is f_{n,n+1}, n_{n,n+1}; `None` is a free tip.
+/// The backward pass, steps 6 and 7, from the tip to the base: each link hands its wrench on to its parent. `tip` is what the last
+/// link exerts on its environment; `None` is a free tip.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     motions: &[LinkMotion<T>],
     tip: Option<&Wrench<T>>,
     loads: &mut [LinkLoad<T>],
 ) {
-    // R_{i+1}, and the wrench of joint i+1 in the axes of link i+1.
-    let mut rotation = chain.ends.tip_rotation.map(S::to);
-    let mut wrench = tip.map_or_else(ForceMoment::zero, ForceMoment::from);
-    for ((link, this), load) in chain.links().zip(motions).zip(loads).rev() {
-        let child = ForceMoment { force: rotation * wrench.force, moment: rotation * wrench.moment };
+    if let Some(last) = loads.last_mut() {
+        let mount = chain.tip.to();
+        last.carry(&mount.rotation, &mount.r, &tip.map_or_else(ForceMoment::zero, ForceMoment::from));
+    }
+    for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
         let inertia = inertia_wrench(&link, this);
-        let joint = joint_wrench(&link, this, &inertia, &child);
+        let joint = joint_wrench(&link, this, &inertia, loads[index].carried.as_ref());
         let tau = actuator(&link, &joint);
-        *load = LinkLoad { inertia, joint, tau };
-        rotation = this.rotation;
-        wrench = joint;
+        loads[index] = LinkLoad { inertia, joint, tau, ..loads[index] };
+        if let Some(parent) = link.parent {
+            loads[parent].carry(&this.rotation, &link.mount.r, &joint);
+        }
     }
 }
 
-/// e_i, the joint's axis: z in form P.
-fn e<T: Scalar>() -> Vector3<T> {
-    Vector3::new(T::zero(), T::zero(), T::one())
+#[cfg(test)]
+mod tests {
+    use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Row, Transform};
+
+    use super::*;
+    use crate::mount::Mount;
+
+    fn row(kind: JointKind, [a, d, alpha, mass]: [f64; 4]) -> Row {
+        let inertia = Inertia { xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.01, xz: -0.02, yz: 0.03 };
+        let dh = Dh { theta: Angle::new(0.3), d, a, alpha: Angle::new(alpha) };
+        Row { kind, dh, link: Link { mass, com: [0.1, -0.2, 0.3], inertia } }
+    }
+
+    /// Torques of links by their parents, all moved by the same numbers.
+    fn torques(links: &[LinkFrame<f64>], tip: &Mount<f64>) -> Vec<f64> {
+        let chain = Chain { links, tip };
+        let all = |value: f64| vec![value; links.len()];
+        let (q, qd, qdd) = (all(0.4), all(-1.3), all(2.1));
+        let base = BaseMotion { omega: [0.1, -0.4, 0.2], ..BaseMotion::fixed([0.3, 1.0, -9.81]) };
+        let mut motions = vec![LinkMotion::empty(); links.len()];
+        let mut loads = vec![LinkLoad::empty(); links.len()];
+        forward(chain, &base, JointMotions::new(&q, &qd, &qdd), &mut motions);
+        backward(chain, &motions, None, &mut loads);
+        loads.iter().map(|load| load.tau).collect()
+    }
+
+    /// A link that carries two equal branches feels each of them: twice what a chain has, less what the link alone asks.
+    #[test]
+    fn a_link_may_carry_two_joints() {
+        for convention in [Convention::Standard, Convention::Modified] {
+            for kind in [JointKind::Revolute, JointKind::Prismatic] {
+                let rows = [row(JointKind::Revolute, [0.5, 0.2, 0.7, 3.0]), row(kind, [0.3, 0.1, -1.1, 2.0])];
+                let tip = Mount::of_tip(convention, &rows, &Transform::IDENTITY);
+                let [first, second] = [0, 1].map(|index| LinkFrame::new(convention, &rows, index));
+                let (alone, chain) = (torques(&[first], &tip), torques(&[first, second], &tip));
+                // the third link is the second once more, on the same parent
+                let tree = torques(&[first, second, second], &tip);
+                assert_eq!(second.parent, Some(0));
+                assert_eq!(tree[1..], [chain[1], chain[1]], "{convention:?}, {kind:?}");
+                let expected = 2.0 * chain[0] - alone[0];
+                assert!((tree[0] - expected).abs() < 1e-13 * expected.abs(), "{} is not {expected}", tree[0]);
+            }
+        }
+    }
 }

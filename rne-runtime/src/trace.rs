@@ -3,9 +3,8 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::link_frame::{Chain, rotation_z};
-use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
-use crate::seven_steps::velocities;
-use crate::{BaseMotion, Constant, Scalar};
+use crate::link_state::{LinkLoad, LinkMotion};
+use crate::{Constant, Scalar};
 
 /// What the seven steps find for link i.
 ///
@@ -133,25 +132,24 @@ impl<T: Scalar> LinkTrace<T> {
 /// Collects the results of both passes, and step 3.
 pub(crate) fn record<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
-    base: &BaseMotion<T>,
-    joints: JointMotions<'_, T>,
+    q: &[T],
+    velocities: &[Vector3<T>],
     motions: &[LinkMotion<T>],
     loads: &[LinkLoad<T>],
     traces: &mut [LinkTrace<T>],
 ) {
-    let angles = chain.links().zip(joints.q).map(|(link, &q)| link.sin_cos(q));
-    let velocities = velocities(chain, base, joints, motions);
+    let angles = chain.links().zip(q).map(|(link, &q)| link.sin_cos(q));
     let found = angles.zip(velocities).zip(motions).zip(loads);
-    for ((((angle, velocity), motion), load), trace) in found.zip(traces) {
+    for (index, ((((angle, velocity), motion), load), trace)) in found.zip(traces).enumerate() {
         *trace = LinkTrace {
             sin: angle.0,
             cos: angle.1,
             rotation: rows(&motion.rotation),
             d: motion.d.into(),
-            r: motion.r.into(),
+            r: chain.mount_behind(index).r.into(),
             omega: motion.omega.into(),
             omega_dot: motion.omega_dot.into(),
-            velocity: velocity.into(),
+            velocity: (*velocity).into(),
             acceleration: motion.acceleration.into(),
             gravity: motion.gravity.into(),
             inertia_force: load.inertia.force.into(),
