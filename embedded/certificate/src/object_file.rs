@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use std::{fs, io};
+use std::fs;
 
 use anyhow::{Context, Result};
 
@@ -18,9 +18,9 @@ pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str], features: &[
 }
 
 /// The object file that was written last; older ones are of other flags.
-fn newest(folder: &Path) -> io::Result<Option<PathBuf>> {
+fn newest(folder: &Path) -> Result<Option<PathBuf>> {
     let mut newest: Option<(SystemTime, PathBuf)> = None;
-    for entry in fs::read_dir(folder)? {
+    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let entry = entry?;
         let path = entry.path();
         let is_ours = entry.file_name().to_string_lossy().starts_with("robots-");

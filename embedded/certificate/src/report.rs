@@ -71,14 +71,27 @@ impl Report {
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "- `wasm32-unknown-unknown`, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`, have the \
+                "{WASM}, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`, have the \
                  bits of the host."
             ),
-            None => writeln!(text, "- `wasm32-unknown-unknown`: left out, there was no Node."),
+            None => writeln!(text, "{WITHOUT_NODE}"),
         };
         text
     }
 }
+
+/// Whether two documents have the same figures. One that was written without Node says so in a line.
+pub(crate) fn is_same(committed: &str, document: &str) -> bool {
+    let is_left_out = document.contains(WITHOUT_NODE);
+    let lines = |text: &'_ str| -> Vec<String> {
+        let lines = text.lines().filter(|line| !(is_left_out && line.starts_with(WASM)));
+        lines.map(str::to_owned).collect()
+    };
+    lines(committed) == lines(document)
+}
+
+const WASM: &str = "- `wasm32-unknown-unknown`";
+const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: left out, there was no Node.";
 
 const HEAD: &str = "\
 # Generated code on microcontrollers
@@ -122,3 +135,17 @@ The same recursion, in the same image: `rne::Arm` without `std`, its table a con
 the seven steps: what the compiler computes of the table in double precision and rounds once, the loop computes in `f32`.
 
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::{WASM, WITHOUT_NODE, is_same};
+
+    #[test]
+    fn a_machine_without_node_finds_the_same_figures() {
+        let committed = format!("| a | 1 |\n{WASM}, in Node: 5 torques.\n");
+        assert!(is_same(&committed, &committed));
+        assert!(is_same(&committed, &format!("| a | 1 |\n{WITHOUT_NODE}\n")));
+        assert!(!is_same(&committed, &format!("| a | 2 |\n{WITHOUT_NODE}\n")));
+        assert!(!is_same(&committed, &format!("| a | 1 |\n{WASM}, in Node: 6 torques.\n")), "with Node it is compared");
+    }
+}
