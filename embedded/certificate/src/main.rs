@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers. Started by `scripts/embedded-certificate`.
+//! The certificate of the generated code on microcontrollers. Started by `cargo xtask certificate`.
 
 mod board;
 mod c_code;
@@ -30,13 +30,13 @@ use crate::table::{Baseline, Table};
 /// Builds, reads and runs the generated code for microcontrollers, and compares it with docs/embedded.md
 #[derive(Parser)]
 #[command(
-    name = "scripts/embedded-certificate",
+    name = "cargo xtask certificate",
     after_help = "\
 Exit status: 0 everything is as the document says, or the document is of other compilers; 1 something is not, or a tool failed.
 
 Examples:
-  scripts/embedded-certificate             judge
-  scripts/embedded-certificate --update    judge, and write docs/embedded.md anew"
+  cargo xtask certificate             judge
+  cargo xtask certificate --update    judge, and write docs/embedded.md anew"
 )]
 struct Arguments {
     /// Write docs/embedded.md anew
@@ -70,14 +70,14 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     let grown: Vec<String> = report.tables.iter().flat_map(|table| table.growth(&baseline)).collect();
     if !grown.is_empty() {
         println!("grown by more than 2 %:\n  {}", grown.join("\n  "));
-        println!("if that is meant: scripts/embedded-certificate --update");
+        println!("if that is meant: cargo xtask certificate --update");
         return Ok(ExitCode::FAILURE);
     }
     for table in report.tables.iter().filter(|table| table.is_of_another_compiler(&baseline)) {
         println!("{}: not compared, docs/embedded.md is of another compiler than {}", table.title, table.compiler);
     }
     if !report::is_same(&committed, &document) {
-        println!("docs/embedded.md is of older figures; scripts/embedded-certificate --update writes them anew");
+        println!("docs/embedded.md is of older figures; cargo xtask certificate --update writes them anew");
     }
     println!("certified");
     Ok(ExitCode::SUCCESS)

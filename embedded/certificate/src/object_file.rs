@@ -1,8 +1,8 @@
 //! The object file of the certified functions for a target on which no board is at hand.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use std::fs;
 
 use anyhow::{Context, Result};
 

@@ -96,7 +96,7 @@ const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: left out, there was no N
 const HEAD: &str = "\
 # Generated code on microcontrollers
 
-Written by `scripts/embedded-certificate --update`; `scripts/embedded-certificate` builds, reads and runs everything again and fails if
+Written by `cargo xtask certificate --update`; `cargo xtask certificate` builds, reads and runs everything again and fails if
 something below is no longer so.
 
 Every shipped robot, in `f32`, sines and cosines included. The image is built for a board, its instructions are read by `objdump`, and it

@@ -1,8 +1,8 @@
 //! What grows with the number of joints: operations, expansion, compile time, code size.
 //!
 //! ```sh
-//! cargo run --example growth               # 1, 2, 5, 10, 20, 30, 40 and 50 joints; some minutes
-//! cargo run --example growth -- 1 5 10     # these only
+//! cargo xtask growth           # 1, 2, 5, 10, 20, 30, 40 and 50 joints; some minutes
+//! cargo xtask growth 1 5 10    # these only
 //! ```
 //!
 //! Random chains in which nothing folds: no number is zero, no angle right. For each form a table, with the increment per
@@ -18,9 +18,7 @@
 //! Times are processor time where the system is Linux, since a machine may be shared, else time of the clock. `fails`: the
 //! compiler gave up.
 
-#[path = "chain.rs"]
 mod chain;
-#[path = "user.rs"]
 mod user;
 
 use std::fmt::Write;
@@ -51,9 +49,7 @@ fn main() {
         Ok(given) if given.is_empty() => JOINTS.to_vec(),
         Ok(given) if !given.contains(&0) => given,
         _ => {
-            eprintln!(
-                "usage: cargo run --example growth -- [JOINTS]...\n\nJOINTS: numbers of joints, 1 or more each; by default {JOINTS:?}"
-            );
+            eprintln!("usage: growth [JOINTS]...\n\nJOINTS: numbers of joints, 1 or more each; by default {JOINTS:?}");
             std::process::exit(2);
         }
     };

@@ -1,0 +1,113 @@
+//! Lines of at most 120 columns, in code and in prose.
+
+use std::fs;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use clap::Args;
+use unicode_width::UnicodeWidthStr;
+
+use crate::Verdict;
+use crate::machine;
+
+/// Tells lines of more than 120 columns in *.rs and *.md
+///
+/// In Markdown, tables, blocks of code and lines with an address may be longer: they cannot be broken. In Rust, a line
+/// whose text is a string or an address without a blank to break it at may be longer, too.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when there are such lines.
+
+Examples:
+  cargo xtask lines                      the whole repository
+  cargo xtask lines docs README.md       some folders and files of it")]
+pub(crate) struct Lines {
+    /// Folders and files, from the root of the repository
+    #[arg(default_value = ".", hide_default_value = true)]
+    paths: Vec<String>,
+}
+
+/// As rustfmt.toml has it.
+const COLUMNS: usize = 120;
+
+impl Lines {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let mut found = Vec::new();
+        for path in &self.paths {
+            walk(&machine::root().join(path), &mut found)?;
+        }
+        found.sort();
+        for line in &found {
+            println!("{line}");
+        }
+        if !found.is_empty() {
+            println!("lines: {} of more than {COLUMNS} columns", found.len());
+        }
+        Ok(Verdict::from(found.is_empty()))
+    }
+}
+
+/// Long lines of a file, or of the files below a folder, with their places.
+fn walk(path: &Path, found: &mut Vec<String>) -> Result<()> {
+    if path.is_dir() {
+        let name = path.file_name().unwrap_or_default();
+        if name == "target" || name == ".git" {
+            return Ok(());
+        }
+        for entry in fs::read_dir(path).with_context(|| path.display().to_string())? {
+            walk(&entry?.path(), found)?;
+        }
+        return Ok(());
+    }
+    let long: fn(&str) -> Vec<(usize, usize)> = match path.extension().and_then(|extension| extension.to_str()) {
+        Some("rs") => long_in_rust,
+        Some("md") => long_in_markdown,
+        _ => return Ok(()),
+    };
+    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    let shown = path.strip_prefix(machine::root()).unwrap_or(path).display();
+    found.extend(long(&text).into_iter().map(|(line, width)| format!("{shown}:{line}: {width} columns")));
+    Ok(())
+}
+
+/// Numbers and widths of the long lines.
+fn long(text: &str, mut may_be: impl FnMut(&str) -> bool) -> Vec<(usize, usize)> {
+    let lines = text.lines().enumerate().map(|(index, line)| (index + 1, line, line.width()));
+    lines
+        .filter(|(_, line, width)| !may_be(line) && *width > COLUMNS)
+        .map(|(number, _, width)| (number, width))
+        .collect()
+}
+
+fn long_in_rust(text: &str) -> Vec<(usize, usize)> {
+    long(text, |line| {
+        let text = line.trim_start().trim_start_matches(['/', '!']).trim_start();
+        // one word; or a row of a table
+        text.starts_with('|') || !text.trim_end().contains(' ')
+    })
+}
+
+fn long_in_markdown(text: &str) -> Vec<(usize, usize)> {
+    let mut is_code = false;
+    long(text, |line| {
+        let is_fence = line.trim_start().starts_with("```");
+        is_code ^= is_fence;
+        is_fence || is_code || line.trim_start().starts_with('|') || line.contains("://")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{long_in_markdown, long_in_rust};
+
+    #[test]
+    fn what_can_be_broken_must_be() {
+        let words = "word ".repeat(25);
+        let line = words.trim_end();
+        assert_eq!(long_in_rust(&format!("// short\n// {line}\n")), [(2, 127)]);
+        assert_eq!(long_in_rust(&format!("{}\n", "ω̇".repeat(120))), []);
+        assert_eq!(long_in_rust(&format!("/// | a | {line} |\n/// {}\n", "x".repeat(130))), []);
+        let page = format!("{line}\n| {line} |\n```text\n{line}\n```\n{line}\nsee https://example.org {line}\n");
+        assert_eq!(long_in_markdown(&page), [(1, 124), (6, 124)]);
+    }
+}
