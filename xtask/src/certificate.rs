@@ -49,7 +49,7 @@ impl Certificate {
         // Debian's compiler builds the tool as well: what the macro is made of is built once.
         shell.set_var("RUSTC", "/usr/bin/rustc");
         shell.set_var("RUSTC_BOOTSTRAP", "1");
-        shell.set_var("CARGO_TARGET_DIR", machine::target_folder("embedded/target")?);
+        shell.set_var("CARGO_TARGET_DIR", machine::target_folder("target/embedded")?);
 
         let compiler = machine::without_flags(cmd!(shell, "/usr/bin/rustc --version")).quiet().read()?;
         let oldest = machine::oldest_compiler()?;

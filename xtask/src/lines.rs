@@ -8,7 +8,7 @@ use clap::Args;
 use unicode_width::UnicodeWidthStr;
 
 use crate::Verdict;
-use crate::machine;
+use crate::{machine, prose};
 
 /// Tells lines of more than 120 columns in *.rs and *.md
 ///
@@ -20,11 +20,15 @@ Exit status: 1 when there are such lines.
 
 Examples:
   cargo xtask lines                      the whole repository
-  cargo xtask lines docs README.md       some folders and files of it")]
+  cargo xtask lines docs README.md       some folders and files of it
+  cargo xtask lines --wrap docs          wrap comments and prose anew where a line is too long")]
 pub(crate) struct Lines {
     /// Folders and files, from the root of the repository
     #[arg(default_value = ".", hide_default_value = true)]
     paths: Vec<String>,
+    /// Wrap the comments and paragraphs that have such lines; strings and code stay
+    #[arg(long)]
+    wrap: bool,
 }
 
 /// As rustfmt.toml has it.
@@ -34,7 +38,7 @@ impl Lines {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let mut found = Vec::new();
         for path in &self.paths {
-            walk(&machine::root().join(path), &mut found)?;
+            self.walk(&machine::root().join(path), &mut found)?;
         }
         found.sort();
         for line in &found {
@@ -45,30 +49,37 @@ impl Lines {
         }
         Ok(Verdict::from(found.is_empty()))
     }
-}
 
-/// Long lines of a file, or of the files below a folder, with their places.
-fn walk(path: &Path, found: &mut Vec<String>) -> Result<()> {
-    if path.is_dir() {
-        let name = path.file_name().unwrap_or_default();
-        if name == "target" || name == ".git" {
+    /// Long lines of a file, or of the files below a folder, with their places.
+    fn walk(&self, path: &Path, found: &mut Vec<String>) -> Result<()> {
+        if path.is_dir() {
+            let name = path.file_name().unwrap_or_default();
+            if name == "target" || name == ".git" {
+                return Ok(());
+            }
+            for entry in fs::read_dir(path).with_context(|| path.display().to_string())? {
+                self.walk(&entry?.path(), found)?;
+            }
             return Ok(());
         }
-        for entry in fs::read_dir(path).with_context(|| path.display().to_string())? {
-            walk(&entry?.path(), found)?;
+        let (long, wrapped): (Long, Wrapped) = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("rs") => (long_in_rust, prose::wrapped_comments),
+            Some("md") => (long_in_markdown, prose::wrapped_markdown),
+            _ => return Ok(()),
+        };
+        let mut text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
+        if self.wrap && !long(&text).is_empty() {
+            text = wrapped(&text, COLUMNS);
+            fs::write(path, &text).with_context(|| path.display().to_string())?;
         }
-        return Ok(());
+        let shown = path.strip_prefix(machine::root()).unwrap_or(path).display();
+        found.extend(long(&text).into_iter().map(|(line, width)| format!("{shown}:{line}: {width} columns")));
+        Ok(())
     }
-    let long: fn(&str) -> Vec<(usize, usize)> = match path.extension().and_then(|extension| extension.to_str()) {
-        Some("rs") => long_in_rust,
-        Some("md") => long_in_markdown,
-        _ => return Ok(()),
-    };
-    let text = fs::read_to_string(path).with_context(|| path.display().to_string())?;
-    let shown = path.strip_prefix(machine::root()).unwrap_or(path).display();
-    found.extend(long(&text).into_iter().map(|(line, width)| format!("{shown}:{line}: {width} columns")));
-    Ok(())
 }
+
+type Long = fn(&str) -> Vec<(usize, usize)>;
+type Wrapped = fn(&str, usize) -> String;
 
 /// Numbers and widths of the long lines.
 fn long(text: &str, mut may_be: impl FnMut(&str) -> bool) -> Vec<(usize, usize)> {

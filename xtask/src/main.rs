@@ -13,6 +13,7 @@ mod machine;
 mod mutants;
 mod mutate;
 mod performance;
+mod prose;
 mod single_calls;
 mod verify;
 
