@@ -16,9 +16,9 @@ use crate::machine::{self, Missing};
 /// What the loops of a batch are made of, from the machine code of examples/batch_speed
 ///
 /// A state's torques take two loops: sines and cosines of a register's angles, then the torques. For each: instructions
-/// for one register of eight f64, how many of them compute with registers of 512 bits, load them, store them, or copy one
-/// to another, and what the first take at least on a core that starts two of them per cycle, in cycles per state. Needs
-/// objdump.
+/// for one register of eight f64, how many of them compute with registers of 512 bits, load them, store them, or copy
+/// one to another, and what the first take at least on a core that starts two of them per cycle, in cycles per state.
+/// Needs objdump.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

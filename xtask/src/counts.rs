@@ -22,7 +22,8 @@ pub(crate) struct Comparison {
 }
 
 impl Counts {
-    /// From the output of gungraun: a line `instructions::GROUP::FUNCTION ROBOT_FORM:…`, and below it `Instructions: COUNT|…`.
+    /// From the output of gungraun: a line `instructions::GROUP::FUNCTION ROBOT_FORM:…`, and below it
+    /// `Instructions: COUNT|…`.
     pub(crate) fn of_harness(log: &str) -> Self {
         let mut counts = Vec::new();
         let mut key = None;

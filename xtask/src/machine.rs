@@ -56,8 +56,8 @@ pub(crate) fn target_folder(default: &str) -> Result<PathBuf> {
     Ok(folder.canonicalize()?)
 }
 
-/// Without the caller's flags, which would make other code, and without the folders of libraries that rustup adds for its
-/// own compiler, which need not be the one that is started.
+/// Without the caller's flags, which would make other code, and without the folders of libraries that rustup adds for
+/// its own compiler, which need not be the one that is started.
 pub(crate) fn without_flags(command: Cmd<'_>) -> Cmd<'_> {
     ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "LD_LIBRARY_PATH"].into_iter().fold(command, Cmd::env_remove)
 }

@@ -1,8 +1,8 @@
 //! Are the tests awake? The compiler broken in one place at a time, in a copy of this tree, and the tests run.
 //!
-//! `mutants.yaml` has the mutants that mean something: a term of a formula, a sign of a transformation. What can be changed
-//! without knowing dynamics (an operator, a comparison, a returned value) is the business of cargo-mutants, which
-//! `.cargo/mutants.toml` sets up:
+//! `mutants.yaml` has the mutants that mean something: a term of a formula, a sign of a transformation. What can be
+//! changed without knowing dynamics (an operator, a comparison, a returned value) is the business of cargo-mutants,
+//! which `.cargo/mutants.toml` sets up:
 //!
 //! ```sh
 //! cargo install cargo-mutants --locked
@@ -27,9 +27,9 @@ use crate::mutants::{self, Check, Mutant};
 
 /// Breaks the compiler in one place at a time, in a copy of this tree, and runs the tests that must notice
 ///
-/// The mutants are those of xtask/mutants.yaml; docs/mutations.md is what this prints. A mutant of the reduced form takes
-/// some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the business of
-/// cargo-mutants: `cargo mutants --file rne-codegen/src/graph.rs`, set up in .cargo/mutants.toml.
+/// The mutants are those of xtask/mutants.yaml; docs/mutations.md is what this prints. A mutant of the reduced form
+/// takes some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the
+/// business of cargo-mutants: `cargo mutants --file rne-codegen/src/graph.rs`, set up in .cargo/mutants.toml.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a mutant survives, 2 when a mutant's text is not in the source any more.
@@ -56,9 +56,10 @@ const PAGE: &str = "docs/mutations.md";
 const HEAD: &str = "\
 # Mutations
 
-Which tests notice when one term of the compiler is wrong. Each line is one change of one place, made in a copy of the tree;
-[xtask/mutants.yaml](../xtask/mutants.yaml) has the texts. Written by `cargo xtask mutate --update`, which exits with 1 when
-nothing fails. Changes that take no knowledge of dynamics, an operator or a comparison, are left to `cargo mutants`.
+Which tests notice when one term of the compiler is wrong. Each line is one change of one place, made in a copy of the
+tree; [xtask/mutants.yaml](../xtask/mutants.yaml) has the texts. Written by `cargo xtask mutate --update`, which exits
+with 1 when nothing fails. Changes that take no knowledge of dynamics, an operator or a comparison, are left to `cargo
+mutants`.
 ";
 
 impl Mutate {

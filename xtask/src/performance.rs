@@ -175,7 +175,8 @@ mod tests {
 
     #[test]
     fn a_block_is_replaced_and_the_rest_stays() {
-        let page = "a\n<!-- begin: measured batch, written by: me -->\nold\n<!-- end -->\nb\n<!-- begin: x -->\n<!-- end -->\n";
+        let (begin, end) = ("<!-- begin: measured batch, written by: me -->", "<!-- end -->");
+        let page = &format!("a\n{begin}\nold\n{end}\nb\n<!-- begin: x -->\n{end}\n");
         let expected = page.replace("old", "new");
         assert_eq!(replaced(page, "batch", "new\n").expect("it is there"), expected);
         assert!(replaced(page, "growth", "").is_err());

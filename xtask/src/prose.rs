@@ -142,7 +142,8 @@ fn paragraph(first: &str, more: &[&str], columns: usize) -> Vec<String> {
     wrap(&text, options).into_iter().map(|line| line.replace(GLUE, " ")).collect()
 }
 
-/// Words with blanks between them; where a line must not begin with the next word, or short code would be torn, with glue.
+/// Words with blanks between them; where a line must not begin with the next word, or short code would be torn, with
+/// glue.
 fn glued(words: &[&str]) -> String {
     const CODE: usize = 40;
     let mut text = String::new();
@@ -175,10 +176,11 @@ mod tests {
 
     #[test]
     fn a_paragraph_that_is_too_wide_is_wrapped_and_others_are_not() {
-        let text = "short\nlines\n\none two three four five\nsix\n\n    indented as code it is\n| a | table | that is wide |\n";
-        let expected = "short\nlines\n\none two three\nfour five six\n\n    indented as code it is\n| a | table | that is wide |\n";
-        assert_eq!(wrapped_markdown(text, 14), expected);
-        assert_eq!(wrapped_markdown(expected, 14), expected);
+        let rest = "\n    indented as code it is\n| a | table | that is wide |\n";
+        let text = &format!("short\nlines\n\none two three four five\nsix\n{rest}");
+        let expected = &format!("short\nlines\n\none two three\nfour five six\n{rest}");
+        assert_eq!(wrapped_markdown(text, 14), *expected);
+        assert_eq!(wrapped_markdown(expected, 14), *expected);
         let kept = "```text\none two three four five\n```\n<!-- begin: x -->\none two three four five\n<!-- end -->\n";
         assert_eq!(wrapped_markdown(kept, 14), kept);
     }
@@ -197,9 +199,10 @@ mod tests {
 
     #[test]
     fn comments_keep_their_slashes_and_code_is_not_touched() {
-        let text = "fn main() {\n    /// one two three four five\n    /// six\n    ///\n    /// - seven\n    let x = \"one two three four five\";\n}\n";
-        let expected = "fn main() {\n    /// one two three\n    /// four five six\n    ///\n    /// - seven\n    let x = \"one two three four five\";\n}\n";
-        assert_eq!(wrapped_comments(text, 22), expected);
+        let rest = "    ///\n    /// - seven\n    let x = \"one two three four five\";\n}\n";
+        let text = format!("fn main() {{\n    /// one two three four five\n    /// six\n{rest}");
+        let expected = format!("fn main() {{\n    /// one two three\n    /// four five six\n{rest}");
+        assert_eq!(wrapped_comments(&text, 22), expected);
         let rule = "//------------------------------\n#!/shebang of many many words\n";
         assert_eq!(wrapped_comments(rule, 14), rule);
     }

@@ -24,7 +24,8 @@ const COLUMNS: [(&str, &str); 5] = [
 
 /// A line per robot, measurement and scalar, a column per competitor: median and, in brackets, the fastest, in ns.
 ///
-/// The tree has robots, kinds of calls and competitors on three levels; `_f32` behind a competitor's name is the scalar.
+/// The tree has robots, kinds of calls and competitors on three levels; `_f32` behind a competitor's name is the
+/// scalar.
 pub(crate) fn table(tree: &str) -> String {
     let mut robots: Vec<&str> = Vec::new();
     let mut cells = BTreeMap::new();

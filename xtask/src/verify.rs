@@ -11,8 +11,8 @@ use crate::machine;
 
 /// Verifies what `cargo test` only samples
 ///
-/// Each step is a command that a person can type; `--list` prints them. A step that this machine cannot do is skipped with
-/// one line. `.ci/run` runs them all.
+/// Each step is a command that a person can type; `--list` prints them. A step that this machine cannot do is skipped
+/// with one line. `.ci/run` runs them all.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when a step fails.
