@@ -51,10 +51,12 @@ fn user(name: &str, robot: &str, program: &str) -> PathBuf {
 fn cargo(folder: &Path, command: &str) -> String {
     let output = Command::new(env!("CARGO"))
         .args([command, "--offline", "--quiet", "--target-dir"])
-        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
+        // that of tests/users
+        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("tests").join("trybuild"))
         .current_dir(folder)
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env("CARGO_INCREMENTAL", "0")
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

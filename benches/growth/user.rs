@@ -64,6 +64,8 @@ impl Crate {
             .current_dir(&self.folder)
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            // as a user has it, not as .cargo/config.toml here
+            .env("CARGO_PROFILE_DEV_DEBUG", "true")
             .output()
             .expect("cargo runs");
         if !output.status.success() {

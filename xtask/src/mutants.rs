@@ -75,7 +75,7 @@ are built, against seven steps that are wrong then: `cargo build` is what fails 
             Self::Prove => {
                 "\
 Only a refusal by the proof counts; a test that fails in another way does not. Where a rod, a slide, a unit of length or
-of force is chosen otherwise nothing is wrong: every choice of them is the same function, so such a change is no mutant."
+of force is chosen otherwise nothing is wrong: every choice of them is the same function; such a change is no mutant."
             }
             Self::Functions => "Compared with the runtime and with independent values, function by function.",
             Self::Code => "The C code does not compile, or its bits are not those of the derived code.",

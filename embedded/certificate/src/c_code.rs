@@ -45,8 +45,8 @@ struct Source {
     functions: Vec<Function>,
 }
 
-/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's in
-/// a bit: of these and of every function of the PUMA 560.
+/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's
+/// in a bit: of these and of every function of the PUMA 560.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
     let folder = tools::target_folder(workspace).join("c");
     fs::create_dir_all(&folder)?;
@@ -197,7 +197,8 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
             let (kind, lengths) = declaration(prefix, layout);
             let address = if lengths.is_empty() { "&" } else { "" };
             format!(
-                "    {{\n        {kind} out{lengths};\n        {prefix}_{function}({arguments}, {address}out);\n        \
+                "    {{\n        {kind} out{lengths};\n        \
+                 {prefix}_{function}({arguments}, {address}out);\n        \
                  print_results(\"{what}\", number, (const float *)&out, {count}u);\n    }}\n"
             )
         }

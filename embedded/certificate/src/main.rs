@@ -32,7 +32,8 @@ use crate::table::{Baseline, Table};
 #[command(
     name = "cargo xtask certificate",
     after_help = "\
-Exit status: 0 everything is as the document says, or the document is of other compilers; 1 something is not, or a tool failed.
+Exit status: 0 everything is as the document says, or the document is of other compilers; 1 something is not, or a tool
+failed.
 
 Examples:
   cargo xtask certificate             judge
@@ -147,8 +148,8 @@ fn summary(report: &Report) -> Result<()> {
         let Figures { instructions, code, constants, stack } = figures;
         let bytes = code + constants;
         println!(
-            "PUMA 560 on the Cortex-M4F, {form}: {instructions} instructions, {bytes} bytes of code and constants, {stack} bytes of \
-             stack, no branch, no call"
+            "PUMA 560 on the Cortex-M4F, {form}: {instructions} instructions, {bytes} bytes of code and constants, \
+             {stack} bytes of stack, no branch, no call"
         );
         ensure!(
             instructions <= limit.instructions && bytes <= limit.code && stack <= limit.stack,
@@ -162,24 +163,26 @@ fn summary(report: &Report) -> Result<()> {
 }
 
 const M4F: &str = "\
-The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the compiler takes
-`vmla.f32`, which rounds both.";
+The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the
+compiler takes `vmla.f32`, which rounds both.";
 
 const M7F: &str = "\
 The processor has double precision; the code has none. Built for this processor, the compiler schedules for it.";
 
 const FUSED: &str = "\
-The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone, inline assembly refuses
-the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds once, and so do sines and cosines of both
-forms. That the host, whose base set of instructions has no such one, rounds otherwise is why results differ; the unit is that of the
-largest torque of the state, whose terms cancel. What it saves is little: without it the compiler takes `vmla.f32`, as short and as slow.
-So it is no default.";
+The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone,
+inline assembly refuses the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds
+once, and so do sines and cosines of both forms. That the host, whose base set of instructions has no such one, rounds
+otherwise is why results differ; the unit is that of the largest torque of the state, whose terms cancel. What it saves
+is little: without it the compiler takes `vmla.f32`, as short and as slow. So it is no default.";
 
 const METHODS: &str = "\
-`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them zero, by calls that
-clear and copy memory, and nothing else keeps it from being straight. Its results are compared like those of the others.";
+`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them
+zero, by calls that clear and copy memory, and nothing else keeps it from being straight. Its results are compared like
+those of the others.";
 
 const C: &str = "\
-`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one function here, which
-is called for each angle: instructions are those of all calls, bytes those of one copy. The functions of the PUMA 560 in the table before
-are compared in the same way and agree in every bit, with their sines and cosines given (`inverse_dynamics_sc`) or not.";
+`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one
+function here, which is called for each angle: instructions are those of all calls, bytes those of one copy. The
+functions of the PUMA 560 in the table before are compared in the same way and agree in every bit, with their sines and
+cosines given (`inverse_dynamics_sc`) or not.";

@@ -1,5 +1,5 @@
-//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU for ARM,
-//! QEMU.
+//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU
+//! for ARM, QEMU.
 
 use std::env;
 use std::ffi::OsStr;
