@@ -23,8 +23,8 @@ fn chain() -> String {
     for joint in 1..=JOINTS {
         let _ = writeln!(
             text,
-            "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    link: {{mass: 1.{joint}, \
-             com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
+            "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    \
+             link: {{mass: 1.{joint}, com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
         );
     }
     text
@@ -130,7 +130,8 @@ fn a_chain_of_thirty_joints_builds() {
     // at q = q̇ = q̈ = 0.1
     let program = format!(
         "use rne::InverseDynamics;\n\n#[derive(InverseDynamics)]\n#[robot(path = \"../robot.yaml\")]\nstruct Chain;\n\n\
-         fn main() {{\n    let x = [0.1_f64; {JOINTS}];\n    println!(\"{{:?}}\", Chain.inverse_dynamics(&x, &x, &x));\n}}\n"
+         fn main() {{\n    let x = [0.1_f64; {JOINTS}];\n    \
+         println!(\"{{:?}}\", Chain.inverse_dynamics(&x, &x, &x));\n}}\n"
     );
     let folder = user("chain", &chain(), &program);
     cargo(&folder, "build"); // its dependencies, and itself once

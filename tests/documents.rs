@@ -82,7 +82,8 @@ fn planned(path: &Path, robot: &Robot, form: Form) -> Operations {
 
 fn robots() -> String {
     let mut text = String::from(
-        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n|---|---|---|---|---|---|---|---|\n",
+        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     for path in robot_files() {
         let robot = robot(&path);

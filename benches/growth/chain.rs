@@ -19,7 +19,8 @@ pub(crate) fn yaml(joints: usize) -> String {
         let _ = writeln!(
             text,
             "  - type: revolute\n    dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}\n    \
-             link: {{mass: {mass}, com: [{x}, {y}, {z}], inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {xy}, xz: {xz}, yz: {yz}}}}}"
+             link: {{mass: {mass}, com: [{x}, {y}, {z}], \
+             inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {xy}, xz: {xz}, yz: {yz}}}}}"
         );
     }
     text

@@ -12,8 +12,9 @@ use crate::{machine, prose};
 
 /// Tells lines of more than 120 columns in *.rs and *.md
 ///
-/// In Markdown, tables, blocks of code and lines with an address may be longer: they cannot be broken. In Rust, a line
-/// whose text is a string or an address without a blank to break it at may be longer, too.
+/// Some lines may be longer, for they cannot be broken or had better not be: in Markdown, tables, blocks of code and lines
+/// with an address; in Rust, a word without a blank, rows of a table in a comment, what stands below `#[rustfmt::skip]`
+/// up to an empty line, and snapshots.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when there are such lines.
@@ -91,10 +92,16 @@ fn long(text: &str, mut may_be: impl FnMut(&str) -> bool) -> Vec<(usize, usize)>
 }
 
 fn long_in_rust(text: &str) -> Vec<(usize, usize)> {
+    let (mut is_table, mut is_snapshot) = (false, false);
     long(text, |line| {
-        let text = line.trim_start().trim_start_matches(['/', '!']).trim_start();
-        // one word; or a row of a table
-        text.starts_with('|') || !text.trim_end().contains(' ')
+        let code = line.trim_start();
+        is_snapshot &= !code.starts_with('"');
+        is_snapshot |= line.ends_with("@r\"") || line.ends_with("@r#\"");
+        is_table |= code == "#[rustfmt::skip]";
+        is_table &= !code.is_empty();
+        let text = code.trim_start_matches(['/', '!']).trim_start();
+        // a row of a table; or one word
+        is_table || is_snapshot || text.starts_with('|') || !text.trim_end().contains(' ')
     })
 }
 
@@ -118,6 +125,10 @@ mod tests {
         assert_eq!(long_in_rust(&format!("// short\n// {line}\n")), [(2, 127)]);
         assert_eq!(long_in_rust(&format!("{}\n", "ω̇".repeat(120))), []);
         assert_eq!(long_in_rust(&format!("/// | a | {line} |\n/// {}\n", "x".repeat(130))), []);
+        let table = format!("#[rustfmt::skip]\nfn rows() {{\n{line}\n}}\n\n{line}\n");
+        assert_eq!(long_in_rust(&table), [(6, 124)]);
+        let snapshot = format!("snapshot!(text, @r\"\n{line}\n\n{line}\n\");\n// {line}\n");
+        assert_eq!(long_in_rust(&snapshot), [(6, 127)]);
         let page = format!("{line}\n| {line} |\n```text\n{line}\n```\n{line}\nsee https://example.org {line}\n");
         assert_eq!(long_in_markdown(&page), [(1, 124), (6, 124)]);
     }
