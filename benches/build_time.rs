@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use divan::Bencher;
-use rne_codegen::reduced::Choice;
+use rne_codegen::plan::Choice;
 use rne_codegen::{Form, Function, emit};
 use rne_model::{Robot, check_bytes_with_run_time};
 

@@ -1,4 +1,4 @@
-//! Exact instruction counts of one call, for the default target: `scripts/instructions` runs this, prints a table and
+//! Exact instruction counts of one call, for the default target: `cargo xtask instructions` runs this, prints a table and
 //! compares it with the baseline.
 //!
 //! A count is that of a function that is never inlined: it gets a state by reference, calls, and writes the torques.

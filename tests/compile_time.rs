@@ -24,8 +24,8 @@ fn chain(joints: usize) -> String {
     for joint in 1..=joints {
         let _ = writeln!(
             text,
-            "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    link: {{mass: 1.{joint}, \
-             com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
+            "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    \
+             link: {{mass: 1.{joint}, com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
         );
     }
     text
@@ -52,10 +52,12 @@ fn user(name: &str, robot: &str, program: &str) -> PathBuf {
 fn cargo(folder: &Path, command: &str) -> String {
     let output = Command::new(env!("CARGO"))
         .args([command, "--offline", "--quiet", "--target-dir"])
-        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
+        // that of tests/users
+        .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("tests").join("trybuild"))
         .current_dir(folder)
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env("CARGO_INCREMENTAL", "0")
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -133,7 +135,8 @@ fn a_chain_of_thirty_joints_builds() {
     // at q = q̇ = q̈ = 0.1
     let program = format!(
         "use rne::InverseDynamics;\n\n#[derive(InverseDynamics)]\n#[robot(path = \"../robot.yaml\")]\nstruct Chain;\n\n\
-         fn main() {{\n    let x = [0.1_f64; {JOINTS}];\n    println!(\"{{:?}}\", Chain.inverse_dynamics(&x, &x, &x));\n}}\n"
+         fn main() {{\n    let x = [0.1_f64; {JOINTS}];\n    \
+         println!(\"{{:?}}\", Chain.inverse_dynamics(&x, &x, &x));\n}}\n"
     );
     let folder = user("chain", &chain(JOINTS), &program);
     cargo(&folder, "build"); // its dependencies, and itself once

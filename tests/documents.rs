@@ -1,8 +1,9 @@
 //! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
 //!
 //! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`) stays as it
-//! is: `scripts/performance` writes it.
+//! is: `cargo xtask performance` writes it.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -81,7 +82,8 @@ fn planned(path: &Path, robot: &Robot, form: Form) -> Operations {
 
 fn robots() -> String {
     let mut text = String::from(
-        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n|---|---|---|---|---|---|---|---|\n",
+        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n\
+         |---|---|---|---|---|---|---|---|\n",
     );
     for path in robot_files() {
         let robot = robot(&path);
@@ -280,18 +282,17 @@ fn the_explained_plan_is_the_shipped_one() {
     assert_eq!(plan("docs/reduced-form.md", &explained).reduced, shipped.reduced);
 }
 
-/// The script finds what it breaks, and the page has a line for each mutation that some test noticed.
+/// `cargo xtask mutate` finds what it breaks, and the page has a line for each mutant that some test noticed.
 #[test]
-fn the_page_of_mutations_is_the_script_s() {
-    let (script, page) = (read(&root().join("scripts/mutate")), read(&root().join("docs/mutations.md")));
-    let mut mutations = 0;
-    for line in script.lines().filter(|line| line.starts_with("mutate '")) {
-        let [_, what, file, old, ..] = line.split('\'').collect::<Vec<_>>()[..] else { panic!("{line}") };
-        let source = read(&root().join("rne-codegen/src").join(file.trim()));
-        assert_eq!(source.matches(old).count(), 1, "scripts/mutate: {what}: `{old}` must occur once in {file}");
+fn the_page_of_mutations_is_of_the_mutants() {
+    let (file, page) = ("xtask/mutants.yaml", read(&root().join("docs/mutations.md")));
+    let mutants: Vec<BTreeMap<String, String>> = serde_yaml::from_str(&read(&root().join(file))).expect("mutants");
+    for mutant in &mutants {
+        let [what, source, old] = ["what", "file", "old"].map(|key| mutant[key].as_str());
+        let times = read(&root().join(source)).matches(old).count();
+        assert_eq!(times, 1, "{file}: {what}: `{old}` must occur once in {source}");
         let row = page.lines().find_map(|row| row.strip_prefix(&format!("| {what} | ")));
-        assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: scripts/mutate '{what}'");
-        mutations += 1;
+        assert!(row.is_some_and(|tests| tests.starts_with('`')), "docs/mutations.md: cargo xtask mutate '{what}'");
     }
-    assert_eq!(page.lines().filter(|row| row.ends_with("` |")).count(), mutations);
+    assert_eq!(page.lines().filter(|row| row.ends_with("` |")).count(), mutants.len());
 }

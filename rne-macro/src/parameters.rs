@@ -62,8 +62,8 @@ impl Parameters {
             errors.at(
                 ident,
                 format!(
-                    "`{name}` is no parameter of the robot file: {there}. A field is a parameter that stays free until run \
-                     time; a field for other purposes says `#[robot(skip)]`"
+                    "`{name}` is no parameter of the robot file: {there}. A field is a parameter that stays free until \
+                     run time; a field for other purposes says `#[robot(skip)]`"
                 ),
             );
         }

@@ -114,7 +114,8 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
             rounded(c)
         );
         cx.report(Diagnostic::lint(place, message).label("violates the triangle inequality").help(
-            "published tables do have such tensors, and dynamics works with them; if the numbers are your own, check them",
+            "published tables do have such tensors, and dynamics works with them; if the numbers are your own, \
+             check them",
         ));
     }
 }

@@ -149,7 +149,8 @@ fn parameter_name(cx: &Context, name: &str, span: std::ops::Range<usize>) -> Opt
     }
     if !is_identifier(name) {
         let message = format!(
-            "the parameter name {} is not an identifier; it must be a letter from a to z or `_`, then letters, digits and `_`",
+            "the parameter name {} is not an identifier; it must be a letter from a to z or `_`, then letters, digits \
+             and `_`",
             quoted(name)
         );
         return cx.refuse(Diagnostic::error(span, message));
@@ -208,7 +209,8 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         name: or(format!("joint{}", index + 1)) "name" |cx, node| one_line(cx, node, "joint name"),
         kind: required "type" joint_kind,
         dh: required "dh" |cx, node| dh(cx, node, index),
-        link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link" |cx, node| link(cx, node, index),
+        link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link"
+            |cx, node| link(cx, node, index),
         limits: or(Limits::default()) "limits" limits,
         motor: optional "motor" |cx, node| motor(cx, node, index),
     });

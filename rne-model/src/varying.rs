@@ -48,8 +48,8 @@ pub(crate) fn fixed(what: &'static str) -> impl Fn(&Context, &Node) -> Option<f6
         }
         let name = cx.parameter_name(quantity.first_parameter());
         let message = format!(
-            "{what} {} depends on the run-time parameter {}; angles and limits are fixed, only lengths, masses, centres \
-             of mass, inertias, gravity and the numbers of motors may vary",
+            "{what} {} depends on the run-time parameter {}; angles and limits are fixed, only lengths, masses, \
+             centres of mass, inertias, gravity and the numbers of motors may vary",
             quoted(cx.raw(node)),
             quoted(&name)
         );

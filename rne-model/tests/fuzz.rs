@@ -147,7 +147,8 @@ proptest! {
     #[test]
     fn every_expression_of_arithmetic_is_a_number_or_an_error_inside_it(
         tokens in prop::collection::vec(prop::sample::select(vec![
-            "1", "2.5", "0", "m", "x", "pi", "+", "-", "*", "/", "^", "(", ")", "sqrt(", "deg(", "tan(", " ", "1e300", ".5",
+            "1", "2.5", "0", "m", "x", "pi", "+", "-", "*", "/", "^", "(", ")", "sqrt(", "deg(", "tan(", " ", "1e300",
+            ".5",
         ]), 1..20),
     ) {
         let expression = tokens.concat();
@@ -166,7 +167,9 @@ proptest! {
     }
 
     #[test]
-    fn every_float_survives_its_own_notation(value in prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO) {
+    fn every_float_survives_its_own_notation(
+        value in prop::num::f64::NORMAL | prop::num::f64::SUBNORMAL | prop::num::f64::ZERO
+    ) {
         for written in [format!("{value:?}"), format!("{value:e}"), format!("{value}")] {
             let text = BASE.replace("d: 0.4", &format!("d: {written}"));
             let robot = check("x.yaml", &text).map_err(|report| TestCaseError::fail(report.to_string()))?.robot;

@@ -182,7 +182,8 @@ fn errors() {
             "payload",
             ("d: 0, a: 0,", "d: payload, a: 0,"),
             (20, 29, "payload"),
-            "`payload` = 0 varies with the run-time parameter `payload`; a number that varies must not be 0 in the file",
+            "`payload` = 0 varies with the run-time parameter `payload`; a number that varies must not be 0 in \
+             the file",
             "give `payload` a value in the file with which this is not zero, or leave it out of the struct",
         ),
         ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
@@ -219,8 +220,8 @@ fn errors() {
             "paylod",
             ("unit: 1", "unit: 1"),
             (8, 13, "{"),
-            "no parameter `paylod` for run time; under `parameters` there are `payload`, `g`, `h`, `twist`, `J`, `m`, `c`, \
-             `unit`",
+            "no parameter `paylod` for run time; under `parameters` there are `payload`, `g`, `h`, `twist`, `J`, `m`, \
+             `c`, `unit`",
             "did you mean `payload`?",
         ),
         ("width", ("unit: 1", "unit: 1"), (8, 13, "{"), "no parameter `width`", "define `width: …` under `parameters`"),

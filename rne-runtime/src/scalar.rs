@@ -198,8 +198,8 @@ impl Constant for f32 {
 #[diagnostic::on_unimplemented(
     message = "`{Self}` can be no run-time parameter",
     label = "`f64` or `f32` is needed",
-    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes says \
-            `#[robot(skip)]`"
+    note = "a field of a robot is a parameter of its file that stays free until run time; a field for other purposes \
+            says `#[robot(skip)]`"
 )]
 pub trait RunTimeParameter {
     /// This number in the scalar of a computation.

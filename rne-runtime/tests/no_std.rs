@@ -11,7 +11,8 @@ fn a_static_library_without_std() {
     // The versions that are at hand, since they built this test: the build below needs no network.
     fs::copy(here.join("../Cargo.lock"), library.join("Cargo.lock")).expect("the workspace's lock file");
 
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("no_std");
+    // that of tests/users
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("tests").join("trybuild");
     let output = Command::new(env!("CARGO"))
         .args(["build", "--offline", "--manifest-path"])
         .arg(library.join("Cargo.toml"))
@@ -20,6 +21,7 @@ fn a_static_library_without_std() {
         // Flags of the calling build (coverage, sanitizers) may need `std`.
         .env_remove("RUSTFLAGS")
         .env_remove("CARGO_ENCODED_RUSTFLAGS")
+        .env("CARGO_INCREMENTAL", "0")
         .output()
         .expect("cargo runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

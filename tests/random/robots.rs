@@ -14,7 +14,8 @@ pub(crate) fn yaml(seed: u64, dof: usize) -> String {
     let gravity = if rng.bool() { "[0, 0, -9.81]".to_owned() } else { vector(&mut rng, 0.3, 9.0) };
 
     let mut text = format!(
-        "format: 1\nname: random_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\ngravity: {gravity}\n"
+        "format: 1\nname: random_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\n\
+         gravity: {gravity}\n"
     );
     if rng.bool() {
         let (xyz, rpy) = (vector(&mut rng, sparsity, 0.3), angles(&mut rng, sparsity));

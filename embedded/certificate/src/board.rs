@@ -77,8 +77,8 @@ impl Examined {
         Ok(())
     }
 
-    /// `inverse_dynamics` of every robot in both forms, whose results may differ from the expected ones by so much. Fails if an
-    /// instruction count that the timer measures is not the one that is read in the image.
+    /// `inverse_dynamics` of every robot in both forms, whose results may differ from the expected ones by so much.
+    /// Fails if an instruction count that the timer measures is not the one that is read in the image.
     pub(crate) fn robots(&self, expected: &Log, most: Agreement) -> Result<Vec<Row>> {
         let row = |robot: Robot| {
             let Robot { name, form, dof } = robot;
@@ -122,8 +122,8 @@ impl Examined {
         Ok(rows)
     }
 
-    /// Whether all that keeps a function from being straight are calls that clear or copy a known number of bytes: so the
-    /// compiler writes large arrays of zeros.
+    /// Whether all that keeps a function from being straight are calls that clear or copy a known number of bytes: so
+    /// the compiler writes large arrays of zeros.
     fn only_moves_memory(&self, function: &str) -> Result<bool> {
         let faults = self.image.faults(function)?;
         let moves = |fault: &Fault| fault.callee().is_some_and(|callee| callee.starts_with("__aeabi_mem"));
@@ -139,8 +139,8 @@ impl Examined {
         Ok((ticks(function)? - ticks(&format!("echo {dof}"))?) / TICKS + known)
     }
 
-    /// Instructions of the loop over a baked-in table, and how far its results are from those of the seven steps: constants of
-    /// the links, which it computes in single precision, were rounded once in the generated code.
+    /// Instructions of the loop over a baked-in table, and how far its results are from those of the seven steps:
+    /// constants of the links, which it computes in single precision, were rounded once in the generated code.
     pub(crate) fn runtime(&self) -> Result<(f64, Agreement)> {
         let expected = self.log.renamed("torques puma560 seven_steps 0", "torques puma560 runtime 0");
         let agreement = self.log.agreement_at(&expected, "torques puma560 runtime", [0])?;

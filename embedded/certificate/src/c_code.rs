@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
@@ -44,8 +45,8 @@ struct Source {
     functions: Vec<Function>,
 }
 
-/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's in
-/// a bit: of these and of every function of the PUMA 560.
+/// The figures of `inverse_dynamics` of every robot in both forms; fails if a result of a function differs from Rust's
+/// in a bit: of these and of every function of the PUMA 560.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<Vec<Row>> {
     let folder = tools::target_folder(workspace).join("c");
     fs::create_dir_all(&folder)?;
@@ -107,10 +108,9 @@ fn frame(folder: &Path, function: &str) -> Option<u64> {
 fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Result<Source> {
     let functions::Robot { name, form, dof } = robot;
     let file = workspace.join(format!("../robots/{name}.yaml"));
-    let robot = Robot::from_yaml(&fs::read_to_string(&file)?).map_err(|report| anyhow!("{report}"))?;
-    let plan = file.with_extension("plan.yaml");
-    let plan = PlanFile::read(&plan.display().to_string(), &fs::read_to_string(&plan)?, &robot);
-    let choice = Choice::from(plan.map_err(|report| anyhow!("{report}"))?);
+    let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+    let robot = Robot::from_yaml(&text).map_err(|report| anyhow!("{report}"))?;
+    let choice = choice_of(&file, &robot)?;
     let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
     let programs: Result<Vec<_>, _> = all.iter().map(|&function| choice.compile(&robot, function, kind)).collect();
@@ -119,6 +119,20 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     fs::write(folder.join(format!("{prefix}.h")), code.header())?;
     fs::write(folder.join(format!("{prefix}.c")), code.source(&format!("{prefix}.h")))?;
     Ok(Source { prefix, dof, functions: all.to_vec() })
+}
+
+/// The choices of the plan beside a robot file; where there is none, those that the derive takes as well.
+fn choice_of(file: &Path, robot: &Robot) -> Result<Choice> {
+    let file = file.with_extension("plan.yaml");
+    let shown = file.display().to_string();
+    match fs::read_to_string(&file) {
+        Ok(text) => {
+            let plan = PlanFile::read(&shown, &text, robot).map_err(|report| anyhow!("{report}"))?;
+            Ok(Choice::from(plan))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Choice::default_of(robot)),
+        Err(error) => Err(error).context(shown),
+    }
 }
 
 /// A C file that calls every function and prints what it returns.
@@ -183,7 +197,8 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
             let (kind, lengths) = declaration(prefix, layout);
             let address = if lengths.is_empty() { "&" } else { "" };
             format!(
-                "    {{\n        {kind} out{lengths};\n        {prefix}_{function}({arguments}, {address}out);\n        \
+                "    {{\n        {kind} out{lengths};\n        \
+                 {prefix}_{function}({arguments}, {address}out);\n        \
                  print_results(\"{what}\", number, (const float *)&out, {count}u);\n    }}\n"
             )
         }
@@ -215,5 +230,47 @@ fn declaration(prefix: &str, layout: &Layout) -> (String, String) {
             });
             (format!("{prefix}_{name}"), String::new())
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+    use std::path::Path;
+
+    use rne_codegen::emit::{Precision, c_code};
+    use rne_codegen::plan::Choice;
+    use rne_codegen::{Form, Function};
+    use rne_model::Robot;
+
+    use super::choice_of;
+
+    /// A robot of which nobody has searched a plan yet is certified as it is derived: with the default choices.
+    #[test]
+    fn a_robot_without_a_plan_file_has_the_default_choices() {
+        let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
+        let text = fs::read_to_string(shipped.join("planar2.yaml")).expect("a shipped robot");
+        let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
+        let source = |choice: &Choice| {
+            let program = choice.compile(&robot, Function::InverseDynamics, Form::Reduced).expect("it compiles");
+            let prefix = "planar2".parse().expect("a prefix");
+            c_code(&robot, &[program], Precision::Single, &prefix).expect("C code").source("planar2.h")
+        };
+        let folder = tempfile::tempdir().expect("a folder");
+        let file = folder.path().join("planar2.yaml");
+        let choice = choice_of(&file, &robot).expect("no plan is no error");
+        assert_eq!(source(&choice), source(&Choice::default_of(&robot)));
+
+        // a plan that is there is read, and a mistake in it is told with its place
+        fs::copy(shipped.join("planar2.plan.yaml"), file.with_extension("plan.yaml")).expect("a plan");
+        choice_of(&file, &robot).expect("the shipped plan");
+        fs::write(file.with_extension("plan.yaml"), "format: 1\nplans: none\n").expect("written");
+        let error = choice_of(&file, &robot).err().expect("no plan").to_string();
+        assert!(error.contains("planar2.plan.yaml:"), "{error}");
+        // what cannot be read has a name
+        fs::remove_file(file.with_extension("plan.yaml")).expect("it is there");
+        fs::create_dir(file.with_extension("plan.yaml")).expect("a folder in its place");
+        let error = format!("{:#}", choice_of(&file, &robot).err().expect("a folder is no plan"));
+        assert!(error.contains("planar2.plan.yaml: "), "{error}");
     }
 }

@@ -1,4 +1,5 @@
-//! Machine code as `objdump` lists it, and whether a function is straight: one path, from its first instruction to its return.
+//! Machine code as `objdump` lists it, and whether a function is straight: one path, from its first instruction to its
+//! return.
 
 use std::collections::BTreeMap;
 use std::fmt;

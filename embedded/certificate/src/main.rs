@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers. Started by `scripts/embedded-certificate`.
+//! The certificate of the generated code on microcontrollers. Started by `cargo xtask certificate`.
 
 mod board;
 mod c_code;
@@ -30,13 +30,14 @@ use crate::table::{Baseline, Table};
 /// Builds, reads and runs the generated code for microcontrollers, and compares it with docs/embedded.md
 #[derive(Parser)]
 #[command(
-    name = "scripts/embedded-certificate",
+    name = "cargo xtask certificate",
     after_help = "\
-Exit status: 0 everything is as the document says, or the document is of other compilers; 1 something is not, or a tool failed.
+Exit status: 0 everything is as the document says, or the document is of other compilers; 1 something is not, or a tool
+failed.
 
 Examples:
-  scripts/embedded-certificate             judge
-  scripts/embedded-certificate --update    judge, and write docs/embedded.md anew"
+  cargo xtask certificate             judge
+  cargo xtask certificate --update    judge, and write docs/embedded.md anew"
 )]
 struct Arguments {
     /// Write docs/embedded.md anew
@@ -70,14 +71,14 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     let grown: Vec<String> = report.tables.iter().flat_map(|table| table.growth(&baseline)).collect();
     if !grown.is_empty() {
         println!("grown by more than 2 %:\n  {}", grown.join("\n  "));
-        println!("if that is meant: scripts/embedded-certificate --update");
+        println!("if that is meant: cargo xtask certificate --update");
         return Ok(ExitCode::FAILURE);
     }
     for table in report.tables.iter().filter(|table| table.is_of_another_compiler(&baseline)) {
         println!("{}: not compared, docs/embedded.md is of another compiler than {}", table.title, table.compiler);
     }
-    if committed != document {
-        println!("docs/embedded.md is of older figures; scripts/embedded-certificate --update writes them anew");
+    if !report::is_same(&committed, &document) {
+        println!("docs/embedded.md is of older figures; cargo xtask certificate --update writes them anew");
     }
     println!("certified");
     Ok(ExitCode::SUCCESS)
@@ -117,8 +118,12 @@ fn examine(workspace: &Path) -> Result<Report> {
 
     let runtime = m4.runtime()?;
     let riscv = step("RISC-V", || riscv::examine(workspace))?;
-    let wasm =
-        if tools::has_node() { Some(step("WebAssembly", || wasm::examine(workspace, &expected))?) } else { None };
+    let wasm = if tools::has_node() {
+        Some(step("WebAssembly", || wasm::examine(workspace, &expected))?)
+    } else {
+        println!("WebAssembly: skipped, there is no Node");
+        None
+    };
     Ok(Report { qemu, tables, runtime, riscv, wasm })
 }
 
@@ -143,8 +148,8 @@ fn summary(report: &Report) -> Result<()> {
         let Figures { instructions, code, constants, stack } = figures;
         let bytes = code + constants;
         println!(
-            "PUMA 560 on the Cortex-M4F, {form}: {instructions} instructions, {bytes} bytes of code and constants, {stack} bytes of \
-             stack, no branch, no call"
+            "PUMA 560 on the Cortex-M4F, {form}: {instructions} instructions, {bytes} bytes of code and constants, \
+             {stack} bytes of stack, no branch, no call"
         );
         ensure!(
             instructions <= limit.instructions && bytes <= limit.code && stack <= limit.stack,
@@ -158,24 +163,26 @@ fn summary(report: &Report) -> Result<()> {
 }
 
 const M4F: &str = "\
-The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the compiler takes
-`vmla.f32`, which rounds both.";
+The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the
+compiler takes `vmla.f32`, which rounds both.";
 
 const M7F: &str = "\
 The processor has double precision; the code has none. Built for this processor, the compiler schedules for it.";
 
 const FUSED: &str = "\
-The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone, inline assembly refuses
-the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds once, and so do sines and cosines of both
-forms. That the host, whose base set of instructions has no such one, rounds otherwise is why results differ; the unit is that of the
-largest torque of the state, whose terms cancel. What it saves is little: without it the compiler takes `vmla.f32`, as short and as slow.
-So it is no default.";
+The feature `core_float_math`, for a nightly compiler: `core` has `f32::math::mul_add` as an unstable feature alone,
+inline assembly refuses the registers, and `libm`'s is software. The reduced form then takes `vfma.f32`, which rounds
+once, and so do sines and cosines of both forms. That the host, whose base set of instructions has no such one, rounds
+otherwise is why results differ; the unit is that of the largest torque of the state, whose terms cancel. What it saves
+is little: without it the compiler takes `vmla.f32`, as short and as slow. So it is no default.";
 
 const METHODS: &str = "\
-`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them zero, by calls that
-clear and copy memory, and nothing else keeps it from being straight. Its results are compared like those of the others.";
+`inverse_dynamics` is in the tables above. `regressor` is not here: the compiler writes its 360 numbers, most of them
+zero, by calls that clear and copy memory, and nothing else keeps it from being straight. Its results are compared like
+those of the others.";
 
 const C: &str = "\
-`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one function here, which
-is called for each angle: instructions are those of all calls, bytes those of one copy. The functions of the PUMA 560 in the table before
-are compared in the same way and agree in every bit, with their sines and cosines given (`inverse_dynamics_sc`) or not.";
+`rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one
+function here, which is called for each angle: instructions are those of all calls, bytes those of one copy. The
+functions of the PUMA 560 in the table before are compared in the same way and agree in every bit, with their sines and
+cosines given (`inverse_dynamics_sc`) or not.";

@@ -1,8 +1,8 @@
 //! The object file of the certified functions for a target on which no board is at hand.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
-use std::{fs, io};
 
 use anyhow::{Context, Result};
 
@@ -18,9 +18,9 @@ pub(crate) fn build(workspace: &Path, target: &str, flags: &[&str], features: &[
 }
 
 /// The object file that was written last; older ones are of other flags.
-fn newest(folder: &Path) -> io::Result<Option<PathBuf>> {
+fn newest(folder: &Path) -> Result<Option<PathBuf>> {
     let mut newest: Option<(SystemTime, PathBuf)> = None;
-    for entry in fs::read_dir(folder)? {
+    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
         let entry = entry?;
         let path = entry.path();
         let is_ours = entry.file_name().to_string_lossy().starts_with("robots-");

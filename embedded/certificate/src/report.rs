@@ -64,30 +64,43 @@ impl Report {
         let [seven_steps, reduced] = self.riscv.puma560;
         let mut text = format!(
             "\n## RISC-V and WebAssembly\n\n\
-             - `riscv32imafc-unknown-none-elf`: {} functions are built, and none calls, branches or computes in double precision. \
-             PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. They are read, not run.\n",
+             - `riscv32imafc-unknown-none-elf`: {} functions are built, and none calls, branches or computes in double \
+             precision.\n  PUMA 560: {seven_steps} instructions in `seven_steps`, {reduced} in `reduced`. \
+             They are read, not run.\n",
             self.riscv.functions
         );
         let _ = match self.wasm {
             Some(numbers) => writeln!(
                 text,
-                "- `wasm32-unknown-unknown`, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`, have the \
-                 bits of the host."
+                "{WASM}, in Node: {numbers} torques of all robots, in both forms, in `f32` and `f64`: the host's bits."
             ),
-            None => writeln!(text, "- `wasm32-unknown-unknown`: left out, there was no Node."),
+            None => writeln!(text, "{WITHOUT_NODE}"),
         };
         text
     }
 }
 
+/// Whether two documents have the same figures. One that was written without Node says so in a line.
+pub(crate) fn is_same(committed: &str, document: &str) -> bool {
+    let is_left_out = document.contains(WITHOUT_NODE);
+    let lines = |text: &'_ str| -> Vec<String> {
+        let lines = text.lines().filter(|line| !(is_left_out && line.starts_with(WASM)));
+        lines.map(str::to_owned).collect()
+    };
+    lines(committed) == lines(document)
+}
+
+const WASM: &str = "- `wasm32-unknown-unknown`";
+const WITHOUT_NODE: &str = "- `wasm32-unknown-unknown`: left out, there was no Node.";
+
 const HEAD: &str = "\
 # Generated code on microcontrollers
 
-Written by `scripts/embedded-certificate --update`; `scripts/embedded-certificate` builds, reads and runs everything again and fails if
-something below is no longer so.
+Written by `cargo xtask certificate --update`; `cargo xtask certificate` builds, reads and runs everything again and
+fails if something below is no longer so.
 
-Every shipped robot, in `f32`, sines and cosines included. The image is built for a board, its instructions are read by `objdump`, and it
-runs on that board in QEMU ({qemu}).
+Every shipped robot, in `f32`, sines and cosines included. The image is built for a board, its instructions are read by
+`objdump`, and it runs on that board in QEMU ({qemu}).
 
 | certified of each function | how |
 |---|---|
@@ -104,13 +117,15 @@ runs on that board in QEMU ({qemu}).
 
 There is one path, so the count is the worst case, for any input: NaN, infinities, subnormal numbers. It does not hold
 
-- for time: QEMU counts instructions, not what they take. Flash without a cache makes the processor wait for code and constants; the M7
-  executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take three cycles where `vmul` and `vadd` take one each
-  (Arm, Cortex-M4 Technical Reference Manual, FPU instruction set): with `-C target-cpu=cortex-m4` the compiler writes them apart, which is
-  more instructions and may be less time. Measure on your board; DWT's cycle counter is there for that, in silicon, not in QEMU.
-- for your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The kernel that is counted here is that of the crate, `f32`
-  alone, for angles up to 10⁵ rad; beyond, results mean nothing, and take as long.
-- for the dev profile, whose code has the calls and the checks that an optimiser removes. This is `--release`, with `opt-level` 3.
+- for time: QEMU counts instructions, not what they take. Flash without a cache makes the processor wait for code and
+  constants; the M7 executes two instructions at once where it can. On the Cortex-M4, `vmla` and `vfma` take three
+  cycles where `vmul` and `vadd` take one each (Arm, Cortex-M4 Technical Reference Manual, FPU instruction set): with
+  `-C target-cpu=cortex-m4` the compiler writes them apart, which is more instructions and may be less time. Measure on
+  your board; DWT's cycle counter is there for that, in silicon, not in QEMU.
+- for your own sine and cosine: a `Scalar` of your own, or `RNE_SIN_COS` in C. The kernel that is counted here is that
+  of the crate, `f32` alone, for angles up to 10⁵ rad; beyond, results mean nothing, and take as long.
+- for the dev profile, whose code has the calls and the checks that an optimiser removes. This is `--release`, with
+  `opt-level` 3.
 - for more than sixteen angles: their sines and cosines are a loop of sixteen at a time.
 
 ";
@@ -118,7 +133,22 @@ There is one path, so the count is the worst case, for any input: NaN, infinitie
 const LOOP: &str = "\
 ## Compared with a loop over a baked-in table
 
-The same recursion, in the same image: `rne::Arm` without `std`, its table a constant in `f32` in flash. Its torques are {agreement} of those of
-the seven steps: what the compiler computes of the table in double precision and rounds once, the loop computes in `f32`.
+The same recursion, in the same image: `rne::Arm` without `std`, its table a constant in `f32` in flash. Its torques are
+{agreement} of those of the seven steps: what the compiler computes of the table in double precision and rounds once,
+the loop computes in `f32`.
 
 ";
+
+#[cfg(test)]
+mod tests {
+    use super::{WASM, WITHOUT_NODE, is_same};
+
+    #[test]
+    fn a_machine_without_node_finds_the_same_figures() {
+        let committed = format!("| a | 1 |\n{WASM}, in Node: 5 torques.\n");
+        assert!(is_same(&committed, &committed));
+        assert!(is_same(&committed, &format!("| a | 1 |\n{WITHOUT_NODE}\n")));
+        assert!(!is_same(&committed, &format!("| a | 2 |\n{WITHOUT_NODE}\n")));
+        assert!(!is_same(&committed, &format!("| a | 1 |\n{WASM}, in Node: 6 torques.\n")), "with Node it is compared");
+    }
+}

@@ -1,5 +1,5 @@
-//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU for ARM,
-//! QEMU.
+//! The tools of Debian that the certificate is made with: a compiler that has the sources of `core`, the tools of GNU
+//! for ARM, QEMU.
 
 use std::env;
 use std::ffi::OsStr;
@@ -106,7 +106,12 @@ pub(crate) fn has_node() -> bool {
 
 /// What a script of Node prints, from a module and a file as its input.
 pub(crate) fn node(script: &Path, module: &Path, input: &Path) -> Result<String> {
-    text(Command::new("node").arg(script).arg(module).stdin(fs::File::open(input)?))
+    text(
+        Command::new("node")
+            .arg(script)
+            .arg(module)
+            .stdin(fs::File::open(input).with_context(|| input.display().to_string())?),
+    )
 }
 
 /// What a command prints.

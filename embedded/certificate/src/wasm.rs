@@ -14,8 +14,8 @@ use crate::{object_file, tools};
 
 const TARGET: &str = "wasm32-unknown-unknown";
 
-/// Fails if a torque of a robot in a form, in single or double precision, differs from the host's in a bit. How many numbers were
-/// compared.
+/// Fails if a torque of a robot in a form, in single or double precision, differs from the host's in a bit. How many
+/// numbers were compared.
 pub(crate) fn examine(workspace: &Path, expected: &Log) -> Result<usize> {
     let object = object_file::build(workspace, TARGET, &[], &["--features", "double"])?;
     let symbols = symbols(&object)?;

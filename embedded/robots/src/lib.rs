@@ -1,7 +1,7 @@
 //! The functions that are certified.
 //!
-//! Each is a function of its own, never inlined, so that its instructions can be read and counted: `robots::NAME::FORM::FUNCTION`,
-//! in `f32`.
+//! Each is a function of its own, never inlined, so that its instructions can be read and counted:
+//! `robots::NAME::FORM::FUNCTION`, in `f32`.
 #![no_std]
 
 mod numbers;

@@ -50,7 +50,10 @@ macro_rules! methods {
             )*
         }
     };
-    ($form:ident, $name:literal: $($capability:ident $function:ident($($argument:ident: $type:ty),*) $returned:ty)*) => {
+    (
+        $form:ident, $name:literal:
+        $($capability:ident $function:ident($($argument:ident: $type:ty),*) $returned:ty)*
+    ) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
             use super::{BaseMotion, Pose, TorqueDerivatives, Wrench};
@@ -76,8 +79,10 @@ macro_rules! methods {
 }
 
 methods! {
-    InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>) -> [f32; 6];
-    InverseDynamics: inverse_dynamics_sc(sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
+    InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>)
+        -> [f32; 6];
+    InverseDynamics: inverse_dynamics_sc(sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
+        -> [f32; 6];
     InverseDynamics: gravity_torques(q: [f32; 6]) -> [f32; 6];
     InverseDynamics: bias_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
     MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];
@@ -90,8 +95,10 @@ methods! {
     Energy: kinetic_energy(q: [f32; 6], qd: [f32; 6]) -> f32;
     Energy: potential_energy(q: [f32; 6]) -> f32;
     Regressor: regressor(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [[[f32; 10]; 6]; 6];
-    InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> TorqueDerivatives<6, f32>;
+    InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
+        -> TorqueDerivatives<6, f32>;
     JointWrenches: joint_wrenches(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [Wrench<f32>; 6];
-    MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>) -> [f32; 6];
+    MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>)
+        -> [f32; 6];
     Actuation: actuator_torques(qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];
 }

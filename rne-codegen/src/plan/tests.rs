@@ -47,7 +47,7 @@ fn is_identical(robot: &Robot, (program, exactly, frame): &(Program, Exactly, Fr
     prove::identical(robot, program, exactly, frame.table.reading).is_ok()
 }
 
-/// Fails with these words, by which `scripts/mutate` knows that it was the proof that refused.
+/// Fails with these words, by which `cargo xtask mutate` knows that it was the proof that refused.
 fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, frame): &(Program, Exactly, Frame)) {
     for (arranged, what) in [(program, ""), (&soonest(program), " soonest"), (&fused(program), " fused")] {
         if let Err(error) = prove::identical(robot, arranged, exactly, frame.table.reading) {

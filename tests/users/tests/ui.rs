@@ -1,12 +1,13 @@
 //! What the user sees: each likely mistake as the compiler reports it, and what has to compile without a word.
 //!
-//! The messages in `tests/ui/*.stderr` are the derive's own, in the frame that rustc puts around them;
-//! `TRYBUILD=overwrite cargo test --test ui` writes them again. Messages whose words are rustc's (`tests/ui/rustc`) change with
+//! The messages in `ui/*.stderr` are the derive's own, in the frame that rustc puts around them;
+//! `TRYBUILD=overwrite cargo test --test ui` writes them again. Messages whose words are rustc's (`ui/rustc`) change with
 //! its versions: of those, the code, the place and the names are looked for.
+
+mod build;
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 #[test]
 fn mistakes_and_their_messages() {
@@ -44,11 +45,9 @@ fn mistakes_that_rustc_finds_by_itself() {
     let manifest = format!(
         "[package]\nname = \"by_rustc\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
          rne = {{ path = '{}', default-features = false }}\n\n[workspace]\n",
-        package.display()
+        build::root().display()
     );
     fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
-    // The versions that are at hand, since they built this test: the builds below need no network.
-    fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
     for robot in ["rod.yaml", "two.yaml"] {
         let source = package.join("tests/ui/robots").join(robot);
         fs::copy(source, folder.join("src/robots").join(robot)).expect("a robot file");
@@ -58,15 +57,8 @@ fn mistakes_that_rustc_finds_by_itself() {
         fs::copy(source, folder.join(format!("src/bin/{name}.rs"))).expect("a program");
     }
     for (name, parts) in BY_RUSTC {
-        let output = Command::new(env!("CARGO"))
-            .args(["check", "--offline", "--quiet", "--color", "never", "--bin", name, "--target-dir"])
-            .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
-            .current_dir(&folder)
-            // Flags of the calling build (coverage, sanitizers) are not the user's.
-            .env_remove("RUSTFLAGS")
-            .env_remove("CARGO_ENCODED_RUSTFLAGS")
-            .output()
-            .expect("cargo runs");
+        // not `check`: what the others have built serves
+        let output = build::cargo("build", &folder).args(["--quiet", "--bin", name]).output().expect("cargo runs");
         let messages = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success(), "{name} compiles");
         for part in parts {

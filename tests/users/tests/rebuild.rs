@@ -1,8 +1,10 @@
 //! A change of the robot file reaches the program with the next build.
 
+mod build;
+
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 const MANIFEST: &str = r#"
 [package]
@@ -48,15 +50,12 @@ struct Program {
 
 impl Program {
     fn new() -> Self {
-        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuild");
         fs::create_dir_all(folder.join("src")).expect("a folder for sources");
         fs::create_dir_all(folder.join("robots")).expect("a folder for robots");
-        let manifest = MANIFEST.replace("<rne>", &package.display().to_string());
+        let manifest = MANIFEST.replace("<rne>", &build::root().display().to_string());
         fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
         fs::write(folder.join("src/main.rs"), PROGRAM).expect("the program");
-        // The versions that are at hand, since they built this test: the builds below need no network.
-        fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
         Self { folder }
     }
 
@@ -65,15 +64,7 @@ impl Program {
     }
 
     fn run(&self) -> Output {
-        Command::new(env!("CARGO"))
-            .args(["run", "--offline", "--quiet", "--target-dir"])
-            .arg(Path::new(env!("CARGO_TARGET_TMPDIR")).join("users"))
-            .current_dir(&self.folder)
-            // Flags of the calling build (coverage, sanitizers) are not the user's.
-            .env_remove("RUSTFLAGS")
-            .env_remove("CARGO_ENCODED_RUSTFLAGS")
-            .output()
-            .expect("cargo runs")
+        build::cargo("run", &self.folder).arg("--quiet").output().expect("cargo runs")
     }
 
     fn printed(&self) -> String {

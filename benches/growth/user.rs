@@ -15,7 +15,7 @@ pub(crate) struct Crate {
 impl Crate {
     /// The crate, with its dependencies built in both profiles.
     pub(crate) fn new(yaml: &str, joints: usize, form: Form) -> Self {
-        let package = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let package = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("benches is a folder of rne");
         let folder = target().join("chain");
         let manifest = format!(
             "[package]\nname = \"chain\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
@@ -31,7 +31,7 @@ impl Crate {
         fs::create_dir_all(folder.join("src")).expect("a folder for sources");
         fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
         fs::write(folder.join("chain.yaml"), yaml).expect("the robot file");
-        // The versions that are at hand, since they built this example.
+        // The versions that are at hand, since they built the workspace.
         fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
         let user = Self { folder, program };
         for profile in ["dev", "release"] {
@@ -64,6 +64,8 @@ impl Crate {
             .current_dir(&self.folder)
             .env_remove("RUSTFLAGS")
             .env_remove("CARGO_ENCODED_RUSTFLAGS")
+            // as a user has it, not as .cargo/config.toml here
+            .env("CARGO_PROFILE_DEV_DEBUG", "true")
             .output()
             .expect("cargo runs");
         if !output.status.success() {
@@ -90,9 +92,8 @@ impl Crate {
     }
 }
 
-/// A folder of this example in the target folder.
+/// A folder of this program's own in the target folder.
 fn target() -> PathBuf {
     let program = std::env::current_exe().expect("the path of this program");
-    let examples = program.parent().expect("the folder of examples");
-    examples.parent().expect("the folder of the profile").join("growth")
+    program.parent().expect("the folder of the profile").join("growth.users")
 }

@@ -16,12 +16,12 @@ use ::dynamics::{
 
 /// Seven joints, with limits.
 #[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug)]
-#[robot(path = "../../../robots/panda.yaml", crate = ::dynamics)]
+#[robot(path = "../../../../../robots/panda.yaml", crate = ::dynamics)]
 pub struct Panda;
 
 /// Standard rows, with a tool of the user's own.
 #[derive(InverseDynamics, BatchInverseDynamics, Clone, Copy, Debug, PartialEq, Eq)]
-#[robot(path = "../../../robots/puma560.yaml", crate = "::dynamics")]
+#[robot(path = "../../../../../robots/puma560.yaml", crate = "::dynamics")]
 pub struct Puma560<T, const TOOLS: usize>
 where
     T: Copy + PartialEq,
@@ -92,7 +92,7 @@ pub struct Loaded {
 }
 
 #[derive(InverseDynamics, BatchInverseDynamics)]
-#[robot(path = "../../../robots/planar1.yaml", crate = ::dynamics)]
+#[robot(path = "../../../../../robots/planar1.yaml", crate = ::dynamics)]
 struct Private;
 
 /// Something to call it with.

@@ -1,26 +1,25 @@
 //! What grows with the number of joints: operations, expansion, compile time, code size.
 //!
 //! ```sh
-//! cargo run --example growth               # 1, 2, 5, 10, 20, 30, 40 and 50 joints; some minutes
-//! cargo run --example growth -- 1 5 10     # these only
+//! cargo xtask growth           # 1, 2, 5, 10, 20, 30, 40 and 50 joints; some minutes
+//! cargo xtask growth 1 5 10    # these only
 //! ```
 //!
-//! Random chains in which nothing folds: no number is zero, no angle right. For each form a table, with the increment per
-//! joint beside each column: where it stays the same, the growth is linear.
+//! Random chains in which nothing folds: no number is zero, no angle right. For each form a table, with the increment
+//! per joint beside each column: where it stays the same, the growth is linear.
 //!
 //! - operations: products and sums of `inverse_dynamics`
 //! - expansion: from the text of the robot file to the four programs and their text, in this example's profile. Cargo
-//!   compiles macros without optimization in all profiles, so `cargo run` without `--release` measures what a build does.
-//! - dev, release: `cargo build` of a crate that derives the chain and calls `inverse_dynamics`, after a change, expansion
-//!   included; its dependencies are built already
+//!   compiles macros without optimization in all profiles, so `cargo run` without `--release` measures what a build
+//!   does.
+//! - dev, release: `cargo build` of a crate that derives the chain and calls `inverse_dynamics`, after a change,
+//!   expansion included; its dependencies are built already
 //! - code: bytes of instructions in the object file of that crate, release profile
 //!
-//! Times are processor time where the system is Linux, since a machine may be shared, else time of the clock. `fails`: the
-//! compiler gave up.
+//! Times are processor time where the system is Linux, since a machine may be shared, else time of the clock. `fails`:
+//! the compiler gave up.
 
-#[path = "chain.rs"]
 mod chain;
-#[path = "user.rs"]
 mod user;
 
 use std::fmt::Write;
@@ -51,9 +50,7 @@ fn main() {
         Ok(given) if given.is_empty() => JOINTS.to_vec(),
         Ok(given) if !given.contains(&0) => given,
         _ => {
-            eprintln!(
-                "usage: cargo run --example growth -- [JOINTS]...\n\nJOINTS: numbers of joints, 1 or more each; by default {JOINTS:?}"
-            );
+            eprintln!("usage: growth [JOINTS]...\n\nJOINTS: numbers of joints, 1 or more each; by default {JOINTS:?}");
             std::process::exit(2);
         }
     };

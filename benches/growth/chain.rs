@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-/// The robot file of a chain of revolute joints in which no number is zero and no angle right. A longer chain begins with
-/// the joints of a shorter one.
+/// The robot file of a chain of revolute joints in which no number is zero and no angle right. A longer chain begins
+/// with the joints of a shorter one.
 pub(crate) fn yaml(joints: usize) -> String {
     let mut text =
         String::from("format: 1\nname: chain\nsource: no arm\nconvention: standard\ngravity: [1, 2, -9]\njoints:\n");
@@ -18,8 +18,9 @@ pub(crate) fn yaml(joints: usize) -> String {
         let mass = between(1.0, 5.0);
         let _ = writeln!(
             text,
-            "  - type: revolute\n    dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}\n    link: {{mass: {mass}, com: \
-             [{x}, {y}, {z}], inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {xy}, xz: {xz}, yz: {yz}}}}}"
+            "  - type: revolute\n    dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}\n    \
+             link: {{mass: {mass}, com: [{x}, {y}, {z}], \
+             inertia: {{xx: {xx}, yy: {yy}, zz: {zz}, xy: {xy}, xz: {xz}, yz: {yz}}}}}"
         );
     }
     text

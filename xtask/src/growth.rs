@@ -1,0 +1,46 @@
+//! What grows with the number of joints: benches/growth.
+
+use anyhow::Result;
+use clap::Args;
+use xshell::{Cmd, cmd};
+
+use crate::Verdict;
+use crate::machine;
+
+/// What grows with the number of joints: operations, expansion, compile time, code size
+///
+/// Random chains in which nothing folds, derived and built: benches/growth says what the columns are. Some minutes.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  cargo xtask growth           1, 2, 5, 10, 20, 30, 40 and 50 joints
+  cargo xtask growth 1 5 10    these only")]
+pub(crate) struct Growth {
+    /// Numbers of joints, 1 or more each
+    #[arg(value_parser = clap::value_parser!(u16).range(1..))]
+    joints: Vec<u16>,
+}
+
+impl Growth {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        Ok(Verdict::from(command(&shell, &self.joints).run().is_ok()))
+    }
+}
+
+/// The tables as text.
+pub(crate) fn measured(joints: &[u16]) -> Result<String> {
+    let shell = machine::shell()?;
+    Ok(command(&shell, joints).read()?)
+}
+
+/// Cargo compiles macros without optimisation in all profiles, so that of development measures what a build does.
+fn command<'a>(shell: &'a xshell::Shell, joints: &[u16]) -> Cmd<'a> {
+    let joints: Vec<String> = joints.iter().map(u16::to_string).collect();
+    let manifest = "--manifest-path=benches/Cargo.toml";
+    cmd!(
+        shell,
+        "cargo run --quiet --locked {manifest} --no-default-features --features growth --bin growth -- {joints...}"
+    )
+    .quiet()
+}

@@ -1,0 +1,177 @@
+//! The machine: where the repository is, which tools are there, and how those that are missing are got.
+
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use anyhow::{Context, Result, anyhow};
+use xshell::{Cmd, Shell};
+
+/// Something that this machine does not have, and why that is told instead of a result.
+#[derive(Debug)]
+pub(crate) struct Missing(String);
+
+impl Missing {
+    /// An error of this kind.
+    pub(crate) fn error(why: impl Into<String>) -> anyhow::Error {
+        anyhow!(Self(why.into()))
+    }
+}
+
+impl fmt::Display for Missing {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Missing {}
+
+/// The folder of the repository.
+pub(crate) fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("this package is in a folder of the repository")
+}
+
+/// A shell in the folder of the repository.
+pub(crate) fn shell() -> Result<Shell> {
+    let shell = Shell::new()?;
+    shell.change_dir(root());
+    Ok(shell)
+}
+
+/// The text of a file of the repository.
+pub(crate) fn read(path: &str) -> Result<String> {
+    fs::read_to_string(root().join(path)).with_context(|| path.to_owned())
+}
+
+/// Writes a file of the repository.
+pub(crate) fn write(path: &str, text: &str) -> Result<()> {
+    fs::write(root().join(path), text).with_context(|| path.to_owned())
+}
+
+/// `CARGO_TARGET_DIR`, or a folder of the repository; it is made, and its path is absolute.
+pub(crate) fn target_folder(default: &str) -> Result<PathBuf> {
+    let folder = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| root().join(default), PathBuf::from);
+    fs::create_dir_all(&folder).with_context(|| folder.display().to_string())?;
+    Ok(folder.canonicalize()?)
+}
+
+/// Without the caller's flags, which would make other code, and without the folders of libraries that rustup adds for
+/// its own compiler, which need not be the one that is started.
+pub(crate) fn without_flags(command: Cmd<'_>) -> Cmd<'_> {
+    ["RUSTFLAGS", "CARGO_ENCODED_RUSTFLAGS", "LD_LIBRARY_PATH"].into_iter().fold(command, Cmd::env_remove)
+}
+
+/// Whether a program can be started.
+pub(crate) fn has(program: &str) -> bool {
+    let started = Command::new(program).arg("--version").stdout(Stdio::null()).stderr(Stdio::null()).status();
+    started.is_ok_and(|status| status.success())
+}
+
+/// Sees to it that packages of Debian are there. With `install`, apt-get gets those that are not.
+pub(crate) fn packages(names: &[&str], install: bool) -> Result<()> {
+    let mut missing = not_installed(names);
+    if missing.is_empty() {
+        return Ok(());
+    }
+    if !install {
+        let missing = missing.join(" ");
+        return Err(Missing::error(format!("Debian's packages are not there: {missing} (--install gets them)")));
+    }
+    let complaint = apt_get(&missing);
+    missing = not_installed(names);
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let complaint = complaint.map_or_else(String::new, |complaint| format!(": {complaint}"));
+    Err(Missing::error(format!("apt-get does not install {}{complaint}", missing.join(" "))))
+}
+
+/// Those of some packages that are not installed; all, where there is no dpkg.
+fn not_installed<'a>(names: &[&'a str]) -> Vec<&'a str> {
+    // a package that was removed has a status as well: `config-files`
+    let is_installed = |name: &&str| {
+        let query = Command::new("dpkg-query").args(["--show", "--showformat=${db:Status-Status}", name]).output();
+        query.is_ok_and(|output| output.stdout == b"installed")
+    };
+    names.iter().copied().filter(|name| !is_installed(name)).collect()
+}
+
+/// Installs packages and those that they cannot do without. What apt-get complains of, in a line.
+fn apt_get(names: &[&str]) -> Option<String> {
+    let update = ["update"].as_slice();
+    let install = [["install", "--yes", "--no-install-recommends"].as_slice(), names].concat();
+    for arguments in [update, &install] {
+        // a package that asks a question would wait for ever
+        let output = Command::new("apt-get")
+            .args(arguments)
+            .env("DEBIAN_FRONTEND", "noninteractive")
+            .env("LC_ALL", "C")
+            .stdin(Stdio::null())
+            .output();
+        match output {
+            Err(error) => return Some(error.to_string()),
+            Ok(output) if !output.status.success() => {
+                let messages = String::from_utf8_lossy(&output.stderr).into_owned();
+                let line = messages.lines().find(|line| line.starts_with("E:")).or_else(|| messages.lines().last());
+                return line.map(|line| line.trim_start_matches("E: ").to_owned());
+            }
+            Ok(_) => {}
+        }
+    }
+    None
+}
+
+/// Sees to it that rustup has a toolchain; else why there is none, in a line.
+pub(crate) fn toolchain(version: &str) -> Option<String> {
+    let answers = |program: &str, arguments: &[&str]| {
+        let output = Command::new(program).args(arguments).stdin(Stdio::null()).env_remove("RUSTUP_TOOLCHAIN").output();
+        output.is_ok_and(|output| output.status.success())
+    };
+    // rustup alone knows `+`; it must not get a compiler unasked, and not its documentation
+    let has = || answers("rustup", &["run", version, "rustc", "--version"]);
+    if !answers("rustup", &["--version"]) {
+        return Some(format!("there is no rustup to get Rust {version}"));
+    }
+    if has() || (answers("rustup", &["toolchain", "install", version, "--profile", "minimal"]) && has()) {
+        return None;
+    }
+    Some(format!("Rust {version} cannot be had (rustup toolchain install {version} says why)"))
+}
+
+/// The oldest compiler that the workspace accepts, from Cargo.toml.
+pub(crate) fn oldest_compiler() -> Result<String> {
+    let manifest = read("Cargo.toml")?;
+    let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \"")?.split('"').next());
+    Ok(version.context("Cargo.toml has no rust-version")?.to_owned())
+}
+
+/// Major and minor number of a version in a text such as `rustc 1.96.0 (…)`.
+pub(crate) fn version(text: &str) -> Option<(u32, u32)> {
+    let word = text.split_whitespace().find(|word| word.starts_with(|letter: char| letter.is_ascii_digit()))?;
+    let mut numbers = word.split('.').map(|number| number.parse().ok());
+    Some((numbers.next()??, numbers.next()??))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Missing, not_installed, oldest_compiler, packages, version};
+
+    #[test]
+    fn versions_are_compared_by_their_numbers() {
+        assert_eq!(version("rustc 1.96.0 (ac68faa20 2026-05-25) (built from a source tarball)"), Some((1, 96)));
+        assert!(version("rustc 1.9.0") < version("1.89"));
+        assert_eq!(version("no version"), None);
+        assert!(version(&oldest_compiler().expect("a version")) >= Some((1, 89)));
+    }
+
+    #[test]
+    fn a_package_that_is_not_there_is_named_in_one_line() {
+        assert_eq!(not_installed(&["no-such-package"]), ["no-such-package"]);
+        let error = packages(&["no-such-package"], false).expect_err("it does not exist");
+        assert!(error.is::<Missing>());
+        let message = error.to_string();
+        assert!(message.contains("no-such-package (--install gets them)") && !message.contains('\n'), "{message}");
+        assert!(packages(&[], false).is_ok());
+    }
+}

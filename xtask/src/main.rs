@@ -1,0 +1,121 @@
+//! What is done to this repository beside `cargo build` and `cargo test`.
+//!
+//! Each subcommand is a module of this crate, and its `--help` says what it needs and what it takes. Nothing of this is
+//! published; `.ci/run` is the list of those that must succeed before a change lands.
+
+mod batch_profile;
+mod certificate;
+mod counts;
+mod growth;
+mod instructions;
+mod lines;
+mod machine;
+mod mutants;
+mod mutate;
+mod performance;
+mod prose;
+mod single_calls;
+mod verify;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+
+use crate::machine::Missing;
+
+/// Certificates, counts, measurements and mutants of this repository
+#[derive(Parser)]
+#[command(
+    name = "cargo xtask",
+    bin_name = "cargo xtask",
+    after_help = "\
+Exit status: 0 what was looked at holds, 1 it does not, 2 it could not be looked at or the arguments are wrong.
+
+Examples:
+  cargo xtask certificate --install    the code of microcontrollers, with the tools that it takes
+  cargo xtask mutate Coriolis          is that term tested?
+  cargo xtask lines                    lines of more than 120 columns"
+)]
+struct Arguments {
+    #[command(subcommand)]
+    task: Task,
+}
+
+#[derive(Subcommand)]
+enum Task {
+    Certificate(certificate::Certificate),
+    Instructions(instructions::Instructions),
+    Performance(performance::Performance),
+    BatchProfile(batch_profile::BatchProfile),
+    Growth(growth::Growth),
+    Mutate(mutate::Mutate),
+    Verify(verify::Verify),
+    Lines(lines::Lines),
+}
+
+/// What a task found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Verdict {
+    /// It is as it shall be.
+    Holds,
+    /// It is not; what is wrong has been printed.
+    Fails,
+}
+
+impl From<bool> for Verdict {
+    fn from(holds: bool) -> Self {
+        if holds { Self::Holds } else { Self::Fails }
+    }
+}
+
+impl Task {
+    /// What the task is called in messages, whether it was asked to install what it needs, and what it found.
+    fn run(&self) -> (&'static str, bool, Result<Verdict>) {
+        match self {
+            Self::Certificate(task) => ("embedded certificate", task.install, task.run()),
+            Self::Instructions(task) => ("instruction counts", task.install, task.run()),
+            Self::Performance(task) => ("performance", false, task.run()),
+            Self::BatchProfile(task) => ("batch profile", false, task.run()),
+            Self::Growth(task) => ("growth", false, task.run()),
+            Self::Mutate(task) => ("mutate", false, task.run()),
+            Self::Verify(task) => ("verify", false, task.run()),
+            Self::Lines(task) => ("lines", false, task.run()),
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    let (name, installs, result) = Arguments::parse().task.run();
+    match result {
+        Ok(Verdict::Holds) => ExitCode::SUCCESS,
+        Ok(Verdict::Fails) => ExitCode::FAILURE,
+        Err(error) if error.is::<Missing>() => {
+            println!("{name}: skipped, {error}");
+            // what cannot be had is no failure where it was asked to be installed
+            ExitCode::from(if installs { 0 } else { 2 })
+        }
+        Err(error) => {
+            eprintln!("{name}: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::Arguments;
+
+    #[test]
+    fn every_task_says_what_it_does_and_shows_an_example() {
+        let mut command = Arguments::command();
+        command.build();
+        for task in command.get_subcommands_mut().filter(|task| task.get_name() != "help") {
+            let help = task.render_long_help().to_string();
+            assert!(help.contains("Example"), "{help}");
+            assert!(help.contains(&format!("cargo xtask {}", task.get_name())), "{help}");
+        }
+    }
+}

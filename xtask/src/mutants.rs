@@ -1,0 +1,143 @@
+//! The mutants as data: xtask/mutants.yaml.
+
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+use crate::machine;
+
+/// The data.
+pub(crate) const FILE: &str = "xtask/mutants.yaml";
+
+/// One change of one place of the source, which a check must notice.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Mutant {
+    /// What is wrong then.
+    pub(crate) what: String,
+    /// The source, from the root of the repository.
+    pub(crate) file: String,
+    /// Who must notice.
+    pub(crate) check: Check,
+    /// A text that occurs once in the source.
+    pub(crate) old: String,
+    /// What stands there in the mutant.
+    pub(crate) new: String,
+}
+
+/// Tests that must notice.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Check {
+    /// Comparison with the runtime and with independent torques.
+    Compare,
+    /// The proof that the reduced form is the seven steps.
+    Prove,
+    /// Comparison of the other functions with the runtime and with independent values.
+    Functions,
+    /// C, beside the derived code.
+    Code,
+}
+
+impl Check {
+    /// All, in the order of the document.
+    pub(crate) const ALL: [Self; 4] = [Self::Compare, Self::Prove, Self::Functions, Self::Code];
+
+    /// Arguments of `cargo test`.
+    pub(crate) fn tests(self) -> &'static [&'static str] {
+        match self {
+            Self::Compare => &["--test", "robots", "--test", "random"],
+            Self::Prove => &["-p", "rne-codegen", "--lib", "--", "are_the_seven_steps"],
+            Self::Functions => &["--test", "functions", "--", "equality::", "golden::"],
+            Self::Code => &["--test", "c_code"],
+        }
+    }
+
+    /// The heading of its section in the document.
+    pub(crate) fn heading(self) -> &'static str {
+        match self {
+            Self::Compare => "The seven steps",
+            Self::Prove => "The passes of the reduced form",
+            Self::Functions => "The other functions",
+            Self::Code => "C",
+        }
+    }
+
+    /// What its section says before the table.
+    pub(crate) fn about(self) -> &'static str {
+        match self {
+            Self::Compare => {
+                "\
+Compared with the runtime and with independent torques. Reduced forms that these tests derive are proved while the tests
+are built, against seven steps that are wrong then: `cargo build` is what fails in that case."
+            }
+            Self::Prove => {
+                "\
+Only a refusal by the proof counts; a test that fails in another way does not. Where a rod, a slide, a unit of length or
+of force is chosen otherwise nothing is wrong: every choice of them is the same function; such a change is no mutant."
+            }
+            Self::Functions => "Compared with the runtime and with independent values, function by function.",
+            Self::Code => "The C code does not compile, or its bits are not those of the derived code.",
+        }
+    }
+}
+
+impl Mutant {
+    /// The source with the mutation; an error says what is to be done when its text is not there (any more).
+    pub(crate) fn apply(&self, source: &str) -> Result<String, String> {
+        let Self { what, file, old, new, .. } = self;
+        let advice = "write the mutant for today's source, or take it out";
+        match source.matches(old).count() {
+            1 if old == new => Err(format!("{FILE}: `{what}`: `old` and `new` are the same; {advice}")),
+            1 => Ok(source.replacen(old, new, 1)),
+            0 => Err(format!("{FILE}: `{what}`: {file} has no `{old}` any more; {advice}")),
+            times => Err(format!("{FILE}: `{what}`: {file} has `{old}` {times} times; choose a longer text")),
+        }
+    }
+
+    /// The same with the source from a tree.
+    pub(crate) fn applied_in(&self, tree: &Path) -> Result<String, String> {
+        let Self { what, file, .. } = self;
+        let source = std::fs::read_to_string(tree.join(file));
+        self.apply(&source.map_err(|error| format!("{FILE}: `{what}`: {file}: {error}"))?)
+    }
+}
+
+/// The mutants of the repository.
+pub(crate) fn all() -> Result<Vec<Mutant>> {
+    serde_yaml::from_str(&machine::read(FILE)?).context(FILE)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Check, Mutant, all};
+
+    fn mutant() -> Mutant {
+        let text = "{what: sign, file: a.rs, check: prove, old: a + b, new: a - b}";
+        serde_yaml::from_str(text).expect("a mutant")
+    }
+
+    #[test]
+    fn a_text_that_is_not_in_the_source_is_told_with_what_to_do() {
+        assert_eq!(mutant().apply("let c = a + b;").as_deref(), Ok("let c = a - b;"));
+        let gone = mutant().apply("let c = b + a;").expect_err("it is not there");
+        let advice = "write the mutant for today's source, or take it out";
+        assert_eq!(gone, format!("xtask/mutants.yaml: `sign`: a.rs has no `a + b` any more; {advice}"));
+        assert!(mutant().apply("a + b + (a + b)").expect_err("twice").contains("2 times"));
+        let missing = mutant().applied_in(std::path::Path::new("no such folder")).expect_err("no file");
+        assert!(missing.starts_with("xtask/mutants.yaml: `sign`: a.rs: "), "{missing}");
+    }
+
+    #[test]
+    fn every_check_has_mutants_and_descriptions_are_distinct() {
+        let mutants = all().expect("the data");
+        for check in Check::ALL {
+            assert!(mutants.iter().any(|mutant| mutant.check == check), "{check:?}");
+        }
+        let mut names: Vec<&str> = mutants.iter().map(|mutant| mutant.what.as_str()).collect();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(names.len(), mutants.len());
+    }
+}

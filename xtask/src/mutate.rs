@@ -1,0 +1,296 @@
+//! Are the tests awake? The compiler broken in one place at a time, in a copy of this tree, and the tests run.
+//!
+//! `mutants.yaml` has the mutants that mean something: a term of a formula, a sign of a transformation. What can be
+//! changed without knowing dynamics (an operator, a comparison, a returned value) is the business of cargo-mutants,
+//! which `.cargo/mutants.toml` sets up:
+//!
+//! ```sh
+//! cargo install cargo-mutants --locked
+//! cargo mutants --file rne-codegen/src/graph.rs           # one file, with the tests that compare and prove
+//! cargo mutants --in-diff <(git diff main)                # what a change has touched
+//! cargo mutants --list --file 'rne-codegen/src/**/*.rs'   # which there are
+//! ```
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use regex_lite::Regex;
+use tempfile::TempDir;
+use xshell::{Shell, cmd};
+
+use crate::Verdict;
+use crate::machine;
+use crate::mutants::{self, Check, Mutant};
+
+/// Breaks the compiler in one place at a time, in a copy of this tree, and runs the tests that must notice
+///
+/// The mutants are those of xtask/mutants.yaml; docs/mutations.md is what this prints. A mutant of the reduced form
+/// takes some ten to thirty seconds, another one some minutes. Plain mutants (an operator, a comparison) are the
+/// business of cargo-mutants: `cargo mutants --file rne-codegen/src/graph.rs`, set up in .cargo/mutants.toml.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when a mutant survives, 2 when a mutant's text is not in the source any more.
+
+Examples:
+  cargo xtask mutate             all mutants
+  cargo xtask mutate Coriolis    those whose file and description match a regular expression
+  cargo xtask mutate --look      whether all texts are in the source; runs no test
+  cargo xtask mutate --update    write docs/mutations.md anew")]
+pub(crate) struct Mutate {
+    /// Those whose file and description match
+    #[arg(default_value = "", hide_default_value = true)]
+    regex: Regex,
+    /// Only look whether each mutant's text is in the source
+    #[arg(long)]
+    look: bool,
+    /// Write docs/mutations.md anew
+    #[arg(long, conflicts_with_all = ["regex", "look"])]
+    update: bool,
+}
+
+const PAGE: &str = "docs/mutations.md";
+
+const HEAD: &str = "\
+# Mutations
+
+Which tests notice when one term of the compiler is wrong. Each line is one change of one place, made in a copy of the
+tree; [xtask/mutants.yaml](../xtask/mutants.yaml) has the texts. Written by `cargo xtask mutate --update`, which exits
+with 1 when nothing fails. Changes that take no knowledge of dynamics, an operator or a comparison, are left to `cargo
+mutants`.
+";
+
+impl Mutate {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let is_meant = |mutant: &Mutant| self.regex.is_match(&format!("{} {}", mutant.file, mutant.what));
+        let mutants: Vec<Mutant> = mutants::all()?.into_iter().filter(is_meant).collect();
+        let lost: Vec<String> = mutants.iter().filter_map(|it| it.applied_in(machine::root()).err()).collect();
+        if !lost.is_empty() {
+            bail!("{} of {} mutants cannot be made\n  {}", lost.len(), mutants.len(), lost.join("\n  "));
+        }
+        if self.look {
+            println!("mutate: the texts of {} mutants are in the source", mutants.len());
+            return Ok(Verdict::Holds);
+        }
+        if mutants.is_empty() {
+            bail!("no file and description matches `{}`", self.regex);
+        }
+        let laboratory = Laboratory::new()?;
+        let mut page = HEAD.to_owned();
+        print!("{HEAD}");
+        let mut survivors = 0;
+        for check in Check::ALL {
+            let mutants: Vec<&Mutant> = mutants.iter().filter(|mutant| mutant.check == check).collect();
+            if mutants.is_empty() {
+                continue;
+            }
+            if let Some(tests) = laboratory.failing(check)?.words() {
+                bail!("without any mutation these fail: {tests}");
+            }
+            let head = section(check);
+            print!("{head}");
+            page.push_str(&head);
+            for mutant in mutants {
+                let caught = laboratory.caught(mutant)?;
+                survivors += usize::from(!caught.is_a_catch());
+                let line = format!("| {} | {} |\n", mutant.what, caught.words().as_deref().unwrap_or("**none**"));
+                print!("{line}");
+                page.push_str(&line);
+            }
+        }
+        if self.update {
+            machine::write(PAGE, &page)?;
+        }
+        if survivors > 0 {
+            eprintln!("mutate: {survivors} survived");
+        }
+        Ok(Verdict::from(survivors == 0))
+    }
+}
+
+/// The head of a section and of its table.
+fn section(check: Check) -> String {
+    let head = if check == Check::Prove { "refused by the proof in" } else { "caught by" };
+    let (heading, about, tests) = (check.heading(), check.about(), check.tests().join(" "));
+    format!("\n## {heading}\n\n{about}\n\n    cargo test {tests}\n\n| mutation | {head} |\n|---|---|\n")
+}
+
+/// What noticed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+enum Caught {
+    Nothing,
+    /// Names of tests.
+    By(BTreeSet<String>),
+    /// A derive, while the tests were built.
+    Build,
+    /// Tests that failed, but not by refusing.
+    SomethingElse,
+}
+
+impl Caught {
+    fn is_a_catch(&self) -> bool {
+        matches!(self, Self::By(_) | Self::Build)
+    }
+
+    fn words(&self) -> Option<String> {
+        match self {
+            Self::Nothing => None,
+            Self::By(names) => Some(names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")),
+            Self::Build => Some("`cargo build`: the proof refuses in `derive(InverseDynamics)`".to_owned()),
+            Self::SomethingElse => Some("**something else**".to_owned()),
+        }
+    }
+
+    /// From the output of tests that failed; nothing, when that says neither what failed nor that anything did.
+    fn of(check: Check, log: &str) -> Option<Self> {
+        let names = if check == Check::Prove { refused(log) } else { failed(log) };
+        if !names.is_empty() {
+            return Some(Self::By(names));
+        }
+        let is_refused =
+            log.lines().any(|line| line.starts_with("error: ") && line.contains(" is not the seven steps"));
+        if is_refused {
+            return Some(Self::Build);
+        }
+        log.lines().any(|line| line.starts_with("test result: FAILED")).then_some(Self::SomethingElse)
+    }
+}
+
+/// Tests whose output has a line of the proof.
+fn refused(log: &str) -> BTreeSet<String> {
+    let mut name = None;
+    let mut names = BTreeSet::new();
+    for line in log.lines() {
+        if let Some(test) = line.strip_prefix("---- ").and_then(|line| line.strip_suffix(" stdout ----")) {
+            name = Some(test);
+        } else if line.starts_with("the proof refuses ") {
+            names.extend(name.map(str::to_owned));
+        }
+    }
+    names
+}
+
+/// Tests in a list of failures.
+fn failed(log: &str) -> BTreeSet<String> {
+    let names = log.lines().filter_map(|line| line.strip_prefix("    "));
+    let is_name = |name: &&str| {
+        name.starts_with(|letter: char| letter.is_ascii_lowercase())
+            && name
+                .chars()
+                .all(|letter| letter.is_ascii_lowercase() || letter.is_ascii_digit() || "_:".contains(letter))
+    };
+    names.filter(is_name).map(str::to_owned).collect()
+}
+
+/// A copy of this tree, where something may be wrong.
+struct Laboratory {
+    tree: TempDir,
+    shell: Shell,
+}
+
+impl Laboratory {
+    fn new() -> Result<Self> {
+        let tree = tempfile::tempdir()?;
+        copy(machine::root(), tree.path())?;
+        let shell = Shell::new()?;
+        shell.change_dir(tree.path());
+        let target = std::env::var_os("MUTATE_TARGET_DIR").map_or_else(|| tree.path().join("target"), PathBuf::from);
+        shell.set_var("CARGO_TARGET_DIR", target);
+        // A random robot that fails is enough; the smallest one takes long to find.
+        shell.set_var("PROPTEST_MAX_SHRINK_ITERS", "0");
+        shell.set_var("RUST_BACKTRACE", "0");
+        Ok(Self { tree, shell })
+    }
+
+    /// What a mutant wakes up.
+    fn caught(&self, mutant: &Mutant) -> Result<Caught> {
+        let file = self.tree.path().join(&mutant.file);
+        let original = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
+        fs::write(&file, mutant.apply(&original).map_err(anyhow::Error::msg)?)?;
+        let caught = self.failing(mutant.check);
+        fs::write(&file, original)?;
+        caught.with_context(|| mutant.what.clone())
+    }
+
+    /// What fails in the tree as it is.
+    fn failing(&self, check: Check) -> Result<Caught> {
+        let tests = check.tests();
+        let output =
+            cmd!(self.shell, "cargo test --quiet --no-fail-fast {tests...}").quiet().ignore_status().output()?;
+        if output.status.success() {
+            return Ok(Caught::Nothing);
+        }
+        let log = String::from_utf8_lossy(&[output.stdout, output.stderr].concat()).into_owned();
+        Caught::of(check, &log).with_context(|| format!("the tests do not run\n{log}"))
+    }
+}
+
+/// Copies a tree without what git and cargo keep in it.
+fn copy(from: &Path, to: &Path) -> Result<()> {
+    for entry in fs::read_dir(from).with_context(|| from.display().to_string())? {
+        let entry = entry?;
+        let target = to.join(entry.file_name());
+        if entry.file_type()?.is_dir() {
+            if !["target", ".git"].iter().any(|name| entry.file_name() == *name) {
+                fs::create_dir_all(&target)?;
+                copy(&entry.path(), &target)?;
+            }
+        } else {
+            fs::copy(entry.path(), &target).with_context(|| entry.path().display().to_string())?;
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Caught, section};
+    use crate::machine;
+    use crate::mutants::{self, Check};
+
+    const LOG: &str = "\
+---- reduced::tests::random_plans_are_the_seven_steps stdout ----
+the proof refuses torque 3
+---- reduced::tests::others stdout ----
+assertion failed
+
+failures:
+    reduced::tests::others
+    reduced::tests::random_plans_are_the_seven_steps
+
+test result: FAILED. 0 passed; 2 failed
+";
+
+    #[test]
+    fn of_a_proof_only_a_refusal_counts() {
+        let words = |check, log| Caught::of(check, log).expect("something").words().expect("something");
+        assert_eq!(words(Check::Prove, LOG), "`reduced::tests::random_plans_are_the_seven_steps`");
+        let both = "`reduced::tests::others`, `reduced::tests::random_plans_are_the_seven_steps`";
+        assert_eq!(words(Check::Compare, LOG), both);
+        assert_eq!(
+            Caught::of(Check::Prove, &LOG.replace("the proof refuses", "it refuses")),
+            Some(Caught::SomethingElse)
+        );
+        let build = "error: the reduced form of `arm` is not the seven steps: torque 1\n";
+        assert_eq!(Caught::of(Check::Compare, build), Some(Caught::Build));
+        assert_eq!(Caught::of(Check::Compare, "error: unresolved import\n"), None);
+    }
+
+    /// The page is of these mutants, in this order, and each was caught.
+    #[test]
+    fn the_page_is_what_is_printed() {
+        let page = machine::read(super::PAGE).expect("the page");
+        let mut rest = page.strip_prefix(super::HEAD).expect("its head");
+        for check in Check::ALL {
+            rest = rest.strip_prefix(&section(check)).unwrap_or_else(|| panic!("no section of {check:?}: {rest:.200}"));
+            for mutant in mutants::all().expect("the data").iter().filter(|mutant| mutant.check == check) {
+                let line;
+                (line, rest) = rest.split_once('\n').expect("a line");
+                assert!(line.starts_with(&format!("| {} | `", mutant.what)), "{}: {line}", mutant.what);
+            }
+        }
+        assert_eq!(rest, "");
+    }
+}

@@ -1,0 +1,107 @@
+//! Wall times of single calls: divan's tree as a table.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+/// Kinds of calls in the tree, and their titles.
+const KINDS: [(&str, &str); 6] = [
+    ("independent", "independent"),
+    ("chained", "chained"),
+    ("gravity", "`gravity_torques`, independent"),
+    ("mass_matrix", "`mass_matrix`, independent"),
+    ("forward_dynamics", "`forward_dynamics`, independent"),
+    ("derivatives", "`inverse_dynamics_derivatives`, independent"),
+];
+
+/// Competitors in the tree, and their titles.
+const COLUMNS: [(&str, &str); 5] = [
+    ("seven_steps", "seven_steps"),
+    ("reduced", "reduced"),
+    ("rewritten", "rewritten"),
+    ("arm", "`rne::Arm`"),
+    ("dynibo", "`dynibo`"),
+];
+
+/// A line per robot, measurement and scalar, a column per competitor: median and, in brackets, the fastest, in ns.
+///
+/// The tree has robots, kinds of calls and competitors on three levels; `_f32` behind a competitor's name is the
+/// scalar.
+pub(crate) fn table(tree: &str) -> String {
+    let mut robots: Vec<&str> = Vec::new();
+    let mut cells = BTreeMap::new();
+    let mut kind = "";
+    for line in tree.lines() {
+        let Some(at) = line.find("├─").or_else(|| line.find("╰─")) else { continue };
+        let depth = line[..at].chars().count() / 3;
+        let fields: Vec<&str> = line[at + "├─".len()..].split('│').collect();
+        let mut words = fields[0].split_whitespace();
+        let Some(name) = words.next() else { continue };
+        match depth {
+            0 => robots.push(name),
+            1 => kind = name,
+            _ => {
+                let fastest = words.collect::<Vec<_>>().join(" ");
+                let (name, scalar) = name.strip_suffix("_f32").map_or((name, "f64"), |name| (name, "f32"));
+                let times = [fields.get(2).copied().unwrap_or_default(), &fastest].map(nanoseconds);
+                if let ([Some(median), Some(fastest)], Some(robot)) = (times, robots.last()) {
+                    cells.insert((*robot, kind, scalar, name), format!("{median} ({fastest})"));
+                }
+            }
+        }
+    }
+    let titles = COLUMNS.map(|(_, title)| title).join(" | ");
+    let mut text = format!("| robot | calls | scalar | {titles} |\n|---|---|---|{}\n", "---:|".repeat(COLUMNS.len()));
+    // divan sorts by name; the PUMA 560 comes first everywhere else
+    for robot in robots.iter().rev() {
+        for (kind, title) in KINDS {
+            for scalar in ["f64", "f32"] {
+                let cell = |name| cells.get(&(*robot, kind, scalar, name)).map_or("-", String::as_str);
+                let line = COLUMNS.map(|(name, _)| cell(name)).join(" | ");
+                let _ = writeln!(text, "| {robot} | {title} | {scalar} | {line} |");
+            }
+        }
+    }
+    text
+}
+
+/// A time such as `57.4 ns` or `1.2 µs` in nanoseconds, with a decimal below 100.
+fn nanoseconds(text: &str) -> Option<String> {
+    let (number, unit) = text.trim().split_once(' ')?;
+    let number: f64 = number.parse().ok()?;
+    let number = match unit.trim() {
+        "ns" => number,
+        "µs" => number * 1e3,
+        "ms" => number * 1e6,
+        _ => return None,
+    };
+    Some(if number < 100.0 { format!("{number:.1}") } else { format!("{number:.0}") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::table;
+
+    const TREE: &str = "\
+Timer precision: 20 ns
+wall_time          fastest       │ slowest       │ median        │ mean          │ samples │ iters
+├─ panda                         │               │               │               │         │
+│  ╰─ independent                │               │               │               │         │
+│     ╰─ reduced   115.2 ns      │ 120.1 ns      │ 115.4 ns      │ 115.9 ns      │ 200     │ 200000
+╰─ puma560                       │               │               │               │         │
+   ├─ chained                    │               │               │               │         │
+   │  ╰─ arm_f32   506.4 ns      │ 1.1 µs        │ 507.2 ns      │ 520 ns        │ 200     │ 200000
+   ╰─ independent                │               │               │               │         │
+      ├─ dynibo    1.021 µs      │ 2.1 µs        │ 1.034 µs      │ 1.1 µs        │ 200     │ 200000
+      ╰─ reduced   62.21 ns      │ 80.01 ns      │ 62.48 ns      │ 63 ns         │ 200     │ 200000
+";
+
+    #[test]
+    fn a_tree_becomes_a_table() {
+        let table = table(TREE);
+        let lines: Vec<&str> = table.lines().collect();
+        assert_eq!(lines.len(), 2 + 2 * 6 * 2);
+        assert_eq!(lines[2], "| puma560 | independent | f64 | - | 62.5 (62.2) | - | - | 1034 (1021) |");
+        assert_eq!(lines[5], "| puma560 | chained | f32 | - | - | - | 507 (506) | - |");
+        assert_eq!(lines[14], "| panda | independent | f64 | - | 115 (115) | - | - | - |");
+    }
+}

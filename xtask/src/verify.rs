@@ -1,0 +1,151 @@
+//! What is exhaustive beyond `cargo test`: more samples, more targets, more compilers.
+
+use std::time::Instant;
+
+use anyhow::{Result, bail};
+use clap::Args;
+use xshell::cmd;
+
+use crate::Verdict;
+use crate::machine;
+
+/// Verifies what `cargo test` only samples
+///
+/// Each step is a command that a person can type; `--list` prints them. A step that this machine cannot do is skipped
+/// with one line. `.ci/run` runs them all.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when a step fails.
+
+Examples:
+  cargo xtask verify             all steps
+  cargo xtask verify msrv        one of them
+  cargo xtask verify --list      the steps and their commands")]
+pub(crate) struct Verify {
+    /// The steps; all, unless some are named
+    #[arg(value_name = "STEP")]
+    names: Vec<String>,
+    /// Print the steps instead
+    #[arg(long)]
+    list: bool,
+}
+
+/// Something that is looked at.
+struct Step {
+    name: &'static str,
+    about: &'static str,
+    /// Variables of the environment, before the command.
+    variables: &'static [(&'static str, &'static str)],
+    command: &'static [&'static str],
+    /// What must be there; else the step is skipped.
+    needs: Needs,
+}
+
+/// What a step cannot do without.
+enum Needs {
+    Nothing,
+    /// The oldest compiler that Cargo.toml allows; rustup gets it.
+    OldestCompiler,
+}
+
+/// Each with a target folder that an earlier one has filled as far as possible.
+const STEPS: &[Step] = &[
+    Step {
+        name: "intervals",
+        about: "torques enclosed by intervals, where this processor rounds as told",
+        variables: &[("RUSTFLAGS", "-C target-cpu=native"), ("CARGO_TARGET_DIR", "target/native")],
+        command: &["cargo", "test", "--package", "rne", "--test", "scalars"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "no_std",
+        about: "the facade, the runtime and the plain types of the table without `std`",
+        variables: &[],
+        command: &["cargo", "check", "--package", "rne", "--package", "rne-model", "--no-default-features"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "msrv",
+        about: "the oldest compiler that Cargo.toml allows builds what users build",
+        variables: &[("CARGO_TARGET_DIR", "target/msrv")],
+        command: &["cargo", "+OLDEST", "check", "--locked"],
+        needs: Needs::OldestCompiler,
+    },
+];
+
+impl Verify {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        if let Some(unknown) = self.names.iter().find(|name| !STEPS.iter().any(|step| step.name == **name)) {
+            let names: Vec<&str> = STEPS.iter().map(|step| step.name).collect();
+            bail!("there is no step `{unknown}`; there are {}", names.join(", "));
+        }
+        let oldest = machine::oldest_compiler()?;
+        let mut failed = Vec::new();
+        for step in STEPS.iter().filter(|step| self.names.is_empty() || self.names.iter().any(|name| name == step.name))
+        {
+            let words = step.words(&oldest);
+            if self.list {
+                println!("{:<12}{}\n            {words}", step.name, step.about);
+            } else if let Some(lack) = step.needs.lack(&oldest) {
+                println!("verify {}: skipped, {lack}", step.name);
+            } else {
+                println!("verify {}: {words}", step.name);
+                let start = Instant::now();
+                if !step.holds(&oldest)? {
+                    failed.push(step.name);
+                }
+                println!("verify {}: {:.0} s", step.name, start.elapsed().as_secs_f64());
+            }
+        }
+        if !failed.is_empty() {
+            println!("verify: failed: {}", failed.join(", "));
+        }
+        Ok(Verdict::from(failed.is_empty()))
+    }
+}
+
+impl Step {
+    /// The command, as it is typed.
+    fn words(&self, oldest: &str) -> String {
+        let quoted = |value: &str| if value.contains(' ') { format!("'{value}'") } else { value.to_owned() };
+        let variables = self.variables.iter().map(|(name, value)| format!("{name}={}", quoted(value)));
+        let command = self.command.iter().map(|word| word.replace("OLDEST", oldest));
+        variables.chain(command).collect::<Vec<_>>().join(" ")
+    }
+
+    fn holds(&self, oldest: &str) -> Result<bool> {
+        let shell = machine::shell()?;
+        let command: Vec<String> = self.command.iter().map(|word| word.replace("OLDEST", oldest)).collect();
+        let (program, arguments) = command.split_first().expect("a command has a program");
+        let command = machine::without_flags(cmd!(shell, "{program} {arguments...}")).quiet();
+        // this program runs in the toolchain of its caller
+        let command = command.env_remove("RUSTUP_TOOLCHAIN").env_remove("CARGO").envs(self.variables.iter().copied());
+        Ok(command.run().is_ok())
+    }
+}
+
+impl Needs {
+    /// Why a step cannot be done.
+    fn lack(&self, oldest: &str) -> Option<String> {
+        match self {
+            Self::Nothing => None,
+            Self::OldestCompiler => machine::toolchain(oldest),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::STEPS;
+
+    #[test]
+    fn steps_are_told_apart_and_can_be_typed() {
+        for step in STEPS {
+            assert_eq!(STEPS.iter().filter(|other| other.name == step.name).count(), 1, "{}", step.name);
+        }
+        let intervals = STEPS.iter().find(|step| step.name == "intervals").expect("it is there");
+        let typed = intervals.words("1.89");
+        assert!(typed.starts_with("RUSTFLAGS='-C target-cpu=native' CARGO_TARGET_DIR=target/native cargo "), "{typed}");
+        assert!(STEPS.iter().any(|step| step.words("1.89").contains("cargo +1.89 check")));
+    }
+}
