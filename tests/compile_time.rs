@@ -11,7 +11,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rne::DynArm;
-use rne_codegen::reduced::Choice;
+use rne_codegen::plan::Choice;
 use rne_codegen::{Form, Function, Program, compile};
 use rne_model::Robot;
 
