@@ -27,7 +27,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c --real double --prefix arm     arm_inverse_dynamics(const double q[6], ...
 
 The five functions of the trait InverseDynamics are written unless --function names others; all is every
-function of the robot (without motors, all but actuator_torques, which is zero then). A file that rne did not generate is overwritten with
+function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
 --force only. --check exits with 1 when the file is stale, and says how to refresh it. C needs no library; on standard
 output header and source are one file.")]
 pub(crate) struct Arguments {
