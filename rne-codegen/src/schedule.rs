@@ -38,6 +38,7 @@ pub(crate) fn program_and_constants(
     mut written: Written,
     outputs: &[(Name, Term)],
 ) -> Result<(Program, Vec<NodeId>), CompileError> {
+    leave_names_to_arguments(&mut written);
     let uses = count_uses(&written, outputs);
     drop_unused(&mut written, &uses);
     let schedule = Schedule::new(&written, uses, outputs);
@@ -66,6 +67,14 @@ pub(crate) fn program_and_constants(
     };
     program.check_names()?;
     Ok((program, nodes))
+}
+
+/// The name of an argument is that of nothing else: gravity that is given is another number than gravity of the table.
+fn leave_names_to_arguments(written: &mut Written) {
+    let argument = |(id, node)| if let Node::Argument(name) = node { Some((name, id)) } else { None };
+    let arguments: HashMap<Name, NodeId> = written.graph.nodes().filter_map(argument).collect();
+    let is_free = |name: &Name, node| arguments.get(name).is_none_or(|argument| *argument == node);
+    written.definitions.retain(|definition| is_free(&definition.name, definition.term.node));
 }
 
 /// How often each node is used by live nodes and outputs; 0 is dead.
