@@ -31,6 +31,7 @@ pub(crate) fn lower(
     mut written: Traced,
     names: &[Name],
 ) -> Result<(Program, Exactly), CompileError> {
+    leave_names_to_arguments(&mut written);
     let outputs: Vec<(Name, Ref)> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let uses = count_uses(&written);
     drop_unused(&mut written, &uses);
@@ -61,6 +62,14 @@ pub(crate) fn lower(
     };
     program.check_names()?;
     Ok((program, exactly))
+}
+
+/// The name of an argument is that of nothing else: gravity that is given is another number than gravity of the table.
+fn leave_names_to_arguments(written: &mut Traced) {
+    let argument = |(at, op)| if let Op::Input(input) = op { Some((input.name(), at)) } else { None };
+    let arguments: HashMap<Name, Ref> = written.graph.nodes().filter_map(argument).collect();
+    let is_free = |name: &Name, at: Ref| arguments.get(name).is_none_or(|argument| *argument == at.magnitude());
+    written.trace.definitions.retain(|definition| is_free(&definition.name, definition.at));
 }
 
 /// How often each node is used by live nodes and outputs; 0 is dead.
