@@ -40,7 +40,7 @@ reduced! {
 /// A parameter with the name of a method's scalar, and a field that no thread may share.
 #[derive(InverseDynamics, BatchInverseDynamics)]
 #[robot(path = "../robots/puma560.yaml")]
-struct Tooled<'a, T>(std::cell::RefCell<&'a T>);
+struct Tooled<'a, T>(#[robot(skip)] std::cell::RefCell<&'a T>);
 
 /// Around the lengths of a register, and beyond those for which threads are used.
 const LENGTHS: [usize; 10] = [0, 1, 7, 8, 9, 16, 17, 1000, 1003, 20_011];
