@@ -10,7 +10,7 @@ use crate::ir::ledger::{Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Quantity, Step};
 use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
-use crate::program::{Constant, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
+use crate::program::{Constant, Exactly, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
@@ -21,9 +21,6 @@ pub(crate) struct Heading<'a> {
     pub(crate) function: Function,
     pub(crate) form: Form,
 }
-
-/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<Angle>)>;
 
 /// Turns a written graph into a program that returns its outputs under these names, and tells what its constants are.
 pub(crate) fn lower(

@@ -2,13 +2,14 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter.
 
-use std::collections::{BTreeSet, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::CompileError;
 use crate::emit;
 use crate::function::{Form, Function};
 use crate::ir::ledger::{Causes, Ledger, Place};
 use crate::ir::name::Name;
+use crate::ir::{Number, Turn as ConstantTurn};
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +62,9 @@ pub struct Proof {
     /// (products, sums) of the seven steps before folding.
     pub before: (usize, usize),
 }
+
+/// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
+pub(crate) type Exactly = HashMap<Name, (Number, Option<ConstantTurn>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
 #[derive(Clone, Debug, PartialEq)]

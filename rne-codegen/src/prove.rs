@@ -9,14 +9,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use rne_model::{JointKind, Robot};
 
 use crate::formulate;
-use crate::function::{Form, Function};
+use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref};
-use crate::lower::Exactly;
-use crate::program::{Program, Proof};
-use crate::{CompileError, Suspect, compile};
+use crate::program::{Exactly, Program, Proof};
+use crate::{CompileError, Suspect};
 
 /// Points of the fields at which torques are compared.
 const POINTS: u64 = 4;
@@ -44,34 +43,64 @@ const fn largest_rounding(function: Function) -> f64 {
 /// torques at least.
 const LEAST_SCALE: f64 = 1e-2;
 
+/// What programs are held against: the seven steps, compiled.
+pub(crate) struct Reference<'r> {
+    robot: &'r Robot,
+    faithful: Program,
+    /// The torques of motion, of which what the function returns are parts.
+    motion: Option<Program>,
+}
+
+impl<'r> Reference<'r> {
+    /// `seven_steps` compiles a function of the robot by them.
+    ///
+    /// # Errors
+    /// When they cannot be compiled.
+    pub(crate) fn new(
+        robot: &'r Robot,
+        function: Function,
+        seven_steps: impl Fn(Function) -> Result<Program, CompileError>,
+    ) -> Result<Self, CompileError> {
+        let is_part = matches!(
+            function,
+            Function::GravityTorques
+                | Function::BiasTorques
+                | Function::MassMatrix
+                | Function::CoriolisMatrix
+                | Function::InverseDynamicsDerivatives
+        );
+        let motion = if is_part { Some(seven_steps(Function::InverseDynamics)?) } else { None };
+        Ok(Self { robot, faithful: seven_steps(function)?, motion })
+    }
+
+    pub(crate) const fn robot(&self) -> &'r Robot {
+        self.robot
+    }
+
+    /// The function by the seven steps.
+    pub(crate) fn into_program(self) -> Program {
+        self.faithful
+    }
+
+    /// Their operations.
+    pub(crate) fn operations(&self) -> usize {
+        self.faithful.operations().total()
+    }
+}
+
 /// Compares a program with the seven steps.
 ///
 /// # Errors
 /// When it is another function, or rounds too badly.
 pub(crate) fn prove(
-    robot: &Robot,
-    program: &Program,
-    constants: &Exactly,
-    reading: Reading,
-) -> Result<Proof, CompileError> {
-    let faithful = compile(robot, program.function, Form::SevenSteps)?;
-    prove_beside(&faithful, robot, program, constants, reading)
-}
-
-/// The same when the seven steps are at hand.
-///
-/// # Errors
-/// As [`prove`].
-pub(crate) fn prove_beside(
-    faithful: &Program,
-    robot: &Robot,
+    reference: &Reference<'_>,
     program: &Program,
     constants: &Exactly,
     reading: Reading,
 ) -> Result<Proof, CompileError> {
     program.check_names()?;
-    identical(robot, program, constants, reading)?;
-    let proof = rounding(robot, program, faithful, STATES)?;
+    identical(reference.robot, program, constants, reading)?;
+    let proof = rounding(reference, program);
     if proof.rounding <= largest_rounding(program.function) {
         Ok(proof)
     } else {
@@ -258,37 +287,30 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
 }
 
 /// Measures a program and the seven steps in floating point.
-///
-/// # Errors
-/// When the seven steps of the robot cannot be compiled.
-fn rounding(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Proof, CompileError> {
+fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
     let mut proof = Proof {
         points: usize::try_from(POINTS).unwrap_or_default(),
-        states,
+        states: STATES,
         rounding: 0.0,
         single: 0.0,
         single_of_seven_steps: 0.0,
-        before: faithful.ledger.before(),
+        before: reference.faithful.ledger.before(),
     };
-    for errors in errors(robot, program, faithful, states)? {
+    for errors in errors(reference, program, STATES) {
         proof.rounding = larger(proof.rounding, errors.double);
         proof.single = larger(proof.single, errors.single);
         proof.single_of_seven_steps = larger(proof.single_of_seven_steps, errors.single_of_seven_steps);
     }
-    Ok(proof)
+    proof
 }
 
 /// How much larger the error of a program in single precision is than that of the seven steps, on the average: the largest
 /// error depends on which rare states one meets.
-///
-/// # Errors
-/// When the seven steps of the robot cannot be compiled.
-pub(crate) fn loss_of_precision(robot: &Robot, program: &Program, states: usize) -> Result<f64, CompileError> {
-    let faithful = compile(robot, program.function, Form::SevenSteps)?;
-    let errors = errors(robot, program, &faithful, states)?;
+pub(crate) fn loss_of_precision(reference: &Reference<'_>, program: &Program, states: usize) -> f64 {
+    let errors = errors(reference, program, states);
     let sum = |error: fn(&Errors) -> f64| errors.iter().map(error).sum::<f64>();
     let (found, expected) = (sum(|errors| errors.single), sum(|errors| errors.single_of_seven_steps));
-    Ok(if found == 0.0 { 0.0 } else { found / expected })
+    if found == 0.0 { 0.0 } else { found / expected }
 }
 
 /// Differences from the seven steps in double precision at one state, relative to the largest torque.
@@ -298,21 +320,12 @@ struct Errors {
     single_of_seven_steps: f64,
 }
 
-/// Runs a program and the seven steps, `faithful`, in floating point at random states: positions within the limits of the
-/// joints, ±3 where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
-fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Vec<Errors>, CompileError> {
+/// Runs a program and the seven steps in floating point at random states: positions within the limits of the joints, ±3
+/// where there are none, |q̇| ≤ 2, |q̈| ≤ 4.
+fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Program, states: usize) -> Vec<Errors> {
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);
-    let motion = match program.function {
-        Function::GravityTorques
-        | Function::BiasTorques
-        | Function::MassMatrix
-        | Function::CoriolisMatrix
-        | Function::InverseDynamicsDerivatives => {
-            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
-        }
-        _ => None,
-    };
+    let motion = motion.as_ref().map(Interpreter::new);
     let reduced = Interpreter::new(program);
     // as they stand in the file, and rounded
     let parameters = robot.run_time.values(robot);
@@ -384,7 +397,7 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
             all.push(errors);
         }
     }
-    Ok(all)
+    all
 }
 
 /// The larger of two; what is no number is larger than any.

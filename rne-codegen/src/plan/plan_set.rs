@@ -17,7 +17,7 @@ use crate::plan::rewriting::Rewriting;
 use crate::plan::search::{Clock, Over, Progress, Search, default_plan};
 use crate::plan::trick::Trick;
 use crate::program::Program;
-use crate::prove;
+use crate::prove::{self, Reference};
 use crate::reduced::algorithm::Way;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
@@ -129,7 +129,7 @@ impl Choice {
         let (plan, way) = self.cheapest(robot, function);
         let (frame, names, written) = written_in(robot, &plan, function, way)?;
         let heading = Heading { robot, function, form };
-        let program = proved(&heading, written, &names, frame.table.reading, arranged, None)?;
+        let program = proved(&heading, written, &names, frame.table.reading, arranged, &reference(robot, function)?)?;
         let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
         Ok(Program { choices, ..program })
     }
@@ -187,8 +187,13 @@ impl Choice {
         let function = Function::InverseDynamics;
         let (frame, names, written) = rewritten_graph(robot, plan, graph)?;
         let heading = Heading { robot, function, form: Form::Rewritten };
-        proved(&heading, written, &names, frame.table.reading, arranged, None)
+        proved(&heading, written, &names, frame.table.reading, arranged, &reference(robot, function)?)
     }
+}
+
+/// The seven steps of a function, to be held against.
+fn reference(robot: &Robot, function: Function) -> Result<Reference<'_>, CompileError> {
+    Reference::new(robot, function, |function| crate::compile(robot, function, Form::SevenSteps))
 }
 
 /// Lowers a graph; the program is `arranged` and proved to be that of the seven steps.
@@ -198,14 +203,11 @@ fn proved(
     names: &[Name],
     reading: Reading,
     arranged: fn(Program) -> Program,
-    plain: Option<&Program>,
+    reference: &Reference<'_>,
 ) -> Result<Program, CompileError> {
     let (program, exactly) = lower(heading, written, names)?;
     let mut program = arranged(program);
-    program.proof = Some(match plain {
-        Some(plain) => prove::prove_beside(plain, heading.robot, &program, &exactly, reading)?,
-        None => prove::prove(heading.robot, &program, &exactly, reading)?,
-    });
+    program.proof = Some(prove::prove(reference, &program, &exactly, reading)?);
     Ok(program)
 }
 
@@ -216,15 +218,15 @@ fn compile_merged(
     function: Function,
     arranged: fn(Program) -> Program,
 ) -> Result<Program, CompileError> {
-    let plain = crate::compile(robot, function, Form::SevenSteps)?;
+    let plain = reference(robot, function)?;
     let reading = Reading::default();
     let builder = Builder::traced(Policy::Value, reading, function);
     let (names, outputs): (Vec<Name>, Vec<_>) = formulate::outputs(&builder, robot, function).into_iter().unzip();
     let written = builder.finish(outputs).numbered();
-    match proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged, Some(&plain)) {
+    match proved(&Heading { robot, function, form: Form::Reduced }, written, &names, reading, arranged, &plain) {
         // a value that is found where it is not used otherwise costs what it takes there
-        Ok(merged) if merged.operations().total() <= plain.operations().total() => Ok(merged),
-        _ => Ok(plain),
+        Ok(merged) if merged.operations().total() <= plain.operations() => Ok(merged),
+        _ => Ok(plain.into_program()),
     }
 }
 
@@ -334,9 +336,9 @@ pub fn search(
     wanted: Wanted,
     clock: Clock<'_>,
 ) -> Result<Found, CompileError> {
+    let reference = reference(robot, Function::InverseDynamics)?;
     let mut search = Search::new(robot, &[]);
-    let model = robot.clone();
-    search.refuse(move |plan| !is_sound(&model, &Choice::of(plan.clone()), Form::Reduced).unwrap_or(false));
+    search.refuse(|plan| !is_sound(&reference, &Choice::of(plan.clone()), Form::Reduced).unwrap_or(false));
     search.greedy(usize::MAX);
     if let Some(known) = known {
         search.start_from(&known.reduced.plan);
@@ -355,12 +357,12 @@ pub fn search(
         let (_, _, read) = rewritten_graph(robot, &rewritten.plan, &rewritten.graph)?;
         // one that has lost too much precision may be replaced by a dearer one
         let choice = Choice { rewritten: Some(rewritten.clone()), ..Choice::of(rewritten.plan.clone()) };
-        if !wanted.rewrite || is_sound(robot, &choice, Form::Rewritten)? {
+        if !wanted.rewrite || is_sound(&reference, &choice, Form::Rewritten)? {
             best = Some((read.graph.cost(&mut Vec::new()), rewritten.clone()));
         }
     }
     if wanted.rewrite {
-        rewritten(robot, &mut search, &mut best, share, wanted.seed, clock)?;
+        rewritten(&reference, &mut search, &mut best, share, wanted.seed, clock)?;
     }
     let rewritten = best.as_ref().map(|(_, rewritten)| rewritten.clone());
     let choice = Choice { plan: plan.clone(), rewritten, maker: Maker::PlanFile };
@@ -385,7 +387,8 @@ const PRECISION: f64 = 3.0;
 const STATES: usize = 200;
 
 /// Whether a form can be proved, and is not much less precise than the seven steps.
-fn is_sound(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileError> {
+fn is_sound(reference: &Reference<'_>, choice: &Choice, form: Form) -> Result<bool, CompileError> {
+    let robot = reference.robot();
     let (frame, names, written) = match (form, &choice.rewritten) {
         (Form::Rewritten, Some(rewritten)) => match rewritten_graph(robot, &rewritten.plan, &rewritten.graph) {
             Ok(read) => read,
@@ -397,11 +400,11 @@ fn is_sound(robot: &Robot, choice: &Choice, form: Form) -> Result<bool, CompileE
     if prove::identical(robot, &program, &exactly, frame.table.reading).is_err() {
         return Ok(false);
     }
-    Ok(prove::loss_of_precision(robot, &program, STATES)? <= PRECISION)
+    Ok(prove::loss_of_precision(reference, &program, STATES) <= PRECISION)
 }
 
 /// Descent, then annealing in rounds until `share` of the time is over.
-fn plans(search: &mut Search, seed: u64, share: f64, clock: Clock<'_>) -> Result<(), Over> {
+fn plans(search: &mut Search<'_>, seed: u64, share: f64, clock: Clock<'_>) -> Result<(), Over> {
     const ROUNDS: u32 = 4;
     let until = |end: f64, clock: &mut dyn FnMut(&Progress) -> Option<f64>, progress: &Progress| {
         clock(progress).filter(|over| *over < end)
@@ -424,13 +427,14 @@ fn plans(search: &mut Search, seed: u64, share: f64, clock: Clock<'_>) -> Result
 
 /// Rewrites the graphs of the best plans: half of the time all of them, half the four that came out best.
 fn rewritten(
-    robot: &Robot,
-    search: &mut Search,
+    reference: &Reference<'_>,
+    search: &mut Search<'_>,
     best: &mut Option<(Cost, Rewritten)>,
     from: f64,
     seed: u64,
     clock: Clock<'_>,
 ) -> Result<(), CompileError> {
+    let robot = reference.robot();
     let mut candidates: Vec<Plan> = vec![search.best.1.clone()];
     candidates.extend(search.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != search.best.1));
     candidates.truncate(16);
@@ -488,7 +492,7 @@ fn rewritten(
         let graph = graph_text::written(&graph, &given);
         let rewritten = Rewritten { operations: cost, accuracy: Accuracy::default(), plan, graph };
         let choice = Choice { rewritten: Some(rewritten.clone()), ..Choice::of(rewritten.plan.clone()) };
-        if is_sound(robot, &choice, Form::Rewritten)? {
+        if is_sound(reference, &choice, Form::Rewritten)? {
             *best = Some((cost, rewritten));
             break;
         }

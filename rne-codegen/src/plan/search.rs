@@ -29,15 +29,15 @@ pub struct Progress {
 pub type Clock<'a> = &'a mut dyn FnMut(&Progress) -> Option<f64>;
 
 /// Something that is wrong with a plan, whatever it costs.
-type Veto = Box<dyn Fn(&Plan) -> bool>;
+type Veto<'v> = Box<dyn Fn(&Plan) -> bool + 'v>;
 
 /// A search over the plans of one robot.
-pub(crate) struct Search {
+pub(crate) struct Search<'v> {
     pub(crate) evaluator: Evaluator,
     moves: Moves,
     without: Vec<Trick>,
     /// Refuses plans that would be the best but for something else that is wrong with them.
-    veto: Option<Veto>,
+    veto: Option<Veto<'v>>,
     known: HashMap<Plan, Option<Cost>>,
     pub(crate) plans: usize,
     pub(crate) best: (Cost, Plan),
@@ -48,7 +48,7 @@ pub(crate) struct Search {
 /// The end of a search: out of plans to count, or of time.
 pub(crate) struct Over;
 
-impl Search {
+impl<'v> Search<'v> {
     pub(crate) fn new(robot: &Robot, without: &[Trick]) -> Self {
         let evaluator = Evaluator::new(robot, Function::InverseDynamics);
         let moves = Moves::new(evaluator.frames());
@@ -70,7 +70,7 @@ impl Search {
     }
 
     /// From now on no plan becomes the best that `veto` is true of.
-    pub(crate) fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'static) {
+    pub(crate) fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'v) {
         self.veto = Some(Box::new(veto));
     }
 

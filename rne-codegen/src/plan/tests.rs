@@ -9,12 +9,14 @@ use super::*;
 use crate::fma::{fused, soonest};
 use crate::ir::name::Name;
 use crate::ir::{Graph, Traced};
-use crate::lower::{Exactly, Heading, lower};
+use crate::lower::{Heading, lower};
 use crate::plan::cost::{Evaluator, Frame, frame};
 use crate::plan::neighbourhood::Moves;
 use crate::plan::rewriting::Rewriting;
 use crate::plan::search::{Search, default_plan};
+use crate::program::Exactly;
 use crate::prove;
+use crate::prove::Reference;
 use crate::{CompileError, Expression, Form, Function, Program};
 
 fn robot(name: &str) -> Robot {
@@ -41,6 +43,11 @@ fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<(Program, 
     let (frame, names, written) = drawn(robot, plan, function)?;
     let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
     Some((program, exactly, frame))
+}
+
+fn reference(robot: &Robot) -> Reference<'_> {
+    let seven_steps = |function| crate::compile(robot, function, Form::SevenSteps);
+    Reference::new(robot, Function::InverseDynamics, seven_steps).unwrap()
 }
 
 fn is_identical(robot: &Robot, (program, exactly, frame): &(Program, Exactly, Frame)) -> bool {
@@ -138,7 +145,7 @@ fn rewritten_graphs_survive_as_text() {
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
     let heading = Heading { robot: &robot, function: Function::InverseDynamics, form: Form::Rewritten };
     let (program, exactly) = lower(&heading, read.told_by(&plain), &names).unwrap();
-    prove::prove(&robot, &program, &exactly, frame.table.reading).unwrap();
+    prove::prove(&reference(&robot), &program, &exactly, frame.table.reading).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 
@@ -248,7 +255,7 @@ fn a_wrong_literal_is_refused_by_rounding() {
     // the proof does not see how a constant was rounded, the states in double precision do
     let largest = program.constants.iter_mut().max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
     largest.value *= 1.0 + 1e-9;
-    let verdict = prove::prove(&robot, &program, &exactly, frame.table.reading);
+    let verdict = prove::prove(&reference(&robot), &program, &exactly, frame.table.reading);
     assert!(matches!(verdict, Err(CompileError::Imprecise { .. })), "{verdict:?}");
 }
 

@@ -1,0 +1,76 @@
+//! The checker shares no pass with what it checks: it reads the robot by the seven steps alone.
+
+use syn::visit::Visit;
+use syn::{ItemUse, UseTree};
+
+/// Passes and choices: what makes the programs that are checked.
+const CHECKED: [&str; 7] = ["reduced", "plan", "lower", "fma", "latency", "emit", "compile"];
+
+/// What the checker needs of the representation: to write the seven steps, and to take residues.
+const OF_THE_REPRESENTATION: [&str; 9] =
+    ["name", "quantity", "Builder", "Graph", "Image", "Input", "Op", "Point", "Policy"];
+
+#[derive(Default)]
+struct Paths(Vec<Vec<String>>);
+
+impl<'a> Visit<'a> for Paths {
+    fn visit_item_use(&mut self, item: &'a ItemUse) {
+        fn walk(tree: &UseTree, path: &[String], found: &mut Vec<Vec<String>>) {
+            let with = |name: &syn::Ident| path.iter().cloned().chain([name.to_string()]).collect::<Vec<_>>();
+            match tree {
+                UseTree::Path(step) => walk(&step.tree, &with(&step.ident), found),
+                UseTree::Name(name) => found.push(with(&name.ident)),
+                UseTree::Rename(name) => found.push(with(&name.ident)),
+                UseTree::Glob(_) => found.push(path.iter().cloned().chain(["*".to_owned()]).collect()),
+                UseTree::Group(group) => group.items.iter().for_each(|tree| walk(tree, path, found)),
+            }
+        }
+        walk(&item.tree, &[], &mut self.0);
+    }
+
+    fn visit_path(&mut self, path: &'a syn::Path) {
+        let names: Vec<String> = path.segments.iter().map(|segment| segment.ident.to_string()).collect();
+        if names.first().is_some_and(|first| first == "crate" || first == "super") {
+            self.0.push(names);
+        }
+        syn::visit::visit_path(self, path);
+    }
+}
+
+fn paths(file: &str) -> Vec<Vec<String>> {
+    let path = format!("{}/src/{file}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let mut found = Paths::default();
+    found.visit_file(&syn::parse_file(&text).expect("a file of this crate"));
+    found.0
+}
+
+#[test]
+fn the_checker_imports_no_pass() {
+    let found = paths("prove.rs");
+    assert!(found.iter().any(|path| path.join("::") == "crate::formulate"), "the visitor reads imports");
+    for path in found.iter().filter(|path| path[0] == "crate") {
+        let module = path[1].as_str();
+        assert!(!CHECKED.contains(&module), "prove.rs uses {}", path.join("::"));
+        if module == "ir" {
+            let of = path[2].as_str();
+            let known = OF_THE_REPRESENTATION.contains(&of) || ["Reading", "Ref"].contains(&of);
+            assert!(known, "prove.rs uses {}: is it a pass?", path.join("::"));
+        }
+    }
+}
+
+/// Nor do the formulas that it compares with, from which the seven steps are compiled.
+#[test]
+fn the_formulas_import_no_pass() {
+    let folder = format!("{}/src/formulate", env!("CARGO_MANIFEST_DIR"));
+    let mut files = 0;
+    for entry in std::fs::read_dir(folder).expect("the formulas") {
+        let name = entry.expect("an entry").file_name().into_string().expect("a name");
+        for path in paths(&format!("formulate/{name}")).iter().filter(|path| path[0] == "crate" && path.len() > 1) {
+            assert!(!CHECKED.contains(&path[1].as_str()), "{name} uses {}", path.join("::"));
+        }
+        files += 1;
+    }
+    assert!(files > 5, "{files}");
+}
