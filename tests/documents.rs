@@ -439,6 +439,46 @@ fn guides_name_what_is_there() {
     }
 }
 
+/// The Rust files of the repository, from its root, whose text says one of these words.
+fn files_that_say(words: &[&str]) -> Vec<String> {
+    let mut sources = Vec::new();
+    files_below(root(), ".rs", &mut sources);
+    sources.retain(|path| words.iter().any(|word| read(path).contains(word)));
+    let inside = |path: &PathBuf| path.strip_prefix(root()).expect("below the root").to_string_lossy().replace('\\', "/");
+    let mut names: Vec<String> = sources.iter().map(inside).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn no_test_asks_the_clock_but_to_print() {
+    let mut found = files_that_say(&[concat!("Instant", "::now"), concat!("System", "Time"), concat!(".elap", "sed()")]);
+    found.retain(|name| name.split('/').any(|folder| folder == "tests") || name.ends_with("tests.rs"));
+    assert_eq!(found, ["tests/compile_time.rs"]);
+}
+
+#[test]
+fn unsafe_stands_in_one_module() {
+    let mut found = files_that_say(&[concat!("allow(", "unsafe_code)"), concat!("expect(", "unsafe_code)")]);
+    found.retain(|name| name.starts_with("rne-") || name.starts_with("src/"));
+    assert_eq!(found, ["rne-runtime/src/batch/x86_register.rs"]);
+}
+
+#[test]
+fn the_compiler_opens_no_file_and_prints_nothing() {
+    let mut sources = Vec::new();
+    files_below(&root().join("rne-codegen/src"), ".rs", &mut sources);
+    for source in sources {
+        let text = read(&source);
+        // tests read robots and print figures
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        let is_test = source.components().any(|part| part.as_os_str() == "tests") || source.ends_with("tests.rs");
+        for word in ["std::fs", "std::env", "println!", "eprint!", "dbg!"] {
+            assert!(is_test || !code.contains(word), "{}: {word}", source.display());
+        }
+    }
+}
+
 #[test]
 fn the_readme_is_short() {
     let lines = read(&root().join("README.md")).lines().count();
