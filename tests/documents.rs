@@ -1,7 +1,7 @@
 //! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
 //!
-//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`) stays as it
-//! is: `cargo xtask performance` writes it. And what the documents lead to is there: links, files, tests.
+//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
+//! stays as it is: `cargo xtask performance` writes it. And what the documents lead to is there: links, files, tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -100,8 +100,8 @@ fn table(document: &str, heading: &str) -> Vec<(String, BTreeMap<String, String>
     rows.map(|row| (row[0].clone(), titles.iter().cloned().zip(row).skip(1).collect())).collect()
 }
 
-/// What a call of two arms costs beside what it costs the best peer, by the tables that `benches/peers/run` and the certificate
-/// have written.
+/// What a call of two arms costs beside what it costs the best peer, by the tables that `benches/peers/run` and the
+/// certificate have written.
 fn headline() -> String {
     /// Rows of the table of times that are other functions, or parts of one.
     const OTHER_FUNCTIONS: &[&str] = &["pin_nle", "pin_gravity", "pin_crba", "pin_aba", "pin_rnea_deriv"];
