@@ -6,7 +6,7 @@
 //!
 //! ```sh
 //! cargo install cargo-mutants --locked
-//! cargo mutants --file rne-codegen/src/ir/graph.rs           # one file, with the tests that compare and prove
+//! cargo mutants --file rne-codegen/src/ir/graph.rs        # one file, with the tests that compare and prove
 //! cargo mutants --in-diff <(git diff main)                # what a change has touched
 //! cargo mutants --list --file 'rne-codegen/src/**/*.rs'   # which there are
 //! ```
