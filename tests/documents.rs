@@ -1,9 +1,9 @@
 //! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
 //!
-//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`) stays as it
-//! is: `cargo xtask performance` writes it.
+//! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
+//! stays as it is: `cargo xtask performance` writes it. And what the documents lead to is there: links, files, tests.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
@@ -12,8 +12,18 @@ use rne_codegen::plan::{self, Choice, PlanFile};
 use rne_codegen::{Capability, Form, Function, Operations, Program, Step, compile};
 use rne_model::{JointKind, Robot};
 
-/// The documents with blocks.
-const DOCUMENTS: &[&str] = &["README.md", "docs/performance.md"];
+/// The documents with blocks, and which blocks these are; measured ones do not count.
+const DOCUMENTS: &[(&str, &[&str])] = &[
+    ("README.md", &["headline", "example", "twelve_lines"]),
+    ("docs/firmware.md", &["torque", "config", "embedded"]),
+    ("docs/functions.md", &["functions"]),
+    ("docs/performance.md", &["operations", "tricks"]),
+    ("docs/teaching.md", &["code"]),
+    ("robots/README.md", &["robots"]),
+];
+
+/// The documents that say where things stand: what they name must exist.
+const GUIDES: &[&str] = &["ARCHITECTURE.md", "CONTRIBUTING.md"];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -51,18 +61,9 @@ fn block(name: &str) -> String {
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
-        "code" => {
-            let robot = robot(&root().join("robots/puma560.yaml"));
-            let program = inverse_dynamics(&robot);
-            let steps = Step::ALL.iter().take(5).map(|&step| {
-                listing(&robot, &program, Listing { joint: Some(3), step: Some(step), ..Listing::default() })
-            });
-            let code: Vec<String> = steps.filter(|text| !text.trim().is_empty()).collect();
-            let code = code.join("\n");
-            let emitted = emit::rust_file(&robot, &[program]);
-            assert!(emitted.contains(&code), "the heading of the block says where it is from");
-            format!("```rust\n{code}```\n")
-        }
+        "headline" => headline(),
+        "twelve_lines" => code(2),
+        "code" => code(5),
         "robots" => robots(),
         "functions" => functions(),
         "operations" => operations(),
@@ -70,6 +71,95 @@ fn block(name: &str) -> String {
         "embedded" => embedded(),
         name => panic!("no block is called `{name}`"),
     }
+}
+
+/// What is emitted for the first steps of joint 3 of the PUMA 560.
+fn code(steps: usize) -> String {
+    let robot = robot(&root().join("robots/puma560.yaml"));
+    let program = inverse_dynamics(&robot);
+    let steps = Step::ALL
+        .iter()
+        .take(steps)
+        .map(|&step| listing(&robot, &program, Listing { joint: Some(3), step: Some(step), ..Listing::default() }));
+    let code: Vec<String> = steps.filter(|text| !text.trim().is_empty()).collect();
+    let code = code.join("\n");
+    let emitted = emit::rust_file(&robot, &[program]);
+    assert!(emitted.contains(&code), "the heading of the block says where it is from");
+    format!("```rust\n{code}```\n")
+}
+
+/// The rows of the table below a heading, by the names in their first column: name, then column, then cell.
+fn table(document: &str, heading: &str) -> Vec<(String, BTreeMap<String, String>)> {
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().replace("**", "")).collect()
+    };
+    let (_, below) = document.split_once(&format!("\n{heading}")).unwrap_or_else(|| panic!("{heading}"));
+    let mut lines = below.lines().skip_while(|line| !line.starts_with('|')).take_while(|line| line.starts_with('|'));
+    let titles = cells(lines.next().expect("a table"));
+    let rows = lines.skip(1).map(cells);
+    rows.map(|row| (row[0].clone(), titles.iter().cloned().zip(row).skip(1).collect())).collect()
+}
+
+/// What a call of two arms costs beside what it costs the best peer, by the tables that `benches/peers/run` and the
+/// certificate have written.
+fn headline() -> String {
+    /// Rows of the table of times that are other functions, or parts of one.
+    const OTHER_FUNCTIONS: &[&str] = &["pin_nle", "pin_gravity", "pin_crba", "pin_aba", "pin_rnea_deriv"];
+    let peers = read(&root().join("benches/peers/README.md"));
+    let (operations, times) = (table(&peers, "### Operations"), table(&peers, "### Independent calls"));
+    let number = |cell: &str| -> f64 {
+        let first = cell.rsplit("= ").next().and_then(|text| text.split([' ', ',']).next()).unwrap_or_default();
+        first.parse().unwrap_or_else(|error| panic!("`{cell}`: {error}"))
+    };
+    let robots = ["puma560", "panda"];
+    let cell = |rows: &[(String, BTreeMap<String, String>)], name: &str, robot: &str| {
+        let (_, row) = rows.iter().find(|(other, _)| other == name).unwrap_or_else(|| panic!("no row {name}"));
+        number(&row[robot])
+    };
+    let of = |rows: &[(String, BTreeMap<String, String>)], name: &str| {
+        robots.map(|robot| cell(rows, name, robot).to_string()).join(" | ")
+    };
+    let best = |rows: &[(String, BTreeMap<String, String>)]| {
+        let is_peer =
+            |name: &str| !name.starts_with("rne") && !name.starts_with("trig_only") && !OTHER_FUNCTIONS.contains(&name);
+        robots.map(|robot| {
+            let peers = rows.iter().filter(|(name, row)| is_peer(name) && !row[robot].is_empty());
+            let (name, row) = peers
+                .min_by(|(_, a), (_, b)| number(&a[robot]).total_cmp(&number(&b[robot])))
+                .expect("there are peers");
+            format!("{} (`{name}`)", number(&row[robot]))
+        })
+    };
+    let certificate = read(&root().join("docs/embedded.md"));
+    let (_, m4f) = certificate.split_once("\n## Cortex-M4F\n").expect("the first board");
+    let instructions = |form: &str| {
+        let find = |robot| {
+            let row = m4f.lines().find_map(|line| line.strip_prefix(&format!("| {robot} | {form} | ")));
+            row.and_then(|row| row.split(" | ").next()).unwrap_or_else(|| panic!("no row of {robot}, {form}"))
+        };
+        robots.map(find).join(" | ")
+    };
+    format!(
+        "| `inverse_dynamics`, one call | PUMA 560 | Franka Panda |\n|---|---:|---:|\n\
+         | operations: `reduced` | {} |\n\
+         | operations: best peer | {} |\n\
+         | operations: `seven_steps` | {} |\n\
+         | ns: `reduced`, `-C target-cpu=native` | {} |\n\
+         | ns: `reduced`, default target | {} |\n\
+         | ns: best peer, `-march=native` | {} |\n\
+         | ns: Pinocchio's RNEA | {} |\n\
+         | instructions on a Cortex-M4F, `f32`: `reduced` | {} |\n\
+         | instructions on a Cortex-M4F, `f32`: `seven_steps` | {} |\n",
+        of(&operations, "rne, reduced"),
+        best(&operations).join(" | "),
+        of(&operations, "rne, seven_steps"),
+        of(&times, "rne_reduced_native"),
+        of(&times, "rne_reduced_default"),
+        best(&times).join(" | "),
+        of(&times, "pin_rnea"),
+        instructions("reduced"),
+        instructions("seven_steps"),
+    )
 }
 
 /// The counts of a form by the plan beside the robot file.
@@ -100,7 +190,7 @@ fn robots() -> String {
         let file = &robot.name;
         let _ = writeln!(
             text,
-            "| [{title}](robots/{file}.yaml) | {joints} | {} | {} | {} | {} | {} | {} → {} |",
+            "| [{title}]({file}.yaml) | {joints} | {} | {} | {} | {} | {} | {} → {} |",
             counts.mul,
             counts.add,
             counts.total(),
@@ -222,9 +312,9 @@ fn tricks() -> String {
     text
 }
 
-/// A document with every block as it should be.
-fn renewed(document: &str) -> String {
-    let mut text = String::new();
+/// A document with every block as it should be, and the names of the blocks.
+fn renewed(document: &str) -> (String, Vec<String>) {
+    let (mut text, mut names) = (String::new(), Vec::new());
     let mut lines = document.lines();
     while let Some(line) = lines.next() {
         text.push_str(line);
@@ -237,26 +327,164 @@ fn renewed(document: &str) -> String {
                     text.push_str(line);
                     text.push('\n');
                 }),
-                name => text.push_str(&block(name)),
+                name => {
+                    text.push_str(&block(name));
+                    names.push(name.to_owned());
+                }
             }
             text.push_str("<!-- end -->\n");
         }
     }
-    text
+    (text, names)
 }
 
 #[test]
 fn documents_say_what_the_code_prints() {
-    for name in DOCUMENTS {
+    for (name, blocks) in DOCUMENTS {
         let path = root().join(name);
         let document = read(&path);
-        let renewed = renewed(&document);
+        let (renewed, found) = renewed(&document);
+        assert_eq!(found, *blocks, "the blocks of {name}");
         if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
             std::fs::write(&path, &renewed).expect("a writable file");
         } else {
             assert_eq!(document, renewed, "{}: RNE_WRITE_DOCUMENTS=1 cargo test --test documents", path.display());
         }
     }
+}
+
+/// The files below a folder whose names end so, what is built and hidden left out.
+fn files_below(folder: &Path, ending: &str, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).expect("a folder") {
+        let path = entry.expect("an entry").path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            files_below(&path, ending, found);
+        } else if name.ends_with(ending) {
+            found.push(path);
+        }
+    }
+}
+
+/// The headings of a page as GitHub names them in addresses.
+fn anchors(page: &str) -> BTreeSet<String> {
+    let mut anchors = BTreeSet::new();
+    let mut is_code = false;
+    for line in page.lines() {
+        is_code ^= line.starts_with("```");
+        let title = line.trim_start_matches('#');
+        if is_code || !line.starts_with('#') || !title.starts_with(' ') {
+            continue;
+        }
+        let kept = title.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+        let anchor: String = kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect();
+        let again = (1..).map(|time| format!("{anchor}-{time}")).find(|name| !anchors.contains(name));
+        let name = if anchors.contains(&anchor) { again.expect("some number is free") } else { anchor };
+        anchors.insert(name);
+    }
+    anchors
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut pages = Vec::new();
+    files_below(root(), ".md", &mut pages);
+    let mut links = 0;
+    for page in &pages {
+        let text = read(page);
+        for link in text.split("](").skip(1).filter_map(|rest| rest.split([')', ' ']).next()) {
+            if link.contains("://") {
+                continue;
+            }
+            links += 1;
+            let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { page.clone() } else { page.with_file_name(file) };
+            assert!(target.exists(), "{}: `{link}` leads nowhere", page.display());
+            if !anchor.is_empty() {
+                assert!(anchors(&read(&target)).contains(anchor), "{}: `{link}` has no such heading", page.display());
+            }
+        }
+    }
+    assert!(links > 80, "{links} links of {} pages", pages.len());
+}
+
+/// Files and tests that the guides name are there. A test is what has three underscores or more; a name in capitals
+/// (`robots/NAME.yaml`) stands for any.
+#[test]
+fn guides_name_what_is_there() {
+    let mut sources = Vec::new();
+    files_below(root(), ".rs", &mut sources);
+    let code: String = sources.iter().map(|path| read(path)).collect();
+    for guide in GUIDES {
+        let text = read(&root().join(guide));
+        let mut named = 0;
+        let mut is_code = false;
+        for line in text.lines() {
+            is_code ^= line.starts_with("```");
+            if is_code {
+                continue;
+            }
+            for word in line.split('`').skip(1).step_by(2) {
+                let is_name = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+                if word.chars().all(is_name) && word.matches('_').count() >= 3 {
+                    assert!(code.contains(&format!("fn {word}(")), "{guide}: there is no test `{word}`");
+                    named += 1;
+                } else if word.contains('/') && word.chars().all(|c| is_name(c) || "/.-".contains(c)) {
+                    assert!(root().join(word).exists(), "{guide}: there is no `{word}`");
+                    named += 1;
+                }
+            }
+        }
+        assert!(named > 30, "{guide} names {named} files and tests");
+    }
+}
+
+/// The Rust files of the repository, from its root, whose text says one of these words.
+fn files_that_say(words: &[&str]) -> Vec<String> {
+    let mut sources = Vec::new();
+    files_below(root(), ".rs", &mut sources);
+    sources.retain(|path| words.iter().any(|word| read(path).contains(word)));
+    let inside =
+        |path: &PathBuf| path.strip_prefix(root()).expect("below the root").to_string_lossy().replace('\\', "/");
+    let mut names: Vec<String> = sources.iter().map(inside).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn no_test_asks_the_clock_but_to_print() {
+    let mut found =
+        files_that_say(&[concat!("Instant", "::now"), concat!("System", "Time"), concat!(".elap", "sed()")]);
+    found.retain(|name| name.split('/').any(|folder| folder == "tests") || name.ends_with("tests.rs"));
+    assert_eq!(found, ["tests/compile_time.rs"]);
+}
+
+#[test]
+fn unsafe_stands_in_one_module() {
+    let mut found = files_that_say(&[concat!("allow(", "unsafe_code)"), concat!("expect(", "unsafe_code)")]);
+    found.retain(|name| name.starts_with("rne-") || name.starts_with("src/"));
+    assert_eq!(found, ["rne-runtime/src/batch/x86_register.rs"]);
+}
+
+#[test]
+fn the_compiler_opens_no_file_and_prints_nothing() {
+    let mut sources = Vec::new();
+    files_below(&root().join("rne-codegen/src"), ".rs", &mut sources);
+    for source in sources {
+        let text = read(&source);
+        // tests read robots and print figures
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+        let is_test = source.components().any(|part| part.as_os_str() == "tests") || source.ends_with("tests.rs");
+        for word in ["std::fs", "std::env", "println!", "eprint!", "dbg!"] {
+            assert!(is_test || !code.contains(word), "{}: {word}", source.display());
+        }
+    }
+}
+
+#[test]
+fn the_readme_is_short() {
+    let lines = read(&root().join("README.md")).lines().count();
+    assert!(lines <= 200, "README.md has {lines} lines: long tables stand in docs/");
 }
 
 #[test]
