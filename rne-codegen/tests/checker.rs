@@ -49,7 +49,7 @@ fn paths(file: &str) -> Vec<Vec<String>> {
 fn the_checker_imports_no_pass() {
     let found = paths("prove.rs");
     assert!(found.iter().any(|path| path.join("::") == "crate::formulate"), "the visitor reads imports");
-    for path in found.iter().filter(|path| path[0] == "crate") {
+    for path in found.iter().filter(|path| path[0] == "crate" && path.len() > 1) {
         let module = path[1].as_str();
         assert!(!CHECKED.contains(&module), "prove.rs uses {}", path.join("::"));
         if module == "ir" {
