@@ -33,10 +33,7 @@ const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 const SINGULAR: f64 = 0.1;
 
 const fn largest_rounding(function: Function) -> f64 {
-    match function {
-        Function::ForwardDynamics => LARGEST_ROUNDING_OF_ACCELERATIONS,
-        _ => LARGEST_ROUNDING,
-    }
+    if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 
 /// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
@@ -61,15 +58,7 @@ impl<'r> Reference<'r> {
         function: Function,
         seven_steps: impl Fn(Function) -> Result<Program, CompileError>,
     ) -> Result<Self, CompileError> {
-        let is_part = matches!(
-            function,
-            Function::GravityTorques
-                | Function::BiasTorques
-                | Function::MassMatrix
-                | Function::CoriolisMatrix
-                | Function::InverseDynamicsDerivatives
-        );
-        let motion = if is_part { Some(seven_steps(Function::InverseDynamics)?) } else { None };
+        let motion = if function.entry().is_of_motion { Some(seven_steps(Function::InverseDynamics)?) } else { None };
         Ok(Self { robot, faithful: seven_steps(function)?, motion })
     }
 
@@ -393,7 +382,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         };
         // nor has one that is singular but for rounding
         let is_regular = errors.single_of_seven_steps < SINGULAR;
-        if is_regular || program.function != Function::ForwardDynamics {
+        if is_regular || !program.function.returns_accelerations() {
             all.push(errors);
         }
     }
