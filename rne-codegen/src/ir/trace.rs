@@ -72,6 +72,12 @@ impl Trace {
         self.births.resize_with(nodes, || birth);
     }
 
+    /// Constants and arguments belong to no step from now on.
+    pub(crate) fn forget_births_of_leaves(&mut self, graph: &Graph) {
+        let leaves = self.births.iter_mut().zip(&graph.nodes).filter(|(_, node)| !node.op.is_operation());
+        leaves.for_each(|(birth, _)| *birth = None);
+    }
+
     /// Remembers as what a constant enters a new node: the same number may be a length here and a mass there.
     pub(super) fn record_roles(&mut self, graph: &Graph, at: Ref, outcome: Outcome, operands: [Symbol<'_>; 2]) {
         if outcome != Outcome::Computed {

@@ -75,7 +75,10 @@ impl Frame {
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
-        Some((names, builder.finish(outputs).numbered()))
+        let mut written = builder.finish(outputs);
+        // a number of the plan means what it is called, or nothing, wherever it is first used
+        written.trace.forget_births_of_leaves(&written.graph);
+        Some((names, written.numbered()))
     }
 }
 
