@@ -52,7 +52,7 @@ fn robot(seed: u64) -> Robot {
 
 fn arm(seed: u64, form: Form) -> Arm {
     let (robot, maker) = (robot(seed), Maker::Code(form));
-    if seed.is_multiple_of(CHOSEN) && robot.dof() < 6 {
+    if seed.is_multiple_of(CHOSEN) && robot.dof() <= if is_exhaustive() { 5 } else { 2 } {
         Arm::new(&robot, maker)
     } else {
         Arm::by_no_choice(&robot, maker)
