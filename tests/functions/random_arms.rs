@@ -115,7 +115,7 @@ fn is_exhaustive() -> bool {
 fn is_asked_for(seed: u64, form: Form) -> bool {
     let dof = robot(seed).dof();
     let rarity = SOME.iter().find(|(most, _)| dof <= *most).map_or(1, |&(_, rarity)| rarity);
-    // each program of the reduced form is proved at thousands of points
+    // a program of the reduced form is proved as well, which takes longer than to write it
     let rarity = if form == Form::SevenSteps { rarity } else { 3 * rarity };
     is_exhaustive() || seed.is_multiple_of(rarity) || TWICE.contains(&seed)
 }
