@@ -67,7 +67,7 @@ pub(crate) fn yaml(seed: u64) -> String {
 
 fn joint(rng: &mut Rng, kind: Kind, index: usize, slides_first: usize, turned: usize) -> String {
     let is_prismatic = match kind {
-        Kind::Coaxial => (index + slides_first) % 2 == 0,
+        Kind::Coaxial => (index + slides_first).is_multiple_of(2),
         _ => rng.usize(..4) == 0,
     };
     let length = |rng: &mut Rng, rarity: usize| if rng.usize(..rarity) == 0 { decimal(rng, 0.5) } else { 0.0 };
