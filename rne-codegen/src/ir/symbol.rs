@@ -14,7 +14,7 @@ pub(crate) struct Symbol<'s> {
     pub(crate) causes: CausesId,
 }
 
-impl<'s> Symbol<'s> {
+impl Symbol<'_> {
     /// Whether it is the number 0.
     pub(crate) fn is_zero(self) -> bool {
         self.builder.graph.borrow().is_zero(self.at)

@@ -19,8 +19,8 @@ fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (
     let theta = |at: usize| rows[first..=at].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
     let reversed = rows[first].reversed;
     let mut sum = position(first);
-    for at in first + 1..=last {
-        sum = sum + position(at).signed(rows[at].reversed != reversed);
+    for (at, row) in rows.iter().enumerate().take(last + 1).skip(first + 1) {
+        sum = sum + position(at).signed(row.reversed != reversed);
         // without the constant part, if that has one
         let kind = if theta(at).quarters().is_some() { Quantity::GroupAngle } else { Quantity::GroupPosition };
         builder.name(group(kind, Quantity::Angle, at), sum);
