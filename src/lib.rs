@@ -23,20 +23,7 @@
 //!
 //! One trait per capability, generic over the [`Scalar`]: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
 //!
-//! | trait | methods |
-//! |---|---|
-//! | [`InverseDynamics`] | torques from motion, with or without a [`Wrench`] at the tip; gravity torques; bias torques |
-//! | [`MassMatrix`] | M(q), symmetric to the last bit |
-//! | [`CoriolisMatrix`] | C(q, q̇) of Christoffel: Ṁ - 2C is skew |
-//! | [`ForwardDynamics`] | accelerations from torques |
-//! | [`Kinematics`] | tip [`Pose`], link poses, Jacobian, J̇ q̇ |
-//! | [`Energy`] | kinetic and potential energy |
-//! | [`Regressor`] | torques per inertial parameter |
-//! | [`InverseDynamicsDerivatives`] | ∂τ/∂q and ∂τ/∂q̇ |
-//! | [`JointWrenches`] | what each link exerts on the next: bearing loads, base reaction |
-//! | [`MovingBase`] | torques on a base that moves ([`BaseMotion`]): a vehicle, a ship |
-//! | [`Actuation`] | what rotors behind gears and friction add |
-//! | [`BatchInverseDynamics`] | torques of many states at once, `f32` or `f64`, on the widest vector unit of the processor ([`batch`]) |
+#![doc = include_str!("../docs/capabilities.md")]
 //!
 //! # A robot at run time
 //!
@@ -116,10 +103,7 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]
-pub use rne_macro::{
-    Actuation, BatchInverseDynamics, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor,
-};
+pub use rne_macro::*;
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use rne::Wrench;
-use rne_codegen::{Argument, Function};
+use rne_codegen::{Answer, Argument, Labels, MatrixUnit, Shape};
 use rne_model::{JointKind, Robot};
 
 use crate::layout::{Align, columns, left, width};
@@ -23,58 +23,45 @@ const PARAMETERS: [&str; 10] = ["m", "m cx", "m cy", "m cz", "Jxx", "Jxy", "Jxz"
 /// The numbers of a function as text.
 pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#} of {}\n", state.function, robot.name);
-    let dof = robot.dof();
     let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
-    let kinds = Kinds::of(robot);
-    let matrix = |text: &mut String, about: &str, numbers: &[f64]| {
-        Table { about, rows: &joints, columns: &joints, numbers, digits: DIGITS }.write(text);
-    };
-    match state.function {
-        Function::MassMatrix => matrix(&mut text, kinds.mass(), numbers),
-        Function::CoriolisMatrix => matrix(&mut text, kinds.per_rate(), numbers),
-        Function::InverseDynamicsDerivatives => {
-            let (dq, dqd) = numbers.split_at(dof * dof);
-            matrix(&mut text, &format!("∂τ/∂q, {}", kinds.per_position()), dq);
-            text.push('\n');
-            matrix(&mut text, &format!("∂τ/∂q̇, {}", kinds.per_rate()), dqd);
+    match state.function.answer() {
+        Answer::Torques | Answer::Accelerations => per_joint(&mut text, robot, state, numbers),
+        Answer::Number(unit) => {
+            let number = numbers.iter().copied().map(exact).collect::<String>();
+            let _ = writeln!(text, "  {number} {unit}");
         }
-        Function::Jacobian => {
-            let rows = ["vx", "vy", "vz", "wx", "wy", "wz"].map(str::to_owned);
-            let about = "velocity of the tip per joint velocity, world axes: v in m/s, w in rad/s";
-            Table { about, rows: &rows, columns: &joints, numbers, digits: DIGITS }.write(&mut text);
+        Answer::Tables(tables) => {
+            let mut numbers = numbers;
+            for (index, table) in tables.iter().enumerate() {
+                if index > 0 {
+                    text.push('\n');
+                }
+                let labels = |labels: &Labels| match labels {
+                    Labels::Joints => joints.clone(),
+                    Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
+                };
+                let (rows, columns) = (labels(&table.rows), labels(&table.columns));
+                let (of_table, rest) = numbers.split_at((rows.len() * columns.len()).min(numbers.len()));
+                numbers = rest;
+                let units = table.unit.map(|unit| Kinds::of(robot).units(unit));
+                let about = [Some(table.about).filter(|about| !about.is_empty()), units];
+                let about = about.into_iter().flatten().collect::<Vec<_>>().join(", ");
+                Table { about: &about, rows: &rows, columns: &columns, numbers: of_table, digits: DIGITS }
+                    .write(&mut text);
+            }
         }
-        Function::JacobianRateTimesVelocity => {
-            let rows = ["linear, m/s²", "angular, rad/s²"].map(str::to_owned);
-            let about = "acceleration of the tip where q̈ = 0, world axes";
-            Table { about, rows: &rows, columns: &axes(), numbers, digits: DIGITS }.write(&mut text);
-        }
-        Function::ForwardKinematics => poses(&mut text, &["tip".to_owned()], numbers),
-        Function::LinkPoses => poses(&mut text, &joints, numbers),
-        Function::JointWrenches => {
-            let columns = ["fx", "fy", "fz", "nx", "ny", "nz"].map(str::to_owned);
-            let about = "what the link before exerts at each joint, axes fixed to the link, z along the joint: f in N, n in N m";
-            Table { about, rows: &joints, columns: &columns, numbers, digits: DIGITS }.write(&mut text);
-        }
-        Function::Regressor => regressor(&mut text, &joints, numbers),
-        Function::KineticEnergy | Function::PotentialEnergy => {
-            let energy = numbers.iter().copied().map(exact).collect::<String>();
-            let _ = writeln!(text, "  {energy} J");
-        }
-        Function::InverseDynamics
-        | Function::InverseDynamicsWithWrench
-        | Function::InverseDynamicsSc
-        | Function::GravityTorques
-        | Function::BiasTorques
-        | Function::ForwardDynamics
-        | Function::InverseDynamicsOnMovingBase
-        | Function::ActuatorTorques => per_joint(&mut text, robot, state, numbers),
+        Answer::Poses => match state.function.shape() {
+            Shape::Array(..) => poses(&mut text, &joints, numbers),
+            _ => poses(&mut text, &["tip".to_owned()], numbers),
+        },
+        Answer::PerParameter => regressor(&mut text, &joints, numbers),
     }
     text
 }
 
 /// State and result, a line per joint, with all digits.
 fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
-    let forward = state.function == Function::ForwardDynamics;
+    let forward = state.function.returns_accelerations();
     let takes = |argument| state.function.takes(argument);
     let all = [
         ("q", &state.q[..], takes(Argument::Positions)),
@@ -222,27 +209,19 @@ impl Kinds {
         }
     }
 
-    const fn mass(&self) -> &'static str {
-        match self {
-            Self::Revolute => "kg m²",
-            Self::Prismatic => "kg",
-            Self::Both => "kg m² between revolute joints, kg between prismatic ones, kg m between the kinds",
-        }
-    }
-
-    const fn per_position(&self) -> &'static str {
-        match self {
-            Self::Revolute => "N m/rad",
-            Self::Prismatic => "N/m",
-            Self::Both => "N m or N of the row per rad or m of the column",
-        }
-    }
-
-    const fn per_rate(&self) -> &'static str {
-        match self {
-            Self::Revolute => "N m s/rad",
-            Self::Prismatic => "N s/m",
-            Self::Both => "N m or N of the row per rad/s or m/s of the column",
+    const fn units(&self, of: MatrixUnit) -> &'static str {
+        match (of, self) {
+            (MatrixUnit::Mass, Self::Revolute) => "kg m²",
+            (MatrixUnit::Mass, Self::Prismatic) => "kg",
+            (MatrixUnit::Mass, Self::Both) => {
+                "kg m² between revolute joints, kg between prismatic ones, kg m between the kinds"
+            }
+            (MatrixUnit::PerPosition, Self::Revolute) => "N m/rad",
+            (MatrixUnit::PerPosition, Self::Prismatic) => "N/m",
+            (MatrixUnit::PerPosition, Self::Both) => "N m or N of the row per rad or m of the column",
+            (MatrixUnit::PerRate, Self::Revolute) => "N m s/rad",
+            (MatrixUnit::PerRate, Self::Prismatic) => "N s/m",
+            (MatrixUnit::PerRate, Self::Both) => "N m or N of the row per rad/s or m/s of the column",
         }
     }
 }

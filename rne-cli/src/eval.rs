@@ -1,10 +1,11 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
+use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
 use rne::{DynArm, DynTrace};
-use rne_codegen::{Function, Layout, Record};
+use rne_codegen::{Answer, Argument, Function, Layout, Record};
 use rne_model::Robot;
 use serde::Serialize;
 use serde_json::Value;
@@ -17,30 +18,7 @@ use crate::{answer, arguments, robot_file};
 
 /// Compute a function at one state, by the runtime; --trace shows every vector of every step
 #[derive(Args)]
-#[command(after_help = "\
-Examples:
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace --axes lecture
-  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --wrench 3,-2,0,0,0,0.5 --json
-  rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 --qd 0,0 --tau 20,4
-  rne eval robots/planar2.yaml --function jacobian --q 0.6,-1.1
-  rne eval robots/planar2.yaml --function inverse_dynamics_on_moving_base --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
-      --base-omega 0,0,0.2 --base-omega-dot 0,0,0 --base-acceleration 1,0,0
-
-One number per joint, base to tip: rad for a revolute, m for a prismatic joint; pi/2 and 'deg(30)' are numbers.
-
-Every function takes exactly its arguments, and nothing is assumed to be zero:
-  --q               gravity_torques, mass_matrix, forward_kinematics, link_poses, jacobian, potential_energy
-  --q --qd          bias_torques, coriolis_matrix, jacobian_rate_times_velocity, kinetic_energy
-  --q --qd --qdd    inverse_dynamics, inverse_dynamics_sc (sines and cosines of --q), regressor,
-                    inverse_dynamics_derivatives, joint_wrenches;
-                    with --wrench inverse_dynamics_with_wrench,
-                    with the --base-… options inverse_dynamics_on_moving_base
-  --q --qd --tau    forward_dynamics
-  --qd --qdd        actuator_torques; zero where no joint has a motor
-
-Tables are rounded for reading; --json has every digit, in the shape that the Rust function returns.")]
+#[command(after_help = help())]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -86,9 +64,66 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
+/// What stands below the options: examples, and which function takes what.
+fn help() -> String {
+    use Argument::{Positions, Rates};
+    let of_positions = functions_of("--q", &[Positions]);
+    let of_rates = functions_of("--q --qd", &[Positions, Rates]);
+    format!(
+        "\
+Examples:
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace --axes lecture
+  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --wrench 3,-2,0,0,0,0.5 --json
+  rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 --qd 0,0 --tau 20,4
+  rne eval robots/planar2.yaml --function jacobian --q 0.6,-1.1
+  rne eval robots/planar2.yaml --function inverse_dynamics_on_moving_base --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
+      --base-omega 0,0,0.2 --base-omega-dot 0,0,0 --base-acceleration 1,0,0
+
+One number per joint, base to tip: rad for a revolute, m for a prismatic joint; pi/2 and 'deg(30)' are numbers.
+
+Every function takes exactly its arguments, and nothing is assumed to be zero:
+{of_positions}
+{of_rates}
+  --q --qd --qdd    inverse_dynamics, inverse_dynamics_sc (sines and cosines of --q), regressor,
+                    inverse_dynamics_derivatives, joint_wrenches;
+                    with --wrench inverse_dynamics_with_wrench,
+                    with the --base-… options inverse_dynamics_on_moving_base
+  --q --qd --tau    forward_dynamics
+  --qd --qdd        actuator_torques; zero where no joint has a motor
+
+Tables are rounded for reading; --json has every digit, in the shape that the Rust function returns."
+    )
+}
+
+/// The functions with exactly these arguments, on lines that begin with the options or below them.
+fn functions_of(options: &str, arguments: &[Argument]) -> String {
+    const INDENT: usize = 20;
+    const WIDTH: usize = 108;
+    let mut text = format!("  {options:<18}");
+    let mut column = INDENT;
+    let functions = Function::ALL.iter().filter(|function| function.arguments() == arguments);
+    for (index, function) in functions.enumerate() {
+        if index > 0 {
+            text.push(',');
+            if column + 2 + function.name().len() > WIDTH {
+                let _ = write!(text, "\n{:INDENT$}", "");
+                column = INDENT;
+            } else {
+                text.push(' ');
+                column += 2;
+            }
+        }
+        text.push_str(function.name());
+        column += function.name().len();
+    }
+    text
+}
+
 /// The answer as JSON has it.
 #[derive(Serialize)]
-struct Answer<'a> {
+struct Reply<'a> {
     result: Value,
     #[serde(skip_serializing_if = "Option::is_none")]
     trace: Option<Vec<Entry<'a>>>,
@@ -123,7 +158,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.json {
         let trace = links.as_ref().map(|links| worksheet::entries(&robot, links));
         let result = grouped(&function.layout(robot.dof()), &numbers);
-        return Outcome::json(&Answer { result, trace });
+        return Outcome::json(&Reply { result, trace });
     }
     let mut text = String::new();
     if let Some(links) = links {
@@ -172,12 +207,10 @@ fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
         let name = robot.joints.get(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)
     };
-    if function == Function::ForwardDynamics {
-        return "the accelerations are not finite: the mass matrix is singular (a joint moves no mass), or the state is too \
-                large"
-            .to_owned();
+    if let Some(meaning) = function.divides() {
+        return meaning.to_owned();
     }
-    if function.returns_torques() || function == Function::ActuatorTorques {
+    if *function.answer() == Answer::Torques {
         return format!("the torque of {} overflows: the state is too large", joint(index));
     }
     format!("{function} overflows: the state is too large")

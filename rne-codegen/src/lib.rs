@@ -27,7 +27,10 @@ use std::fmt;
 
 use rne_model::Robot;
 
-pub use function::{Argument, Capability, Form, Function, Layout, Record, UnknownName};
+pub use function::{
+    Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
+    UnknownName,
+};
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use ir::name::{By, Name};
@@ -240,7 +243,7 @@ impl fmt::Display for CompileError {
             Self::Imprecise { function, rounding, suspect } => {
                 let what = match function {
                     _ if function.returns_torques() => "torque",
-                    Function::ForwardDynamics => "acceleration",
+                    _ if function.returns_accelerations() => "acceleration",
                     _ => "number that it returns",
                 };
                 write!(

@@ -34,10 +34,7 @@ const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 const SINGULAR: f64 = 0.1;
 
 const fn largest_rounding(function: Function) -> f64 {
-    match function {
-        Function::ForwardDynamics => LARGEST_ROUNDING_OF_ACCELERATIONS,
-        _ => LARGEST_ROUNDING,
-    }
+    if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 
 /// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
@@ -303,15 +300,10 @@ struct Errors {
 fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -> Result<Vec<Errors>, CompileError> {
     let mut all = Vec::with_capacity(states);
     let steps = Interpreter::new(faithful);
-    let motion = match program.function {
-        Function::GravityTorques
-        | Function::BiasTorques
-        | Function::MassMatrix
-        | Function::CoriolisMatrix
-        | Function::InverseDynamicsDerivatives => {
-            Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
-        }
-        _ => None,
+    let motion = if program.function.entry().is_of_motion {
+        Some(Interpreter::new(&compile(robot, Function::InverseDynamics, Form::SevenSteps)?))
+    } else {
+        None
     };
     let reduced = Interpreter::new(program);
     // as they stand in the file, and rounded
@@ -380,7 +372,7 @@ fn errors(robot: &Robot, program: &Program, faithful: &Program, states: usize) -
         };
         // nor has one that is singular but for rounding
         let is_regular = errors.single_of_seven_steps < SINGULAR;
-        if is_regular || program.function != Function::ForwardDynamics {
+        if is_regular || !program.function.returns_accelerations() {
             all.push(errors);
         }
     }

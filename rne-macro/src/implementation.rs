@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
-use rne_codegen::{Argument, Capability, Form, Function, Operations, Program, emit};
+use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape, emit};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -75,7 +75,9 @@ impl Target<'_> {
         let joints = quote!(__JOINTS);
         let methods = capability.functions().iter().map(|&function| {
             // what has the shape of an argument returns it
-            let body = if function.takes(Argument::Positions) && returns_vector(function) {
+            let body = if function.takes(Argument::Positions)
+                && *function.shape() == Shape::Array(Length::Joints, &Shape::Number)
+            {
                 quote!(*q)
             } else {
                 quote!(loop {})
@@ -136,7 +138,7 @@ impl Target<'_> {
             Argument::Wrench => quote!(wrench: &#krate::Wrench<T>),
             Argument::Base => quote!(base: &#krate::BaseMotion<T>),
         });
-        let returned = self.returned(function, dof);
+        let returned = self.returned(function.shape(), dof);
         let method = quote! {
             fn #name<T: #krate::Scalar>(&self, #(#arguments),*) -> #returned { #body }
         };
@@ -144,19 +146,27 @@ impl Target<'_> {
     }
 
     /// The type that a method returns.
-    fn returned(&self, function: Function, dof: &TokenStream) -> TokenStream {
+    fn returned(&self, shape: &Shape, dof: &TokenStream) -> TokenStream {
         let krate = self.krate;
-        match function {
-            _ if returns_vector(function) => quote!([T; #dof]),
-            Function::MassMatrix | Function::CoriolisMatrix => quote!([[T; #dof]; #dof]),
-            Function::ForwardKinematics => quote!(#krate::Pose<T>),
-            Function::LinkPoses => quote!([#krate::Pose<T>; #dof]),
-            Function::Jacobian => quote!([[T; #dof]; 6]),
-            Function::JacobianRateTimesVelocity => quote!([T; 6]),
-            Function::Regressor => quote!([[[T; 10]; #dof]; #dof]),
-            Function::InverseDynamicsDerivatives => quote!(#krate::TorqueDerivatives<#dof, T>),
-            Function::JointWrenches => quote!([#krate::Wrench<T>; #dof]),
-            _ => quote!(T),
+        match shape {
+            Shape::Number => quote!(T),
+            Shape::Array(length, of) => {
+                let of = self.returned(of, dof);
+                match length {
+                    Length::Joints => quote!([#of; #dof]),
+                    Length::Fixed(length) => {
+                        let length = Literal::usize_unsuffixed(*length);
+                        quote!([#of; #length])
+                    }
+                }
+            }
+            Shape::Record(record, _) => {
+                let name = format_ident!("{}", record.name());
+                match record {
+                    Record::TorqueDerivatives => quote!(#krate::#name<#dof, T>),
+                    Record::Pose | Record::Wrench => quote!(#krate::#name<T>),
+                }
+            }
         }
     }
 
@@ -305,13 +315,6 @@ impl Constants {
             operations: Operations::default(),
         }
     }
-}
-
-/// Whether a function returns one number per joint.
-fn returns_vector(function: Function) -> bool {
-    function.layout(1).len() == 1
-        && !matches!(function, Function::KineticEnergy | Function::PotentialEnergy)
-        && !matches!(function, Function::MassMatrix | Function::CoriolisMatrix)
 }
 
 /// A number that reads back as the same bits, or infinity.

@@ -125,7 +125,7 @@ fn in_order(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> 
     let is_whole = what.explain && what.joint.is_none() && what.step.is_none();
     let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;
     if let Some(returned) = returned(program).filter(|_| is_whole && has_shape) {
-        let _ = writeln!(text, "\n    // {}\n    {returned}", returned_title(program.function));
+        let _ = writeln!(text, "\n    // {}\n    {returned}", program.function.entry().listed);
     }
     text
 }
@@ -158,39 +158,21 @@ fn by_title(program: &Program, joint: usize, step: Step, by: By) -> String {
     }
 }
 
-/// The heading of what is none of the seven steps.
+/// The heading of what is none of the seven steps: the function's own, or what several functions share.
 fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
+    if let Some(own) = program.function.own(quantity) {
+        return (own.heading)(joint);
+    }
     match quantity {
         Quantity::FrameRotation | Quantity::FrameOrigin if joint > program.dof => "the tip in the world".to_owned(),
         Quantity::FrameRotation | Quantity::FrameOrigin => format!("frame {joint} in the world"),
-        Quantity::JacobianLinear | Quantity::JacobianAngular => format!("column {joint} of the Jacobian"),
-        Quantity::TipAcceleration => "acceleration of the tip where q̈ = 0".to_owned(),
-        Quantity::ComPosition => format!("centre of mass of link {joint}, in frame 0"),
-        Quantity::KineticEnergy => "kinetic energy: ½ Σ (m ċ · ċ + ω · I ω)".to_owned(),
-        Quantity::PotentialEnergy => "potential energy: -Σ m g · c".to_owned(),
-        Quantity::CoriolisElement => format!("row {joint} of the Coriolis matrix: ½ ∂(bias torques)/∂q̇"),
-        Quantity::RegressorElement => format!("torque {joint} per parameter"),
         Quantity::LowerFactor
         | Quantity::ScaledFactor
         | Quantity::Pivot
         | Quantity::InversePivot
         | Quantity::Reduced
         | Quantity::Scaled => "L D Lᵀ q̈ = τ - bias, where M = L D Lᵀ".to_owned(),
-        Quantity::ActuatorTorque => format!("motor {joint}: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇)"),
         _ => format!("joint {joint}: terms that have no meaning of their own"),
-    }
-}
-
-const fn returned_title(function: Function) -> &'static str {
-    match function {
-        Function::MassMatrix | Function::CoriolisMatrix => "returned: the rows of the matrix",
-        Function::InverseDynamicsDerivatives => "returned: the rows of ∂τ/∂q, then those of ∂τ/∂q̇",
-        Function::ForwardKinematics => "returned: the rows of the rotation, then the translation",
-        Function::LinkPoses => "returned: rotation and translation of every link",
-        Function::Jacobian => "returned: three linear rows, then three angular ones",
-        Function::Regressor => "returned: torque, link, parameter (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz)",
-        Function::JointWrenches => "returned: force and moment of every joint",
-        _ => "returned",
     }
 }
 

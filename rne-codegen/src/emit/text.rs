@@ -134,12 +134,20 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
 pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     let mut names = BTreeSet::new();
     for program in programs {
-        names.extend(program.constants.iter().map(|constant| constant.name));
-        names.extend(program.angles.iter().chain(&program.statements).map(|statement| statement.name));
-        names.extend(program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine)));
+        let mut of_program = BTreeSet::new();
+        of_program.extend(program.constants.iter().map(|constant| constant.name.quantity));
+        let statements = program.angles.iter().chain(&program.statements);
+        of_program.extend(statements.map(|statement| statement.name.quantity));
+        let turns = program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
+        of_program.extend(turns.map(|name| name.quantity));
+        // functions that mean different things by a name have a line each
+        let meaning = |quantity: Quantity| {
+            let own = program.function.own(quantity).and_then(|own| own.meaning);
+            own.unwrap_or_else(|| quantity.meaning())
+        };
+        names.extend(of_program.into_iter().map(|quantity| (quantity, meaning(quantity))));
     }
-    let quantities: BTreeSet<Quantity> = names.iter().map(|name| name.quantity).collect();
-    quantities.into_iter().map(|quantity| (quantity.pattern(), quantity.meaning())).collect()
+    names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
 }
 
 fn function(robot: &Robot, program: &Program) -> String {

@@ -111,6 +111,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
         seven_steps::forward(self.builder, &self.arm, &self.states, &self.base)
     }
 
+    /// From each joint to the centre of mass of its link, in its axes.
+    fn centres(&self) -> Vec<Vector<'s>> {
+        self.motions().iter().map(|motion| motion.d).collect()
+    }
+
     fn frames(&self) -> kinematics::Frames<'s> {
         kinematics::frames(self.builder, &self.arm, &self.states, kinematics::base(&self.arm))
     }
@@ -204,8 +209,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
             origin: self.builder.zeros(Cause::FirstFrame),
         };
         let frames = kinematics::frames(self.builder, &self.arm, &self.states, zero_frame);
-        let centres: Vec<_> = self.motions().iter().map(|motion| motion.d).collect();
-        let energy = energy::potential(self.builder, &self.arm, &frames, &centres);
+        let energy = energy::potential(self.builder, &self.arm, &frames, &self.centres());
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
     }
 

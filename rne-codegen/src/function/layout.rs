@@ -1,5 +1,38 @@
 //! The shape of what a function returns.
 
+/// How the numbers that a function returns are grouped, for any number of joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// One number.
+    Number,
+    /// So many of the same.
+    Array(Length, &'static Self),
+    /// Named parts.
+    Record(Record, &'static [Self]),
+}
+
+/// The length of an array.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Length {
+    /// One element per joint.
+    Joints,
+    /// As many for every robot.
+    Fixed(usize),
+}
+
+impl Shape {
+    /// The shape for so many joints.
+    #[must_use]
+    pub fn layout(&self, dof: usize) -> Layout {
+        match self {
+            Self::Number => Layout::Number,
+            Self::Array(Length::Joints, of) => Layout::Array(dof, Box::new(of.layout(dof))),
+            Self::Array(Length::Fixed(length), of) => Layout::Array(*length, Box::new(of.layout(dof))),
+            Self::Record(record, parts) => Layout::Record(*record, parts.iter().map(|part| part.layout(dof)).collect()),
+        }
+    }
+}
+
 /// How the numbers that a function returns are grouped.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Layout {

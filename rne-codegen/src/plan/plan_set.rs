@@ -98,13 +98,12 @@ impl Choice {
         if form == Form::Rewritten && function == Function::InverseDynamics && is_fixed {
             return self.compile_rewritten(robot, arranged).map_err(|error| error.suspecting(robot, true));
         }
+        let is_irreducible = function.entry().is_irreducible;
+        // then there is nothing to be the same as
+        if is_irreducible || function.divides().is_some() && prove::divides_by_zero(robot, function) {
+            return crate::compile(robot, function, Form::SevenSteps);
+        }
         match function {
-            // bearings feel what regrouping moves from link to link, and motors have nothing to reduce
-            Function::JointWrenches | Function::ActuatorTorques => crate::compile(robot, function, Form::SevenSteps),
-            // then there is nothing to be the same as
-            Function::ForwardDynamics if prove::divides_by_zero(robot, function) => {
-                crate::compile(robot, function, Form::SevenSteps)
-            }
             // numbers that are not known cannot be regrouped
             _ if is_fixed && !Way::of(function).is_empty() => {
                 match self.compile_planned(robot, function, form, arranged) {

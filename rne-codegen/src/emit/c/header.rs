@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use super::documentation::details;
 use super::signature::{fields, head, record_type, records};
 use super::{File, TIED, comment};
 use crate::emit::evidence::evidence;
@@ -40,7 +39,7 @@ pub(super) fn header(file: &File) -> String {
     for program in file.programs {
         text.push('\n');
         text.push_str(&comment("///", program.function.summary()));
-        let details = details(program.function);
+        let details = program.function.entry().details;
         if !details.is_empty() {
             text.push_str(&comment("///", details));
         }

@@ -1,6 +1,5 @@
 //! Programs as C99 without a library: a header that says what the functions do, and the source.
 
-mod documentation;
 mod header;
 mod prefix;
 mod signature;
@@ -21,7 +20,7 @@ pub use prefix::{BadPrefix, Prefix};
 /// The variables of a function beside those of its program.
 pub(super) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
     let inputs = signature::inputs(program).into_iter().map(|array| array.name);
-    inputs.chain([signature::output(program.function), source::UNUSED])
+    inputs.chain([program.function.entry().output, source::UNUSED])
 }
 
 /// Width of a line.

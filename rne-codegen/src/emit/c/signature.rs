@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use super::{File, WIDTH, filled};
 use crate::emit::signature::{ArgumentArray, arguments};
-use crate::function::Function;
 use crate::function::{Layout, Record};
 use crate::program::Program;
 
@@ -21,30 +20,6 @@ pub(super) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     arrays
 }
 
-/// The name of the argument behind which the result is written. A single number is returned.
-pub(super) const fn output(function: Function) -> &'static str {
-    match function {
-        Function::InverseDynamics
-        | Function::InverseDynamicsWithWrench
-        | Function::InverseDynamicsSc
-        | Function::GravityTorques
-        | Function::BiasTorques
-        | Function::InverseDynamicsOnMovingBase
-        | Function::ActuatorTorques => "tau",
-        Function::MassMatrix => "mass",
-        Function::CoriolisMatrix => "coriolis",
-        Function::ForwardDynamics => "qdd",
-        Function::ForwardKinematics => "tip",
-        Function::LinkPoses => "poses",
-        Function::Jacobian => "jacobian",
-        Function::JacobianRateTimesVelocity => "acceleration",
-        Function::KineticEnergy | Function::PotentialEnergy => "energy",
-        Function::Regressor => "regressor",
-        Function::InverseDynamicsDerivatives => "derivatives",
-        Function::JointWrenches => "wrenches",
-    }
-}
-
 /// A function's head, without what follows its parentheses.
 pub(super) fn head(file: &File, program: &Program) -> String {
     let real = file.precision.c_type();
@@ -55,7 +30,7 @@ pub(super) fn head(file: &File, program: &Program) -> String {
         .collect();
     let returned = if layout == Layout::Number { real } else { "void" };
     if layout != Layout::Number {
-        parameters.push(declared(file, &layout, output(program.function)));
+        parameters.push(declared(file, &layout, program.function.entry().output));
     }
     let start = format!("{returned} {}_{}(", file.prefix, program.function);
     let line = format!("{start}{})", parameters.join(", "));
@@ -112,7 +87,7 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
 
 /// Where the numbers of a result are written, in their order.
 pub(super) fn places(program: &Program) -> Vec<String> {
-    let (layout, name) = (program.function.layout(program.dof), output(program.function));
+    let (layout, name) = (program.function.layout(program.dof), program.function.entry().output);
     let mut places = Vec::new();
     match &layout {
         // by its address

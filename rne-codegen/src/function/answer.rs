@@ -1,0 +1,51 @@
+//! How the numbers of a function are laid out for people.
+
+/// How the numbers of a function are laid out for people.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Answer {
+    /// A torque per joint, beside the arguments.
+    Torques,
+    /// An acceleration per joint, beside the arguments.
+    Accelerations,
+    /// A number, in this unit.
+    Number(&'static str),
+    /// Tables, one below the other, each row by row.
+    Tables(&'static [AnswerTable]),
+    /// A pose of the tip, or one per link.
+    Poses,
+    /// Torque by link by parameter.
+    PerParameter,
+}
+
+/// Numbers in rows and columns that have names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AnswerTable {
+    /// What they are, and their units if those are the same for all robots.
+    pub about: &'static str,
+    /// Their units, where the kinds of the joints decide.
+    pub unit: Option<MatrixUnit>,
+    /// The names of the rows.
+    pub rows: Labels,
+    /// The names of the columns.
+    pub columns: Labels,
+}
+
+/// The names of rows or columns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Labels {
+    /// Those of the joints.
+    Joints,
+    /// These.
+    Names(&'static [&'static str]),
+}
+
+/// The units of a matrix by the kinds of the joints.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatrixUnit {
+    /// Torque per acceleration.
+    Mass,
+    /// Torque per position.
+    PerPosition,
+    /// Torque per velocity.
+    PerRate,
+}

@@ -1,0 +1,69 @@
+//! What the table has of each function.
+
+use super::table::{Capability, Function};
+use super::{Answer, Argument, Shape};
+use crate::ir::quantity::Quantity;
+
+/// What there is to know of a function.
+pub(crate) struct Entry {
+    /// The variant, which is at this place.
+    pub(crate) function: Function,
+    /// The name of its trait method.
+    pub(crate) name: &'static str,
+    /// The trait.
+    pub(crate) capability: Capability,
+    /// What it computes, for the first line of its documentation.
+    pub(crate) summary: &'static str,
+    /// What else a caller of C must know: shapes, units, frames and signs that the names do not tell.
+    pub(crate) details: &'static str,
+    pub(crate) arguments: &'static [Argument],
+    pub(crate) shape: Shape,
+    /// The argument of C behind which the result is written. A single number is returned.
+    pub(crate) output: &'static str,
+    /// What a listing says above the returned numbers.
+    pub(crate) listed: &'static str,
+    /// The quantities that its listing shows under headings of its own.
+    pub(crate) own: &'static [Own],
+    pub(crate) answer: Answer,
+    /// Whether it returns the torques of the joints, by the seven steps.
+    pub(crate) returns_torques: bool,
+    /// Whether what it returns is a part of the torques of motion, or how they change: it may vanish but for rounding.
+    pub(crate) is_of_motion: bool,
+    /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and motors have
+    /// nothing to reduce.
+    pub(crate) is_irreducible: bool,
+    /// What it means that its numbers are not finite, for a function that divides.
+    pub(crate) divides: Option<&'static str>,
+}
+
+/// A quantity in the listing of a function.
+pub(crate) struct Own {
+    pub(crate) quantity: Quantity,
+    /// What stands above its statements at a joint.
+    pub(crate) heading: fn(usize) -> String,
+    /// What its names stand for, where that is not what they stand for elsewhere.
+    pub(crate) meaning: Option<&'static str>,
+}
+
+impl Entry {
+    /// What most functions have in common.
+    pub(super) const fn of(function: Function) -> Self {
+        Self {
+            function,
+            name: "",
+            capability: Capability::InverseDynamics,
+            summary: "",
+            details: "",
+            arguments: &[],
+            shape: Shape::Number,
+            output: "",
+            listed: "returned",
+            own: &[],
+            answer: Answer::Torques,
+            returns_torques: false,
+            is_of_motion: false,
+            is_irreducible: false,
+            divides: None,
+        }
+    }
+}
