@@ -80,7 +80,7 @@ fn everything(form: &str) -> String {
         "use rne::*;
 
 #[derive(
-    InverseDynamics, MassMatrix, CoriolisMatrix, ForwardDynamics, Kinematics, Energy, Regressor,
+    InverseDynamics, MassMatrix, CoriolisMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass, Regressor,
     InverseDynamicsDerivatives, JointWrenches, MovingBase,
 )]
 #[robot(path = \"../robot.yaml\", form = \"{form}\")]
@@ -94,6 +94,7 @@ fn main() {{
     println!(\"{{:?}}\", (Arm.forward_kinematics(&x), Arm.link_poses(&x), Arm.jacobian(&x)));
     println!(\"{{:?}}\", Arm.jacobian_rate_times_velocity(&x, &x));
     println!(\"{{:?}}\", (Arm.kinetic_energy(&x, &x), Arm.potential_energy(&x), Arm.regressor(&x, &x, &x)));
+    println!(\"{{:?}}\", (Arm.centre_of_mass(&x), Arm.centre_of_mass_jacobian(&x)));
     println!(\"{{:?}}\", (Arm.inverse_dynamics_derivatives(&x, &x, &x), Arm.joint_wrenches(&x, &x, &x)));
     println!(\"{{:?}}\", Arm.inverse_dynamics_on_moving_base(&x, &x, &x, &base));
 }}

@@ -378,7 +378,7 @@ fn anchors(page: &str) -> BTreeSet<String> {
         }
         let kept = title.trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
         let anchor: String = kept.flat_map(char::to_lowercase).map(|c| if c == ' ' { '-' } else { c }).collect();
-        let again = (1..).map(|time| format!("{anchor}-{time}")).find(|name| !anchors.contains(name));
+        let again = (1..1000).map(|time| format!("{anchor}-{time}")).find(|name| !anchors.contains(name));
         let name = if anchors.contains(&anchor) { again.expect("some number is free") } else { anchor };
         anchors.insert(name);
     }

@@ -85,6 +85,8 @@ impl State {
             Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
             Function::KineticEnergy => vec![arm.kinetic_energy(q, qd)?],
             Function::PotentialEnergy => vec![arm.potential_energy(q)?],
+            Function::CentreOfMass => arm.centre_of_mass(q)?.to_vec(),
+            Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q)?.concat(),
             Function::Regressor => arm.regressor(q, qd, qdd)?.into_iter().flatten().flatten().collect(),
             Function::InverseDynamicsDerivatives => {
                 let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;

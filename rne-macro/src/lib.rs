@@ -303,6 +303,17 @@ pub fn derive_energy(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Energy, input.into()).into()
 }
 
+/// Implements the trait `CentreOfMass` for a struct: the centre of mass of the whole arm, and its Jacobian.
+///
+/// In the world, `base` of the robot file included. Links alone, without rotors.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
+/// with the operations of each method, `CENTRE_OF_MASS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+#[proc_macro_derive(CentreOfMass, attributes(robot))]
+pub fn derive_centre_of_mass(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::CentreOfMass, input.into()).into()
+}
+
 /// Implements the trait `Regressor` for a struct: torques per inertial parameter, τ = Y π.
 ///
 /// Ten parameters per link; the masses of the file have no part in it.

@@ -36,9 +36,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let gravity = Vector3::from(*self.gravity).map(S::to::<T>);
         let links = self.placements(Placement::identity(), q);
         let mut sum = T::zero();
-        for (row, placement) in self.rows.iter().zip(links.as_ref()) {
-            let com = placement.rotation * Vector3::from(row.link.com).map(S::to) + placement.translation;
-            sum += row.link.mass.to::<T>() * gravity.dot(&com);
+        for (i, row) in self.rows.iter().enumerate() {
+            sum += row.link.mass.to::<T>() * gravity.dot(&self.centre(i, links.as_ref()));
         }
         -sum
     }

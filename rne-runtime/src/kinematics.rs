@@ -41,7 +41,7 @@ impl<T: Scalar> Placement<T> {
     }
 
     /// A constant placement.
-    fn constant<S: Constant>(transform: &Transform<S>) -> Self {
+    pub(crate) fn constant<S: Constant>(transform: &Transform<S>) -> Self {
         let translation = Vector3::from(transform.xyz).map(S::to);
         Self { rotation: rotation_of(transform).map(S::to), translation }
     }
@@ -91,6 +91,21 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         placements
     }
 
+    /// The frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a modified one.
+    pub(crate) fn joint_frame<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
+        match (self.convention, self.chain.links[i].parent) {
+            (Convention::Modified, _) => links[i],
+            (Convention::Standard, Some(parent)) => links[parent],
+            (Convention::Standard, None) => start,
+        }
+    }
+
+    /// The centre of mass of link i.
+    pub(crate) fn centre<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Vector3<T> {
+        let Placement { rotation, translation } = links[i];
+        rotation * Vector3::from(self.rows[i].link.com).map(S::to) + translation
+    }
+
     /// The tip frame behind the last of `links`.
     fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
         let last = links.last().copied().unwrap_or_else(|| Placement::constant(self.base));
@@ -107,18 +122,13 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self.per_joint.of(|i| links.as_ref()[i].pose())
     }
 
-    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0. Axis i is the z axis of the parent's
-    /// link frame in a standard table, of the link's own in a modified table.
+    /// Column i of a revolute joint: z_i × (p_tip - p_i), z_i; of a prismatic one: z_i, 0.
     pub(crate) fn jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 6] {
         let base = Placement::constant(self.base);
         let links = self.placements(base, q);
         let tip = self.tip(links.as_ref());
         let columns = self.per_joint.of(|i| {
-            let frame = match (self.convention, self.chain.links[i].parent) {
-                (Convention::Modified, _) => links.as_ref()[i],
-                (Convention::Standard, Some(parent)) => links.as_ref()[parent],
-                (Convention::Standard, None) => base,
-            };
+            let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
             match self.rows[i].kind {
                 JointKind::Revolute => (axis.cross(&(tip.translation - frame.translation)), axis),

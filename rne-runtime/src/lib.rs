@@ -11,6 +11,7 @@ mod base_motion;
 mod base_parameters;
 pub mod batch;
 mod capability;
+mod centre_of_mass;
 mod coriolis_matrix;
 mod derivatives;
 mod dual;
@@ -50,6 +51,7 @@ pub use capability::{
     Actuation, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
     Kinematics, MassMatrix, MovingBase, Regressor,
 };
+pub use centre_of_mass::CentreOfMass;
 #[cfg(feature = "std")]
 pub use derivatives::DynTorqueDerivatives;
 pub use derivatives::TorqueDerivatives;

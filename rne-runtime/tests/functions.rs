@@ -9,8 +9,9 @@ use num_dual::Dual64;
 use rne_model::Convention::{Modified, Standard};
 use rne_model::Model;
 use rne_runtime::{
-    Arm, Constant, CoriolisMatrix, Dual, DynArm, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench, WrongLength,
+    Arm, CentreOfMass, Constant, CoriolisMatrix, Dual, DynArm, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
+    WrongLength,
 };
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
 
@@ -50,6 +51,8 @@ fn all<T: Scalar>(arm: &Arm<6, impl Constant>, [q, qd, qdd]: &[[T; 6]; 3]) -> Ve
         arm.jacobian_rate_times_velocity(q, qd).to_vec(),
         vec![arm.kinetic_energy(q, qd)],
         vec![arm.potential_energy(q)],
+        arm.centre_of_mass(q).to_vec(),
+        arm.centre_of_mass_jacobian(q).concat(),
         arm.regressor(q, qd, qdd).concat().concat(),
         derivatives.dq.concat(),
         derivatives.dqd.concat(),
@@ -70,6 +73,8 @@ fn all_of_dyn(arm: &DynArm, [q, qd, qdd]: &[[f64; 6]; 3]) -> Result<Vec<Vec<f64>
         arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
         vec![arm.kinetic_energy(q, qd)?],
         vec![arm.potential_energy(q)?],
+        arm.centre_of_mass(q)?.to_vec(),
+        arm.centre_of_mass_jacobian(q)?.concat(),
         arm.regressor(q, qd, qdd)?.concat().concat(),
         derivatives.dq.concat(),
         derivatives.dqd.concat(),
@@ -284,6 +289,8 @@ fn an_arm_without_joints_is_its_tool() {
     assert_eq!(arm.jacobian(&q), [[]; 6]);
     assert_eq!(arm.jacobian_rate_times_velocity(&q, &q), [0.0; 6]);
     assert_eq!((arm.kinetic_energy(&q, &q), arm.potential_energy(&q)), (0.0, 0.0));
+    assert!(arm.centre_of_mass(&q).iter().all(|x| x.is_nan()));
+    assert_eq!(arm.centre_of_mass_jacobian(&q), [[]; 3]);
     assert_eq!(dyn_arm.forward_dynamics(&q, &q, &q), Ok(vec![]));
     assert_eq!(dyn_arm.regressor(&q, &q, &q), Ok(vec![]));
 }
@@ -302,6 +309,8 @@ fn a_wrong_length_names_the_argument() {
     assert_eq!(arm.jacobian_rate_times_velocity(&one, &two), Err(wrong("qd")));
     assert_eq!(arm.kinetic_energy(&one, &two), Err(wrong("qd")));
     assert_eq!(arm.potential_energy(&two), Err(wrong("q")));
+    assert_eq!(arm.centre_of_mass(&two), Err(wrong("q")));
+    assert_eq!(arm.centre_of_mass_jacobian(&two), Err(wrong("q")));
     assert_eq!(arm.regressor(&one, &one, &two), Err(wrong("qdd")));
     assert_eq!(arm.inverse_dynamics_derivatives(&one, &two, &one), Err(wrong("qd")));
     assert_eq!(arm.joint_wrenches(&two, &one, &one), Err(wrong("q")));

@@ -1,8 +1,8 @@
 //! Every shipped robot with everything derived, and its functions by their names.
 
 use rne::{
-    Actuation, BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
+    Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
 };
 use rne_codegen::{Form, Function};
 
@@ -22,6 +22,7 @@ trait Everything<const DOF: usize>:
     + ForwardDynamics<DOF>
     + Kinematics<DOF>
     + Energy<DOF>
+    + CentreOfMass<DOF>
     + Regressor<DOF>
     + InverseDynamicsDerivatives<DOF>
     + JointWrenches<DOF>
@@ -67,6 +68,8 @@ fn numbers<const DOF: usize, T: Scalar>(
         Function::JacobianRateTimesVelocity => robot.jacobian_rate_times_velocity(q, qd).to_vec(),
         Function::KineticEnergy => vec![robot.kinetic_energy(q, qd)],
         Function::PotentialEnergy => vec![robot.potential_energy(q)],
+        Function::CentreOfMass => robot.centre_of_mass(q).to_vec(),
+        Function::CentreOfMassJacobian => flat(robot.centre_of_mass_jacobian(q)),
         Function::Regressor => robot.regressor(q, qd, qdd).into_iter().flat_map(flat).collect(),
         Function::InverseDynamicsDerivatives => {
             let derivatives = robot.inverse_dynamics_derivatives(q, qd, qdd);
@@ -96,6 +99,7 @@ macro_rules! robot {
             rne::ForwardDynamics,
             rne::Kinematics,
             rne::Energy,
+            rne::CentreOfMass,
             rne::Regressor,
             rne::InverseDynamicsDerivatives,
             rne::JointWrenches,

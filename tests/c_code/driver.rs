@@ -130,7 +130,9 @@ impl Driver<'_> {
                 | Function::ForwardKinematics
                 | Function::LinkPoses
                 | Function::Jacobian
-                | Function::PotentialEnergy => "q",
+                | Function::PotentialEnergy
+                | Function::CentreOfMass
+                | Function::CentreOfMassJacobian => "q",
                 Function::BiasTorques
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity
@@ -149,6 +151,8 @@ impl Driver<'_> {
                 Function::ForwardKinematics => (format!("{prefix}_pose x"), "&x"),
                 Function::LinkPoses => (format!("{prefix}_pose x[{n}]"), "x"),
                 Function::Jacobian => (format!("{real} x[6][{n}]"), "x"),
+                Function::CentreOfMass => (format!("{real} x[3]"), "x"),
+                Function::CentreOfMassJacobian => (format!("{real} x[3][{n}]"), "x"),
                 Function::JacobianRateTimesVelocity => (format!("{real} x[6]"), "x"),
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
                 Function::InverseDynamicsDerivatives => (format!("{prefix}_torque_derivatives x"), "&x"),

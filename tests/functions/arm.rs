@@ -260,6 +260,14 @@ impl Arm {
         self.numbers(Function::PotentialEnergy, &Given::of_joints(q, &[], &[]))[0]
     }
 
+    pub(crate) fn centre_of_mass<T: Scalar>(&self, q: &[T]) -> Vec<T> {
+        self.numbers(Function::CentreOfMass, &Given::of_joints(q, &[], &[]))
+    }
+
+    pub(crate) fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T]) -> Vec<Vec<T>> {
+        self.rows(&self.numbers(Function::CentreOfMassJacobian, &Given::of_joints(q, &[], &[])))
+    }
+
     /// By torque: a row of ten parameters of each link.
     pub(crate) fn regressor<T: Scalar>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Vec<Vec<T>> {
         let numbers = self.numbers(Function::Regressor, &Given::of_joints(q, qd, qdd));
@@ -320,6 +328,8 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd).map(Vec::from),
         Function::KineticEnergy => arm.kinetic_energy(q, qd).map(|energy| vec![energy]),
         Function::PotentialEnergy => arm.potential_energy(q).map(|energy| vec![energy]),
+        Function::CentreOfMass => arm.centre_of_mass(q).map(Vec::from),
+        Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q).map(flat),
         Function::Regressor => {
             arm.regressor(q, qd, qdd).map(|rows| rows.iter().flat_map(|row| row.iter().flatten()).copied().collect())
         }

@@ -5,6 +5,7 @@ mod arm;
 #[path = "../random/arms.rs"]
 mod arms;
 mod case;
+mod centre_of_mass;
 mod check;
 #[path = "../c_code/compiler.rs"]
 mod compiler;

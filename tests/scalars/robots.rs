@@ -2,8 +2,8 @@
 
 use rne::{BaseMotion, Pose, Scalar, Wrench};
 use rne::{
-    CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
-    MassMatrix, MovingBase, Regressor,
+    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MovingBase, Regressor,
 };
 
 /// Every function but for the motors', by the sum of their traits.
@@ -14,6 +14,7 @@ pub(crate) trait Robot<const DOF: usize>:
     + ForwardDynamics<DOF>
     + Kinematics<DOF>
     + Energy<DOF>
+    + CentreOfMass<DOF>
     + Regressor<DOF>
     + InverseDynamicsDerivatives<DOF>
     + JointWrenches<DOF>
@@ -30,6 +31,7 @@ pub(crate) trait Robot<const DOF: usize>:
     rne::ForwardDynamics,
     rne::Kinematics,
     rne::Energy,
+    rne::CentreOfMass,
     rne::Regressor,
     rne::InverseDynamicsDerivatives,
     rne::JointWrenches,
@@ -52,6 +54,7 @@ impl Robot<6> for Puma560 {
     rne::ForwardDynamics,
     rne::Kinematics,
     rne::Energy,
+    rne::CentreOfMass,
     rne::Regressor,
     rne::InverseDynamicsDerivatives,
     rne::JointWrenches,
@@ -106,6 +109,8 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
         ("jacobian_rate_times_velocity", robot.jacobian_rate_times_velocity(q, qd).to_vec()),
         ("kinetic_energy", vec![robot.kinetic_energy(q, qd)]),
         ("potential_energy", vec![robot.potential_energy(q)]),
+        ("centre_of_mass", robot.centre_of_mass(q).to_vec()),
+        ("centre_of_mass_jacobian", robot.centre_of_mass_jacobian(q).concat()),
         ("regressor", robot.regressor(q, qd, qdd).concat().concat()),
         ("inverse_dynamics_derivatives", [derivatives.dq.concat(), derivatives.dqd.concat()].concat()),
         (

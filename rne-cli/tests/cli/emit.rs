@@ -101,7 +101,7 @@ fn all_functions_compile_and_compute_the_same() {
         let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
         evaluated(&call)
     };
-    let calls: [(&str, &[&[&str]], &str); 19] = [
+    let calls: [(&str, &[&[&str]], &str); 21] = [
         ("inverse_dynamics", &[full], "q, qd, qdd"),
         (
             "inverse_dynamics_with_wrench",
@@ -120,6 +120,8 @@ fn all_functions_compile_and_compute_the_same() {
         ("jacobian_rate_times_velocity", &[rates], "q, qd"),
         ("kinetic_energy", &[rates], "q, qd"),
         ("potential_energy", &[positions], "q"),
+        ("centre_of_mass", &[positions], "q"),
+        ("centre_of_mass_jacobian", &[positions], "q"),
         ("regressor", &[full], "q, qd, qdd"),
         ("inverse_dynamics_derivatives", &[full], "q, qd, qdd"),
         ("joint_wrenches", &[full], "q, qd, qdd"),

@@ -4,8 +4,8 @@ use std::fs;
 
 use crate::call::{ROOT, fails, fine};
 use rne::{
-    Actuation, Arm, BaseMotion, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Wrench,
+    Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Wrench,
 };
 use serde_json::{Value, json};
 
@@ -193,6 +193,8 @@ fn every_function_has_the_shape_of_its_trait() {
     same(&carried, &json!(arm.jacobian_rate_times_velocity(&Q, &QD)));
     same(&of_puma("kinetic_energy", "q qd", &[]), &json!(arm.kinetic_energy(&Q, &QD)));
     same(&of_puma("potential_energy", "q", &[]), &json!(arm.potential_energy(&Q)));
+    same(&of_puma("centre_of_mass", "q", &[]), &json!(arm.centre_of_mass(&Q)));
+    same(&of_puma("centre_of_mass_jacobian", "q", &[]), &json!(arm.centre_of_mass_jacobian(&Q)));
     same(&of_puma("regressor", full, &[]), &json!(arm.regressor(&Q, &QD, &QDD)));
     let derivatives = arm.inverse_dynamics_derivatives(&Q, &QD, &QDD);
     let expected = json!({"dq": derivatives.dq, "dqd": derivatives.dqd});
@@ -270,6 +272,8 @@ fn functions_for_reading() {
         call("jacobian", &[q]),
         call("jacobian_rate_times_velocity", &[q, qd]),
         call("kinetic_energy", &[q, qd]),
+        call("centre_of_mass", &[q]),
+        call("centre_of_mass_jacobian", &[q]),
         call("regressor", &[q, qd, qdd]),
         call("inverse_dynamics_derivatives", &[q, qd, qdd]),
         call("joint_wrenches", &[q, qd, qdd]),

@@ -123,8 +123,8 @@ fn counts_as_json() {
     let entries = json.as_array().expect("a list");
     assert_eq!(
         entries.len(),
-        2 * 37 + 2,
-        "18 functions, 19 with motors, two forms; inverse_dynamics rewritten as well"
+        2 * 41 + 2,
+        "20 functions, 21 with motors, two forms; inverse_dynamics rewritten as well"
     );
     for entry in entries {
         let keys: Vec<&str> = entry.as_object().expect("an object").keys().map(String::as_str).collect();
@@ -146,7 +146,7 @@ fn counts_as_a_table() {
     let all = fine(&["ops", "robots/planar1.yaml", "robots/puma560.yaml"]);
     let rows = all.lines().filter(|line| line.contains("seven_steps"));
     let widths: Vec<usize> = rows.map(|line| line.chars().count()).collect();
-    assert_eq!(widths.len(), 18 + 19);
+    assert_eq!(widths.len(), 20 + 21);
     assert!(widths.iter().all(|width| *width == widths[0]), "aligned: {all}");
 }
 

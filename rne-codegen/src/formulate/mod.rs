@@ -2,6 +2,7 @@
 
 pub(crate) mod actuation;
 pub(crate) mod arm;
+pub(crate) mod centre_of_mass;
 pub(crate) mod energy;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
@@ -40,6 +41,8 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::JacobianRateTimesVelocity => derivation.tip_acceleration(),
         Function::KineticEnergy => derivation.kinetic_energy(),
         Function::PotentialEnergy => derivation.potential_energy(),
+        Function::CentreOfMass => derivation.centre_of_mass(),
+        Function::CentreOfMassJacobian => derivation.centre_of_mass_jacobian(),
         Function::Regressor => derivation.regressor(),
         Function::InverseDynamicsDerivatives => derivation.derivatives(),
         Function::JointWrenches => derivation.joint_wrenches(),
@@ -111,8 +114,19 @@ impl<'s, 'r> Derivation<'s, 'r> {
         seven_steps::forward(self.builder, &self.arm, &self.states, &self.base)
     }
 
+    /// From each joint to the centre of mass of its link, in its axes.
+    fn centres(&self) -> Vec<Vector<'s>> {
+        self.motions().iter().map(|motion| motion.d).collect()
+    }
+
     fn frames(&self) -> kinematics::Frames<'s> {
         kinematics::frames(self.builder, &self.arm, &self.states, kinematics::base(&self.arm))
+    }
+
+    /// In world axes, with their origins from that of the base: where the base stands moves no difference of them.
+    fn frames_from_base(&self) -> kinematics::Frames<'s> {
+        let start = Frame { origin: self.builder.zeros(Cause::FirstFrame), ..kinematics::base(&self.arm) };
+        kinematics::frames(self.builder, &self.arm, &self.states, start)
     }
 
     fn torques(&self) -> Outputs<'s> {
@@ -204,9 +218,19 @@ impl<'s, 'r> Derivation<'s, 'r> {
             origin: self.builder.zeros(Cause::FirstFrame),
         };
         let frames = kinematics::frames(self.builder, &self.arm, &self.states, zero_frame);
-        let centres: Vec<_> = self.motions().iter().map(|motion| motion.d).collect();
-        let energy = energy::potential(self.builder, &self.arm, &frames, &centres);
+        let energy = energy::potential(self.builder, &self.arm, &frames, &self.centres());
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
+    }
+
+    fn centre_of_mass(&self) -> Outputs<'s> {
+        let (frames, centres) = (self.frames_from_base(), self.centres());
+        let centre = centre_of_mass::position(self.builder, &self.arm, &frames, &centres);
+        Axis::ALL.map(|axis| (Name::vector(Quantity::ComPosition, 0, axis), centre.0[axis as usize])).into()
+    }
+
+    fn centre_of_mass_jacobian(&self) -> Outputs<'s> {
+        let (frames, centres) = (self.frames_from_base(), self.centres());
+        centre_of_mass::rows(&centre_of_mass::jacobian(self.builder, &self.arm, &frames, &centres))
     }
 
     fn regressor(&self) -> Outputs<'s> {

@@ -39,6 +39,10 @@ pub enum Function {
     KineticEnergy,
     /// V(q).
     PotentialEnergy,
+    /// Where the centre of mass of the arm is.
+    CentreOfMass,
+    /// How fast it gets there.
+    CentreOfMassJacobian,
     /// Y(q, q̇, q̈), torques per inertial parameter.
     Regressor,
     /// ∂τ/∂q and ∂τ/∂q̇.
@@ -66,6 +70,8 @@ pub enum Capability {
     Kinematics,
     /// Kinetic and potential.
     Energy,
+    /// The centre of mass of the arm.
+    CentreOfMass,
     /// Torques per inertial parameter.
     Regressor,
     /// ∂τ/∂q and ∂τ/∂q̇.
@@ -86,6 +92,7 @@ pub(crate) const CAPABILITIES: &[(Capability, &str)] = &[
     (Capability::ForwardDynamics, "ForwardDynamics"),
     (Capability::Kinematics, "Kinematics"),
     (Capability::Energy, "Energy"),
+    (Capability::CentreOfMass, "CentreOfMass"),
     (Capability::Regressor, "Regressor"),
     (Capability::InverseDynamicsDerivatives, "InverseDynamicsDerivatives"),
     (Capability::JointWrenches, "JointWrenches"),
@@ -103,6 +110,9 @@ const AXES: Labels = Labels::Names(&["x", "y", "z"]);
 const fn of_joints(about: &'static str, unit: MatrixUnit) -> AnswerTable {
     AnswerTable { about, unit: Some(unit), rows: Labels::Joints, columns: Labels::Joints }
 }
+
+/// Why a centre of mass may be none.
+const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mass, or the state is too large";
 
 /// The functions.
 pub(crate) const TABLE: &[Entry] = &[
@@ -333,6 +343,63 @@ pub(crate) const TABLE: &[Entry] = &[
         ],
         answer: Answer::Number("J"),
         ..Entry::of(Function::PotentialEnergy)
+    },
+    Entry {
+        name: "centre_of_mass",
+        capability: Capability::CentreOfMass,
+        summary: "The centre of mass of all links in the world, base included.",
+        details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not finite.",
+        arguments: &[Positions],
+        shape: TRIPLE,
+        output: "centre",
+        listed: "returned: x, y, z",
+        own: &[Own {
+            quantity: Quantity::ComPosition,
+            heading: |joint| match joint {
+                0 => "centre of mass of the arm: Σ m c / Σ m, in the world".to_owned(),
+                _ => format!("centre of mass of link {joint}, from the base in world axes"),
+            },
+            meaning: Some("centre of mass of link i, from the base in world axes; i = 0: of the arm, in the world"),
+        }],
+        answer: Answer::Tables(&[AnswerTable {
+            about: "centre of mass of the arm in the world, m",
+            unit: None,
+            rows: Labels::Names(&["arm"]),
+            columns: AXES,
+        }]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentreOfMass)
+    },
+    Entry {
+        name: "centre_of_mass_jacobian",
+        capability: Capability::CentreOfMass,
+        summary: "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
+        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives numbers that \
+            are not finite.",
+        arguments: &[Positions],
+        shape: Shape::Array(Fixed(3), &VECTOR),
+        output: "jacobian",
+        listed: "returned: the rows of the Jacobian",
+        own: &[
+            Own {
+                quantity: Quantity::ComPosition,
+                heading: |joint| format!("centre of mass of link {joint}, from the base in world axes"),
+                meaning: Some("centre of mass of link i, from the base in world axes"),
+            },
+            Own {
+                quantity: Quantity::JacobianLinear,
+                heading: |joint| format!("column {joint} of the Jacobian: what is behind joint {joint} moves with it"),
+                meaning: Some("velocity of the centre of mass per rate of joint i, world axes"),
+            },
+        ],
+        answer: Answer::Tables(&[AnswerTable {
+            about: "velocity of the centre of mass per joint velocity, world axes, m/s",
+            unit: None,
+            rows: Labels::Names(&["vx", "vy", "vz"]),
+            columns: Labels::Joints,
+        }]),
+        divides: Some(WITHOUT_MASS),
+        ..Entry::of(Function::CentreOfMassJacobian)
     },
     Entry {
         name: "regressor",

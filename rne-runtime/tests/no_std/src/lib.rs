@@ -3,7 +3,7 @@
 
 use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Model, Motor, QuarterTurns, Row, Transform};
 use rne_runtime::{
-    Actuation, Arm, BaseMotion, CoriolisMatrix, Dual, Energy, ForwardDynamics, InverseDynamics,
+    Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Dual, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor, Scalar, Wrench,
 };
 
@@ -81,6 +81,8 @@ fn everything<T: Scalar>(q: &[T; 2], qd: &[T; 2], qdd: &[T; 2]) -> T {
     add(&arm.link_poses(q)[0].translation);
     add(arm.jacobian(q).as_flattened());
     add(&arm.jacobian_rate_times_velocity(q, qd));
+    add(&arm.centre_of_mass(q));
+    add(arm.centre_of_mass_jacobian(q).as_flattened());
     add(arm.regressor(q, qd, qdd).as_flattened().as_flattened());
     add(arm.inverse_dynamics_derivatives(q, qd, qdd).dq.as_flattened());
     add(&arm.joint_wrenches(q, qd, qdd)[0].moment);

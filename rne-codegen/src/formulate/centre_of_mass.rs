@@ -1,0 +1,110 @@
+//! The centre of mass of the whole arm and its Jacobian, from the parts μ_i = m_i / Σ m that the links have in it.
+//!
+//! ```text
+//! c = Σ μ_i c_i                                                c_i from the base, in world axes; then from the world's origin
+//! column j of J     z_j × Σ_{i≥j} μ_i (c_i - p_j)              revolute: z_j × (s_j - w_j p_j)
+//!                   z_j Σ_{i≥j} μ_i                            prismatic: w_j z_j
+//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j               from the tip to the base
+//! ```
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::formulate::arm::Arm;
+use crate::formulate::kinematics::Frames;
+use crate::ir::ledger::Cause;
+use crate::ir::name::Name;
+use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::{Builder, Symbol, Vector};
+
+/// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.
+pub(crate) fn position<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'s>,
+    frames: &Frames<'s>,
+    centres: &[Vector<'s>],
+) -> Vector<'s> {
+    let line = builder.joint(arm.links.len());
+    let centre = match parts(builder, arm) {
+        Ok(parts) => {
+            let links = links(builder, frames, centres);
+            let sum = links.into_iter().zip(parts).enumerate().fold(
+                builder.zeros(Cause::Arithmetic),
+                |sum, (index, (centre, part))| {
+                    builder.joint(index + 1).within(Quantity::ComPosition, || sum + centre * part)
+                },
+            );
+            line.within(Quantity::ComPosition, || sum + arm.base.translation)
+        }
+        Err(infinite) => Vector([infinite; 3]),
+    };
+    builder.name_vector(Quantity::ComPosition, 0, centre)
+}
+
+/// Columns, base to tip; arguments as of [`position`].
+pub(crate) fn jacobian<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'s>,
+    frames: &Frames<'s>,
+    centres: &[Vector<'s>],
+) -> Vec<Vector<'s>> {
+    let parts = match parts(builder, arm) {
+        Ok(parts) => parts,
+        Err(infinite) => return vec![Vector([infinite; 3]); arm.links.len()],
+    };
+    let links = links(builder, frames, centres);
+    let mut moment = builder.zeros(Cause::Arithmetic);
+    let mut part = builder.constant(0.0, Cause::Arithmetic);
+    let mut columns = Vec::with_capacity(links.len());
+    for (index, link) in arm.links.iter().enumerate().rev() {
+        let (line, frame) = (builder.joint(index + 1), &frames.joints[index]);
+        let axis = Vector(frame.rotation.0.map(Vector::z));
+        let column = line.within(Quantity::JacobianLinear, || {
+            moment = moment + links[index] * parts[index];
+            part = part + parts[index];
+            match link.kind {
+                Revolute => axis.cross(moment - frame.origin * part),
+                Prismatic => axis * part,
+            }
+        });
+        columns.push(builder.name_vector(Quantity::JacobianLinear, index + 1, column));
+    }
+    columns.reverse();
+    columns
+}
+
+/// The centres of mass of the links, named.
+fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vec<Vector<'s>> {
+    let centres = frames.joints.iter().zip(centres).enumerate();
+    centres
+        .map(|(index, (frame, d))| {
+            builder.joint(index + 1).vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin)
+        })
+        .collect()
+}
+
+/// What part of the mass each link has: constants, unless a mass is given at run time. Of an arm without mass, what is not
+/// finite: a product with its zeros would fold.
+fn parts<'s>(builder: &'s Builder, arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
+    let line = builder.joint(arm.links.len());
+    line.within(Quantity::ComPosition, || {
+        let nothing = builder.constant(0.0, Cause::Arithmetic);
+        let total = arm.links.iter().fold(nothing, |total, link| total + link.mass);
+        let one = builder.entry(Name::scalar(Quantity::One, 0), 1.0);
+        let inverse = builder.quotient(one, total);
+        if total.is_zero() {
+            return Err(inverse);
+        }
+        Ok(arm.links.iter().map(|link| link.mass * inverse).collect())
+    })
+}
+
+/// The rows of the Jacobian by name.
+pub(crate) fn rows<'s>(columns: &[Vector<'s>]) -> Vec<(Name, Symbol<'s>)> {
+    let row = |axis: Axis| {
+        let columns = columns.iter().enumerate();
+        columns.map(move |(index, column)| {
+            (Name::vector(Quantity::JacobianLinear, index + 1, axis), column.0[axis as usize])
+        })
+    };
+    Axis::ALL.into_iter().flat_map(row).collect()
+}

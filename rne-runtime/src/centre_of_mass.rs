@@ -1,0 +1,109 @@
+//! The centre of mass of the whole arm and how it moves with the joints.
+//!
+//! ```text
+//! μ_i = m_i (1 / Σ m)                                     sums of masses from the base to the tip
+//! c = Σ μ_i c_i + p_b                                     c_i from the base's origin, in world axes, which stands at p_b
+//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j          from the tip to the base
+//! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
+//! ```
+
+use nalgebra::Vector3;
+use rne_model::JointKind;
+
+use crate::kinematics::Placement;
+use crate::mechanism::Mechanism;
+use crate::per_joint::PerJoint;
+use crate::{Arm, Constant, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+/// The centre of mass of the links, all together, in the world; the robot's `base` places frame 0 there. Rotors are not
+/// included. An arm without mass gives numbers that are not finite.
+pub trait CentreOfMass<const DOF: usize> {
+    /// Σ m c / Σ m, m.
+    #[must_use]
+    fn centre_of_mass<T: Scalar>(&self, q: &[T; DOF]) -> [T; 3];
+
+    /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
+    #[must_use]
+    fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3];
+}
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// What part of the mass each link has.
+    fn parts<T: Scalar>(self) -> J::Of<T> {
+        let mut total = T::zero();
+        for row in self.rows {
+            total += row.link.mass.to();
+        }
+        let inverse = T::one() / total;
+        self.per_joint.of(|i| self.rows[i].link.mass.to::<T>() * inverse)
+    }
+
+    /// The base with its axes in the world, its origin in itself.
+    fn turned_base<T: Scalar>(self) -> Placement<T> {
+        Placement { translation: Vector3::zeros(), ..Placement::constant(self.base) }
+    }
+
+    pub(crate) fn centre_of_mass<T: Scalar>(self, q: &[T]) -> [T; 3] {
+        let links = self.placements(self.turned_base(), q);
+        let mut centre = Vector3::zeros();
+        for (i, part) in self.parts::<T>().as_ref().iter().enumerate() {
+            centre += self.centre(i, links.as_ref()) * *part;
+        }
+        // nor has an arm without joints
+        if self.rows.is_empty() {
+            centre = centre.map(|zero: T| zero / T::zero());
+        }
+        (centre + Vector3::from(self.base.xyz).map(S::to)).into()
+    }
+
+    pub(crate) fn centre_of_mass_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
+        let base = self.turned_base();
+        let (links, parts) = (self.placements(base, q), self.parts::<T>());
+        let (mut moment, mut part) = (Vector3::zeros(), T::zero());
+        let mut columns = self.per_joint.all(&Vector3::zeros());
+        for (i, column) in columns.as_mut().iter_mut().enumerate().rev() {
+            moment += self.centre(i, links.as_ref()) * parts.as_ref()[i];
+            part += parts.as_ref()[i];
+            let frame = self.joint_frame(i, base, links.as_ref());
+            let axis = frame.rotation.column(2).into_owned();
+            *column = match self.rows[i].kind {
+                JointKind::Revolute => axis.cross(&(moment - frame.translation * part)),
+                JointKind::Prismatic => axis * part,
+            };
+        }
+        core::array::from_fn(|row| self.per_joint.of(|i| columns.as_ref()[i][row]))
+    }
+}
+
+impl<const DOF: usize, S: Constant> CentreOfMass<DOF> for Arm<DOF, S> {
+    fn centre_of_mass<T: Scalar>(&self, q: &[T; DOF]) -> [T; 3] {
+        self.mechanism().centre_of_mass(q)
+    }
+
+    fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3] {
+        self.mechanism().centre_of_mass_jacobian(q)
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`CentreOfMass::centre_of_mass`].
+    ///
+    /// # Errors
+    /// When the argument does not have one element per joint.
+    pub fn centre_of_mass<T: Scalar>(&self, q: &[T]) -> Result<[T; 3], WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().centre_of_mass(q))
+    }
+
+    /// As [`CentreOfMass::centre_of_mass_jacobian`]: three rows with one element per joint.
+    ///
+    /// # Errors
+    /// When the argument does not have one element per joint.
+    pub fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T]) -> Result<[Vec<T>; 3], WrongLength> {
+        self.has_length("q", q)?;
+        Ok(self.mechanism().centre_of_mass_jacobian(q))
+    }
+}
