@@ -1,5 +1,5 @@
-//! Exact instruction counts of one call, for the default target: `cargo xtask instructions` runs this, prints a table and
-//! compares it with the baseline.
+//! Exact instruction counts of one call, for the default target: `cargo xtask instructions` runs this, prints a table
+//! and compares it with the baseline.
 //!
 //! A count is that of a function that is never inlined: it gets a state by reference, calls, and writes the torques.
 
@@ -72,8 +72,8 @@ mod setup {
     }
 }
 
-/// One function for all robots that have it: the UR5 is derived with inverse dynamics only; the rewritten form is another
-/// one in `inverse_dynamics` alone.
+/// One function for all robots that have it: the UR5 is derived with inverse dynamics only; the rewritten form is
+/// another one in `inverse_dynamics` alone.
 macro_rules! benchmarks {
     ($($function:ident $(and $rewritten:ident)? $(with $ur5:ident)?;)*) => {$(
         #[library_benchmark(setup = setup::$function)]

@@ -5,9 +5,10 @@
 //! - `chained`: every `q` depends on the torques of the call before (times 1e-30, below rounding), so latency counts.
 //! - `gravity`, `mass_matrix`, `forward_dynamics`, `derivatives`: the other functions, independent.
 //!
-//! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops; `dynibo` is the other Rust
-//! crate. It reads URDF, which [`rne_benches::urdf`] writes from the table, has double precision only, and its gravity is
-//! 9.80665 m/s² along -z. Before it is timed its torques are compared with those of `Arm` under that gravity.
+//! `arm` is `rne::Arm`, which reads the same table at run time and does the same steps in loops; `dynibo` is the other
+//! Rust crate. It reads URDF, which [`rne_benches::urdf`] writes from the table, has double precision only, and its
+//! gravity is 9.80665 m/s² along -z. Before it is timed its torques are compared with those of `Arm` under that
+//! gravity.
 
 use std::hint::black_box;
 use std::path::Path;
@@ -157,8 +158,8 @@ fn dynibo_gravity<const DOF: usize>(bencher: Bencher, name: &str) {
     });
 }
 
-/// The benchmarks of one robot: a module per measurement, a function per competitor and scalar. The rewritten form is another
-/// one in `inverse_dynamics` alone.
+/// The benchmarks of one robot: a module per measurement, a function per competitor and scalar. The rewritten form is
+/// another one in `inverse_dynamics` alone.
 macro_rules! robot {
     ($name:ident, $dof:literal, $seven_steps:ident, $reduced:ident, $rewritten:ident) => {
         mod $name {

@@ -14,10 +14,11 @@
 //! ```
 //!
 //! `robots/puma560.yaml` holds the table of the arm and the mass, centre of mass and inertia of each link. The
-//! [derive](derive@InverseDynamics) reads it at compile time, writes the seven steps of the recursion for each link, folds
-//! what this arm's right angles and zeros make trivial, and leaves a few hundred multiplications and additions with names
-//! such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The counts, before and after,
-//! stand in the documentation of your type. A mistake in the file is a compiler error that points into the file.
+//! [derive](derive@InverseDynamics) reads it at compile time, writes the seven steps of the recursion for each link,
+//! folds what this arm's right angles and zeros make trivial, and leaves a few hundred multiplications and additions
+//! with names such as `w2_z`: no loop, no matrix, no allocation, no branch, no panic, no `unsafe`. The counts, before
+//! and after, stand in the documentation of your type. A mistake in the file is a compiler error that points into the
+//! file.
 //!
 //! # What a robot can compute
 //!
@@ -28,11 +29,11 @@
 //! # A robot at run time
 //!
 //! [`Arm`] implements the same traits for a robot that is loaded when the program runs, by the recursion as a textbook
-//! writes it, with loops and vectors. Generated code is tested against it: in `f64`, without fused multiply-add, the seven
-//! steps give the same bits for the torques of all traits, the mass matrix, forward dynamics, kinetic energy, the
-//! derivatives and the joint wrenches. [`Kinematics`], potential energy, [`CoriolisMatrix`] and [`Regressor`] sum in another order
-//! and agree to rounding, and so does `f32`, for an `Arm` keeps its constants in `f64`. `DynArm` is for a number of joints that is
-//! not known either.
+//! writes it, with loops and vectors. Generated code is tested against it: in `f64`, without fused multiply-add, the
+//! seven steps give the same bits for the torques of all traits, the mass matrix, forward dynamics, kinetic energy, the
+//! derivatives and the joint wrenches. [`Kinematics`], potential energy, [`CoriolisMatrix`] and [`Regressor`] sum in
+//! another order and agree to rounding, and so does `f32`, for an `Arm` keeps its constants in `f64`. `DynArm` is for a
+//! number of joints that is not known either.
 //!
 //! ```
 //! # #[cfg(feature = "std")] {
@@ -68,8 +69,8 @@
 //! # Ok::<(), rne::LengthMismatch>(())
 //! ```
 //!
-//! AVX-512, AVX2, SSE2 or NEON: what the processor has is found when the program runs, without `-C target-cpu`. With the
-//! feature `rayon`, on all cores.
+//! AVX-512, AVX2, SSE2 or NEON: what the processor has is found when the program runs, without `-C target-cpu`. With
+//! the feature `rayon`, on all cores.
 //!
 //! # Features
 //!
@@ -82,8 +83,8 @@
 //!
 //! # Without `std`
 //!
-//! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and `Arm::new` need neither `std` nor
-//! an allocator. The robot file is read on the machine that compiles.
+//! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and `Arm::new` need neither `std`
+//! nor an allocator. The robot file is read on the machine that compiles.
 //!
 //! # Conventions
 //!

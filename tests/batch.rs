@@ -93,8 +93,8 @@ fn difference<T: BatchScalar + Into<f64>, const DOF: usize>(a: &[Vec<T>; DOF], b
     (0..a[0].len()).map(of_state).fold(0.0, |worst, state| if state <= worst { worst } else { state })
 }
 
-/// Compares all units with single calls, at all lengths, and gives the largest difference. In the seven steps the unit of the
-/// compiled target has their bits; the sums of the reduced form have their terms in another order in a batch.
+/// Compares all units with single calls, at all lengths, and gives the largest difference. In the seven steps the unit
+/// of the compiled target has their bits; the sums of the reduced form have their terms in another order in a batch.
 fn compared<T: BatchScalar + Into<f64>, const DOF: usize>(
     robot: &impl BatchInverseDynamics<DOF>,
     is_reduced: bool,

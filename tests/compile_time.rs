@@ -1,8 +1,9 @@
-//! What the derives cost the user's build: one on a chain of 30 dense joints, all on an arm of 7 joints, each in a crate of its
-//! own.
+//! What the derives cost the user's build: one on a chain of 30 dense joints, all on an arm of 7 joints, each in a
+//! crate of its own.
 //!
-//! `cargo test --test compile_time -- --nocapture` prints the figures. Times are for reading; what is asserted is counted:
-//! operations written on the sheet, which the compiler works through, and statements, which rustc works through.
+//! `cargo test --test compile_time -- --nocapture` prints the figures. Times are for reading; what is asserted is
+//! counted: operations written on the sheet, which the compiler works through, and statements, which rustc works
+//! through.
 
 use std::fmt::Write;
 use std::fs;
@@ -25,7 +26,8 @@ fn chain(joints: usize) -> String {
         let _ = writeln!(
             text,
             "  - type: revolute\n    dh: {{theta: 0.1, d: 0.2, a: 0.0{joint}, alpha: 0.3}}\n    \
-             link: {{mass: 1.{joint}, com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}"
+             link: {{mass: 1.{joint}, com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: \
+             0.02, yz: 0.03}}}}"
         );
     }
     text
@@ -149,7 +151,8 @@ fn a_chain_of_thirty_joints_builds() {
     assert_eq!(cargo(&folder, "run"), format!("{torques:?}"));
 }
 
-/// A joint costs the compiler as much behind thirty joints as behind ten, in operations written on the sheet and in statements.
+/// A joint costs the compiler as much behind thirty joints as behind ten, in operations written on the sheet and in
+/// statements.
 #[test]
 fn torques_grow_with_the_number_of_joints() {
     let work = |joints: usize| {

@@ -103,8 +103,8 @@ enum ShowsIn {
     VelocityOnly,
 }
 
-/// As printed: off by at least `six_joints_error` for the arm of the specification, and by at least half of `check` for the
-/// worst of the random arms. Corrected: both pass.
+/// As printed: off by at least `six_joints_error` for the arm of the specification, and by at least half of `check` for
+/// the worst of the random arms. Corrected: both pass.
 #[track_caller]
 fn assert_erratum(slip: Slip, shows_in: ShowsIn, six_joints_error: f64, check: f64) {
     let six_joints = |slip| Errors::of(&six_joints(), &six_joints_loaded(), slip);
@@ -258,8 +258,8 @@ fn e9_what_a_connects() {
     assert_erratum(Slip::E9FramesBefore, ShowsIn::Tau, 0.14, 1.5);
 }
 
-/// E10, step 6. Printed: [f_{i,i+1}]_i and [n_{i,i+1}]_i, as if they were there. Right: [f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1},
-/// the same for n.
+/// E10, step 6. Printed: [f_{i,i+1}]_i and [n_{i,i+1}]_i, as if they were there. Right: [f_{i,i+1}]_i = Q_i
+/// [f_{i,i+1}]_{i+1}, the same for n.
 #[test]
 fn e10_wrench_of_the_next_joint() {
     assert_erratum(Slip::E10ForceNotTurned, ShowsIn::Tau, 0.44, 1.7);

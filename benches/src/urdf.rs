@@ -53,8 +53,8 @@ impl Frame {
     }
 }
 
-/// The arm as URDF. URDF has the frame of a link on its joint's axis; a standard table has it at the far end, so masses and
-/// inertias move with the constant part of the row.
+/// The arm as URDF. URDF has the frame of a link on its joint's axis; a standard table has it at the far end, so masses
+/// and inertias move with the constant part of the row.
 pub fn urdf(robot: &Robot) -> String {
     let name = &robot.name;
     let mut text = format!("<robot name='{name}'>\n<link name='link0'/>\n");
@@ -79,7 +79,8 @@ pub fn urdf(robot: &Robot) -> String {
             text,
             "<joint name='joint{link}' type='{kind}'>{}<parent link='link{index}'/><child link='link{link}'/>\
              <axis xyz='0 0 1'/><limit lower='-100' upper='100' effort='1' velocity='100'/></joint>\n\
-             <link name='link{link}'><inertial>{}<mass value='{:e}'/><inertia ixx='{:e}' iyy='{:e}' izz='{:e}' ixy='{:e}' \
+             <link name='link{link}'><inertial>{}<mass value='{:e}'/><inertia ixx='{:e}' iyy='{:e}' izz='{:e}' \
+             ixy='{:e}' \
              ixz='{:e}' iyz='{:e}'/></inertial></link>",
             axis.origin(),
             placed.origin(),

@@ -20,10 +20,13 @@ pub(crate) fn text(robot: &Robot) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
-        "{TITLE}{} base parameters{TITLE:#}: so many combinations of the {} inertial parameters of the links enter the torques\n\
-         {QUIET}mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in its axes.\n\
+        "{TITLE}{} base parameters{TITLE:#}: so many combinations of the {} inertial parameters of the links enter \
+        the torques\n\
+         {QUIET}mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in its \
+         axes.\n\
          A parameter of which the regressor shows no more than of those before it (J, m c, m; base to tip) is\n\
-         regrouped into them (Gautier and Khalil, 1990). Numerically, at random states that are always the same.{QUIET:#}\n",
+         regrouped into them (Gautier and Khalil, 1990). Numerically, at random states that are always the \
+         same.{QUIET:#}\n",
         base.rank(),
         10 * robot.dof()
     );

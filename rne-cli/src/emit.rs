@@ -173,7 +173,8 @@ fn only_of_c(arguments: &Arguments) -> Result<(), Failure> {
              {TYPED}--lang c{TYPED:#}"
         ))),
         Some((option, _)) => Err(Failure::usage(format_args!(
-            "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or add \
+            "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or \
+            add \
              {TYPED}--lang c{TYPED:#}"
         ))),
     }

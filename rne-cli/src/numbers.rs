@@ -64,7 +64,8 @@ pub(crate) fn fixed(value: f64) -> String {
     format!("{value:>WIDTH$.DIGITS$}")
 }
 
-/// A number for a table: so many digits behind the point, an exact zero alone, what is tiny or huge with its power of ten.
+/// A number for a table: so many digits behind the point, an exact zero alone, what is tiny or huge with its power of
+/// ten.
 pub(crate) fn rounded(value: f64, digits: usize) -> String {
     if value == 0.0 {
         "0".to_owned()

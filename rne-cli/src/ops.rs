@@ -100,8 +100,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any. What is too large
-/// to be compiled is left out, with a line in `remarks`.
+/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any. What is too
+/// large to be compiled is left out, with a line in `remarks`.
 pub(crate) fn counts(
     file: &Path,
     robot: &Robot,

@@ -80,8 +80,8 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
     Ok(Written::Anew)
 }
 
-/// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the permissions that
-/// any new file has.
+/// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the
+/// permissions that any new file has.
 pub(crate) fn beside(path: &Path) -> io::Result<NamedTempFile> {
     let name = path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is no name of a file"))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -45,7 +45,8 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
-/// The plan that a fresh search starts from: one that fits, or none where it is stale or broken. What is no plan at all stays.
+/// The plan that a fresh search starts from: one that fits, or none where it is stale or broken. What is no plan at all
+/// stays.
 pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
     let path = plan_of(robot_file);
     match output_file::existing(&path) {
@@ -75,8 +76,8 @@ pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
     output_file::beside(path).map(drop).map_err(failure)
 }
 
-/// Compiles the function that a plan is of in every form that it describes, and proves them; each form with its operations. What a
-/// build would refuse is an error at its place in the plan file.
+/// Compiles the function that a plan is of in every form that it describes, and proves them; each form with its
+/// operations. What a build would refuse is an error at its place in the plan file.
 pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Form, usize)>, Failure> {
     let choice = Choice::from(plan.clone());
     let forms = [Some(Form::Reduced), plan.rewritten.as_ref().map(|_| Form::Rewritten)];
@@ -89,7 +90,8 @@ pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<
     forms.into_iter().flatten().map(count).collect()
 }
 
-/// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are needed.
+/// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are
+/// needed.
 pub(crate) struct Compiler<'a> {
     robot: &'a Robot,
     file: &'a Path,

@@ -42,7 +42,8 @@ pub(crate) struct Arguments {
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is better
+    /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is
+    /// better
     #[arg(long)]
     fresh: bool,
 }

@@ -71,8 +71,8 @@ fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences that colour. Whatever a file or
-/// its name holds, a terminal shows it and does nothing else.
+/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences that colour. Whatever a
+/// file or its name holds, a terminal shows it and does nothing else.
 fn inert(text: &str) -> String {
     let mut inert = String::with_capacity(text.len());
     let mut rest = text;
@@ -88,7 +88,8 @@ fn inert(text: &str) -> String {
     inert + rest
 }
 
-/// The length of the sequence that chooses a colour with which a text starts, such as `ESC [ 1 ; 31 m`; 0 where there is none.
+/// The length of the sequence that chooses a colour with which a text starts, such as `ESC [ 1 ; 31 m`; 0 where there
+/// is none.
 fn colour(text: &str) -> usize {
     let parameters = text.strip_prefix("\u{1B}[").unwrap_or_default();
     let end = parameters.find(|c: char| !c.is_ascii_digit() && c != ';');

@@ -1,15 +1,16 @@
 //! The order of the terms of sums: for the fewest instructions, or for the shortest wait.
 //!
-//! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many products
-//! are left over depends on the order of the terms and on which products are computed at all:
+//! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many
+//! products are left over depends on the order of the terms and on which products are computed at all:
 //!
-//! - A sum of n terms takes n - 1 instructions, whatever they are, once there is a term to start from. So terms that are no
-//!   products come first and every product is fused with what has been summed before.
+//! - A sum of n terms takes n - 1 instructions, whatever they are, once there is a term to start from. So terms that
+//!   are no products come first and every product is fused with what has been summed before.
 //! - A product that is used in several sums is fused with each of them and never computed by itself.
-//! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can start.
+//! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can
+//!   start.
 //!
-//! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of operations: there
-//! the term that comes last should be added last ([`soonest`]).
+//! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of
+//! operations: there the term that comes last should be added last ([`soonest`]).
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
@@ -364,7 +365,8 @@ impl Graph {
         }
     }
 
-    /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has none.
+    /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has
+    /// none.
     fn sum(&self, terms: &[Term]) -> Expression {
         use Expression::{Difference, Negative, Sum};
         let plain = |term: Term| self.operand(Term { sign: Sign::Plus, ..term });

@@ -1,14 +1,16 @@
-//! How long the chains of operations are that a call waits for, on a processor that computes independent ones side by side.
+//! How long the chains of operations are that a call waits for, on a processor that computes independent ones side by
+//! side.
 //!
-//! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an addition.
-//! So a product is fused where that is sooner, or where nothing waits for the sum.
+//! A fused multiply-add is one instruction, but a sum that waits for its last term waits longer for it than for an
+//! addition. So a product is fused where that is sooner, or where nothing waits for the sum.
 
 use std::collections::BTreeMap;
 
 use crate::ir::name::Name;
 use crate::program::{Expression, Program};
 
-/// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of these years.
+/// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
+/// these years.
 pub(crate) const PRODUCT: usize = 4;
 
 /// Cycles of an addition.

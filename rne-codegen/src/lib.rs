@@ -2,8 +2,8 @@
 //!
 //! [`compile`] writes a function of the robot as a graph of sums and products (the seven steps stand once, in
 //! `seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns a [`Program`] of named
-//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as text for people,
-//! [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`] as counts.
+//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as
+//! text for people, [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! Data in, data out: nothing here opens a file or prints.
 #![forbid(unsafe_code)]
@@ -142,8 +142,8 @@ pub enum CompileError {
     },
 }
 
-/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which nothing
-/// folds. Its text is some 15 MB.
+/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
+/// nothing folds. Its text is some 15 MB.
 const LARGEST: usize = 500_000;
 
 /// What may be the cause when a form is refused.
@@ -165,8 +165,8 @@ pub struct Extreme {
 }
 
 impl Extreme {
-    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the precision of
-    /// twice that, in which constants are computed.
+    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the
+    /// precision of twice that, in which constants are computed.
     #[must_use]
     pub fn of(robot: &Robot) -> Option<Self> {
         const LARGEST: f64 = 1e75;
@@ -195,7 +195,8 @@ impl fmt::Display for Extreme {
         let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
         write!(
             f,
-            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double precision. \
+            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double \
+            precision. \
              Other units help, `form = \"seven_steps\"` multiplies less"
         )
     }
@@ -248,7 +249,8 @@ impl fmt::Display for CompileError {
                 };
                 write!(
                     f,
-                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest {what}. "
+                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
+                    {what}. "
                 )?;
                 match suspect {
                     Suspect { number: Some(number), .. } => number.fmt(f),
@@ -265,13 +267,15 @@ impl fmt::Display for CompileError {
             ),
             Self::TooLarge { function, dof, most } => write!(
                 f,
-                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no compiler takes in \
+                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no \
+                compiler takes in \
                  reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
             ),
             Self::Plan(why) => f.write_str(why),
             Self::Graph { robot, line, message } => write!(
                 f,
-                "line {line} of the rewritten graph in the plan of `{robot}`: {message}; `rne search --rewrite --fresh` writes \
+                "line {line} of the rewritten graph in the plan of `{robot}`: {message}; `rne search --rewrite \
+                --fresh` writes \
                  the plan anew"
             ),
         }

@@ -166,8 +166,8 @@ impl<'w> Schedule<'w> {
     }
 
     /// A term without a name that is used more than once, and a constant without a name, are called after the quantity
-    /// in which they first stood. Other names may look alike, and what a language tells apart is their text: a number that
-    /// gives a text of them is left out.
+    /// in which they first stood. Other names may look alike, and what a language tells apart is their text: a number
+    /// that gives a text of them is left out.
     fn name_shared_terms(&mut self) {
         let given = self.names.iter().flatten().map(|given| given.name);
         let defined = self.written.trace.definitions.iter().map(|definition| definition.name);

@@ -53,7 +53,8 @@ pub struct Proof {
     pub points: usize,
     /// At how many random states the rounding was measured.
     pub states: usize,
-    /// The largest difference of a torque from the seven steps there in double precision, relative to the largest torque.
+    /// The largest difference of a torque from the seven steps there in double precision, relative to the largest
+    /// torque.
     pub rounding: f64,
     /// The same in single precision, from double precision.
     pub single: f64,
@@ -186,8 +187,8 @@ impl Operations {
 }
 
 impl Program {
-    /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that the
-    /// emitters add: the second of two would shadow the first.
+    /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that
+    /// the emitters add: the second of two would shadow the first.
     ///
     /// # Errors
     /// [`CompileError::TwoOfOneName`], with the first such name.
@@ -242,8 +243,8 @@ impl Program {
         self.choices.first().is_some_and(|way| way.contains(" bodies, "))
     }
 
-    /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then the fewest
-    /// instructions are the fastest.
+    /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then
+    /// the fewest instructions are the fastest.
     #[must_use]
     pub fn is_long(&self) -> bool {
         /// Their code does not fit into the nearest cache of the processors of these years, 32 KB.

@@ -1,8 +1,8 @@
 //! The gate: a program is emitted only if it is the same function of the robot as the seven steps.
 //!
 //! Both are evaluated at random points of two prime fields, without rounding. Rational functions that agree there are
-//! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants were
-//! rounded, so both are run in double precision at random states as well.
+//! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants
+//! were rounded, so both are run in double precision at random states as well.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -24,12 +24,12 @@ const STATES: usize = 24;
 /// No program is emitted whose torques differ more, relative to the largest.
 const LARGEST_ROUNDING: f64 = 1e-11;
 
-/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of its
-/// rotors has 10⁵.
+/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of
+/// its rotors has 10⁵.
 const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 
-/// Accelerations that single precision changes by as much of the largest are those of a mass matrix that is singular but for
-/// rounding.
+/// Accelerations that single precision changes by as much of the largest are those of a mass matrix that is singular
+/// but for rounding.
 const SINGULAR: f64 = 0.1;
 
 const fn largest_rounding(function: Function) -> f64 {
@@ -124,8 +124,8 @@ pub(crate) fn identical(
     Ok(())
 }
 
-/// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is always
-/// singular is the same function as another.
+/// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is
+/// always singular is the same function as another.
 pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     let reading = Reading::default();
     let plain = Plain::new(robot, function, reading);
@@ -293,8 +293,8 @@ fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
     proof
 }
 
-/// How much larger the error of a program in single precision is than that of the seven steps, on the average: the largest
-/// error depends on which rare states one meets.
+/// How much larger the error of a program in single precision is than that of the seven steps, on the average: the
+/// largest error depends on which rare states one meets.
 pub(crate) fn loss_of_precision(reference: &Reference<'_>, program: &Program, states: usize) -> f64 {
     let errors = errors(reference, program, states);
     let sum = |error: fn(&Errors) -> f64| errors.iter().map(error).sum::<f64>();

@@ -1,8 +1,8 @@
 //! What is told of a zero is why it is zero: the causes named suffice, and none of them can be left out.
 //!
-//! A number of the table that is zero stops being so when it becomes a run-time parameter, an angle when it grows by 0.3. For
-//! every component that is found to be zero, everything that is not named is changed at once, and the component stays zero;
-//! then each named zero is changed as well, one at a time, and the component is zero no more.
+//! A number of the table that is zero stops being so when it becomes a run-time parameter, an angle when it grows by
+//! 0.3. For every component that is found to be zero, everything that is not named is changed at once, and the
+//! component stays zero; then each named zero is changed as well, one at a time, and the component is zero no more.
 
 mod common;
 

@@ -131,8 +131,8 @@ fn operators_in_the_text_are_what_the_counts_say() {
     }
 }
 
-/// A name that is given twice hides the first value from the statements behind the second: the compiler of Rust does not mind, and
-/// the interpreter, which knows names by more than their text, does not see it.
+/// A name that is given twice hides the first value from the statements behind the second: the compiler of Rust does
+/// not mind, and the interpreter, which knows names by more than their text, does not see it.
 #[test]
 fn no_name_of_a_function_is_given_twice() {
     for (robot, programs) in emitted() {

@@ -1,4 +1,5 @@
-//! Whatever a robot file calls its robot and its joints, emitted code is the same code, and its documentation has the same parts.
+//! Whatever a robot file calls its robot and its joints, emitted code is the same code, and its documentation has the
+//! same parts.
 
 use std::fs;
 use std::path::Path;

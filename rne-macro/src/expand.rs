@@ -18,8 +18,8 @@ use crate::parameters::Parameters;
 
 /// The derive of a capability.
 ///
-/// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is known,
-/// so that the code that uses it causes no errors of its own.
+/// Every mistake becomes one `compile_error!`; beside them stands an implementation, of the robot as far as it is
+/// known, so that the code that uses it causes no errors of its own.
 pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStream {
     let item: DeriveInput = match syn::parse2(input) {
         Ok(item) => item,
@@ -172,7 +172,8 @@ pub(crate) fn choice(
     }
 }
 
-/// The choice that a build makes by itself. The derives of one crate are expanded in one process, so it is made once per robot.
+/// The choice that a build makes by itself. The derives of one crate are expanded in one process, so it is made once
+/// per robot.
 fn default_choice(robot: &Robot) -> Choice {
     static KNOWN: Mutex<Vec<(Fingerprint, Choice)>> = Mutex::new(Vec::new());
     let print = plan::fingerprint(robot);

@@ -192,8 +192,8 @@ impl Target<'_> {
         name
     }
 
-    /// The visibility of the type. Its `pub` counts as generated: with that of the user, so would the constants count as
-    /// the user's, and the compiler would warn of each that is never used.
+    /// The visibility of the type. Its `pub` counts as generated: with that of the user, so would the constants count
+    /// as the user's, and the compiler would warn of each that is never used.
     fn visibility(&self) -> Visibility {
         let mut visibility = self.item.vis.clone();
         match &mut visibility {

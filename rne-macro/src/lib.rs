@@ -29,21 +29,23 @@ use rne_codegen::Capability;
 /// let tau: [f64; 6] = Puma560.inverse_dynamics(&q, &qd, &qdd);
 /// ```
 ///
-/// The robot file is read by the compiler. The recursion is unrolled for this one robot, everything that its table makes
-/// zero or one is folded, and what is left are straight-line methods: no allocation, no panic, no loop, no branch, no
-/// `unsafe`. They are generic over the scalar and need neither `std` nor the file at run time. A change of the file
-/// causes a new build.
+/// The robot file is read by the compiler. The recursion is unrolled for this one robot, everything that its table
+/// makes zero or one is folded, and what is left are straight-line methods: no allocation, no panic, no loop, no
+/// branch, no `unsafe`. They are generic over the scalar and need neither `std` nor the file at run time. A change of
+/// the file causes a new build.
 ///
-/// The struct may have lifetimes and parameters, which the methods do not use. A field is a run-time parameter, see below.
+/// The struct may have lifetimes and parameters, which the methods do not use. A field is a run-time parameter, see
+/// below.
 ///
-/// The methods name their variables as the textbook does, `m1`, `w2_z`, `tau3`. A constant of such a name that is in scope
-/// where the struct stands (`const m1: f64`, against Rust's custom of capitals) would take their place and fail to compile;
-/// put the struct into a module of its own then.
+/// The methods name their variables as the textbook does, `m1`, `w2_z`, `tau3`. A constant of such a name that is in
+/// scope where the struct stands (`const m1: f64`, against Rust's custom of capitals) would take their place and fail
+/// to compile; put the struct into a module of its own then.
 ///
 /// # `path = "…"`
 ///
 /// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where a macro is
-/// not told its source file, as in some editors, it starts at the package's `src` or at its folder (that of `Cargo.toml`).
+/// not told its source file, as in some editors, it starts at the package's `src` or at its folder (that of
+/// `Cargo.toml`).
 ///
 /// # `yaml = "…"`
 ///
@@ -81,11 +83,11 @@ use rne_codegen::Capability;
 /// | `reduced` | about half the operations: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning |
 /// | `rewritten` | `inverse_dynamics` after algebraic rewriting as well, a few percent less; what `rne search --rewrite` left in the plan file |
 ///
-/// A form that is not the seven steps is proved identical to them while it is compiled, in exact arithmetic; its documentation
-/// says so, with its rounding error. The choices come from `NAME.plan.yaml` beside the robot file, which `rne search` writes;
-/// a plan that does not belong to the robot any more is an error of the build. Cargo watches a plan
-/// that a build has read; one that appears later, other than by `rne search`, is seen when the robot file is touched. Without a plan, a fixed number of plans is
-/// tried, the same on every machine.
+/// A form that is not the seven steps is proved identical to them while it is compiled, in exact arithmetic; its
+/// documentation says so, with its rounding error. The choices come from `NAME.plan.yaml` beside the robot file, which
+/// `rne search` writes; a plan that does not belong to the robot any more is an error of the build. Cargo watches a
+/// plan that a build has read; one that appears later, other than by `rne search`, is seen when the robot file is
+/// touched. Without a plan, a fixed number of plans is tried, the same on every machine.
 ///
 /// Products that are added become `Scalar::mul_add` in these two forms: one instruction where the target has it.
 ///
@@ -112,8 +114,8 @@ use rne_codegen::Capability;
 /// # `max_ops = N`
 ///
 /// The build fails when one call of `inverse_dynamics` takes more than `N` multiplications and additions together: a
-/// budget that a change of the table cannot exceed unnoticed. `rne ops FILE`, or the constant `OPERATIONS`, tells how many
-/// there are.
+/// budget that a change of the table cannot exceed unnoticed. `rne ops FILE`, or the constant `OPERATIONS`, tells how
+/// many there are.
 ///
 /// ```
 /// # use rne::InverseDynamics;
@@ -158,8 +160,8 @@ use rne_codegen::Capability;
 ///
 /// # Run-time parameters
 ///
-/// A name under `parameters:` of the robot file that is also a field of the struct stays free until run time; everything else is
-/// folded. The field is `f32` or `f64`. All derives read it.
+/// A name under `parameters:` of the robot file that is also a field of the struct stays free until run time;
+/// everything else is folded. The field is `f32` or `f64`. All derives read it.
 ///
 /// ```
 /// use rne::InverseDynamics;
@@ -185,10 +187,10 @@ use rne_codegen::Capability;
 /// assert!((torque(2.0) - torque(0.0) - 2.0 * 9.81 * 0.8 * 0.5_f64.sin()).abs() < 1e-14);
 /// ```
 ///
-/// Angles are constants, and so is every number that is zero in the file, for zeros are folded: a parameter that would make one of
-/// these vary is an error of the build, and so is a field that is no parameter. `#[robot(skip)]` on a field says that it is
-/// there for other purposes; fields without names and `PhantomData` are. With such parameters `form = "reduced"` regroups
-/// nothing: it computes every value of the seven steps once.
+/// Angles are constants, and so is every number that is zero in the file, for zeros are folded: a parameter that would
+/// make one of these vary is an error of the build, and so is a field that is no parameter. `#[robot(skip)]` on a field
+/// says that it is there for other purposes; fields without names and `PhantomData` are. With such parameters
+/// `form = "reduced"` regroups nothing: it computes every value of the seven steps once.
 ///
 /// # Constants
 ///
@@ -206,18 +208,18 @@ use rne_codegen::Capability;
 ///
 /// # Errors and lints
 ///
-/// A mistake in the robot file is an error of the compiler with file, line, column, the line itself, what is allowed, and
-/// often what was probably meant. Whatever uses the struct still compiles, so that the mistake stands alone.
+/// A mistake in the robot file is an error of the compiler with file, line, column, the line itself, what is allowed,
+/// and often what was probably meant. Whatever uses the struct still compiles, so that the mistake stands alone.
 ///
-/// Lints, values that are allowed and yet suspicious (degrees for radians, 1.5708 for pi/2), are not shown: a macro has no
-/// way to warn. `rne check FILE` shows them.
+/// Lints, values that are allowed and yet suspicious (degrees for radians, 1.5708 for pi/2), are not shown: a macro has
+/// no way to warn. `rne check FILE` shows them.
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
 pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::InverseDynamics, input.into()).into()
 }
 
-/// Implements the trait `BatchInverseDynamics` for a struct that derives `InverseDynamics` too: torques of many states at
-/// once.
+/// Implements the trait `BatchInverseDynamics` for a struct that derives `InverseDynamics` too: torques of many states
+/// at once.
 ///
 /// ```
 /// use rne::{BatchInverseDynamics, InverseDynamics};
@@ -241,8 +243,8 @@ pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
 /// # Ok::<(), rne::LengthMismatch>(())
 /// ```
 ///
-/// Both derives read the same attribute, which [`InverseDynamics`](macro@InverseDynamics) explains and whose mistakes it
-/// reports. `max_ops` has been checked there; no constants are added.
+/// Both derives read the same attribute, which [`InverseDynamics`](macro@InverseDynamics) explains and whose mistakes
+/// it reports. `max_ops` has been checked there; no constants are added.
 #[proc_macro_derive(BatchInverseDynamics, attributes(robot))]
 pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     batch::batch_inverse_dynamics(input.into()).into()
@@ -252,8 +254,9 @@ pub fn derive_batch_inverse_dynamics(input: TokenStream) -> TokenStream {
 ///
 /// Symmetric by construction: each element off the diagonal is computed once.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `MASS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `MASS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits come
+/// with `InverseDynamics`.
 #[proc_macro_derive(MassMatrix, attributes(robot))]
 pub fn derive_mass_matrix(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MassMatrix, input.into()).into()
@@ -263,8 +266,9 @@ pub fn derive_mass_matrix(input: TokenStream) -> TokenStream {
 ///
 /// Ṁ - 2C is skew.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `CORIOLIS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `CORIOLIS_MATRIX_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(CoriolisMatrix, attributes(robot))]
 pub fn derive_coriolis_matrix(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CoriolisMatrix, input.into()).into()
@@ -274,8 +278,9 @@ pub fn derive_coriolis_matrix(input: TokenStream) -> TokenStream {
 ///
 /// A singular mass matrix gives numbers that are not finite, never a panic.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `FORWARD_DYNAMICS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `FORWARD_DYNAMICS_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(ForwardDynamics, attributes(robot))]
 pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::ForwardDynamics, input.into()).into()
@@ -285,8 +290,9 @@ pub fn derive_forward_dynamics(input: TokenStream) -> TokenStream {
 ///
 /// `base` and `tool` of the robot file included.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `FORWARD_KINEMATICS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `FORWARD_KINEMATICS_OPERATIONS` and so on; `DOF`, names and
+/// limits come with `InverseDynamics`.
 #[proc_macro_derive(Kinematics, attributes(robot))]
 pub fn derive_kinematics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Kinematics, input.into()).into()
@@ -296,8 +302,9 @@ pub fn derive_kinematics(input: TokenStream) -> TokenStream {
 ///
 /// Links alone, without rotors.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `KINETIC_ENERGY_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `KINETIC_ENERGY_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(Energy, attributes(robot))]
 pub fn derive_energy(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Energy, input.into()).into()
@@ -307,8 +314,9 @@ pub fn derive_energy(input: TokenStream) -> TokenStream {
 ///
 /// In the world, `base` of the robot file included. Links alone, without rotors.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `CENTRE_OF_MASS_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `CENTRE_OF_MASS_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(CentreOfMass, attributes(robot))]
 pub fn derive_centre_of_mass(input: TokenStream) -> TokenStream {
     expand::capability(Capability::CentreOfMass, input.into()).into()
@@ -318,8 +326,9 @@ pub fn derive_centre_of_mass(input: TokenStream) -> TokenStream {
 ///
 /// Ten parameters per link; the masses of the file have no part in it.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `REGRESSOR_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `REGRESSOR_OPERATIONS` and so on; `DOF`, names and limits come
+/// with `InverseDynamics`.
 #[proc_macro_derive(Regressor, attributes(robot))]
 pub fn derive_regressor(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Regressor, input.into()).into()
@@ -327,11 +336,12 @@ pub fn derive_regressor(input: TokenStream) -> TokenStream {
 
 /// Implements the trait `InverseDynamicsDerivatives` for a struct: ∂τ/∂q and ∂τ/∂q̇.
 ///
-/// In the seven steps by the product rule on the graph of the torques, which they share; in the reduced form that or composite
-/// bodies, whatever takes fewer operations.
+/// In the seven steps by the product rule on the graph of the torques, which they share; in the reduced form that or
+/// composite bodies, whatever takes fewer operations.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `INVERSE_DYNAMICS_DERIVATIVES_OPERATIONS` and so on; `DOF`,
+/// names and limits come with `InverseDynamics`.
 #[proc_macro_derive(InverseDynamicsDerivatives, attributes(robot))]
 pub fn derive_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
     expand::capability(Capability::InverseDynamicsDerivatives, input.into()).into()
@@ -341,8 +351,9 @@ pub fn derive_inverse_dynamics_derivatives(input: TokenStream) -> TokenStream {
 ///
 /// Bearing loads; always in the seven steps, whose forces have a meaning.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `JOINT_WRENCHES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `JOINT_WRENCHES_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(JointWrenches, attributes(robot))]
 pub fn derive_joint_wrenches(input: TokenStream) -> TokenStream {
     expand::capability(Capability::JointWrenches, input.into()).into()
@@ -352,8 +363,9 @@ pub fn derive_joint_wrenches(input: TokenStream) -> TokenStream {
 ///
 /// Its motion (ω₀, ω̇₀, c̈₀) and gravity are arguments.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `INVERSE_DYNAMICS_ON_MOVING_BASE_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `INVERSE_DYNAMICS_ON_MOVING_BASE_OPERATIONS` and so on; `DOF`,
+/// names and limits come with `InverseDynamics`.
 #[proc_macro_derive(MovingBase, attributes(robot))]
 pub fn derive_moving_base(input: TokenStream) -> TokenStream {
     expand::capability(Capability::MovingBase, input.into()).into()
@@ -363,8 +375,9 @@ pub fn derive_moving_base(input: TokenStream) -> TokenStream {
 ///
 /// The robot file needs a `motor` at one joint at least.
 ///
-/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type gets a constant
-/// with the operations of each method, `ACTUATOR_TORQUES_OPERATIONS` and so on; `DOF`, names and limits come with `InverseDynamics`.
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `ACTUATOR_TORQUES_OPERATIONS` and so on; `DOF`, names and limits
+/// come with `InverseDynamics`.
 #[proc_macro_derive(Actuation, attributes(robot))]
 pub fn derive_actuation(input: TokenStream) -> TokenStream {
     expand::capability(Capability::Actuation, input.into()).into()

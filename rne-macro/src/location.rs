@@ -119,8 +119,8 @@ fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) ->
     places
 }
 
-/// The same file name with its folders, in the folders above that of the source file, nearest first: what is meant where
-/// one `..` too few or too many is written.
+/// The same file name with its folders, in the folders above that of the source file, nearest first: what is meant
+/// where one `..` too few or too many is written.
 fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = PathBuf> {
     let named: PathBuf = written.components().filter(|part| matches!(part, Component::Normal(_))).collect();
     let levels = normal(source_folder).components().filter(|part| matches!(part, Component::Normal(_))).count();

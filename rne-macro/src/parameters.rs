@@ -30,7 +30,8 @@ impl Parameters {
             let Some(ident) = &field.ident else {
                 errors.at(
                     field,
-                    "a field without a name can be no parameter of the robot file. A field is a parameter that stays free \
+                    "a field without a name can be no parameter of the robot file. A field is a parameter that stays \
+                    free \
                      until run time, by its name; a field for other purposes says `#[robot(skip)]`",
                 );
                 continue;

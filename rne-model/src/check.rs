@@ -70,9 +70,9 @@ pub fn check_bytes(name: &str, bytes: &[u8]) -> Result<Checked, Report> {
 /// assert_eq!(robot.joints[0].row.link.mass, 1.2);
 /// ```
 ///
-/// What may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors, by `+ - * /` and
-/// whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the robot is the product
-/// too.
+/// What may vary: gravity, `xyz`, `d`, `a`, masses, centres of mass, inertias and the numbers of motors, by `+ - * /`
+/// and whole powers, which are products. Where `libm::pow` rounds a power otherwise, the number in the robot is the
+/// product too.
 ///
 /// # Errors
 ///

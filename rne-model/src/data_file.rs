@@ -4,8 +4,8 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
-/// The largest robot file or plan that is read. The longest table, 64 joints, needs a fiftieth of it, a plan with a graph of as
-/// many dense joints a half.
+/// The largest robot file or plan that is read. The longest table, 64 joints, needs a fiftieth of it, a plan with a
+/// graph of as many dense joints a half.
 pub const MAX_BYTES: usize = 1 << 20;
 
 /// What the name of a plan file ends with, in place of the extension of its robot file.
@@ -23,8 +23,8 @@ pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a robot file or a plan, [limited](read_limited). What is no regular file is not opened: a pipe would keep
-/// its reader waiting, a device may have no end.
+/// The bytes of a robot file or a plan, [limited](read_limited). What is no regular file is not opened: a pipe would
+/// keep its reader waiting, a device may have no end.
 ///
 /// # Errors
 ///

@@ -83,8 +83,8 @@ impl<'t> Context<'t> {
         Self { text, problems, parameters: RefCell::default(), run_time, suggestions: Cell::new(0) }
     }
 
-    /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a file
-    /// of nothing but unknown words can cause; a report shows fewer mistakes.
+    /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a
+    /// file of nothing but unknown words can cause; a report shows fewer mistakes.
     pub(crate) fn did_you_mean<'c>(
         &self,
         word: &str,
@@ -256,7 +256,8 @@ fn place_of(key: &str) -> Option<String> {
     Some(format!("`{key}` belongs under `{place}`"))
 }
 
-/// A finite number: a decimal or an expression. What may vary at run time, and where, is for [`varying`](crate::varying).
+/// A finite number: a decimal or an expression. What may vary at run time, and where, is for
+/// [`varying`](crate::varying).
 pub(crate) fn quantity(cx: &Context, node: &Node) -> Option<Quantity> {
     let Content::Scalar(scalar) = &node.content else { return cx.wrong_shape(node, "a number") };
     cx.problems.count(scalar.text.len().min(Expression::MAX_BYTES));

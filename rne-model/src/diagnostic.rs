@@ -106,9 +106,9 @@ impl Report {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Warning)
     }
 
-    /// How much work the reading was, the same on every machine: events of the parser, characters of expressions, parts of
-    /// formulas, comparisons of keys and letters, characters passed on the way to the lines. It grows with the length of
-    /// the text at most in proportion, and by a bounded amount beyond that.
+    /// How much work the reading was, the same on every machine: events of the parser, characters of expressions, parts
+    /// of formulas, comparisons of keys and letters, characters passed on the way to the lines. It grows with the
+    /// length of the text at most in proportion, and by a bounded amount beyond that.
     pub fn work(&self) -> usize {
         self.work
     }
@@ -182,8 +182,8 @@ impl Drop for Problems {
     }
 }
 
-/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position. Returns how many characters
-/// it looked at.
+/// Fills in lines and columns in one pass over the text; `diagnostics` are sorted by position. Returns how many
+/// characters it looked at.
 fn locate(diagnostics: &mut [Diagnostic], text: &str) -> usize {
     let (mut line, mut column, mut at) = (1, 1, 0);
     let mut passed = 0;

@@ -23,7 +23,8 @@ const MAX_DEPTH: usize = 64;
 /// Numbers, names and operators of one expression; bounds the recursion over its tree.
 const MAX_PARTS: usize = 1000;
 
-/// Numbers, run-time parameters and operators of one formula; parameters defined by one another could double it forever.
+/// Numbers, run-time parameters and operators of one formula; parameters defined by one another could double it
+/// forever.
 const MAX_RUN_TIME_PARTS: usize = 250;
 
 /// What a number may be, for the help of every mistake.

@@ -35,8 +35,8 @@ pub enum Formula {
 }
 
 impl Formula {
-    /// The value at given parameters: the operations of the formula and no others, in its order. A parameter that is not
-    /// given is not a number.
+    /// The value at given parameters: the operations of the formula and no others, in its order. A parameter that is
+    /// not given is not a number.
     #[must_use]
     pub fn evaluate(&self, parameters: &[f64]) -> f64 {
         match self {

@@ -1,7 +1,7 @@
 //! The robot file: one YAML document per robot, with its Denavit-Hartenberg table and inertial data.
 //!
-//! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every
-//! mistake with line, column and what is allowed. Strings in, data out: nothing here opens a file; who does reads it with
+//! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every mistake
+//! with line, column and what is allowed. Strings in, data out: nothing here opens a file; who does reads it with
 //! [`read_file`].
 //!
 //! ```

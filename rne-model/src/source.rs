@@ -63,8 +63,8 @@ pub fn is_control(c: char) -> bool {
     c.is_control() || is_line_break(c) || turns_direction
 }
 
-/// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any other
-/// [control character](is_control) U+FFFD.
+/// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any
+/// other [control character](is_control) U+FFFD.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     let shown = |c: char| match c {

@@ -21,8 +21,8 @@ pub enum JointKind {
     Prismatic,
 }
 
-/// The joint whose link carries `joint`, both counted from 0; `None` for the base. Every robot is a chain: each joint stands on
-/// the link before it. What goes from link to link asks here, and nowhere takes one from an index.
+/// The joint whose link carries `joint`, both counted from 0; `None` for the base. Every robot is a chain: each joint
+/// stands on the link before it. What goes from link to link asks here, and nowhere takes one from an index.
 #[must_use]
 pub const fn parent(joint: usize) -> Option<usize> {
     joint.checked_sub(1)

@@ -93,7 +93,9 @@ proptest! {
     }
 
     #[test]
-    fn powers_agree_with_themselves(p in value(), other in value(), n in 1..=16, sign in prop::sample::select(vec!["", "-"])) {
+    fn powers_agree_with_themselves(
+        p in value(), other in value(), n in 1..=16, sign in prop::sample::select(vec!["", "-"]),
+    ) {
         let power = format!("(m + p^2)^{sign}{n} * p^{sign}{n}");
         let expressions = [&power; 6].map(Clone::clone);
         let read = |p| read(&text(&expressions, [p, 1.0], "com"), &["p", "r"]);

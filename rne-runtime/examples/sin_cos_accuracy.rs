@@ -1,8 +1,8 @@
-//! Errors of sine and cosine against a reference of higher precision: of every `f32` up to 10⁵ rad, of 10⁸ random `f64` up
-//! to there and of those nearest to multiples of π/4. Fails above the promised bounds.
+//! Errors of sine and cosine against a reference of higher precision: of every `f32` up to 10⁵ rad, of 10⁸ random `f64`
+//! up to there and of those nearest to multiples of π/4. Fails above the promised bounds.
 //!
-//! `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy`; without the feature, without the vector
-//! units of batches.
+//! `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy`; without the feature, without the
+//! vector units of batches.
 
 #[path = "../tests/sin_cos/reference.rs"]
 mod reference;

@@ -12,13 +12,13 @@ use crate::per_joint::Known;
 use crate::trace::{self, LinkTrace, Trace};
 use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Scalar, Wrench};
 
-/// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, and is
-/// what generated code is tested against. In `f64`, without fused multiply-add, the seven steps give the same bits for torques,
-/// mass matrix, forward dynamics, kinetic energy, derivatives and joint wrenches; positions, Jacobians, potential energy, the
-/// Coriolis matrix and the regressor sum in another order and agree to rounding.
+/// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, and
+/// is what generated code is tested against. In `f64`, without fused multiply-add, the seven steps give the same bits
+/// for torques, mass matrix, forward dynamics, kinetic energy, derivatives and joint wrenches; positions, Jacobians,
+/// potential energy, the Coriolis matrix and the regressor sum in another order and agree to rounding.
 ///
-/// `S` is the scalar in which the constants are stored and prepared; the computations run in any [`Scalar`]. Computations in
-/// `f32` with constants in `f64` differ from generated code in their last bits.
+/// `S` is the scalar in which the constants are stored and prepared; the computations run in any [`Scalar`].
+/// Computations in `f32` with constants in `f64` differ from generated code in their last bits.
 ///
 /// The one-link example of lecture 38, a uniform rod that hangs along x:
 ///
@@ -90,8 +90,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         BaseMotion::fixed(self.model.gravity.map(S::to))
     }
 
-    /// Torques on a moving base: `base` replaces the model's gravity and the base at rest. `wrench` is what the last link
-    /// exerts on its environment; `None` is a free tip.
+    /// Torques on a moving base: `base` replaces the model's gravity and the base at rest. `wrench` is what the last
+    /// link exerts on its environment; `None` is a free tip.
     ///
     /// Joint arrays as in [`InverseDynamics::inverse_dynamics`].
     #[must_use]
@@ -108,8 +108,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     }
 
     /// Every vector of the seven steps, in the axes of form P. Arguments as in
-    /// [`inverse_dynamics_on_moving_base_with_wrench`](Self::inverse_dynamics_on_moving_base_with_wrench); [`fixed_base`](Self::fixed_base) for
-    /// an arm that stands still.
+    /// [`inverse_dynamics_on_moving_base_with_wrench`](Self::inverse_dynamics_on_moving_base_with_wrench);
+    /// [`fixed_base`](Self::fixed_base) for an arm that stands still.
     #[must_use]
     pub fn trace<T: Scalar>(
         &self,

@@ -4,8 +4,8 @@ use crate::Scalar;
 
 /// Motion of the base, the "link 0" from which the forward recursion starts. Every vector is in the axes of frame 0.
 ///
-/// For an arm bolted to the floor everything but gravity is zero: [`BaseMotion::fixed`]. On a ship, a vehicle or another
-/// robot, frame 0 moves; when it tilts, gravity turns in it.
+/// For an arm bolted to the floor everything but gravity is zero: [`BaseMotion::fixed`]. On a ship, a vehicle or
+/// another robot, frame 0 moves; when it tilts, gravity turns in it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct BaseMotion<T> {
     /// Angular velocity ω₀, rad/s.

@@ -1,13 +1,13 @@
 //! The base parameters: the fewest combinations of the links' inertial parameters that the torques depend on.
 //!
-//! The [regressor](DynArm::regressor) is stacked at random states, the same in every run. A column that is a combination of
-//! columns before it belongs to a parameter that no torque can tell from theirs: it is eliminated and regrouped into them. The
-//! columns run from the base to the tip and within a link as J, m c, m, so that what is eliminated is regrouped into links
-//! nearer to the base, and Jxx is kept where Jyy or Jzz goes: the usual choice.
+//! The [regressor](DynArm::regressor) is stacked at random states, the same in every run. A column that is a
+//! combination of columns before it belongs to a parameter that no torque can tell from theirs: it is eliminated and
+//! regrouped into them. The columns run from the base to the tip and within a link as J, m c, m, so that what is
+//! eliminated is regrouped into links nearer to the base, and Jxx is kept where Jyy or Jzz goes: the usual choice.
 //!
-//! M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions on
-//! Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial parameters of
-//! robots, Journal of Robotic Systems 8 (1991), 485-506, for the factorisation.
+//! M. Gautier, W. Khalil, Direct calculation of minimum set of inertial parameters of serial robots, IEEE Transactions
+//! on Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial
+//! parameters of robots, Journal of Robotic Systems 8 (1991), 485-506, for the factorisation.
 
 use std::fmt;
 
@@ -58,7 +58,8 @@ pub struct BaseParameters {
 }
 
 impl DynArm {
-    /// The inertial parameters of every link, as the regressor counts them, about the origin of its link frame and in its axes.
+    /// The inertial parameters of every link, as the regressor counts them, about the origin of its link frame and in
+    /// its axes.
     #[must_use]
     pub fn inertial_parameters(&self) -> Vec<[f64; PARAMETERS]> {
         self.rows().iter().map(|row| about_the_origin(&row.link)).collect()
@@ -165,7 +166,8 @@ struct Basis {
 }
 
 impl Basis {
-    /// The coefficients of a column that is a combination of those before it; `None` when it is not, and one of them from now on.
+    /// The coefficients of a column that is a combination of those before it; `None` when it is not, and one of them
+    /// from now on.
     fn combination_or_insert(&mut self, column: &DVector<f64>) -> Option<Vec<f64>> {
         let mut rest = column.clone();
         let mut parts = vec![0.0; self.directions.len()];

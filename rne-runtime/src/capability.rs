@@ -27,9 +27,9 @@ pub trait InverseDynamics<const DOF: usize> {
         wrench: &Wrench<T>,
     ) -> [T; DOF];
 
-    /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics pass:
-    /// `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle; those of a
-    /// prismatic joint are not used, as `q[i]` of a revolute joint is not.
+    /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics
+    /// pass: `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle;
+    /// those of a prismatic joint are not used, as `q[i]` of a revolute joint is not.
     #[must_use]
     fn inverse_dynamics_sc<T: Scalar>(
         &self,
@@ -51,8 +51,8 @@ pub trait InverseDynamics<const DOF: usize> {
 
 /// The mass matrix M(q) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q).
 pub trait MassMatrix<const DOF: usize> {
-    /// M(q): element (i, j) is the torque at joint i for a unit acceleration of joint j, from rest and without gravity. In
-    /// kg m², kg m or kg, as the kinds of joints i and j have it.
+    /// M(q): element (i, j) is the torque at joint i for a unit acceleration of joint j, from rest and without gravity.
+    /// In kg m², kg m or kg, as the kinds of joints i and j have it.
     ///
     /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia.
     #[must_use]
@@ -61,9 +61,8 @@ pub trait MassMatrix<const DOF: usize> {
 
 /// The matrix C(q, q̇) of τ = M(q) q̈ + C(q, q̇) q̇ + g(q), by Christoffel's symbols.
 pub trait CoriolisMatrix<const DOF: usize> {
-    /// C(q, q̇), row = torque. Of the matrices that give the same C q̇ it is Christoffel's,
-    /// C_ij = ½ Σ_k (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative
-    /// of C q̇ with respect to q̇.
+    /// C(q, q̇), row = torque. Of the matrices that give the same C q̇ it is Christoffel's, C_ij = ½ Σ_k (∂M_ij/∂q_k +
+    /// ∂M_ik/∂q_j - ∂M_jk/∂q_i) q̇_k: Ṁ - 2C is skew, Ṁ = C + Cᵀ, and C is half the derivative of C q̇ with respect to q̇.
     #[must_use]
     fn coriolis_matrix<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [[T; DOF]; DOF];
 }
@@ -77,26 +76,27 @@ pub trait ForwardDynamics<const DOF: usize> {
     fn forward_dynamics<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> [T; DOF];
 }
 
-/// Where the links and the tip are, and how they move with the joints. World axes; the robot's `base` places frame 0 there.
+/// Where the links and the tip are, and how they move with the joints. World axes; the robot's `base` places frame 0
+/// there.
 pub trait Kinematics<const DOF: usize> {
     /// The pose of the tip frame (`tool` included) in the world.
     #[must_use]
     fn forward_kinematics<T: Scalar>(&self, q: &[T; DOF]) -> Pose<T>;
 
-    /// The poses of the link frames of the table in the world: at the far end of link i in a standard table, on joint i in a
-    /// modified one. The tool is not included.
+    /// The poses of the link frames of the table in the world: at the far end of link i in a standard table, on joint i
+    /// in a modified one. The tool is not included.
     #[must_use]
     fn link_poses<T: Scalar>(&self, q: &[T; DOF]) -> [Pose<T>; DOF];
 
-    /// The geometric Jacobian: J q̇ is the velocity of the tip frame's origin (three rows, m/s) above the angular velocity of
-    /// the last link (three rows, rad/s), in world axes.
+    /// The geometric Jacobian: J q̇ is the velocity of the tip frame's origin (three rows, m/s) above the angular
+    /// velocity of the last link (three rows, rad/s), in world axes.
     ///
     /// Column i of a revolute joint is z_i × (p_tip - p_i) above z_i, of a prismatic one z_i above 0.
     #[must_use]
     fn jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 6];
 
-    /// J̇ q̇: acceleration of the tip frame's origin (m/s²) above angular acceleration of the last link (rad/s²) at q̈ = 0, in
-    /// world axes. At any other q̈ they are J q̈ + J̇ q̇.
+    /// J̇ q̇: acceleration of the tip frame's origin (m/s²) above angular acceleration of the last link (rad/s²) at q̈ =
+    /// 0, in world axes. At any other q̈ they are J q̈ + J̇ q̇.
     #[must_use]
     fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; 6];
 }
@@ -107,8 +107,8 @@ pub trait Energy<const DOF: usize> {
     #[must_use]
     fn kinetic_energy<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> T;
 
-    /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero where all masses are there. Where the base
-    /// stands in the world does not matter.
+    /// -Σ m g·c, with c from the origin of frame 0 to each centre of mass: zero where all masses are there. Where the
+    /// base stands in the world does not matter.
     #[must_use]
     fn potential_energy<T: Scalar>(&self, q: &[T; DOF]) -> T;
 }
@@ -118,15 +118,16 @@ pub trait Regressor<const DOF: usize> {
     /// Y(q, q̇, q̈), gravity included: τ_i = Σ_j Σ_k Y\[i\]\[j\]\[k\] π_jk (torque, link, parameter), with ten parameters
     /// per link, π_j = (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).
     ///
-    /// They refer to the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫ x y dm.
+    /// They refer to the link frame of the table: c and J from its origin, in its axes; Jxy is the tensor's element, -∫
+    /// x y dm.
     #[must_use]
     fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; 10]; DOF]; DOF];
 }
 
 /// How the torques change with the state.
 pub trait InverseDynamicsDerivatives<const DOF: usize> {
-    /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](InverseDynamics::inverse_dynamics) at a state, row = torque, column = joint.
-    /// ∂τ/∂q̈ is the [mass matrix](MassMatrix::mass_matrix).
+    /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](InverseDynamics::inverse_dynamics) at a state, row = torque, column =
+    /// joint. ∂τ/∂q̈ is the [mass matrix](MassMatrix::mass_matrix).
     #[must_use]
     fn inverse_dynamics_derivatives<T: Scalar>(
         &self,
@@ -138,12 +139,12 @@ pub trait InverseDynamicsDerivatives<const DOF: usize> {
 
 /// What the joints carry: the load of their bearings.
 pub trait JointWrenches<const DOF: usize> {
-    /// f_{i-1,i} and n_{i-1,i} with a free tip: exerted BY link i-1 ON link i, about the joint's reference point J_i, in the
-    /// axes of form P (fixed to link i, z along joint i). The z element of the moment of a revolute joint, of the force of a
-    /// prismatic one, is τ_i.
+    /// f_{i-1,i} and n_{i-1,i} with a free tip: exerted BY link i-1 ON link i, about the joint's reference point J_i,
+    /// in the axes of form P (fixed to link i, z along joint i). The z element of the moment of a revolute joint, of
+    /// the force of a prismatic one, is τ_i.
     ///
-    /// J_i is fixed to link i-1: the origin of frame i-1 in a standard table; in a modified one the foot of the common normal
-    /// on axis i. Moment in N m, force in N.
+    /// J_i is fixed to link i-1: the origin of frame i-1 in a standard table; in a modified one the foot of the common
+    /// normal on axis i. Moment in N m, force in N.
     #[must_use]
     fn joint_wrenches<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [Wrench<T>; DOF];
 }
@@ -163,18 +164,20 @@ pub trait MovingBase<const DOF: usize> {
 
 /// What the motors need for themselves: rotor inertia and friction, seen at the joints.
 pub trait Actuation<const DOF: usize> {
-    /// The motor terms alone, to be added to the torques of the links: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇) per joint, N m or
-    /// N. A joint without a motor needs nothing, so a robot without motors gets zeros; Coulomb friction is zero at rest.
+    /// The motor terms alone, to be added to the torques of the links: G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇) per joint, N m
+    /// or N. A joint without a motor needs nothing, so a robot without motors gets zeros; Coulomb friction is zero at
+    /// rest.
     ///
     /// The sign is [`Scalar::by_sign`], which a scalar of your own must implement for it.
     #[must_use]
     fn actuator_torques<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF]) -> [T; DOF];
 
-    /// The same with friction that changes its sign gradually, for optimisers and integrators: s = q̇ / √(q̇² + width²) in
-    /// place of the sign, and |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) for the friction, which tends to |G| Tc⁺ and |G| Tc⁻
-    /// and is zero at rest.
+    /// The same with friction that changes its sign gradually, for optimisers and integrators: s = q̇ / √(q̇² + width²)
+    /// in place of the sign, and |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²) for the friction, which tends to |G| Tc⁺
+    /// and |G| Tc⁻ and is zero at rest.
     ///
-    /// `width` > 0 is the velocity (rad/s or m/s) at which s is 0.7. A scalar of your own must implement [`Scalar::sqrt`].
+    /// `width` > 0 is the velocity (rad/s or m/s) at which s is 0.7. A scalar of your own must implement
+    /// [`Scalar::sqrt`].
     #[must_use]
     fn actuator_torques_smooth<T: Scalar>(&self, qd: &[T; DOF], qdd: &[T; DOF], width: T) -> [T; DOF] {
         let smooth = |value| SmoothSign { value, width };

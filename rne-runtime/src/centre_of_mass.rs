@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! μ_i = m_i (1 / Σ m)                                     sums of masses from the base to the tip
-//! c = Σ μ_i c_i + p_b                                     c_i from the base's origin, in world axes, which stands at p_b
+//! c = Σ μ_i c_i + p_b                                  c_i from the base's origin, in world axes, which stands at p_b
 //! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j          from the tip to the base
 //! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
 //! ```

@@ -1,15 +1,16 @@
 //! The Coriolis matrix C(q, q̇) of Christoffel, by the seven steps.
 //!
 //! Without gravity and at q̈ = 0 the torques are a quadratic form in the velocities, b(x) = B(x, x) with B bilinear and
-//! symmetric, B(x, y)_i = Σ_jk Γ_ijk x_j y_k with Christoffel's symbols Γ_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i).
-//! Christoffel's matrix is C_ij = Σ_k Γ_ijk q̇_k. So its column j is the polar form with the unit vector e_j,
+//! symmetric, B(x, y)_i = Σ_jk Γ_ijk x_j y_k with Christoffel's symbols Γ_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j -
+//! ∂M_jk/∂q_i). Christoffel's matrix is C_ij = Σ_k Γ_ijk q̇_k. So its column j is the polar form with the unit vector
+//! e_j,
 //!
 //! ```text
 //! C e_j = B(q̇, e_j) = (b(q̇ + e_j) - b(q̇ - e_j)) / 4
 //! ```
 //!
-//! an identity and no difference quotient: it is exact up to rounding. Half the derivative of b with respect to q̇ is the
-//! same matrix.
+//! an identity and no difference quotient: it is exact up to rounding. Half the derivative of b with respect to q̇ is
+//! the same matrix.
 
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;

@@ -1,5 +1,5 @@
-//! Derivatives of the torques with respect to positions and velocities, by dual numbers through the seven steps: exact up to
-//! rounding, one direction at a time.
+//! Derivatives of the torques with respect to positions and velocities, by dual numbers through the seven steps: exact
+//! up to rounding, one direction at a time.
 
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;

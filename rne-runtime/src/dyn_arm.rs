@@ -187,8 +187,8 @@ impl<S: Constant> DynArm<S> {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, base, None)
     }
 
-    /// Torques on a moving base: `base` replaces the robot's gravity and the base at rest. `wrench` is what the last link
-    /// exerts on its environment; `None` is a free tip.
+    /// Torques on a moving base: `base` replaces the robot's gravity and the base at rest. `wrench` is what the last
+    /// link exerts on its environment; `None` is a free tip.
     ///
     /// # Errors
     /// When a joint argument does not have one element per joint.

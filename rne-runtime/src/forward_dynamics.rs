@@ -1,8 +1,8 @@
 //! Forward dynamics: the accelerations that follow from torques, M(q) q̈ = τ - bias(q, q̇).
 //!
-//! M is [`mass_matrix`](crate::MassMatrix::mass_matrix), the bias is [`bias_torques`](crate::InverseDynamics::bias_torques),
-//! and M = L D Lᵀ without pivoting, which a positive definite matrix does not need. The order of the operations is part of
-//! the contract; generated code repeats it:
+//! M is [`mass_matrix`](crate::MassMatrix::mass_matrix), the bias is
+//! [`bias_torques`](crate::InverseDynamics::bias_torques), and M = L D Lᵀ without pivoting, which a positive definite
+//! matrix does not need. The order of the operations is part of the contract; generated code repeats it:
 //!
 //! ```text
 //! for j = 1 … n      D_j  = M_jj - L_j1 c_j1 - L_j2 c_j2 - …        over k < j, subtracted one by one
@@ -31,8 +31,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     }
 }
 
-/// Makes the solution x of M x = b from b. M keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse` is a
-/// place for the reciprocals of D.
+/// Makes the solution x of M x = b from b. M keeps L below its diagonal and c above: c_ij stands at (j, i). `inverse`
+/// is a place for the reciprocals of D.
 fn solve<T: Scalar, R: AsRef<[T]> + AsMut<[T]>>(m: &mut [R], mut inverse: impl AsMut<[T]>, x: &mut [T]) {
     let n = x.len();
     let inverse = inverse.as_mut();

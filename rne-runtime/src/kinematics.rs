@@ -1,7 +1,7 @@
 //! Poses, the Jacobian of the tip and what it lacks of the tip's acceleration.
 //!
-//! Poses are accumulated from the base, row by row of the table, and not by the frames of the seven steps. The order of the
-//! operations is part of the contract; generated code repeats it:
+//! Poses are accumulated from the base, row by row of the table, and not by the frames of the seven steps. The order of
+//! the operations is part of the contract; generated code repeats it:
 //!
 //! ```text
 //! start             R = Rz(yaw) Ry(pitch) Rx(roll), p = xyz of the base
@@ -13,8 +13,8 @@
 //! modified     Rx(α) Rz(θ)      (a, -sin α d, cos α d)
 //! ```
 //!
-//! Products of matrices are sums of three products, from the first to the last. θ or d contains the joint variable, d as the
-//! sum of constant and variable.
+//! Products of matrices are sums of three products, from the first to the last. θ or d contains the joint variable, d
+//! as the sum of constant and variable.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, JointKind, Row, Transform};
@@ -91,7 +91,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         placements
     }
 
-    /// The frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a modified one.
+    /// The frame whose z axis is joint i: the parent's link frame in a standard table, the link's own in a modified
+    /// one.
     pub(crate) fn joint_frame<T: Scalar>(self, i: usize, start: Placement<T>, links: &[Placement<T>]) -> Placement<T> {
         match (self.convention, self.chain.links[i].parent) {
             (Convention::Modified, _) => links[i],
@@ -143,8 +144,8 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         })
     }
 
-    /// The tip's acceleration at q̈ = 0: steps 1 and 2, and step 4 from joint to joint instead of by centres of mass, which
-    /// may be far away and have no part in it. s_i leads from joint i to joint i+1, the last to the tip:
+    /// The tip's acceleration at q̈ = 0: steps 1 and 2, and step 4 from joint to joint instead of by centres of mass,
+    /// which may be far away and have no part in it. s_i leads from joint i to joint i+1, the last to the tip:
     ///
     /// - R: p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      p̈_1 = 0
     /// - P: the same + 2 q̇_i ω_i × e_i

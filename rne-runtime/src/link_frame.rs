@@ -1,8 +1,8 @@
 //! From rows of the table to what the seven steps need of every link, in form P.
 //!
-//! Form P gives link i a frame fixed to it, with its z axis on joint i. In this frame `e_i` is (0, 0, 1), `r_i` and `I_i`
-//! are constant, and `d_i` changes along z only, and only when joint i slides. Standard and modified tables differ in the
-//! constants below and nowhere else:
+//! Form P gives link i a frame fixed to it, with its z axis on joint i. In this frame `e_i` is (0, 0, 1), `r_i` and
+//! `I_i` are constant, and `d_i` changes along z only, and only when joint i slides. Standard and modified tables
+//! differ in the constants below and nowhere else:
 //!
 //! ```text
 //!             R_i                     d_i                          I_i
@@ -10,8 +10,8 @@
 //! modified    Rx(α_{i-1}) Rz(θ_i)     (0, 0, b_i) + c̄              Ī
 //! ```
 //!
-//! c̄ and Ī are the table's centre of mass and inertia. Row i of a modified table already carries α_{i-1} and a_{i-1}. The
-//! twist, and r, the lever from one link's centre of mass to the next joint, belong to that joint: [`Mount`].
+//! c̄ and Ī are the table's centre of mass and inertia. Row i of a modified table already carries α_{i-1} and a_{i-1}.
+//! The twist, and r, the lever from one link's centre of mass to the next joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform, parent};

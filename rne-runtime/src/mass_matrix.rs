@@ -1,8 +1,8 @@
 //! The mass matrix M(q), by the seven steps: its columns are the torques of unit accelerations.
 //!
-//! Column j is τ(q, 0, e_j) without gravity: q̈ = e_j is 1 at j and 0 elsewhere. The rows i ≤ j of column j are taken, and
-//! mirrored, so the matrix is symmetric to the last bit. The order of the operations is that of the seven steps; generated
-//! code repeats it.
+//! Column j is τ(q, 0, e_j) without gravity: q̈ = e_j is 1 at j and 0 elsewhere. The rows i ≤ j of column j are taken,
+//! and mirrored, so the matrix is symmetric to the last bit. The order of the operations is that of the seven steps;
+//! generated code repeats it.
 
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;

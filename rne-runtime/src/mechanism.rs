@@ -1,4 +1,5 @@
-//! A robot as its functions see it, whatever owns its data: [`Arm`](crate::Arm) and `DynArm` share everything from here on.
+//! A robot as its functions see it, whatever owns its data: [`Arm`](crate::Arm) and `DynArm` share everything from here
+//! on.
 
 use nalgebra::Vector3;
 use rne_model::{Convention, Motor, Row, Transform};

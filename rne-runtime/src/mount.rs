@@ -8,8 +8,8 @@
 //! modified    Rx(α_i)           (a_i, 0, 0)         l_i - c̄_p                   R_t              p_t
 //! ```
 //!
-//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On the
-//! base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
+//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
+//! the base the rotation of a standard table is 1, and c̄_p = 0. R_t and p_t are the tool's.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Convention, Row, Transform, parent};
@@ -22,8 +22,8 @@ use crate::{Constant, Scalar};
 pub(crate) struct Mount<S> {
     /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
     pub(crate) rotation: Matrix3<S>,
-    /// From the parent's centre of mass to the joint's reference point J, or to the tip; of the base, from the origin of
-    /// frame 0.
+    /// From the parent's centre of mass to the joint's reference point J, or to the tip; of the base, from the origin
+    /// of frame 0.
     pub(crate) r: Vector3<S>,
     /// To the same point from the end of the parent's offset.
     pub(crate) lever: Vector3<S>,

@@ -4,8 +4,8 @@ use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Rotation3, SimdRealField, Tran
 
 use crate::Scalar;
 
-/// The pose of a frame in another: `rotation` turns components in the axes of the frame into components in the axes of the
-/// other one, where `translation` is the frame's origin. A point p of the frame is at rotation p + translation.
+/// The pose of a frame in another: `rotation` turns components in the axes of the frame into components in the axes of
+/// the other one, where `translation` is the frame's origin. A point p of the frame is at rotation p + translation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose<T> {
     /// Rows of the rotation matrix.
@@ -21,7 +21,8 @@ impl<T: Scalar> Pose<T> {
         Self::from_matrix(Matrix3::identity(), Vector3::zeros())
     }
 
-    /// From an nalgebra matrix and vector. `rotation` is taken as it stands: that it is orthonormal is the caller's concern.
+    /// From an nalgebra matrix and vector. `rotation` is taken as it stands: that it is orthonormal is the caller's
+    /// concern.
     #[must_use]
     pub fn from_matrix(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
         Self { rotation: rotation.transpose().into(), translation: translation.into() }

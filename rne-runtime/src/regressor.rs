@@ -1,17 +1,17 @@
 //! The torques as a linear function of the inertial parameters, τ = Σ Y π.
 //!
-//! Link j has ten parameters in the axes of its link frame, π = (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz), J being
-//! the tensor about the link frame's origin O_j. With a = Ö_j - g, force and moment about O_j that move the link and carry
-//! its weight are linear in them:
+//! Link j has ten parameters in the axes of its link frame, π = (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz), J
+//! being the tensor about the link frame's origin O_j. With a = Ö_j - g, force and moment about O_j that move the link
+//! and carry its weight are linear in them:
 //!
 //! ```text
 //! f = m a + ω̇ × m c + ω × (ω × m c)
 //! n = m c × a + J ω̇ + ω × J ω
 //! ```
 //!
-//! Each parameter set to one, the others to zero, gives a wrench; its way to the joints i ≤ j is that of step 6, and the
-//! element along joint i is Y_{i,j}. The motion comes from the forward pass of the same table with every centre of mass put
-//! at its link frame's origin: no inertial parameter of the robot enters Y.
+//! Each parameter set to one, the others to zero, gives a wrench; its way to the joints i ≤ j is that of step 6, and
+//! the element along joint i is Y_{i,j}. The motion comes from the forward pass of the same table with every centre of
+//! mass put at its link frame's origin: no inertial parameter of the robot enters Y.
 
 use core::array;
 

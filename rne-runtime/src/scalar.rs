@@ -11,8 +11,8 @@ use crate::sin_cos::{Lanes, sin_cos};
 
 /// A real number, or a bundle of them: `f32`, `f64`, simba's SIMD lanes, dual numbers, fixed point.
 ///
-/// Implemented for everything that is simba's [`SimdRealField`] and `Copy`. A type of your own that is no such field (an
-/// interval, say) implements this trait itself; a foreign one needs a newtype.
+/// Implemented for everything that is simba's [`SimdRealField`] and `Copy`. A type of your own that is no such field
+/// (an interval, say) implements this trait itself; a foreign one needs a newtype.
 ///
 /// The ring operators come with their assigning forms, `+=` and so on: nalgebra's sums and products of matrices ask for
 /// them, and the generic recursion is written in nalgebra.
@@ -37,8 +37,8 @@ pub trait Scalar:
     #[must_use]
     fn from_f64(value: f64) -> Self;
 
-    /// A constant that is stored in single precision; never passes through `f64` when this type is `f32`. A type of your
-    /// own may leave it out.
+    /// A constant that is stored in single precision; never passes through `f64` when this type is `f32`. A type of
+    /// your own may leave it out.
     #[must_use]
     fn from_f32(value: f32) -> Self {
         Self::from_f64(value.into())
@@ -47,15 +47,16 @@ pub trait Scalar:
     /// Sine and cosine of an angle in rad.
     ///
     /// For `f32` and `f64` these are kernels of this crate, `f32`'s in `f32` alone: errors below 1 ulp for angles up to
-    /// 10⁵ rad, as `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy` shows, and the same bits with and without
-    /// `std` on targets compiled without fused multiply-add. Beyond that range they are `std`'s functions; without `std`
-    /// results there mean nothing. NaN and infinities give NaN, and sin(-0) is -0.
+    /// 10⁵ rad, as `cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy` shows, and the same
+    /// bits with and without `std` on targets compiled without fused multiply-add. Beyond that range they are `std`'s
+    /// functions; without `std` results there mean nothing. NaN and infinities give NaN, and sin(-0) is -0.
     ///
     /// Other scalars of simba keep their own sine and cosine.
     #[must_use]
     fn sin_cos(self) -> (Self, Self);
 
-    /// Sines and cosines of several angles in rad, each equal, bit for bit, to [`sin_cos`](Self::sin_cos) of that angle.
+    /// Sines and cosines of several angles in rad, each equal, bit for bit, to [`sin_cos`](Self::sin_cos) of that
+    /// angle.
     #[must_use]
     fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
         let (mut sines, mut cosines) = (angles, angles);
@@ -65,20 +66,21 @@ pub trait Scalar:
         (sines, cosines)
     }
 
-    /// `self * factor + addend`: rounded once where the compiled target has an instruction for that, else a product and a
-    /// sum.
+    /// `self * factor + addend`: rounded once where the compiled target has an instruction for that, else a product and
+    /// a sum.
     ///
-    /// Of the scalars here only `f32` and `f64` are ever rounded once: on x86-64 built with the target feature `fma` and on
-    /// AArch64, with `std`; without it, and on Cortex-M (`f32` alone) and RISC-V, with the feature `core_float_math`, which
-    /// needs a nightly compiler, for `core` has the operation in no stable one yet. It is never a call of a library.
+    /// Of the scalars here only `f32` and `f64` are ever rounded once: on x86-64 built with the target feature `fma`
+    /// and on AArch64, with `std`; without it, and on Cortex-M (`f32` alone) and RISC-V, with the feature
+    /// `core_float_math`, which needs a nightly compiler, for `core` has the operation in no stable one yet. It is
+    /// never a call of a library.
     #[must_use]
     #[inline]
     fn mul_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }
 
-    /// `positive` where this number is above zero, `negative` where it is below, zero where it is zero (or NaN): lane by
-    /// lane, without a branch. Coulomb friction needs it, and [`Actuation`](crate::Actuation) alone.
+    /// `positive` where this number is above zero, `negative` where it is below, zero where it is zero (or NaN): lane
+    /// by lane, without a branch. Coulomb friction needs it, and [`Actuation`](crate::Actuation) alone.
     ///
     /// A type of your own may leave it out; calling it then, directly or through `Actuation`, fails to compile.
     #[must_use]
@@ -173,7 +175,8 @@ fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
     (&value as &dyn Any).downcast_ref().copied()
 }
 
-/// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without it.
+/// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without
+/// it.
 pub trait Constant: Scalar + sealed::Sealed {
     /// This constant in the scalar of a computation.
     #[must_use]

@@ -1,7 +1,7 @@
 //! The seven steps of recursive Newton-Euler.
 //!
-//! After A. D. Udai, NPTEL "Industrial Robotics: Theories for Implementation", lecture 38, and S. K. Saha, "Introduction to
-//! Robotics", chapter 8. Each step is one function; the passes below them go from link to link.
+//! After A. D. Udai, NPTEL "Industrial Robotics: Theories for Implementation", lecture 38, and S. K. Saha,
+//! "Introduction to Robotics", chapter 8. Each step is one function; the passes below them go from link to link.
 //!
 //! ```text
 //! ω, ω̇         angular velocity and acceleration of a link          e     axis of the joint, (0, 0, 1)
@@ -13,11 +13,11 @@
 //! τ            torque (N m) or force (N) of the actuator            R, P  revolute, prismatic
 //! ```
 //!
-//! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p is i-1,
-//! and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::mount`]. What a kind of
-//! joint adds stands in [`crate::joint`]. The vectors of link i stand in the axes of form P: fixed to
-//! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and leaves z
-//! elements, so τ, as they are.
+//! Link i is the one that joint i moves, link p the one that carries joint i: its `parent`, or the base. In a chain p
+//! is i-1, and the lecture's r_{i-1} is the r_i of here, for it depends on where joint i is mounted: [`crate::mount`].
+//! What a kind of joint adds stands in [`crate::joint`]. The vectors of link i stand in the axes of form P: fixed to
+//! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and
+//! leaves z elements, so τ, as they are.
 //!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
@@ -89,8 +89,8 @@ fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> Force
     ForceMoment { force, moment }
 }
 
-/// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums run over
-/// the joints k that link i carries, and the tip; in a chain there is one of them.
+/// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums
+/// run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
 /// - n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
@@ -121,8 +121,8 @@ fn actuator<T: Scalar>(link: &LinkFrame<T>, joint: &ForceMoment<T>) -> T {
     link.kind.actuator(joint)
 }
 
-/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the shortest
-/// argument stay as they are.
+/// The forward pass, steps 1, 2, 4 and 5, from the base to the tip: parents before what they carry. Links beyond the
+/// shortest argument stay as they are.
 pub(crate) fn forward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     base: &BaseMotion<T>,
@@ -157,8 +157,8 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
     }
 }
 
-/// The backward pass, steps 6 and 7, from the tip to the base: each link hands its wrench on to its parent. `tip` is what the last
-/// link exerts on its environment; `None` is a free tip.
+/// The backward pass, steps 6 and 7, from the tip to the base: each link hands its wrench on to its parent. `tip` is
+/// what the last link exerts on its environment; `None` is a free tip.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     motions: &[LinkMotion<T>],
@@ -206,7 +206,8 @@ mod tests {
         loads.iter().map(|load| load.tau).collect()
     }
 
-    /// A link that carries two equal branches feels each of them: twice what a chain has, less what the link alone asks.
+    /// A link that carries two equal branches feels each of them: twice what a chain has, less what the link alone
+    /// asks.
     #[test]
     fn a_link_may_carry_two_joints() {
         for convention in [Convention::Standard, Convention::Modified] {

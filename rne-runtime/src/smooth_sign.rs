@@ -7,8 +7,8 @@ use num_traits::{One, Zero};
 use crate::Scalar;
 use crate::dual::assigning;
 
-/// A number that computes as `value` does, except for [`by_sign`](Scalar::by_sign): there s = x / √(x² + width²) stands for
-/// the sign, and ½ (p - n) s + ½ (p + n) s² for the choice between p and n: p at s = 1, n at s = -1, 0 at s = 0.
+/// A number that computes as `value` does, except for [`by_sign`](Scalar::by_sign): there s = x / √(x² + width²) stands
+/// for the sign, and ½ (p - n) s + ½ (p + n) s² for the choice between p and n: p at s = 1, n at s = -1, 0 at s = 0.
 ///
 /// The width stays with the left operand; a constant has none.
 #[derive(Clone, Copy, Debug, PartialEq)]

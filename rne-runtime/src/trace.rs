@@ -59,8 +59,8 @@ impl<const DOF: usize, T: Scalar> Trace<DOF, T> {
         self.links.map(|link| link.tau)
     }
 
-    /// The same in the lecture's axes: `[x]_L = Rz(θ_i) [x]_P`, fixed to link i-1, z along joint i. For a standard table
-    /// these are the axes of its frame i, and the rotations are Q_{i-1} (Q_0 = 1).
+    /// The same in the lecture's axes: `[x]_L = Rz(θ_i) [x]_P`, fixed to link i-1, z along joint i. For a standard
+    /// table these are the axes of its frame i, and the rotations are Q_{i-1} (Q_0 = 1).
     #[must_use]
     pub fn to_lecture(&self) -> [LinkTrace<T>; DOF] {
         let mut links = self.links;

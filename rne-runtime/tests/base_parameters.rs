@@ -41,7 +41,8 @@ fn names(base: &BaseParameters) -> Vec<String> {
     texts.collect()
 }
 
-/// 36 for gravity along the first axis: Khalil, Dombre, Modeling, identification and control of robots, 2002, chapter 9.
+/// 36 for gravity along the first axis: Khalil, Dombre, Modeling, identification and control of robots, 2002,
+/// chapter 9.
 #[test]
 fn puma_560_has_36() {
     for name in ["puma560", "puma560_mdh"] {
@@ -54,8 +55,8 @@ fn puma_560_has_36() {
     }
 }
 
-/// Seven per revolute joint but for the first, which turns about a fixed axis: one of ten, and two more where gravity feels the
-/// first moments. Mayeda, Yoshida, Osuka, Base parameters of manipulator dynamic models, 1990.
+/// Seven per revolute joint but for the first, which turns about a fixed axis: one of ten, and two more where gravity
+/// feels the first moments. Mayeda, Yoshida, Osuka, Base parameters of manipulator dynamic models, 1990.
 #[test]
 fn seven_per_revolute_joint() {
     for convention in [Convention::Standard, Convention::Modified] {
@@ -82,7 +83,8 @@ fn four_per_prismatic_joint() {
     assert_eq!(shipped("gantry_ppp").base_parameters().rank(), 3, "three masses in a row");
 }
 
-/// One link: its inertia about the axis, and its first moments across it where gravity has a part there. Two: three each.
+/// One link: its inertia about the axis, and its first moments across it where gravity has a part there. Two: three
+/// each.
 #[test]
 fn planar_arms() {
     let in_plane = [0.0, -9.81, 0.0];

@@ -24,7 +24,8 @@ fn power_of_the_actuators_is_the_change_of_energy() {
             let mut kinetic = Dual64::from_re(0.0);
             let mut weight_power = 0.0;
             for (link, row) in trace.links.iter().zip(&model.rows) {
-                // Form P and the link frame of the table differ by Rx(α) in a standard table, not at all in a modified one.
+                // Form P and the link frame of the table differ by Rx(α) in a standard table, not at all in a modified
+                // one.
                 let turn = match convention {
                     Standard => rotation_x(&row.dh.alpha),
                     Modified => Matrix3::identity(),

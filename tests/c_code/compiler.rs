@@ -40,7 +40,8 @@ impl Compiler {
         Some(Self { name })
     }
 
-    /// Compiles a program and runs it: `input` are words for its standard input, in its standard output there are others.
+    /// Compiles a program and runs it: `input` are words for its standard input, in its standard output there are
+    /// others.
     pub(crate) fn run(&self, name: &str, optimisation: &str, source: &str, input: &[u64]) -> Vec<u64> {
         let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("c_code");
         fs::create_dir_all(&folder).expect("a folder");

@@ -10,7 +10,8 @@ use crate::states::State;
 /// Positions near the end of the range of sine and cosine, and in it.
 const LARGE: [f64; 4] = [99_950.0, -99_950.37, 31_415.926, -12_345.678];
 
-/// Positions where a quadrant ends or the range does, and moderate ones; rates of any magnitude that has a square in `float`.
+/// Positions where a quadrant ends or the range does, and moderate ones; rates of any magnitude that has a square in
+/// `float`.
 pub(crate) fn states(robot: &Robot) -> Vec<State> {
     let mut special: Vec<f64> = vec![0.0, -0.0, 1e-30, -1e-12];
     // in single precision too, these are the last numbers of one quadrant and the first of the next

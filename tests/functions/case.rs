@@ -36,8 +36,8 @@ fn compiled(form: Form) -> Vec<Case> {
     (0..300).step_by(17).map(|seed| case(seed, Maker::Code(form))).collect()
 }
 
-/// Random robots with 1 to 8 joints, half of them with a base that stands anywhere in the world, some joints with motors.
-/// What is compiled is so once in all tests.
+/// Random robots with 1 to 8 joints, half of them with a base that stands anywhere in the world, some joints with
+/// motors. What is compiled is so once in all tests.
 pub(crate) fn cases(maker: Maker) -> &'static [Case] {
     match maker {
         Maker::Runtime => &OF_THE_RUNTIME,

@@ -15,8 +15,8 @@ fn state(rng: &mut Rng) -> [Vec<f64>; 3] {
     [3.0, 2.0, 5.0].map(|scale| (0..6).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect())
 }
 
-/// The same arm in modified rows: row i takes α and a of the row before; the link frame moves from the far end of the link
-/// to its joint, and link data and tool with it.
+/// The same arm in modified rows: row i takes α and a of the row before; the link frame moves from the far end of the
+/// link to its joint, and link data and tool with it.
 fn modified(robot: &Robot) -> Robot {
     assert_eq!(robot.convention, Standard);
     let mut modified = Robot { convention: Modified, ..robot.clone() };

@@ -1,4 +1,5 @@
-//! Generated code against the runtime: the same bits where the operations are the same, else the same numbers but for rounding.
+//! Generated code against the runtime: the same bits where the operations are the same, else the same numbers but for
+//! rounding.
 //!
 //! Shipped and dense robots by their plan files, random ones by the choices of a build without one.
 
@@ -35,8 +36,8 @@ const TOLERANCE: f64 = 1e-13;
 /// States per robot that has its own code.
 const STATES: usize = 8;
 
-/// Numbers that vanish but for rounding are measured by those that they are parts of: this part of the forces and moments at
-/// the joints, of the energy at the farthest reach.
+/// Numbers that vanish but for rounding are measured by those that they are parts of: this part of the forces and
+/// moments at the joints, of the energy at the farthest reach.
 const LEAST: f64 = 1e-2;
 
 /// At the farthest.
@@ -106,8 +107,8 @@ pub(crate) fn error(
             if number >= 1e12 {
                 return 0.0;
             }
-            // Rounding of a matrix changes the solution by the condition number times as much, relative to the solution;
-            // rounding of the torques and of the bias that they are compared with by M⁻¹, of 1/λ at most.
+            // Rounding of a matrix changes the solution by the condition number times as much, relative to the
+            // solution; rounding of the torques and of the bias that they are compared with by M⁻¹, of 1/λ at most.
             let bias = arm.runtime.bias_torques(given.q, given.qd).expect("one per joint");
             let scale = largest(given.tau).max(largest(&bias)) / of_matrix;
             error_on_scale(found, &expected, scale) / number

@@ -1,4 +1,5 @@
-//! The fifteen robots against independent values: mass matrix, Coriolis torques, forward dynamics, tip, Jacobian, motors.
+//! The fifteen robots against independent values: mass matrix, Coriolis torques, forward dynamics, tip, Jacobian,
+//! motors.
 
 use rne_codegen::Function;
 

@@ -1,5 +1,5 @@
-//! Every function of a robot, by the runtime and by generated code of both forms: against independent values, against each
-//! other, and against physics.
+//! Every function of a robot, by the runtime and by generated code of both forms: against independent values, against
+//! each other, and against physics.
 
 mod arm;
 #[path = "../random/arms.rs"]

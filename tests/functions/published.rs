@@ -40,9 +40,9 @@ fn as_published(arm: &Arm) {
     let found = arm.coriolis_matrix(&q, &numbers(&coriolis["qd"]));
     as_printed(&flat(&found), &coriolis["C"]);
 
-    // Their accelerations of torques: inverse dynamics with motors gives the torques back. The collection of these values
-    // says "friction off", and the numbers say on: -24 N m of inertia at joint 1 balance its friction. Rounding q̈ to four
-    // decimals is multiplied by the matrix.
+    // Their accelerations of torques: inverse dynamics with motors gives the torques back. The collection of these
+    // values says "friction off", and the numbers say on: -24 N m of inertia at joint 1 balance its friction. Rounding
+    // q̈ to four decimals is multiplied by the matrix.
     let accelerations = &published["accel_qn"];
     let [qd, qdd, torque] = ["qd", "qdd", "torque"].map(|key| numbers(&accelerations[key]));
     let tau = arm.inverse_dynamics(&q, &qd, &qdd);

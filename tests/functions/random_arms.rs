@@ -1,4 +1,5 @@
-//! Random arms, every function of them in both forms: names are distinct as text, the code is the runtime, and C is so too.
+//! Random arms, every function of them in both forms: names are distinct as text, the code is the runtime, and C is so
+//! too.
 //!
 //! A plain `cargo test` tries arms of few joints and some others. All of them, in minutes, with
 //! `RNE_EXHAUSTIVE=1 cargo test --release --test functions random_arms`.
@@ -208,7 +209,8 @@ fn no_variable_shadows_another() {
     }
 }
 
-/// The number of gravity in the table is that of an offset as well; gravity of the base is an argument of the same letter.
+/// The number of gravity in the table is that of an offset as well; gravity of the base is an argument of the same
+/// letter.
 #[test]
 fn gravity_of_the_table_is_not_gravity_of_the_base() {
     let yaml = "{format: 1, name: low, source: own, convention: modified, gravity: [0, 0.5, -0.36], joints: [

@@ -46,7 +46,8 @@ impl State {
     }
 }
 
-/// The largest error at any state, relative to the largest number at any state: what crosses zero there has no error of its own.
+/// The largest error at any state, relative to the largest number at any state: what crosses zero there has no error of
+/// its own.
 fn worst(arm: &Arm, function: Function) -> f64 {
     let mut rng = Rng::with_seed(32);
     let (mut error, mut scale) = (0.0_f64, 0.0_f64);

@@ -1,5 +1,5 @@
-//! Random arms of the kinds that are hard on a compiler: axes that coincide, are parallel or at right angles, links without
-//! mass, point masses, short decimals that fold and cancel; motors, bases, tools and gravity of any direction.
+//! Random arms of the kinds that are hard on a compiler: axes that coincide, are parallel or at right angles, links
+//! without mass, point masses, short decimals that fold and cancel; motors, bases, tools and gravity of any direction.
 
 use std::fmt::Write;
 
@@ -46,7 +46,8 @@ pub(crate) fn yaml(seed: u64) -> String {
         _ => "[0, 0, -9.81]".to_owned(),
     };
     let mut text = format!(
-        "format: 1\nname: arm_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\ngravity: {gravity}\n"
+        "format: 1\nname: arm_{seed}\nsource: random numbers, seed {seed}\nconvention: {convention}\ngravity: \
+        {gravity}\n"
     );
     for end in ["base", "tool"] {
         if rng.usize(..3) == 0 {
@@ -91,7 +92,8 @@ fn joint(rng: &mut Rng, kind: Kind, index: usize, slides_first: usize, turned: u
         let ratio = decimal(rng, 100.0);
         let _ = writeln!(
             text,
-            "    motor: {{inertia: {inertia}, gear_ratio: {ratio}, viscous: {viscous}, coulomb: [{positive}, -{negative}]}}"
+            "    motor: {{inertia: {inertia}, gear_ratio: {ratio}, viscous: {viscous}, coulomb: [{positive}, \
+            -{negative}]}}"
         );
     }
     if matches!(kind, Kind::Massless) && rng.usize(..3) > 0 || rng.usize(..12) == 0 {

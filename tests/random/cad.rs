@@ -1,6 +1,6 @@
-//! Random arms with the numbers that CAD gives: short decimals, principal axes along the axes of the link, the tensor about the
-//! centre of mass or about the origin of the link's frame. None is refused in the reduced form, whatever is zero about which
-//! point.
+//! Random arms with the numbers that CAD gives: short decimals, principal axes along the axes of the link, the tensor
+//! about the centre of mass or about the origin of the link's frame. None is refused in the reduced form, whatever is
+//! zero about which point.
 
 use fastrand::Rng;
 use rne::DynArm;
@@ -38,7 +38,8 @@ fn angle(rng: &mut Rng, right: f64) -> String {
     decimal(rng.i64(-300..=300), 2)
 }
 
-/// A link in units of 0.1 kg and 0.01 m: principal moments about its centre of mass, or the whole tensor about the origin.
+/// A link in units of 0.1 kg and 0.01 m: principal moments about its centre of mass, or the whole tensor about the
+/// origin.
 fn link(rng: &mut Rng, zeros: f64) -> String {
     let mass = if rng.f64() < 0.1 { 0 } else { rng.i64(1..=80) };
     let com = [(); 3].map(|()| number(rng, zeros, 60));
@@ -84,8 +85,8 @@ fn yaml(seed: u64, most: usize) -> String {
     )
 }
 
-/// Compiles a robot in the reduced form by the choice of a build, and compares torques with the runtime. How many of its
-/// functions that have a recursion of their own it had to leave in their plain form.
+/// Compiles a robot in the reduced form by the choice of a build, and compares torques with the runtime. How many of
+/// its functions that have a recursion of their own it had to leave in their plain form.
 fn left_plain(robot: &Robot, functions: &[Function]) -> usize {
     let (arm, choice) = (DynArm::from_robot(robot), Choice::default_of(robot));
     let mut rng = Rng::with_seed(9);

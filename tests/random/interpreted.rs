@@ -1,5 +1,5 @@
-//! Random robots through the interpreter: what the compiler writes is what the runtime computes, bit for bit, torques and
-//! every intermediate vector of every step.
+//! Random robots through the interpreter: what the compiler writes is what the runtime computes, bit for bit, torques
+//! and every intermediate vector of every step.
 
 use fastrand::Rng;
 use proptest::prelude::*;

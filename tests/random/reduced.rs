@@ -1,5 +1,5 @@
-//! Random robots in the reduced form, by no choice at all, by random ones and by those of a build: the proof passes, and
-//! the torques are the runtime's but for rounding.
+//! Random robots in the reduced form, by no choice at all, by random ones and by those of a build: the proof passes,
+//! and the torques are the runtime's but for rounding.
 
 use fastrand::Rng;
 use rne::{Arm, DynArm, InverseDynamics, Wrench};

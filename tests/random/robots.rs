@@ -59,7 +59,8 @@ fn angles(rng: &mut Rng, sparsity: f64) -> String {
     format!("[{roll}, {pitch}, {yaw}]")
 }
 
-/// A positive semidefinite tensor: none, diagonal, or full. A full one is Σ v vᵀ, which is semidefinite by construction.
+/// A positive semidefinite tensor: none, diagonal, or full. A full one is Σ v vᵀ, which is semidefinite by
+/// construction.
 fn inertia(rng: &mut Rng, sparsity: f64) -> String {
     if rng.f64() < sparsity * 0.5 {
         return "{}".to_owned();

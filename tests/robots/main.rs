@@ -1,4 +1,5 @@
-//! The shipped robots, derived: equality with the runtime, golden values, accuracy in single precision, operation counts.
+//! The shipped robots, derived: equality with the runtime, golden values, accuracy in single precision, operation
+//! counts.
 
 mod dense;
 mod equality;

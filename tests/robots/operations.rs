@@ -38,8 +38,8 @@ fn counts_are_those_of_a_faithful_unrolling() {
     }
 }
 
-/// What independent experiments reached: the regrouped form without any search, the best found by a search over choices,
-/// and after algebraic rewriting. Products and sums together.
+/// What independent experiments reached: the regrouped form without any search, the best found by a search over
+/// choices, and after algebraic rewriting. Products and sums together.
 const REACHED: [(&str, usize, usize, usize); 13] = [
     ("robots/planar2", 27, 23, 23),
     ("robots/planar3", 56, 52, 51),

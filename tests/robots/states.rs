@@ -28,8 +28,8 @@ pub(crate) fn moderate<const DOF: usize, R: Shipped<DOF>>(rng: &mut Rng) -> Stat
     }
 }
 
-/// The `index`-th state of a comparison for bits: moderate ones, and among them positions at multiples of π/2, rates and
-/// accelerations of any magnitude from 1e-100 to 1e100, and the arm at rest.
+/// The `index`-th state of a comparison for bits: moderate ones, and among them positions at multiples of π/2, rates
+/// and accelerations of any magnitude from 1e-100 to 1e100, and the arm at rest.
 pub(crate) fn any<const DOF: usize, R: Shipped<DOF>>(rng: &mut Rng, index: usize) -> State<DOF> {
     let mut state = moderate::<DOF, R>(rng);
     let right = [0.0, FRAC_PI_2, -FRAC_PI_2, PI, -PI];

@@ -81,8 +81,8 @@ impl Scalar for Range {
         Self::between(value, value)
     }
 
-    /// Of intervals much shorter than a quarter turn: by the ends, which are right to one unit in the last place, and a sine
-    /// moves away from their mean by no more than half of the length.
+    /// Of intervals much shorter than a quarter turn: by the ends, which are right to one unit in the last place, and a
+    /// sine moves away from their mean by no more than half of the length.
     fn sin_cos(self) -> (Self, Self) {
         let (low, high) = (self.0.inf(), self.0.sup());
         let reach = 0.5 * (high - low);
@@ -103,8 +103,8 @@ impl Scalar for Range {
     }
 }
 
-/// How much wider than the states a result may be, relative to its largest number. Intervals know nothing of how numbers
-/// depend on each other, and accelerations divide by small ones.
+/// How much wider than the states a result may be, relative to its largest number. Intervals know nothing of how
+/// numbers depend on each other, and accelerations divide by small ones.
 fn widening(function: &str) -> f64 {
     if function == "forward_dynamics" { 1e8 } else { 1e4 }
 }

@@ -7,7 +7,8 @@ use simba::simd::{SimdValue, WideF64x4};
 
 use crate::robots::{PLANAR_STATE, PUMA_STATE, Planar2, Puma560, Robot, State, all};
 
-/// Accelerations of torques are as much less precise as the mass matrix is badly conditioned: 10⁵ of the PUMA without rotors.
+/// Accelerations of torques are as much less precise as the mass matrix is badly conditioned: 10⁵ of the PUMA without
+/// rotors.
 const CONDITION: f64 = 1e5;
 
 /// Compares function by function, relative to the largest number of each.

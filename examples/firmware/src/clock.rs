@@ -35,8 +35,9 @@ pub struct Clock {
 impl Clock {
     /// Takes the timer and finds out how many instructions a tick is.
     ///
-    /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. There is no pipeline and no
-    /// flash with wait states: these are not cycles. `DWT_CYCCNT`, which counts those on your board, reads 0 here.
+    /// QEMU's `-icount` gives every instruction the same time, so its timers count instructions. There is no pipeline
+    /// and no flash with wait states: these are not cycles. `DWT_CYCCNT`, which counts those on your board, reads 0
+    /// here.
     pub fn new(mut timer: SYST) -> Self {
         timer.set_clock_source(SystClkSource::Core);
         let mut clock = Self { timer, instructions_per_tick: 0.0, period: 0 };
@@ -51,7 +52,8 @@ impl Clock {
         self.instructions_per_tick * TICKS_PER_PERIOD as f32
     }
 
-    /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several instructions.
+    /// Instructions of one call, `bl` and what passes the arguments included. A mean: a tick can be several
+    /// instructions.
     pub fn instructions(&mut self, call: impl Fn()) -> f32 {
         const CALLS: u8 = 100;
         let calls = self.ticks(|| (0..CALLS).for_each(|_| call()));

@@ -85,7 +85,8 @@ fn a_source_has_its_header_beside_it() {
                 void cordic(float angle, float *sine, float *cosine);\n\
                 void cordic(float angle, float *sine, float *cosine) { (void)angle; *sine = 0.0f; *cosine = 1.0f; }\n\
                 int main(void)\n{\n    const float q[PLANAR2_DOF] = {0.5f, 0.25f};\n    planar2_pose tip;\n    \
-                planar2_forward_kinematics(q, &tip);\n    printf(\"%g\", (double)tip.translation[0]);\n    return 0;\n}\n";
+                planar2_forward_kinematics(q, &tip);\n    printf(\"%g\", (double)tip.translation[0]);\n    return \
+                0;\n}\n";
     fs::write(folder.join("main.c"), main).expect("written");
     let Some(stretched) = printed(&folder, &["main.c", "arm.c"], &["-DRNE_SIN_COS=cordic"]) else { return };
     assert_eq!(stretched, "0.9", "0.5 m and 0.4 m, however the joints stand");

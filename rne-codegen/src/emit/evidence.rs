@@ -21,11 +21,13 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
     let mut lines = vec![
         form.to_owned(),
         format!(
-            "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and 2^61 - 31.",
+            "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and \
+            2^61 - 31.",
             proof.points
         ),
         format!(
-            "Rounding at {} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; seven steps {:.1e}).",
+            "Rounding at {} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; seven steps \
+            {:.1e}).",
             proof.states, proof.rounding, proof.single, proof.single_of_seven_steps
         ),
     ];

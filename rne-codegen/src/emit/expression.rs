@@ -123,8 +123,8 @@ impl Room {
     }
 }
 
-/// An expression over several lines, if need be: the operands of its outermost operator each on a line of its own, and so on
-/// inside those that are still too long. `None` where there is no room for it.
+/// An expression over several lines, if need be: the operands of its outermost operator each on a line of its own, and
+/// so on inside those that are still too long. `None` where there is no room for it.
 fn broken(syntax: Syntax, expression: &Expression, room: Room) -> Option<String> {
     let one_line = line(syntax, expression);
     if one_line.chars().count() <= room.width {

@@ -1,6 +1,6 @@
-//! Texts of a robot file in what is emitted. A title or the name of a joint may hold whatever can be typed; in the documentation
-//! and in the comments of code it must stay words. There is one function for each language; that of the terminal stands in the
-//! command line.
+//! Texts of a robot file in what is emitted. A title or the name of a joint may hold whatever can be typed; in the
+//! documentation and in the comments of code it must stay words. There is one function for each language; that of the
+//! terminal stands in the command line.
 
 use rne_model::{Robot, one_line};
 
@@ -11,8 +11,8 @@ pub fn title(robot: &Robot) -> String {
     title.unwrap_or_else(|| one_line(&robot.name)).trim().to_owned()
 }
 
-/// Text inside a paragraph of Markdown, which is the language of Rust's documentation: no code that `cargo test` would run, no
-/// HTML that a page would execute, no link.
+/// Text inside a paragraph of Markdown, which is the language of Rust's documentation: no code that `cargo test` would
+/// run, no HTML that a page would execute, no link.
 #[must_use]
 pub fn markdown(text: &str) -> String {
     let line = one_line(text);
@@ -52,8 +52,8 @@ pub fn verbatim(text: &str) -> String {
     format!("{fence}text\n{}\n{fence}", lines.join("\n"))
 }
 
-/// Text in a `//` comment of C. A backslash at its end, or the trigraph for one, would make the next line a comment too; compilers
-/// warn of every trigraph and of comments inside comments.
+/// Text in a `//` comment of C. A backslash at its end, or the trigraph for one, would make the next line a comment
+/// too; compilers warn of every trigraph and of comments inside comments.
 pub(super) fn c_comment(text: &str) -> String {
     let mut inert = String::new();
     let mut last = None;

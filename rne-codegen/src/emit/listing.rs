@@ -130,8 +130,8 @@ fn in_order(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> 
     text
 }
 
-/// The place under which a statement is listed: that of its name, where it has a step. A value that two formulas share stands
-/// at the first of them, whose joint and step may be others.
+/// The place under which a statement is listed: that of its name, where it has a step. A value that two formulas share
+/// stands at the first of them, whose joint and step may be others.
 fn shown_place(program: &Program, statement: &Statement) -> Place {
     let Statement { name, place, .. } = statement;
     let has_own_form = program.form != Form::SevenSteps && Function::TORQUES.contains(&program.function);
@@ -191,8 +191,8 @@ fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, st
     }
 }
 
-/// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of frames, not
-/// centres of mass.
+/// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of
+/// frames, not centres of mass.
 fn recursion(program: &Program) -> Form {
     let is_reduced = program.form != Form::SevenSteps
         && (Function::TORQUES.contains(&program.function) || !program.choices.is_empty());

@@ -23,7 +23,8 @@ impl Precision {
         }
     }
 
-    /// A number as a literal of C: the shortest that reads back as the same number of this type. `None` if it is too large.
+    /// A number as a literal of C: the shortest that reads back as the same number of this type. `None` if it is too
+    /// large.
     pub(super) fn literal(self, value: f64) -> Option<String> {
         match self {
             Self::Double => value.is_finite().then(|| format!("{value:?}")),
@@ -72,7 +73,8 @@ impl Syntax<'_> {
         }
     }
 
-    /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C does not trust readers to know what binds tighter.
+    /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C does not trust readers to know what binds
+    /// tighter.
     pub(super) const fn groups_products(self) -> bool {
         matches!(self, Self::C { .. })
     }

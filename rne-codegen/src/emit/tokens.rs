@@ -46,8 +46,8 @@ impl<'a> Body<'a> {
         Self { library: Some(library), ..self }
     }
 
-    /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product and sum
-    /// on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
+    /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product
+    /// and sum on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
     ///
     /// Results differ in the last digits from target to target, so the seven steps are not written so.
     #[must_use]
@@ -86,7 +86,8 @@ impl<'a> Body<'a> {
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
-    /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its angles.
+    /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its
+    /// angles.
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
         let outputs = self.program.outputs.iter().map(|output| &output.value);
@@ -296,7 +297,8 @@ enum Negated {
     Addend,
 }
 
-/// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source text.
+/// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source
+/// text.
 fn literal(value: f64) -> TokenStream {
     let text = format!("{:?}", value.abs());
     let magnitude = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(value.abs()));

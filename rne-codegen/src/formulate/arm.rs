@@ -1,12 +1,12 @@
 //! From the rows of the table to the constants of the seven steps, in form P: frame i at joint i, fixed to link i.
 //!
 //! ```text
-//! standard   Rx(α_{i-1})    d = (a_i, 0, b_i) + Rx(α_i) c̄      r = -Rx(α_i) c̄           I = Rx(α_i) Ī Rx(α_i)ᵀ   α_0 = 0
-//! modified   Rx(α_{i-1})    d = (0, 0, b_i) + c̄                r = (a_i, 0, 0) - c̄      I = Ī                    r_n = -c̄
+//! standard  Rx(α_{i-1})  d = (a_i, 0, b_i) + Rx(α_i) c̄   r = -Rx(α_i) c̄        I = Rx(α_i) Ī Rx(α_i)ᵀ  α_0 = 0
+//! modified  Rx(α_{i-1})  d = (0, 0, b_i) + c̄             r = (a_i, 0, 0) - c̄   I = Ī                 r_n = -c̄
 //! ```
 //!
-//! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned into
-//! frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
+//! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned
+//! into frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
 
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
 

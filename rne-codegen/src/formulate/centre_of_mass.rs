@@ -1,10 +1,10 @@
 //! The centre of mass of the whole arm and its Jacobian, from the parts μ_i = m_i / Σ m that the links have in it.
 //!
 //! ```text
-//! c = Σ μ_i c_i                                                c_i from the base, in world axes; then from the world's origin
-//! column j of J     z_j × Σ_{i≥j} μ_i (c_i - p_j)              revolute: z_j × (s_j - w_j p_j)
-//!                   z_j Σ_{i≥j} μ_i                            prismatic: w_j z_j
-//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j               from the tip to the base
+//! c = Σ μ_i c_i                                     c_i from the base, in world axes; then from the world's origin
+//! column j of J     z_j × Σ_{i≥j} μ_i (c_i - p_j)   revolute: z_j × (s_j - w_j p_j)
+//!                   z_j Σ_{i≥j} μ_i                 prismatic: w_j z_j
+//! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j    from the tip to the base
 //! ```
 
 use rne_model::JointKind::{Prismatic, Revolute};
@@ -82,8 +82,8 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
         .collect()
 }
 
-/// What part of the mass each link has: constants, unless a mass is given at run time. Of an arm without mass, what is not
-/// finite: a product with its zeros would fold.
+/// What part of the mass each link has: constants, unless a mass is given at run time. Of an arm without mass, what is
+/// not finite: a product with its zeros would fold.
 fn parts<'s>(builder: &'s Builder, arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
     let line = builder.joint(arm.links.len());
     line.within(Quantity::ComPosition, || {

@@ -99,8 +99,8 @@ pub(crate) fn jacobian<'s>(builder: &'s Builder, arm: &Arm<'s>, frames: &Frames<
     columns.collect()
 }
 
-/// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step 4 from
-/// joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
+/// Linear and angular acceleration of the tip in world axes, for a base at rest and joints that do not accelerate: step
+/// 4 from joint to joint, without centres of mass. s_i = J_i → J_{i+1}, the last to the tip:
 ///
 /// p̈_{i+1} = R_iᵀ p̈_i + ω̇_i × s_i + ω_i × (ω_i × s_i)      (+ 2 q̇_i ω_i × e)
 ///

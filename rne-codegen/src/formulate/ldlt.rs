@@ -1,7 +1,7 @@
 //! M x = b for a symmetric M by M = L D Lᵀ, unrolled, without pivots.
 //!
-//! For each column j: D_j = M_jj - Σ L_jk c_jk, c_ij = M_ij - Σ L_ik c_jk, L_ij = c_ij / D_j, with sums over k < j. Then
-//! L y = b, z = y / D and Lᵀ x = z. A singular M divides by zero: the numbers are not finite then, nothing worse.
+//! For each column j: D_j = M_jj - Σ L_jk c_jk, c_ij = M_ij - Σ L_ik c_jk, L_ij = c_ij / D_j, with sums over k < j.
+//! Then L y = b, z = y / D and Lᵀ x = z. A singular M divides by zero: the numbers are not finite then, nothing worse.
 
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;

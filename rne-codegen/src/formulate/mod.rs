@@ -21,8 +21,8 @@ use crate::ir::name::{By, Name};
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, Ref, Symbol, Vector};
 
-/// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before anything
-/// is folded.
+/// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before
+/// anything is folded.
 pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> Vec<(Name, Ref)> {
     let derivation = Derivation::new(builder, robot, function);
     let outputs = match function {

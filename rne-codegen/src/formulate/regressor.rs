@@ -1,4 +1,5 @@
-//! Torques per inertial parameter: τ = Y π, π = (m, m c̄, J) of each link about the origin O of its link frame, in its axes.
+//! Torques per inertial parameter: τ = Y π, π = (m, m c̄, J) of each link about the origin O of its link frame, in its
+//! axes.
 //!
 //! ```text
 //! U = [ω̇]× + [ω]×[ω]×, a acceleration of O less gravity:   F = m a + U h,   N = h × a + J ω̇ + ω × J ω

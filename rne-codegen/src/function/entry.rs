@@ -29,8 +29,8 @@ pub(crate) struct Entry {
     pub(crate) returns_torques: bool,
     /// Whether what it returns is a part of the torques of motion, or how they change: it may vanish but for rounding.
     pub(crate) is_of_motion: bool,
-    /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and motors have
-    /// nothing to reduce.
+    /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and
+    /// motors have nothing to reduce.
     pub(crate) is_irreducible: bool,
     /// What it means that its numbers are not finite, for a function that divides.
     pub(crate) divides: Option<&'static str>,

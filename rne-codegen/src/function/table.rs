@@ -1,7 +1,7 @@
 //! One entry per function: all that is told of it elsewhere than in its formulas.
 //!
-//! A function is added by a variant and an entry here, its formulas in `formulate`, and the runtime's own implementation. The
-//! entries stand in the order of the variants, those of a capability beside each other.
+//! A function is added by a variant and an entry here, its formulas in `formulate`, and the runtime's own
+//! implementation. The entries stand in the order of the variants, those of a capability beside each other.
 
 use super::Argument::{Accelerations, Base, Cosines, Positions, Rates, Sines, Torques, Wrench};
 use super::Length::{Fixed, Joints};
@@ -348,7 +348,8 @@ pub(crate) const TABLE: &[Entry] = &[
         name: "centre_of_mass",
         capability: Capability::CentreOfMass,
         summary: "The centre of mass of all links in the world, base included.",
-        details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not finite.",
+        details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
+        finite.",
         arguments: &[Positions],
         shape: TRIPLE,
         output: "centre",
@@ -374,7 +375,8 @@ pub(crate) const TABLE: &[Entry] = &[
         name: "centre_of_mass_jacobian",
         capability: Capability::CentreOfMass,
         summary: "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
-        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives numbers that \
+        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass \
+        gives numbers that \
             are not finite.",
         arguments: &[Positions],
         shape: Shape::Array(Fixed(3), &VECTOR),
@@ -445,7 +447,8 @@ pub(crate) const TABLE: &[Entry] = &[
         output: "wrenches",
         listed: "returned: force and moment of every joint",
         answer: Answer::Tables(&[AnswerTable {
-            about: "what the link before exerts at each joint, axes fixed to the link, z along the joint: f in N, n in N m",
+            about: "what the link before exerts at each joint, axes fixed to the link, z along the joint: f in N, n \
+            in N m",
             unit: None,
             rows: Labels::Joints,
             columns: Labels::Names(&["fx", "fy", "fz", "nx", "ny", "nz"]),

@@ -19,7 +19,8 @@ pub(crate) struct Builder {
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<By>>,
-    /// The one joint that accelerates, counted from 0, while a column of the mass matrix is written; nothing moves then.
+    /// The one joint that accelerates, counted from 0, while a column of the mass matrix is written; nothing moves
+    /// then.
     pub(crate) accelerating: Cell<Option<usize>>,
 }
 

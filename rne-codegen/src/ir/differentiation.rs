@@ -15,8 +15,8 @@ struct Formulas {
 }
 
 impl Builder {
-    /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the places of
-    /// what they are derivatives of and under its names.
+    /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the
+    /// places of what they are derivatives of and under its names.
     pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: impl Iterator<Item = By>) -> Vec<Vec<Symbol<'s>>> {
         let (births, all) = self.told();
         let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();

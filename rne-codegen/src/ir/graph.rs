@@ -1,14 +1,14 @@
-//! The expression graph: sums and products with free signs, every constant an exact number, every node with its residue at
-//! one sample point of two prime fields.
+//! The expression graph: sums and products with free signs, every constant an exact number, every node with its residue
+//! at one sample point of two prime fields.
 //!
 //! Who opens a graph chooses what its constructors may fold:
 //!
-//! - [`Policy::Structure`] folds only what is exact for finite values, up to the sign of zero: 0·x, 1·x, x + 0, x - x, a sign
-//!   pulled out of a product or a sum, the order of two operands, and an operation of two constants, rounded as the runtime
-//!   rounds it. So the graph computes the same bits as the unfolded formula.
-//! - [`Policy::Value`] folds what is equal as numbers: what vanishes is zero whatever cancels, constant factors are gathered,
-//!   c₁ x + c₂ x = (c₁ + c₂) x. With [`Policy::Numbered`] two nodes of one value, up to sign, are one node besides, however
-//!   they came about: the first one written stays.
+//! - [`Policy::Structure`] folds only what is exact for finite values, up to the sign of zero: 0·x, 1·x, x + 0, x - x,
+//!   a sign pulled out of a product or a sum, the order of two operands, and an operation of two constants, rounded as
+//!   the runtime rounds it. So the graph computes the same bits as the unfolded formula.
+//! - [`Policy::Value`] folds what is equal as numbers: what vanishes is zero whatever cancels, constant factors are
+//!   gathered, c₁ x + c₂ x = (c₁ + c₂) x. With [`Policy::Numbered`] two nodes of one value, up to sign, are one node
+//!   besides, however they came about: the first one written stays.
 
 use std::collections::HashMap;
 use std::ops::Neg;
@@ -212,8 +212,8 @@ impl Graph {
         self.clear_nodes();
     }
 
-    /// Empties the graph but for its constants, which keep their places. Where values are looked up, zero and one are always
-    /// there, as the first two nodes.
+    /// Empties the graph but for its constants, which keep their places. Where values are looked up, zero and one are
+    /// always there, as the first two nodes.
     pub(crate) fn clear_nodes(&mut self) {
         self.nodes.clear();
         self.outputs.clear();
@@ -533,7 +533,8 @@ impl Graph {
         (at.signed(negative), outcome)
     }
 
-    /// a / b. Only what is exact whatever b is folds; what is divided by zero is left to the code, whose result is not finite.
+    /// a / b. Only what is exact whatever b is folds; what is divided by zero is left to the code, whose result is not
+    /// finite.
     pub(crate) fn quotient(&mut self, a: Ref, b: Ref) -> (Ref, Outcome) {
         if self.is_unit(b) {
             return (a.signed(b.is_negative()), Outcome::One(Side::Right));

@@ -61,7 +61,8 @@ impl fmt::Display for Cause {
     }
 }
 
-/// Everything because of which a number is exactly zero or one: a set that suffices, and of which nothing can be left out.
+/// Everything because of which a number is exactly zero or one: a set that suffices, and of which nothing can be left
+/// out.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Causes(Arc<[Cause]>);
 

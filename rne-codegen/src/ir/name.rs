@@ -13,8 +13,9 @@ pub struct Name {
     pub joint: usize,
     /// Which component.
     pub component: Component,
-    /// What else counts it, from 1; 0 where nothing does: the column of a matrix whose row is the joint, the first joint of
-    /// a group, link and parameter of the regressor, which coefficient of friction, which acceleration of the tip.
+    /// What else counts it, from 1; 0 where nothing does: the column of a matrix whose row is the joint, the first
+    /// joint of a group, link and parameter of the regressor, which coefficient of friction, which acceleration of the
+    /// tip.
     pub indices: [usize; 2],
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,

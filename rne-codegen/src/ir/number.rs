@@ -60,15 +60,15 @@ impl Number {
         self.value.to_f64()
     }
 
-    /// Of a number and its negative, the same one is always called negative: where the value does not tell, for it is lost to
-    /// cancellation or out of range, the image does.
+    /// Of a number and its negative, the same one is always called negative: where the value does not tell, for it is
+    /// lost to cancellation or out of range, the image does.
     pub(crate) fn is_negative(self) -> bool {
         let value = self.value.high;
         if value == 0.0 || value.is_nan() { self.image.is_negative() } else { value < 0.0 }
     }
 
-    /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size round to
-    /// less than this part of it. It happens when equal numbers are read as different ones.
+    /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size
+    /// round to less than this part of it. It happens when equal numbers are read as different ones.
     pub(crate) fn is_dust(self, scale: f64) -> bool {
         const PART: f64 = 1e-25;
         // what is not a number is no value either
@@ -176,13 +176,13 @@ impl Turn {
 
 /// How the numbers of a robot file are read into the fields.
 ///
-/// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and cosine of
-/// an angle are a random point of the circle over the field, the same for angles that differ by right angles or in sign:
-/// those whose sine and cosine, rounded to `f64`, are the same two numbers up to order and sign. 0.9 and π - 0.9 are two
-/// angles if they differ so much as in the last bit of a sine.
+/// A number of the file is the decimal that its author wrote, a rational number, so it has an image. The sine and
+/// cosine of an angle are a random point of the circle over the field, the same for angles that differ by right angles
+/// or in sign: those whose sine and cosine, rounded to `f64`, are the same two numbers up to order and sign. 0.9 and
+/// π - 0.9 are two angles if they differ so much as in the last bit of a sine.
 ///
-/// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by a
-/// random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
+/// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by
+/// a random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Reading {
     pub(crate) seed: u64,
@@ -209,7 +209,8 @@ impl Reading {
         if value < 0.0 { -number } else { number }
     }
 
-    /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's origin.
+    /// The inertia of a link about its centre of mass, by rows, from what the file says about it or about the link's
+    /// origin.
     pub(crate) fn inertia(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let (tensor, reference) = &joint.written_inertia;
         let written = tensor.rows().map(|row| row.map(|x| self.decimal(x)));
@@ -227,9 +228,9 @@ impl Reading {
         }
     }
 
-    /// The same when a coordinate of the centre of mass may be an unknown, so that second moments about the origin and about
-    /// the centre of mass cannot both be what they are. One that is zero about either point is zero there whatever the
-    /// unknown is, so that nothing is zero in value alone. The others are what the file says.
+    /// The same when a coordinate of the centre of mass may be an unknown, so that second moments about the origin and
+    /// about the centre of mass cannot both be what they are. One that is zero about either point is zero there
+    /// whatever the unknown is, so that nothing is zero in value alone. The others are what the file says.
     fn inertia_of_unknown(&self, joint: &Joint, written: &[[Number; 3]; 3]) -> [[Number; 3]; 3] {
         let known = Self { unknown: None, ..*self };
         let half = self.decimal(0.5);

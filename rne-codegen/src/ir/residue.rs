@@ -49,8 +49,8 @@ impl Image {
         self.0[0].wrapping_mul(0x9E37_79B9_7F4A_7C15)
     }
 
-    /// What stands for a value that is chosen by a sign, of which no field knows anything: the same for the same operands, and
-    /// its negative for both values negated.
+    /// What stands for a value that is chosen by a sign, of which no field knows anything: the same for the same
+    /// operands, and its negative for both values negated.
     pub(crate) fn by_sign([x, positive, negative]: [Self; 3]) -> Self {
         if positive.is_zero() && negative.is_zero() {
             return Self::ZERO;

@@ -23,8 +23,8 @@ impl Point {
         self.reading
     }
 
-    /// An argument of any function. Positions of revolute joints are no numbers of the field by themselves, but random ones
-    /// serve where only their sines and cosines matter.
+    /// An argument of any function. Positions of revolute joints are no numbers of the field by themselves, but random
+    /// ones serve where only their sines and cosines matter.
     pub(crate) fn argument(&self, input: Input) -> Image {
         let index = input.index();
         let axis = input.axis().map_or(0, |axis| axis as usize);

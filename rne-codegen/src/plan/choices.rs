@@ -97,7 +97,8 @@ macro_rules! switches {
 
         impl From<Switches> for Vec<Switch> {
             fn from(switches: Switches) -> Self {
-                [$((switches.$name, Switch::$name)),*].into_iter().filter(|(on, _)| *on).map(|(_, switch)| switch).collect()
+                let all = [$((switches.$name, Switch::$name)),*];
+                all.into_iter().filter(|(on, _)| *on).map(|(_, switch)| switch).collect()
             }
         }
 

@@ -1,7 +1,7 @@
 //! A rewritten graph as text: one operation per line, in order.
 //!
 //! ```text
-//! d1 = k4 / k7          a constant made from others, without its sign; k7 is a number of the reduced form under its plan
+//! d1 = k4 / k7       a constant made from others, without its sign; k7 is a number of the reduced form under its plan
 //! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
 //! t13 = d1 * qd3
 //! tau2 = -t13

@@ -1,4 +1,5 @@
-//! Plans: which choices the reduced form makes for a robot, what they cost, where they are kept, and the search for better ones.
+//! Plans: which choices the reduced form makes for a robot, what they cost, where they are kept, and the search for
+//! better ones.
 
 mod choices;
 mod cost;

@@ -39,8 +39,8 @@ impl Moves {
         self.slides.get(index).is_some_and(|rules| rules.contains(&rule))
     }
 
-    /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group of
-    /// parallel axes shares.
+    /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group
+    /// of parallel axes shares.
     pub(crate) fn neighbours(&self, plan: &Plan) -> Vec<Plan> {
         let mut list = Vec::new();
         self.of_the_arm(plan, &mut list);

@@ -75,8 +75,8 @@ impl Choice {
         })
     }
 
-    /// The same for the fewest instructions, as [`fma::fused`] arranges it, and proved so. The seven steps are left as they
-    /// are, for they have the bits of the runtime.
+    /// The same for the fewest instructions, as [`fma::fused`] arranges it, and proved so. The seven steps are left as
+    /// they are, for they have the bits of the runtime.
     ///
     /// # Errors
     /// As [`Choice::compile`].
@@ -133,8 +133,8 @@ impl Choice {
         Ok(Program { choices, ..program })
     }
 
-    /// By ever fewer choices until the program can be proved: without those of frames, without any, without regrouping, the
-    /// plain formulas with equal values merged, the plain formulas.
+    /// By ever fewer choices until the program can be proved: without those of frames, without any, without regrouping,
+    /// the plain formulas with equal values merged, the plain formulas.
     fn compile_with_less(
         &self,
         robot: &Robot,
@@ -159,8 +159,8 @@ impl Choice {
         compile_merged(robot, function, arranged)
     }
 
-    /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without the
-    /// choices that it makes joint by joint for the recursion.
+    /// The way to write a function that takes the fewest operations, and the plan for it: that at hand, or that without
+    /// the choices that it makes joint by joint for the recursion.
     fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Way) {
         let ways = Way::of_so_many(function, robot.dof());
         let first = (self.plan.clone(), ways.first().copied().unwrap_or(Way::Recursion));
@@ -178,7 +178,8 @@ impl Choice {
     fn compile_rewritten(&self, robot: &Robot, arranged: fn(Program) -> Program) -> Result<Program, CompileError> {
         let Some(Rewritten { plan, graph, .. }) = &self.rewritten else {
             return Err(CompileError::Plan(format!(
-                "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot file, which \
+                "`{}` has no rewritten graph: `rne search --rewrite` writes one into the plan file beside a robot \
+                file, which \
                  `path = \"…\"` finds",
                 robot.name
             )));
@@ -210,8 +211,9 @@ fn proved(
     Ok(program)
 }
 
-/// The plain formulas of a function with every value computed once, however often and in whatever way the formulas compute
-/// it: the reduced form of what has no recursion of its own. As they are where that is cheaper, or cannot be proved.
+/// The plain formulas of a function with every value computed once, however often and in whatever way the formulas
+/// compute it: the reduced form of what has no recursion of its own. As they are where that is cheaper, or cannot be
+/// proved.
 fn compile_merged(
     robot: &Robot,
     function: Function,
@@ -249,7 +251,8 @@ fn written_in(
 ) -> Result<(Frame, Vec<Name>, Traced), CompileError> {
     let misfit = || {
         CompileError::Plan(format!(
-            "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` writes it anew",
+            "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` \
+            writes it anew",
             robot.name
         ))
     };
@@ -322,8 +325,8 @@ impl Found {
     }
 }
 
-/// Looks for a cheaper plan, from the one at hand onwards. What it finds is not much less precise in single precision than
-/// the seven steps, and never worse than a plan at hand of which that is true.
+/// Looks for a cheaper plan, from the one at hand onwards. What it finds is not much less precise in single precision
+/// than the seven steps, and never worse than a plan at hand of which that is true.
 ///
 /// `clock` is asked now and then how much of the time is over.
 ///

@@ -1,7 +1,7 @@
 //! Algebraic rewriting of a finished graph: local, exact moves under annealing (the reduced form, section 10).
 //!
-//! What comes out no longer resembles a recursion. Every move is an identity of real numbers, and equal values stay one node
-//! whatever their history.
+//! What comes out no longer resembles a recursion. Every move is an identity of real numbers, and equal values stay one
+//! node whatever their history.
 
 use crate::ir::{Cost, Graph, Op, Ref, mark_live, mark_live_outside_angles};
 use crate::plan::search::{Clock, Over, Progress};

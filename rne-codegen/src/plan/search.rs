@@ -124,8 +124,8 @@ impl<'v> Search<'v> {
         }
     }
 
-    /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that cost
-    /// little more. No random numbers.
+    /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that
+    /// cost little more. No random numbers.
     pub(crate) fn descend(&mut self, clock: Clock<'_>) -> Result<(), Over> {
         let mut plan = self.best.1.clone();
         let Some(mut weight) = self.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };

@@ -79,7 +79,8 @@ impl Trick {
     pub const fn formula(self) -> &'static str {
         match self {
             Self::Regrouping => {
-                "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk uuᵀ (4.4)"
+                "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk \
+                uuᵀ (4.4)"
             }
             Self::Gauges => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
             Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈), the link before carries c·1 and the spin (5.6)",

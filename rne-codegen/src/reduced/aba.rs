@@ -8,8 +8,8 @@
 //! outward: q̈ = (u - U · (ω̇' + q̇ ω' × z, a'))/D
 //! ```
 //!
-//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of spatial
-//! ones, over regrouped matter: D is a pivot of M, which regrouping does not change.
+//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), chapter 7, in accelerations of points instead of
+//! spatial ones, over regrouped matter: D is a pivot of M, which regrouping does not change.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 

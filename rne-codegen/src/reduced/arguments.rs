@@ -9,8 +9,9 @@ use rne_model::QuarterTurns;
 
 use crate::reduced::link_parameters::Triple;
 
-/// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the others, and a
-/// constant. It is counted with the sign of the first joint; right angles are left to the sine and cosine.
+/// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the
+/// others, and a constant. It is counted with the sign of the first joint; right angles are left to the sine and
+/// cosine.
 fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
     let group = |kind: Quantity, single: Quantity, at: usize| {
         if at == first { Name::scalar(single, at + 1) } else { Name::indexed(kind, at + 1, first + 1) }

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! P_i = own matter of link i + P_{i+1}, turned and moved into its frame;   P = [S h; hᵀ m]
-//! column j, on its axis in frame N_j:   f = (-h_y, h_x, 0)   n = (-S13, -S23, S11 + S22)     (prismatic: f = m u, n = h × u)
+//! column j, on its axis in frame N_j:   f = (-h_y, h_x, 0)   n = (-S13, -S23, S11 + S22)
+//!                                       (prismatic: f = m u, n = h × u)
 //! M_jj = n_z;   M_ij = n_z of the same wrench, turned and moved to joint i < j
 //! ```
 //!
-//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), section 6.2, over regrouped matter. Turns are made in two
-//! steps, about the joint's axis and about the twist; in frame N, between the two, a column costs nothing to begin with.
+//! After R. Featherstone, "Rigid Body Dynamics Algorithms" (2008), section 6.2, over regrouped matter. Turns are made
+//! in two steps, about the joint's axis and about the twist; in frame N, between the two, a column costs nothing to
+//! begin with.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -145,8 +147,8 @@ impl<'s> Composite<'s> {
     }
 }
 
-/// What link i carries: its composite body and the columns of the joints from there on, about the origin of its frame, in its
-/// axes or in the frame N of its group.
+/// What link i carries: its composite body and the columns of the joints from there on, about the origin of its frame,
+/// in its axes or in the frame N of its group.
 struct Carried<'s> {
     composite: Option<Composite<'s>>,
     columns: Vec<(usize, Wrench<'s>)>,

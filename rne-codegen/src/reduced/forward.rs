@@ -1,12 +1,12 @@
 //! The way out, base to tip: how each link moves (the reduced form, sections 3 and 5).
 //!
 //! ```text
-//! ω_i = R_iᵀ ω_{i-1} + q̇ z        ω̇_i = R_iᵀ ω̇_{i-1} + q̇ (ω_y, -ω_x, 0) + q̈ z        a_i = R_iᵀ (a_{i-1} + U_{i-1} p_i)
+//! ω_i = R_iᵀ ω_{i-1} + q̇ z     ω̇_i = R_iᵀ ω̇_{i-1} + q̇ (ω_y, -ω_x, 0) + q̈ z     a_i = R_iᵀ (a_{i-1} + U_{i-1} p_i)
 //! U = [ω̇]× + [ω]×[ω]×              acceleration of the point r of a link: a + U r;       a_0 = -g
 //! ```
 //!
-//! R_i = Rx(α) Rz(θ) turns in two steps. Between them stands frame N, on the axis but not turning with the joint; a group of
-//! parallel axes shares one N.
+//! R_i = Rx(α) Rz(θ) turns in two steps. Between them stands frame N, on the axis but not turning with the joint; a
+//! group of parallel axes shares one N.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 

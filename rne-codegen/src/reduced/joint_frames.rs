@@ -1,9 +1,9 @@
 //! From the robot file to rows of joint-frame, link-origin parameters: frame i on joint axis i, fixed to link i.
 //!
-//! Whatever the table's convention, row i leads from frame i-1 to frame i as a modified one does, Rx(α) Tx(a) Rz(θ) Tz(d),
-//! and the matter of link i is about the origin of frame i in its axes (the reduced form, section 2). What costs nothing is
-//! put right here: the base is turned into the first joint's frame, the last joint's constant angle into its link,
-//! anti-parallel axes are made parallel.
+//! Whatever the table's convention, row i leads from frame i-1 to frame i as a modified one does, Rx(α) Tx(a) Rz(θ)
+//! Tz(d), and the matter of link i is about the origin of frame i in its axes (the reduced form, section 2). What costs
+//! nothing is put right here: the base is turned into the first joint's frame, the last joint's constant angle into its
+//! link, anti-parallel axes are made parallel.
 
 use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
@@ -63,8 +63,9 @@ pub(crate) struct Frames {
 }
 
 impl Table {
-    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does: each must
-    /// have a root for every one that is wanted, and value and image of every number must agree about what is zero.
+    /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does:
+    /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
+    /// zero.
     pub(crate) fn new(robot: &Robot, frames: Frames) -> Option<Self> {
         if frames == Frames::default() {
             return Self::read(robot, frames, Reading::default());
@@ -225,9 +226,9 @@ impl Table {
         true
     }
 
-    /// Puts prismatic links behind a revolute one into its axes. One constant rotation Rz(φ1) Rx(α') Rz(φ2) is left at the
-    /// next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a prismatic
-    /// joint costs no rotation at all. False when there is no such link, or no root.
+    /// Puts prismatic links behind a revolute one into its axes. One constant rotation Rz(φ1) Rx(α') Rz(φ2) is left at
+    /// the next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a
+    /// prismatic joint costs no rotation at all. False when there is no such link, or no root.
     fn carry_prismatics(&mut self) -> bool {
         let mut any = false;
         let mut index = 0;
@@ -321,8 +322,8 @@ fn hypotenuse(x: Number, y: Number, reading: Reading) -> Option<Number> {
     }
 }
 
-/// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the rationals, of
-/// which either root in the field serves.
+/// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the
+/// rationals, of which either root in the field serves.
 fn root(square: Number, reading: Reading) -> Option<Number> {
     let decimal = reading.decimal(square.value.sqrt().to_f64());
     if decimal.image * decimal.image == square.image {

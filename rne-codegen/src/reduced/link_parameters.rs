@@ -1,4 +1,5 @@
-//! The ten inertial parameters of a link as its pseudo-inertia: mass, first and second moments about its frame's origin.
+//! The ten inertial parameters of a link as its pseudo-inertia: mass, first and second moments about its frame's
+//! origin.
 
 use std::ops::Add;
 

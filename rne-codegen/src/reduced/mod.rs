@@ -1,11 +1,11 @@
 //! The reduced form: the same torques with far fewer operations.
 //!
-//! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration of
-//! the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
+//! Regrouped parameters, one matrix U for all accelerations of a link, turns in two steps, gravity in the acceleration
+//! of the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
-//! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write the
-//! recursion with them (RNEA), `crba`, `aba` and `rnea_derivatives` what else there is; `algorithm` names the ways in which a
-//! function can be written.
+//! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write
+//! the recursion with them (RNEA), `crba`, `aba` and `rnea_derivatives` what else there is; `algorithm` names the ways
+//! in which a function can be written.
 
 pub(crate) mod aba;
 pub(crate) mod algorithm;

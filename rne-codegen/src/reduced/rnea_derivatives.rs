@@ -1,27 +1,28 @@
 //! ∂τ/∂q and ∂τ/∂q̇ by composite bodies, from the recursion and not from its expressions.
 //!
-//! Joint j turns or slides everything behind it as one body. Seen from there, only the motion of link j-1 changes, so that each
-//! body behind accelerates differently by
+//! Joint j turns or slides everything behind it as one body. Seen from there, only the motion of link j-1 changes, so
+//! that each body behind accelerates differently by
 //!
 //! ```text
 //! ∂/∂q_j:  the field of the twist (κ, b), and 2 Ω × (its velocity)        κ = U' z = ω̇' × z + ω' × Ω,   Ω = ω' × z
 //! ∂/∂q̇_j:  the field of the twist 2 (Ω, v' × z), and 2 z × (its velocity)  b = a' × z - 2 Ω × v'
 //! ```
 //!
-//! with ω', ω̇', a', v' of link j-1 at joint j, in frame N_j. What that takes is linear in P = Σ [S h; hᵀ m], G = Σ ∫ r vᵀ dm and
-//! p = Σ ∫ v dm of the bodies behind:
+//! with ω', ω̇', a', v' of link j-1 at joint j, in frame N_j. What that takes is linear in P = Σ [S h; hᵀ m], G = Σ ∫ r
+//! vᵀ dm and p = Σ ∫ v dm of the bodies behind:
 //!
 //! ```text
 //! twist (e, b)    f = m b + e × h          n = J e + h × b
 //! Ω × velocity    f = Ω × p                n = tr(G) Ω - Gᵀ Ω
 //! ```
 //!
-//! For a torque nearer to the base than j this wrench is moved inward, with what the turn does to the wrench that is there:
-//! z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward and meets the
-//! twist of joint j, and so does tr(G) z - G z of joint i.
+//! For a torque nearer to the base than j this wrench is moved inward, with what the turn does to the wrench that is
+//! there: z × f, z × n. For one farther out, i > j, the roles are changed: the column of M for joint i is moved inward
+//! and meets the twist of joint j, and so does tr(G) z - G z of joint i.
 //!
-//! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who have the same in spatial
-//! vectors; here over regrouped matter and in frames N. All velocities are doubled where they enter, which saves the factors 2.
+//! After J. Carpentier and N. Mansard (2018) and S. Singh, R. Russell and P. Wensing (2022), who have the same in
+//! spatial vectors; here over regrouped matter and in frames N. All velocities are doubled where they enter, which
+//! saves the factors 2.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -222,8 +223,8 @@ impl<'s> Motion<'s> {
     }
 }
 
-/// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by rates are
-/// the Coriolis matrix, half of them.
+/// The derivatives of the torques. `factor` is that of the velocities: 2 for derivatives; with 1 the derivatives by
+/// rates are the Coriolis matrix, half of them.
 pub(crate) fn sensitivity<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
@@ -292,7 +293,8 @@ pub(crate) fn sensitivity<'s>(
     found
 }
 
-/// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is taken back.
+/// The matter of a link. A last link that is a spinning sphere is one again: what the link before was given for it is
+/// taken back.
 pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
     let mut matter = arm.parameters.links[index];
     let Some(c) = arm.parameters.sphere else { return matter };

@@ -8,8 +8,9 @@ use super::{BatchScalar, Torques};
 use crate::Scalar;
 use crate::sin_cos::{Float, kernel};
 
-/// Registers in a block. Sines and cosines come first for all of a block, then torques: each of the two loops is small enough
-/// for the processor to work on two registers' states at once, and what they share stays in the first-level cache.
+/// Registers in a block. Sines and cosines come first for all of a block, then torques: each of the two loops is small
+/// enough for the processor to work on two registers' states at once, and what they share stays in the first-level
+/// cache.
 const BLOCK: usize = 8;
 
 /// The most numbers that a register has.
@@ -121,8 +122,8 @@ fn torques<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: 
     }
 }
 
-/// Writes the torques of states that have an angle beyond the limit of the kernel of sine and cosine once more: those of one
-/// state by itself.
+/// Writes the torques of states that have an angle beyond the limit of the kernel of sine and cosine once more: those
+/// of one state by itself.
 #[cold]
 #[inline(never)]
 fn repair<R: Torques<DOF, ANGLES>, V: Vector<Element: BatchScalar>, const DOF: usize, const ANGLES: usize>(

@@ -33,16 +33,17 @@
 //!
 //! A torque depends on its state and on the vector unit, not on the states beside it, the length of the arrays or the
 //! number of threads. In the form `seven_steps`, on a unit without fused multiply-add (SSE2), it has the bits that
-//! [`inverse_dynamics`](InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less often, and
-//! in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
+//! [`inverse_dynamics`](InverseDynamics::inverse_dynamics) gives. On one with it, sines and cosines are rounded less
+//! often, and in the reduced forms the terms of sums stand in another order: torques differ in their last bits.
 //!
 //! # Method
 //!
-//! The derived code is written once more for the registers of every vector unit, in two parts and, in the reduced forms, for
-//! the fewest instructions. Some registers of states are taken at a time: first the sines and cosines of all of them are
-//! computed, then the torques. Nothing in the two loops branches, so that a processor with room for some hundred instructions
-//! works on several registers at once. Angles that are too large for the branch-free kernel (beyond 10⁵ rad) or are no
-//! numbers show in the sum of their squares; the states that have one are computed again by themselves.
+//! The derived code is written once more for the registers of every vector unit, in two parts and, in the reduced
+//! forms, for the fewest instructions. Some registers of states are taken at a time: first the sines and cosines of all
+//! of them are computed, then the torques. Nothing in the two loops branches, so that a processor with room for some
+//! hundred instructions works on several registers at once. Angles that are too large for the branch-free kernel
+//! (beyond 10⁵ rad) or are no numbers show in the sum of their squares; the states that have one are computed again by
+//! themselves.
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
 mod blocks;
@@ -73,8 +74,8 @@ use blocks::{States, one_by_one};
 /// One slice per joint, base to tip, and in it one number per state: rad, rad/s, rad/s² and N m for revolute joints, m,
 /// m/s, m/s² and N for prismatic ones. All slices have the same length.
 pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
-    /// Writes to `tau` the torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip, on the widest
-    /// vector unit that the processor has.
+    /// Writes to `tau` the torques for positions `q`, velocities `qd` and accelerations `qdd` with a free tip, on the
+    /// widest vector unit that the processor has.
     ///
     /// # Errors
     ///
@@ -118,7 +119,8 @@ impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF
     }
 }
 
-/// What the derive writes: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for [`run`].
+/// What the derive writes: [`InverseDynamics::inverse_dynamics`] once more, in two parts and `#[inline(always)]` for
+/// [`run`].
 #[doc(hidden)]
 pub trait Torques<const DOF: usize, const ANGLES: usize>: Sync {
     /// The angles whose sines and cosines the torques depend on.

@@ -34,7 +34,8 @@ impl VectorUnit {
         Self(Detected::widest().map_or(Unit::Target, Unit::Detected))
     }
 
-    /// All of them, the widest last. The first is that of the compiled target, without the feature `batch` the only one.
+    /// All of them, the widest last. The first is that of the compiled target, without the feature `batch` the only
+    /// one.
     pub fn all() -> impl Iterator<Item = Self> {
         core::iter::once(Unit::Target).chain(Detected::all().map(Unit::Detected)).map(Self)
     }

@@ -6,8 +6,8 @@ use crate::sin_cos::Lanes;
 
 /// The registers of a vector unit that hold numbers of one type.
 ///
-/// Everything is `#[inline(always)]`, here and in what uses it: a function that is not part of the code for a vector unit is
-/// compiled without its instructions.
+/// Everything is `#[inline(always)]`, here and in what uses it: a function that is not part of the code for a vector
+/// unit is compiled without its instructions.
 pub trait Vector: Lanes + Debug + PartialEq + 'static {
     /// Shows that the processor has the unit.
     type Unit: Copy;

@@ -1,14 +1,14 @@
 //! Registers of the vector units that pulp finds at run time.
 //!
-//! This is the one module with `unsafe` in it. Every operation of pulp wants its proof that the processor has the unit, a value
-//! of no size. Generic code cannot hand it on: a constant is made from nothing. A register that carried a proof or none would
-//! be a byte longer, and the processor would stall on every copy. So operations say that the unit is there ([`proven`]), and
-//! nobody has a register without having shown that it is:
+//! This is the one module with `unsafe` in it. Every operation of pulp wants its proof that the processor has the unit,
+//! a value of no size. Generic code cannot hand it on: a constant is made from nothing. A register that carried a proof
+//! or none would be a byte longer, and the processor would stall on every copy. So operations say that the unit is
+//! there ([`proven`]), and nobody has a register without having shown that it is:
 //!
-//! - Registers are made by [`Lanes::splat`] and [`Vector::load`]. Both traits are private to this crate, so that no other can
-//!   call them, although it can name the types (as what the public `BatchScalar` computes with).
-//! - Within this crate the types are a parameter of [`States::run`](super::blocks::States::run) alone, which takes the proof as
-//!   an argument, and of what it calls: generated code, which makes constants of the scalar that it is given.
+//! - Registers are made by [`Lanes::splat`] and [`Vector::load`]. Both traits are private to this crate, so that no
+//!   other can call them, although it can name the types (as what the public `BatchScalar` computes with).
+//! - Within this crate the types are a parameter of [`States::run`](super::blocks::States::run) alone, which takes the
+//!   proof as an argument, and of what it calls: generated code, which makes constants of the scalar that it is given.
 //! - A processor that has a unit keeps it.
 #![allow(unsafe_code)]
 
@@ -32,8 +32,8 @@ use crate::sin_cos::Lanes;
 #[inline(always)]
 unsafe fn proven<S: Simd>() -> S {
     const { assert!(size_of::<S>() == 0, "a proof is nothing to read") };
-    // SAFETY: any aligned pointer is valid for reading no bytes, and the caller knows that the type has a value, which it
-    // may copy.
+    // SAFETY: any aligned pointer is valid for reading no bytes, and the caller knows that the type has a value, which
+    // it may copy.
     unsafe { NonNull::dangling().read() }
 }
 

@@ -1,7 +1,7 @@
 //! What each kind of joint adds to the seven steps: one file per kind.
 //!
-//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would have if the
-//! joint were rigid and returns what it has.
+//! A joint lets its link move along or about its axis, e = (0, 0, 1) in form P. Every law takes what the link would
+//! have if the joint were rigid and returns what it has.
 
 mod prismatic;
 mod revolute;

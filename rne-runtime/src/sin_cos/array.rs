@@ -14,8 +14,8 @@ pub(crate) fn sin_cos<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T;
     sin_cos_lanes(angles, sines, cosines);
 }
 
-/// The kernel for the next sixteen angles, or as many as there are, written out: compilers for small processors would make a loop
-/// of them, and so a branch.
+/// The kernel for the next sixteen angles, or as many as there are, written out: compilers for small processors would
+/// make a loop of them, and so a branch.
 macro_rules! one_by_one {
     ($angles:ident, $sines:ident, $cosines:ident, $start:ident: $($index:literal)*) => {$(
         if $start + $index < N {
@@ -65,8 +65,8 @@ fn in_registers<V: Register, const N: usize>(
             cosine.write(cosines, start + index * V::LANES);
         }
         if !are_within_limit {
-            // From the registers, not from `angles`: an array that is lent to a call has to live in memory, here as well,
-            // and loading a register from numbers that have just been written one by one stalls the processor.
+            // From the registers, not from `angles`: an array that is lent to a call has to live in memory, here as
+            // well, and loading a register from numbers that have just been written one by one stalls the processor.
             let mut copy = [V::Element::ZERO; BLOCK];
             for (index, register) in block[..count].iter().enumerate() {
                 register.write(&mut copy, index * V::LANES);

@@ -13,8 +13,8 @@ pub trait Lanes:
     /// Whether [`plus_product`](Self::plus_product) and [`minus_product`](Self::minus_product) round once.
     const FUSED: bool;
 
-    /// Whether many are computed one after the other, so that the number of operations counts, not the length of their chain;
-    /// only of what is [fused](Self::FUSED).
+    /// Whether many are computed one after the other, so that the number of operations counts, not the length of their
+    /// chain; only of what is [fused](Self::FUSED).
     const MANY: bool = false;
 
     /// The same number in every lane.

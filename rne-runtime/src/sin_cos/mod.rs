@@ -8,8 +8,8 @@
 //! | `f32` | abs(x) ≤ 10⁵ | < 1 ulp | `f32` alone, for hardware without `f64` |
 //!
 //! An angle has the same bits alone and in an array of any length, and the same bits on all targets that are compiled
-//! without fused multiply-add. The sine is odd and the cosine even, to the last bit: sin(-0) = -0. NaN and infinities give
-//! NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
+//! without fused multiply-add. The sine is odd and the cosine even, to the last bit: sin(-0) = -0. NaN and infinities
+//! give NaN. Beyond the range `std`'s functions follow; without `std` results there mean nothing.
 //!
 //! ```text
 //! cargo run --release -p rne-runtime --features batch --example sin_cos_accuracy    # every f32 of the range, 10⁸ f64
@@ -41,8 +41,8 @@ use reduction::Reduced;
 /// Whether there is a fused multiply-add to ask for: in `std`, or in a `core` that has it.
 const IS_THERE: bool = cfg!(any(feature = "std", feature = "core_float_math"));
 
-/// Whether it is one instruction for `f32` on the target this is compiled for. Cortex-M with registers for numbers (`eabihf`) has
-/// it in single precision.
+/// Whether it is one instruction for `f32` on the target this is compiled for. Cortex-M with registers for numbers
+/// (`eabihf`) has it in single precision.
 pub(crate) const FUSED_F32: bool = FUSED_F64
     || IS_THERE
         && cfg!(any(
@@ -66,8 +66,9 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
     const ONE: Self;
     const P: &'static [Self];
     const Q: &'static [Self];
-    /// A SIMD register of the compiled target: the widest one up to 256 bits. A call has too few angles for more, and while an
-    /// instruction of 512 bits is on its way, Intel's processors close one of their three units for all others.
+    /// A SIMD register of the compiled target: the widest one up to 256 bits. A call has too few angles for more, and
+    /// while an instruction of 512 bits is on its way, Intel's processors close one of their three units for all
+    /// others.
     #[cfg(feature = "std")]
     type Register: registers::Register<Element = Self>;
 
@@ -79,8 +80,8 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
 
     /// Whether the kernel is correct for this angle; false for NaN.
     fn is_within_limit(self) -> bool;
-    /// Whether the kernel is correct for all angles of which this is the sum of the squares; false for NaN. It may be false
-    /// where it need not be.
+    /// Whether the kernel is correct for all angles of which this is the sum of the squares; false for NaN. It may be
+    /// false where it need not be.
     fn is_square_within_limit(self) -> bool;
     /// Correct everywhere.
     #[cfg(feature = "std")]

@@ -7,11 +7,11 @@
 //! | [`soon`], for a shorter chain of operations | y² | y - (e (1 - z/2) - y z P(z)) | 1 - z/2 + (z² Q(z) + y e) |
 //! | [`short`], for fewer operations | y² - 2 y e | y - (e - y z P(z)) | 1 + z (z Q(z) - 1/2) |
 //!
-//! The first does not wait for e, which comes late. The second needs fused multiply-add, or the cosine's product is rounded too
-//! coarsely; it leaves out e z/6, for `f64` a twentieth of a unit in the last place of the sine.
+//! The first does not wait for e, which comes late. The second needs fused multiply-add, or the cosine's product is
+//! rounded too coarsely; it leaves out e z/6, for `f64` a twentieth of a unit in the last place of the sine.
 //!
-//! The last addition costs half a unit in the last place; what is added there is so small that its own errors are a fraction of
-//! that.
+//! The last addition costs half a unit in the last place; what is added there is so small that its own errors are a
+//! fraction of that.
 
 use super::{Float, Lanes};
 
@@ -68,8 +68,8 @@ fn short<V: Lanes>(y: V, e: V) -> (V, V) {
     (sine, cosine)
 }
 
-/// c_0 + c_1 z + c_2 z² + ..., `square` being z², two coefficients at a time for a shorter chain of operations, and c_0, by
-/// far the largest term, last, for its rounding is felt.
+/// c_0 + c_1 z + c_2 z² + ..., `square` being z², two coefficients at a time for a shorter chain of operations, and
+/// c_0, by far the largest term, last, for its rounding is felt.
 #[inline(always)]
 fn two_by_two<V: Lanes>(coefficients: &'static [V::Element], z: V, square: V) -> V {
     let pair = |even, odd| V::splat(even).plus_product(z, V::splat(odd));

@@ -1,9 +1,9 @@
 //! The angle less a multiple of a right angle: x = n π/2 + y - e.
 //!
-//! After W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980): π/2 is a sum of parts so short that
-//! their products with n have no rounding error, and the parts are subtracted from x one after the other, the largest first.
-//! What a subtraction of a later part rounds away is computed exactly as `(s - a) + b` for `s = a - b` (Dekker's fast sum)
-//! and collected in e.
+//! After W. J. Cody and W. Waite, "Software Manual for the Elementary Functions" (1980): π/2 is a sum of parts so short
+//! that their products with n have no rounding error, and the parts are subtracted from x one after the other, the
+//! largest first. What a subtraction of a later part rounds away is computed exactly as `(s - a) + b` for `s = a - b`
+//! (Dekker's fast sum) and collected in e.
 
 use core::f32::consts::FRAC_2_PI as FRAC_2_PI_F32;
 use core::f64::consts::FRAC_2_PI as FRAC_2_PI_F64;
@@ -63,8 +63,8 @@ pub(super) fn single<V: Lanes<Element = f32>>(x: V) -> Reduced<V> {
     Reduced { rounded, head, excess }
 }
 
-/// `a - n part` rounded, and what it is too large by. The product has no rounding error; the excess has none if the product is
-/// no larger than a or if the difference needs no rounding.
+/// `a - n part` rounded, and what it is too large by. The product has no rounding error; the excess has none if the
+/// product is no larger than a or if the difference needs no rounding.
 #[inline(always)]
 fn difference<V: Lanes>(a: V, n: V, part: V::Element) -> (V, V) {
     let rounded = a.minus_product(n, V::splat(part));

@@ -1,6 +1,7 @@
 //! SIMD registers of `wide`, as wide as the compiled target has them.
 //!
-//! Written out as registers rather than left to LLVM's vectorisers: those succeed or fail with the code around the kernel.
+//! Written out as registers rather than left to LLVM's vectorisers: those succeed or fail with the code around the
+//! kernel.
 
 use bytemuck::cast;
 

@@ -1,6 +1,7 @@
 //! The kernels of sine and cosine: special values, accuracy, and the same bits for one angle as for many.
 //!
-//! `cargo test -p rne-runtime --test sin_cos`, and with `--no-default-features` for the kernels as they are without `std`.
+//! `cargo test -p rne-runtime --test sin_cos`, and with `--no-default-features` for the kernels as they are without
+//! `std`.
 
 mod reference;
 mod turn;

@@ -1,7 +1,7 @@
 //! Sine and cosine to about 30 digits, for angles up to 10⁵ rad, and errors in units in the last place.
 
-/// A sum of two numbers, the second below half a unit in the last place of the first: T. J. Dekker's double-length numbers
-/// (1971).
+/// A sum of two numbers, the second below half a unit in the last place of the first: T. J. Dekker's double-length
+/// numbers (1971).
 #[derive(Clone, Copy)]
 pub(crate) struct Double {
     high: f64,

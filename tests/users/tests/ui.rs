@@ -1,8 +1,8 @@
 //! What the user sees: each likely mistake as the compiler reports it, and what has to compile without a word.
 //!
-//! The messages in `ui/*.stderr` are the derive's own, in the frame that rustc puts around them;
-//! `TRYBUILD=overwrite cargo test --test ui` writes them again. Messages whose words are rustc's (`ui/rustc`) change with
-//! its versions: of those, the code, the place and the names are looked for.
+//! The messages in `ui/*.stderr` are the derive's own, in the frame that rustc puts around them; `TRYBUILD=overwrite
+//! cargo test --test ui` writes them again. Messages whose words are rustc's (`ui/rustc`) change with its versions: of
+//! those, the code, the place and the names are looked for.
 
 mod build;
 

@@ -2,8 +2,9 @@
 //!
 //! What the driver promises, and every `SAFETY` below relies on:
 //! - `robot` is a string of C that lives as long as the call.
-//! - A function is called with the robot it was asked for; `q`, `qd`, `qdd` then hold one `f64` per joint (and state, in
-//!   a batch), are aligned, initialised and not written during the call; `out` is as large, aligned, and overlaps nothing.
+//! - A function is called with the robot it was asked for; `q`, `qd`, `qdd` then hold one `f64` per joint (and state,
+//!   in a batch), are aligned, initialised and not written during the call; `out` is as large, aligned, and overlaps
+//!   nothing.
 //! - A context is one that [`rp_open`] made, and one call at a time has it.
 
 use std::ffi::{CStr, c_char, c_int, c_void};
@@ -84,7 +85,9 @@ unsafe fn write<T>(room: *mut f64, value: T) {
 
 /// The functions of one state: their inputs by name, then the torques or accelerations that they write.
 macro_rules! calls {
-    ($($(#[$attribute:meta])* $name:ident: $capability:ident, |$robot:ident, $q:tt, $qd:tt, $qdd:tt| $result:expr;)*) => {$(
+    ($(
+        $(#[$attribute:meta])* $name:ident: $capability:ident, |$robot:ident, $q:tt, $qd:tt, $qdd:tt| $result:expr;
+    )*) => {$(
         $(#[$attribute])*
         ///
         /// # Safety
@@ -122,8 +125,8 @@ calls! {
 
 /// The mass matrix; its first element goes to `out`.
 ///
-/// It stays on the stack, where a program has what it called for, and all of it is there when `black_box` sees it. It is
-/// copied only to be checked: to copy at once what was written number by number takes a robot's mass matrix again.
+/// It stays on the stack, where a program has what it called for, and all of it is there when `black_box` sees it. It
+/// is copied only to be checked: to copy at once what was written number by number takes a robot's mass matrix again.
 ///
 /// # Safety
 /// The pointers are as the module's page says, for a robot with `DOF` joints.
@@ -149,8 +152,8 @@ pub(crate) unsafe extern "C" fn mass_matrix<R: MassMatrix<DOF> + Default, const 
     }
 }
 
-/// Both derivatives of the torques, as the mass matrix; an element goes to `out`. With `ALL`, torques and mass matrix as
-/// well, which Pinocchio's function computes in passing.
+/// Both derivatives of the torques, as the mass matrix; an element goes to `out`. With `ALL`, torques and mass matrix
+/// as well, which Pinocchio's function computes in passing.
 ///
 /// # Safety
 /// The pointers are as the module's page says, for a robot with `DOF` joints.
@@ -212,8 +215,8 @@ pub(crate) unsafe extern "C" fn batch<R: BatchInverseDynamics<DOF> + Default, co
     use std::{array, slice};
     // SAFETY: joint j's numbers start at j·count; `DOF·count` initialised ones each, which nobody writes meanwhile.
     let joints = |x: *const f64| array::from_fn(|j| unsafe { slice::from_raw_parts(x.add(j * count), count) });
-    // SAFETY: the same places of `out`: the slices of different joints do not overlap, nor do they overlap the inputs. They
-    // are initialised, because the driver's memory is.
+    // SAFETY: the same places of `out`: the slices of different joints do not overlap, nor do they overlap the inputs.
+    // They are initialised, because the driver's memory is.
     let tau = array::from_fn(|j| unsafe { slice::from_raw_parts_mut(out.add(j * count), count) });
     let done = R::default().inverse_dynamics_batch(joints(q), joints(qd), joints(qdd), tau);
     // A panic aborts here: it cannot unwind out of `extern "C"`.

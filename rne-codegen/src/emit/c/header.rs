@@ -85,11 +85,13 @@ fn contract(file: &File) -> String {
     let mut text = "//\n".to_owned();
     let mut paragraph = |words: &str| text.push_str(&comment("//", words));
     paragraph(
-        "Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.",
+        "Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, \
+        m/s², N.",
     );
     paragraph("");
     paragraph(
-        "A result may be written over an argument: all arguments are read before the first number is written. No loop, no \
+        "A result may be written over an argument: all arguments are read before the first number is written. No \
+        loop, no \
          branch, no memory but the stack, no library.",
     );
     if file.chooses_by_sign() {
@@ -99,16 +101,16 @@ fn contract(file: &File) -> String {
         let own = format!("void name({real} angle, {real} *sine, {real} *cosine)").replace(' ', TIED);
         paragraph("");
         paragraph(&format!(
-            "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad, the sums of those \
-             of parallel joints included; beyond that results mean nothing. To use others, from a CORDIC unit perhaps, compile \
-             with -DRNE_SIN_COS=name, the name of a function {own}."
+            "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad, the \
+             sums of those of parallel joints included; beyond that results mean nothing. To use others, from a \
+             CORDIC unit perhaps, compile with -DRNE_SIN_COS=name, the name of a function {own}."
         ));
     }
     paragraph("");
     paragraph(
-        "Sums and products are rounded in the order in which they are written: with -ffast-math, -funsafe-math-optimizations or \
-         -mfpmath=387 the source does not compile, unless its sine comes from outside. With -ffp-contract=off the results are \
-         those of the Rust code built without fused multiply-add, bit for bit.",
+        "Sums and products are rounded in the order in which they are written: with -ffast-math, \
+         -funsafe-math-optimizations or -mfpmath=387 the source does not compile, unless its sine comes from outside. With -ffp-contract=off the \
+         results are those of the Rust code built without fused multiply-add, bit for bit.",
     );
     text
 }

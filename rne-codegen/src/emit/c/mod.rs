@@ -134,8 +134,8 @@ fn comment(start: &str, text: &str) -> String {
     (comment + line.trim_end() + "\n").replace(TIED, " ")
 }
 
-/// Items with commas between them, in lines of at most the [width](WIDTH): the first behind `start`, `end` behind the last, further
-/// lines indented.
+/// Items with commas between them, in lines of at most the [width](WIDTH): the first behind `start`, `end` behind the
+/// last, further lines indented.
 fn filled(start: &str, items: &[String], end: &str, indent: usize) -> String {
     let mut text = start.to_owned();
     let mut column = start.lines().last().unwrap_or_default().chars().count();

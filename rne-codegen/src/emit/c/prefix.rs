@@ -32,8 +32,8 @@ impl fmt::Display for Prefix {
 impl FromStr for Prefix {
     type Err = BadPrefix;
 
-    /// A letter, then letters, digits and underscores: names that begin with an underscore are the compiler's, and so are
-    /// those with two in C++.
+    /// A letter, then letters, digits and underscores: names that begin with an underscore are the compiler's, and so
+    /// are those with two in C++.
     fn from_str(text: &str) -> Result<Self, BadPrefix> {
         let mut characters = text.chars();
         let starts = characters.next().is_some_and(|first| first.is_ascii_alphabetic());
@@ -50,7 +50,8 @@ pub struct BadPrefix;
 impl fmt::Display for BadPrefix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
-            "names of functions begin with it and an underscore: a letter from a to z or A to Z, then letters, digits and \
+            "names of functions begin with it and an underscore: a letter from a to z or A to Z, then letters, \
+            digits and \
              single underscores between them, such as `my_arm`",
         )
     }

@@ -70,7 +70,8 @@ fn long_arms_are_articulated() {
         for joint in 1..=joints {
             let _ = write!(
                 text,
-                "  - type: revolute\n    dh: {{theta: 0, d: 0.2, a: 0.{joint}, alpha: pi/2}}\n    link: {{mass: 1.{joint}, \
+                "  - type: revolute\n    dh: {{theta: 0, d: 0.2, a: 0.{joint}, alpha: pi/2}}\n    link: {{mass: \
+                1.{joint}, \
                  com: [0.01, 0.02, 0.03], inertia: {{xx: 0.2, yy: 0.3, zz: 0.4, xy: 0.01, xz: 0.02, yz: 0.03}}}}\n"
             );
         }
