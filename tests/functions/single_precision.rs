@@ -69,8 +69,14 @@ fn table() -> String {
     let _ = writeln!(text, "| function | form | {} |", ROBOTS.join(" | "));
     let _ = writeln!(text, "|---|---|{}", "---:|".repeat(ROBOTS.len()));
     for (function, maker) in Function::ALL.into_iter().flat_map(|function| Maker::CODE.map(|maker| (function, maker))) {
-        let cell = |name| format!("{:.0e}", worst(Arm::from_file(&format!("robots/{name}.yaml"), maker), function));
-        let _ = writeln!(text, "| {} | {maker} | {} |", function.name(), ROBOTS.map(cell).join(" | "));
+        let cell =
+            |name: &String| format!("{:.0e}", worst(Arm::from_file(&format!("robots/{name}.yaml"), maker), function));
+        let _ = writeln!(
+            text,
+            "| {} | {maker} | {} |",
+            function.name(),
+            ROBOTS.iter().map(cell).collect::<Vec<_>>().join(" | ")
+        );
     }
     text
 }

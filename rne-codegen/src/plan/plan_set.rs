@@ -103,17 +103,15 @@ impl Choice {
         if is_irreducible || function.divides().is_some() && prove::divides_by_zero(robot, function) {
             return crate::compile(robot, function, Form::SevenSteps);
         }
-        match function {
-            // numbers that are not known cannot be regrouped
-            _ if is_fixed && !Way::of(function).is_empty() => {
-                match self.compile_planned(robot, function, form, arranged) {
-                    // fewer choices make no program shorter
-                    Err(error @ CompileError::TooLarge { .. }) => Err(error),
-                    Err(_) if self.maker == Maker::Build => self.compile_with_less(robot, function, form, arranged),
-                    done => done.map_err(|error| error.suspecting(robot, self.maker == Maker::PlanFile)),
-                }
-            }
-            _ => compile_merged(robot, function, arranged),
+        // numbers that are not known cannot be regrouped
+        if !is_fixed || Way::of(function).is_empty() {
+            return compile_merged(robot, function, arranged);
+        }
+        match self.compile_planned(robot, function, form, arranged) {
+            // fewer choices make no program shorter
+            Err(error @ CompileError::TooLarge { .. }) => Err(error),
+            Err(_) if self.maker == Maker::Build => self.compile_with_less(robot, function, form, arranged),
+            done => done.map_err(|error| error.suspecting(robot, self.maker == Maker::PlanFile)),
         }
     }
 

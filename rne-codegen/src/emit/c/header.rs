@@ -109,8 +109,8 @@ fn contract(file: &File) -> String {
     paragraph("");
     paragraph(
         "Sums and products are rounded in the order in which they are written: with -ffast-math, \
-         -funsafe-math-optimizations or -mfpmath=387 the source does not compile, unless its sine comes from outside. With -ffp-contract=off the \
-         results are those of the Rust code built without fused multiply-add, bit for bit.",
+         -funsafe-math-optimizations or -mfpmath=387 the source does not compile, unless its sine comes from outside. \
+         With -ffp-contract=off the results are those of the Rust code built without fused multiply-add, bit for bit.",
     );
     text
 }
