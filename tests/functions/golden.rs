@@ -1,4 +1,5 @@
-//! The shipped robots against independent values: mass matrix, Coriolis torques, forward dynamics, tip, Jacobian, motors.
+//! The shipped robots against independent values: mass matrix, Coriolis torques, forward dynamics, tip, Jacobian,
+//! motors.
 
 use std::sync::LazyLock;
 
