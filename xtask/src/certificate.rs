@@ -64,7 +64,13 @@ impl Certificate {
             machine::without_flags(cmd!(shell, "/usr/bin/cargo {command...} --quiet --locked {manifest} {rest...}"))
                 .quiet()
         };
-        if cargo(&["fetch"]).ignore_stderr().run().is_err() {
+        let fetched = cargo(&["fetch"]).ignore_status().output()?;
+        let said = String::from_utf8_lossy(&fetched.stderr);
+        if said.contains("lock file") {
+            // nothing that a network would mend
+            anyhow::bail!("embedded/Cargo.lock is not that of its manifests: {}", said.trim());
+        }
+        if !fetched.status.success() {
             return Err(Missing::error("its crates cannot be downloaded (cargo fetch in embedded/ says why)"));
         }
         let tests = cargo(&["test", "--package", "certificate"]);
