@@ -26,7 +26,7 @@ where
 /// A type that is also its own unit.
 #[derive(InverseDynamics)]
 #[robot(path = "../robots/rod.yaml")]
-pub struct T(pub f64);
+pub struct T(#[robot(skip)] pub f64);
 
 fn main() {
     let arm: Arm<'_, &str, f32, 1> = Arm { name: &["arm"], payload: 1.5, spare: ["a", "b"] };
