@@ -14,7 +14,7 @@ pub(crate) static ROBOTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let files = std::fs::read_dir(format!("{ROOT}/robots")).expect("the folder");
     let names = files.map(|file| file.expect("a file").file_name().into_string().expect("a name in Unicode"));
     let names = names.filter_map(|name| name.strip_suffix(".yaml").map(str::to_owned));
-    let mut names: Vec<String> = names.filter(|name| !name.ends_with(".plan")).collect();
+    let mut names: Vec<String> = names.filter(|name| name.strip_suffix(".plan").is_none()).collect();
     names.sort_unstable();
     assert!(names.len() >= 15, "{names:?}");
     names
