@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use divan::Bencher;
-use rne_codegen::plan::Choice;
-use rne_codegen::{Form, Function, emit};
+use rne_codegen::plan::PlanSet;
+use rne_codegen::{Compiler, Form, Function, emit};
 use rne_model::{Robot, check_bytes_with_run_time};
 
 fn main() {
@@ -39,9 +39,9 @@ fn read_shared_expressions(bencher: Bencher) {
 fn expand_panda(bencher: Bencher, form: Form) {
     let robot = Robot::from_yaml(&panda()).unwrap_or_else(|report| panic!("{report}"));
     bencher.bench_local(|| {
-        let choice = Choice::default_of(&robot);
+        let plans = PlanSet::default_of(&robot);
         let programs = Function::TORQUES
-            .map(|function| choice.compile(&robot, function, form).unwrap_or_else(|error| panic!("{error}")));
+            .map(|function| Compiler::new(&robot).with_plans(&plans).compile(function, form).unwrap_or_else(|error| panic!("{error}")));
         emit::rust_file(&robot, &programs).len()
     });
 }

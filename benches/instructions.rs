@@ -72,17 +72,14 @@ mod setup {
     }
 }
 
-/// One function for all robots that have it: the UR5 is derived with inverse dynamics only; the rewritten form is
-/// another one in `inverse_dynamics` alone.
+/// One function for all robots that have it: the UR5 is derived with inverse dynamics only.
 macro_rules! benchmarks {
-    ($($function:ident $(and $rewritten:ident)? $(with $ur5:ident)?;)*) => {$(
+    ($($function:ident $(with $ur5:ident)?;)*) => {$(
         #[library_benchmark(setup = setup::$function)]
         #[bench::puma560_seven_steps(Puma560SevenSteps)]
         #[bench::puma560_reduced(Puma560Reduced)]
-        $(#[bench::puma560_rewritten($rewritten::Puma560Rewritten)])?
         #[bench::panda_seven_steps(PandaSevenSteps)]
         #[bench::panda_reduced(PandaReduced)]
-        $(#[bench::panda_rewritten($rewritten::PandaRewritten)])?
         $(#[bench::ur5_seven_steps($ur5::Ur5SevenSteps)]
         #[bench::ur5_reduced($ur5::Ur5Reduced)])?
         fn $function<T>(call: impl FnOnce() -> T) -> T {
@@ -92,8 +89,8 @@ macro_rules! benchmarks {
 }
 
 benchmarks! {
-    inverse_dynamics and rne_benches with rne_benches;
-    inverse_dynamics_f32 and rne_benches with rne_benches;
+    inverse_dynamics with rne_benches;
+    inverse_dynamics_f32 with rne_benches;
     with_wrench with rne_benches;
     gravity_torques with rne_benches;
     bias_torques with rne_benches;

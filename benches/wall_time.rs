@@ -16,7 +16,7 @@ use std::path::Path;
 use divan::Bencher;
 use rne::{Arm, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Scalar};
 use rne_benches::{
-    GRAVITY, PandaReduced, PandaRewritten, PandaSevenSteps, Puma560Reduced, Puma560Rewritten, Puma560SevenSteps,
+    GRAVITY, PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps,
     states, urdf,
 };
 
@@ -158,13 +158,12 @@ fn dynibo_gravity<const DOF: usize>(bencher: Bencher, name: &str) {
     });
 }
 
-/// The benchmarks of one robot: a module per measurement, a function per competitor and scalar. The rewritten form is
-/// another one in `inverse_dynamics` alone.
+/// The benchmarks of one robot: a module per measurement, a function per competitor and scalar.
 macro_rules! robot {
-    ($name:ident, $dof:literal, $seven_steps:ident, $reduced:ident, $rewritten:ident) => {
+    ($name:ident, $dof:literal, $seven_steps:ident, $reduced:ident) => {
         mod $name {
-            robot!(@measurement independent, dynibo_independent, $name, $dof, $seven_steps, $reduced, $rewritten);
-            robot!(@measurement chained, dynibo_chained, $name, $dof, $seven_steps, $reduced, $rewritten);
+            robot!(@measurement independent, dynibo_independent, $name, $dof, $seven_steps, $reduced);
+            robot!(@measurement chained, dynibo_chained, $name, $dof, $seven_steps, $reduced);
             robot!(@measurement gravity, dynibo_gravity, $name, $dof, $seven_steps, $reduced);
             robot!(@function mass_matrix, $name, $dof, $seven_steps, $reduced);
             robot!(@function forward_dynamics, $name, $dof, $seven_steps, $reduced);
@@ -173,13 +172,11 @@ macro_rules! robot {
     };
     (
         @measurement $measurement:ident, $dynibo:ident, $name:ident, $dof:literal, $seven_steps:ident, $reduced:ident
-        $(, $rewritten:ident)?
     ) => {
         mod $measurement {
             use divan::{Bencher, bench};
 
             robot!(@ours $measurement, $name, $dof, $seven_steps, $reduced);
-            $(robot!(@form $measurement, $dof, rewritten, rewritten_f32, $rewritten);)?
 
             #[bench]
             fn dynibo(bencher: Bencher) {
@@ -222,5 +219,5 @@ macro_rules! robot {
     };
 }
 
-robot!(puma560, 6, Puma560SevenSteps, Puma560Reduced, Puma560Rewritten);
-robot!(panda, 7, PandaSevenSteps, PandaReduced, PandaRewritten);
+robot!(puma560, 6, Puma560SevenSteps, Puma560Reduced);
+robot!(panda, 7, PandaSevenSteps, PandaReduced);

@@ -12,8 +12,8 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use rne::DynArm;
-use rne_codegen::plan::Choice;
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::plan::PlanSet;
+use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::Robot;
 
 const JOINTS: usize = 30;
@@ -115,10 +115,10 @@ fn all_derives_of_seven_joints_build() {
     let robot = fs::read_to_string(robot).expect("the robot file");
     for (form, most) in [(Form::SevenSteps, 8000), (Form::Reduced, 4500)] {
         let read = Robot::from_yaml(&robot).unwrap_or_else(|report| panic!("{report}"));
-        let choice = Choice::default_of(&read);
+        let plans = PlanSet::default_of(&read);
         let functions = Function::ALL.into_iter().filter(|&function| function != Function::ActuatorTorques);
         let programs: Result<Vec<Program>, _> =
-            functions.map(|function| choice.compile(&read, function, form)).collect();
+            functions.map(|function| Compiler::new(&read).with_plans(&plans).compile(function, form)).collect();
         let programs = programs.unwrap_or_else(|error| panic!("{error}"));
         let statements = statements(&programs);
         println!("7 joints, ten derives, {form}: {statements} statements");
@@ -158,7 +158,7 @@ fn torques_grow_with_the_number_of_joints() {
     let work = |joints: usize| {
         let robot = Robot::from_yaml(&chain(joints)).unwrap_or_else(|report| panic!("{report}"));
         Function::TORQUES.map(|function| {
-            let program = compile(&robot, function, Form::SevenSteps).expect("finite constants");
+            let program = Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite constants");
             let (products, sums) = program.before();
             [products + sums, program.operations().total(), statements([&program])]
         })

@@ -8,8 +8,8 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use rne_codegen::emit::{self, Listing, listing};
-use rne_codegen::plan::{self, Choice, PlanFile};
-use rne_codegen::{Capability, Form, Function, Operations, Program, Step, compile};
+use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
+use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
 use rne_model::{JointKind, Robot};
 
 /// The documents with blocks, and which blocks these are; measured ones do not count.
@@ -38,7 +38,7 @@ fn robot(path: &Path) -> Robot {
 }
 
 fn inverse_dynamics(robot: &Robot) -> Program {
-    compile(robot, Function::InverseDynamics, Form::SevenSteps).expect("finite constants")
+    Compiler::new(robot).compile(Function::InverseDynamics, Form::SevenSteps).expect("finite constants")
 }
 
 /// The shipped robot files, by name.
@@ -162,23 +162,22 @@ fn headline() -> String {
     )
 }
 
-/// The counts of a form by the plan beside the robot file.
-fn planned(path: &Path, robot: &Robot, form: Form) -> Operations {
-    let plan = path.with_extension("plan.yaml");
-    let plan = PlanFile::read("plan", &read(&plan), robot).unwrap_or_else(|report| panic!("{report}"));
-    let program = Choice::from(plan).compile(robot, Function::InverseDynamics, form);
+/// The counts of the reduced form.
+fn reduced(robot: &Robot, plans: &PlanSet) -> Operations {
+    let program = Compiler::new(robot).with_plans(plans).compile(Function::InverseDynamics, Form::Reduced);
     program.unwrap_or_else(|error| panic!("{}: {error}", robot.name)).operations()
 }
 
 fn robots() -> String {
     let mut text = String::from(
-        "| robot | joints | seven steps: products | sums | both | reduced | rewritten | angles |\n\
+        "| robot | joints | seven steps: products | sums | both | planned | reduced | angles |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for path in robot_files() {
         let robot = robot(&path);
         let counts = inverse_dynamics(&robot).operations();
-        let [reduced, rewritten] = [Form::Reduced, Form::Rewritten].map(|form| planned(&path, &robot, form));
+        let (plans, _) = plans(&path, &robot);
+        let (planned, reduced) = (reduced(&robot, &plans.without(&[Trick::Rewriting])), reduced(&robot, &plans));
         let joints: String = robot
             .rows()
             .map(|row| match row.kind {
@@ -194,8 +193,8 @@ fn robots() -> String {
             counts.mul,
             counts.add,
             counts.total(),
+            planned.total(),
             reduced.total(),
-            rewritten.total(),
             counts.sincos,
             reduced.sincos
         );
@@ -227,14 +226,16 @@ fn embedded() -> String {
 fn functions() -> String {
     let path = root().join("robots/puma560.yaml");
     let robot = robot(&path);
-    let (choice, _) = choice(&path, &robot);
+    let (plans, _) = plans(&path, &robot);
     let mut text = String::from(
         "| derive | method | seven steps: products | sums | reduced: products | sums | divisions | angles |\n\
          |---|---|---|---|---|---|---|---|\n",
     );
     for capability in Capability::ALL {
         for &function in capability.functions() {
-            let count = |form| choice.compile(&robot, function, form).expect("finite constants").operations();
+            let count = |form| {
+                Compiler::new(&robot).with_plans(&plans).compile(function, form).expect("finite constants").operations()
+            };
             let [plain, reduced] = [Form::SevenSteps, Form::Reduced].map(count);
             let angles = if plain.sincos == reduced.sincos {
                 plain.sincos.to_string()
@@ -257,28 +258,26 @@ fn functions() -> String {
 }
 
 /// The choices of the plan file of a robot, or those that a build makes by itself, and whether there is a plan.
-fn choice(file: &Path, robot: &Robot) -> (Choice, bool) {
+fn plans(file: &Path, robot: &Robot) -> (PlanSet, bool) {
     let plan = file.with_extension("plan.yaml");
     if !plan.exists() {
-        return (Choice::default_of(robot), false);
+        return (PlanSet::default_of(robot), false);
     }
     let plan = PlanFile::read(&plan.display().to_string(), &read(&plan), robot);
-    (Choice::from(plan.unwrap_or_else(|report| panic!("{report}"))), true)
+    (PlanSet::from(plan.unwrap_or_else(|report| panic!("{report}"))), true)
 }
 
 /// The operations of every robot, the forms side by side.
 fn operations() -> String {
     let cell = |counts: Operations| format!("{} + {} = {}, {}", counts.mul, counts.add, counts.total(), counts.sincos);
     let mut text = String::from(
-        "| robot | plan | before folding | seven_steps | reduced | rewritten |\n|---|---|---:|---:|---:|---:|\n",
+        "| robot | plan | before folding | seven_steps | planned | reduced |\n|---|---|---:|---:|---:|---:|\n",
     );
     for path in robot_files() {
         let robot = robot(&path);
-        let (choice, has_plan) = choice(&path, &robot);
-        let compiled = |form| choice.compile(&robot, Function::InverseDynamics, form).expect("finite constants");
+        let (plans, has_plan) = plans(&path, &robot);
         let seven_steps = inverse_dynamics(&robot);
         let (products, sums) = seven_steps.before();
-        let rewritten = choice.rewritten.is_some().then(|| cell(compiled(Form::Rewritten).operations()));
         let _ = writeln!(
             text,
             "| {} | {} | {products} + {sums} = {} | {} | {} | {} |",
@@ -286,8 +285,8 @@ fn operations() -> String {
             if has_plan { "file" } else { "of the build" },
             products + sums,
             cell(seven_steps.operations()),
-            cell(compiled(Form::Reduced).operations()),
-            rewritten.unwrap_or_default(),
+            cell(reduced(&robot, &plans.without(&[Trick::Rewriting]))),
+            cell(reduced(&robot, &plans)),
         );
     }
     text
@@ -299,10 +298,10 @@ fn tricks() -> String {
     let savings = robots.map(|name| {
         let path = root().join("robots").join(name).with_extension("yaml");
         let robot = robot(&path);
-        plan::savings(&robot, &choice(&path, &robot).0.plan)
+        plan::savings(&robot, &plans(&path, &robot).0)
     });
     let mut text = format!("| trick | {} | what it is |\n|---|---:|---:|---|\n", robots.join(" | "));
-    for trick in plan::Trick::ALL {
+    for trick in Trick::ALL {
         let saved = |robot: usize| savings[robot].iter().find(|(used, _)| *used == trick).map(|(_, saved)| *saved);
         let cell = |saved: Option<isize>| saved.map_or_else(String::new, |saved| saved.to_string());
         if saved(0).is_some() || saved(1).is_some() {
@@ -500,9 +499,9 @@ fn the_robot_file_of_the_readme_is_valid() {
 #[test]
 fn the_explained_plan_is_the_shipped_one() {
     let page = read(&root().join("docs/reduced-form.md"));
-    let (_, explained) = page.split_once("\n    format: 1 ").expect("a plan");
+    let (_, explained) = page.split_once("\n    format: 2 ").expect("a plan");
     let (explained, _) = explained.split_once("\n    rewritten:").expect("two forms");
-    let explained = format!("format: 1 {explained}\n").replace("\n    ", "\n");
+    let explained = format!("format: 2 {explained}\n").replace("\n    ", "\n");
     let robot =
         Robot::from_yaml(&read(&root().join("robots/puma560.yaml"))).unwrap_or_else(|report| panic!("{report}"));
     let plan = |name: &str, text: &str| PlanFile::read(name, text, &robot).unwrap_or_else(|report| panic!("{report}"));

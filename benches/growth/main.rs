@@ -25,8 +25,7 @@ mod user;
 use std::fmt::Write;
 use std::time::Instant;
 
-use rne_codegen::plan::Choice;
-use rne_codegen::{Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function, emit};
 use rne_model::Robot;
 
 const JOINTS: [usize; 8] = [1, 2, 5, 10, 20, 30, 40, 50];
@@ -85,12 +84,9 @@ fn measure(joints: usize, form: Form) -> [f64; COLUMNS.len()] {
 /// What the derive does; the operations of `inverse_dynamics`.
 fn operations(yaml: &str, form: Form) -> usize {
     let robot = Robot::from_yaml(yaml).unwrap_or_else(|report| panic!("{report}"));
-    let choice = match form {
-        Form::SevenSteps => Choice::none(&robot),
-        Form::Reduced | Form::Rewritten => Choice::default_of(&robot),
-    };
-    let programs = Function::TORQUES
-        .map(|function| choice.compile(&robot, function, form).unwrap_or_else(|error| panic!("{error}")));
+    let compiler = Compiler::new(&robot);
+    let programs =
+        Function::TORQUES.map(|function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}")));
     std::hint::black_box(emit::rust_file(&robot, &programs));
     programs[0].operations().total()
 }

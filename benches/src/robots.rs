@@ -1,5 +1,4 @@
-//! The derived robots. A plan file beside the robot file is replayed; a robot whose plan has no rewritten graph has no
-//! struct of that form.
+//! The derived robots. A plan file beside the robot file is replayed.
 
 use rne::{ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix};
 
@@ -18,12 +17,10 @@ robots! {
         with MassMatrix ForwardDynamics InverseDynamicsDerivatives;
     Puma560Reduced: "../../robots/puma560.yaml" in "reduced"
         with MassMatrix ForwardDynamics InverseDynamicsDerivatives;
-    Puma560Rewritten: "../../robots/puma560.yaml" in "rewritten";
     PandaSevenSteps: "../../robots/panda.yaml" in "seven_steps"
         with MassMatrix ForwardDynamics InverseDynamicsDerivatives;
     PandaReduced: "../../robots/panda.yaml" in "reduced"
         with MassMatrix ForwardDynamics InverseDynamicsDerivatives;
-    PandaRewritten: "../../robots/panda.yaml" in "rewritten";
     Ur5SevenSteps: "../../robots/ur5.yaml" in "seven_steps";
     Ur5Reduced: "../../robots/ur5.yaml" in "reduced";
 }

@@ -82,7 +82,6 @@ pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
     let value = |form: Form| match form {
         Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
         Form::Reduced => PossibleValue::new(form.name()).help("Fewest operations; only the torques keep a meaning"),
-        Form::Rewritten => PossibleValue::new(form.name()).help("The reduced form after `rne search --rewrite`"),
     };
     PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
 }

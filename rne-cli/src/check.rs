@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rne_codegen::Function;
 use rne_model::{Checked, Convention, JointKind, Robot, plan_of, robot_of};
 
 use crate::layout::{left, width};
@@ -79,7 +80,10 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
     };
     let counts = plan_file::verify(&robot, &read)?;
-    let words: Vec<String> = counts.iter().map(|(form, total)| format!("{form} {total}")).collect();
+    let word = |(function, is_rewritten, total): &(Function, bool, usize)| {
+        format!("{function}{} {total}", if *is_rewritten { " rewritten" } else { "" })
+    };
+    let words: Vec<String> = counts.iter().map(word).collect();
     let about = format!("plan of {}: {} operations, proved", robot.name, words.join(", "));
     Ok(Good { about, lints: None })
 }

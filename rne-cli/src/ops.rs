@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::plan::{self, Choice, Trick};
-use rne_codegen::{CompileError, Form, Function, Operations, Program};
+use rne_codegen::plan::{self, PlanSet, Trick};
+use rne_codegen::{CompileError, Form, Function, Operations};
 use rne_model::Robot;
 use serde::Serialize;
 
@@ -77,14 +77,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
         let outcome = robot_file::robot(path).and_then(|robot| {
-            let compiler = Compiler::new(path, &robot);
+            let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
-                savings.push_str(&tricks(&robot, compiler.choice()?));
+                savings.push_str(&tricks(&robot, compiler.plans()?));
             } else {
                 let functions: Vec<Function> = functions::of(&robot)
                     .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
                     .collect();
-                let counts = counts(path, &robot, &compiler, &functions, &arguments.without, &mut remarks)?;
+                let counts = counts(path, &compiler, &functions, arguments.without.is_empty(), &mut remarks)?;
                 counted.push((robot.name.clone(), counts));
             }
             Ok(())
@@ -100,57 +100,39 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// Counts functions of a robot in every form; the reduced form without some tricks alone, if there are any. What is too
-/// large to be compiled is left out, with a line in `remarks`.
+/// Counts functions of a robot in the reduced form, and in the seven steps if `both`. What is too large to be compiled
+/// is left out, with a line in `remarks`.
 pub(crate) fn counts(
     file: &Path,
-    robot: &Robot,
     compiler: &Compiler<'_>,
     functions: &[Function],
-    without: &[Trick],
+    both: bool,
     remarks: &mut String,
 ) -> Result<Vec<Count>, Failure> {
     let mut counts = Vec::new();
-    let count = |function, form, program: &Program| Count {
-        function,
-        form,
-        before: program.before(),
-        after: program.operations(),
-    };
-    if !without.is_empty() {
-        let plan = without.iter().fold(compiler.choice()?.plan.clone(), |plan, trick| trick.left_out_of(&plan));
-        let choice = Choice::of(plan);
-        for &function in functions {
-            let program = choice.compile(robot, function, Form::Reduced);
-            let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
-            counts.push(count(function, Form::Reduced, &program));
-        }
-        return Ok(counts);
-    }
-    for &function in functions {
-        match compiler.compiled(function, Form::SevenSteps)? {
-            Err(error @ CompileError::TooLarge { .. }) => {
-                let _ = writeln!(remarks, "{}: {error}", file.display());
-                continue;
+    let forms = if both { &Form::ALL[..] } else { &[Form::Reduced] };
+    'functions: for &function in functions {
+        for &form in forms {
+            match compiler.compiled(function, form)? {
+                Err(error @ CompileError::TooLarge { .. }) => {
+                    let _ = writeln!(remarks, "{}: {error}", file.display());
+                    continue 'functions;
+                }
+                program => {
+                    let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
+                    counts.push(Count { function, form, before: program.before(), after: program.operations() });
+                }
             }
-            program => {
-                let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
-                counts.push(count(function, Form::SevenSteps, &program));
-            }
-        }
-        counts.push(count(function, Form::Reduced, &compiler.compile(function, Form::Reduced)?));
-        if function == Function::InverseDynamics && compiler.choice()?.rewritten.is_some() {
-            counts.push(count(function, Form::Rewritten, &compiler.compile(function, Form::Rewritten)?));
         }
     }
     Ok(counts)
 }
 
 /// What each trick of a plan saves.
-fn tricks(robot: &Robot, choice: &Choice) -> String {
+fn tricks(robot: &Robot, plans: &PlanSet) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
-    for (trick, saved) in plan::savings(robot, &choice.plan) {
+    for (trick, saved) in plan::savings(robot, plans) {
         lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
     }
     for (index, line) in columns(&[Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use indicatif::ProgressBar;
-use rne_codegen::plan::{Choice, PlanFile};
-use rne_codegen::{CompileError, Form, Function, Program, compile};
+use rne_codegen::plan::{PlanFile, PlanSet, Trick};
+use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
 use rne_model::{Robot, plan_of, read_file, robot_of};
 
 use crate::outcome::Failure;
@@ -55,9 +55,8 @@ pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<Plan
             let plan = PlanFile::read(&path.display().to_string(), &text, robot).ok();
             // a plan whose form cannot be proved is as good as none
             Ok(plan.filter(|plan| {
-                let choice = Choice::from(plan.clone());
-                let forms = [Some(Form::Reduced), choice.rewritten.as_ref().map(|_| Form::Rewritten)];
-                forms.into_iter().flatten().all(|form| choice.compile(robot, Function::InverseDynamics, form).is_ok())
+                let compiles = |(function, plans)| compiled(robot, function, plans).is_ok();
+                plan.described().into_iter().all(compiles)
             }))
         }
         _ => Err(Failure::usage(format_args!(
@@ -76,47 +75,64 @@ pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
     output_file::beside(path).map(drop).map_err(failure)
 }
 
-/// Compiles the function that a plan is of in every form that it describes, and proves them; each form with its
-/// operations. What a build would refuse is an error at its place in the plan file.
-pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Form, usize)>, Failure> {
-    let choice = Choice::from(plan.clone());
-    let forms = [Some(Form::Reduced), plan.rewritten.as_ref().map(|_| Form::Rewritten)];
-    let count = |form| {
-        let program = choice.compile(robot, Function::InverseDynamics, form);
-        let program = program.map_err(|error| Failure::from(&PlanFile::located(name, text, form, &error)))?;
-        plan.counts(name, text, &program).map_err(|report| Failure::from(&report))?;
-        Ok((form, program.operations().total()))
-    };
-    forms.into_iter().flatten().map(count).collect()
+fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program, CompileError> {
+    codegen::Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced)
 }
 
-/// Compiles the functions of one robot, by its plan file if it has one. The choices are made once, when they are
-/// needed.
+/// Compiles the programs that a plan file describes, and proves them; each function, whether it was
+/// rewritten, and its operations. What a build would refuse is an error at its place in the plan file.
+pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Function, bool, usize)>, Failure> {
+    let count = |(function, plans): (Function, PlanSet)| {
+        let program = compiled(robot, function, plans.clone())
+            .map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))?;
+        plan.counts(name, text, &program).map_err(|report| Failure::from(&report))?;
+        Ok((function, program.is_rewritten, program.operations().total()))
+    };
+    plan.described().into_iter().map(count).collect()
+}
+
+/// Compiles the functions of one robot, by its plan file if it has one, which is read when it is needed.
 pub(crate) struct Compiler<'a> {
     robot: &'a Robot,
     file: &'a Path,
-    choice: OnceCell<Choice>,
+    without: &'a [Trick],
+    compiler: OnceCell<codegen::Compiler<'a>>,
 }
 
 impl<'a> Compiler<'a> {
     pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
-        Self { robot, file, choice: OnceCell::new() }
+        Self { robot, file, without: &[], compiler: OnceCell::new() }
     }
 
     /// For a robot that is part of this program, with the text of its plan.
     pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
         let name = plan_of(file).display().to_string();
         let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
-        Ok(Self { robot, file, choice: OnceCell::from(Choice::from(plan)) })
+        Ok(Self { compiler: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
+    }
+
+    /// Without some tricks of the reduced form; the other choices of its plan stay.
+    pub(crate) fn without(self, tricks: &'a [Trick]) -> Self {
+        Self { without: tricks, ..self }
     }
 
     /// The choices of the plan file, or those that a build makes by itself.
-    pub(crate) fn choice(&self) -> Result<&Choice, Failure> {
-        if let Some(choice) = self.choice.get() {
-            return Ok(choice);
+    pub(crate) fn plans(&self) -> Result<&PlanSet, Failure> {
+        Ok(self.planned()?.plans())
+    }
+
+    fn planned(&self) -> Result<&codegen::Compiler<'a>, Failure> {
+        if let Some(compiler) = self.compiler.get() {
+            return Ok(compiler);
         }
-        let plan = read(self.file, self.robot)?.map(|read| Choice::from(read.plan));
-        Ok(self.choice.get_or_init(|| plan.unwrap_or_else(|| Choice::default_of(self.robot))))
+        let compiler = codegen::Compiler::new(self.robot);
+        let compiler = match read(self.file, self.robot)? {
+            Some(read) => compiler.with_plans(read.plan),
+            None => compiler,
+        };
+        let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.without));
+        let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
+        Ok(self.compiler.get_or_init(|| compiler))
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
@@ -127,8 +143,8 @@ impl<'a> Compiler<'a> {
     pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
         let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
         let compiled = match form {
-            Form::SevenSteps => compile(self.robot, function, form),
-            Form::Reduced | Form::Rewritten => self.choice()?.compile(self.robot, function, form),
+            Form::SevenSteps => codegen::Compiler::new(self.robot).compile(function, form),
+            Form::Reduced => self.planned()?.compile(function, form),
         };
         bar.finish_and_clear();
         Ok(compiled)

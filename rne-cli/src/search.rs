@@ -9,14 +9,14 @@ use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_codegen::Form;
-use rne_codegen::plan::{self, Accuracy, Cost, Found, PlanFile, Progress, Wanted};
+use rne_codegen::Function;
+use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions};
 use rne_model::plan_of;
 
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
-use crate::{plan_file, robot_file};
+use crate::{arguments, plan_file, robot_file};
 
 /// Look for a reduced form with fewer operations, and write its choices beside the robot file
 #[derive(Args)]
@@ -24,6 +24,7 @@ use crate::{plan_file, robot_file};
 Examples:
   rne search robots/puma560.yaml --seconds 60             choices only
   rne search robots/puma560.yaml --seconds 300 --rewrite  and rewrite the graph that they give
+  rne search robots/puma560.yaml --rewrite --function gravity_torques,mass_matrix
 
 Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs no search. A search goes on from the
 plan that is there, and what it writes is never worse, but that a plan that has lost much precision in f32 may give
@@ -36,9 +37,13 @@ pub(crate) struct Arguments {
     /// How long to search
     #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     seconds: f64,
-    /// Rewrite the graphs of the best plans too, for `form = "rewritten"`
+    /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
     #[arg(long)]
     rewrite: bool,
+    /// Rewrite these functions instead of inverse_dynamics; may be repeated
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function(),
+        requires = "rewrite")]
+    functions: Vec<Function>,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -76,8 +81,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             std::process::exit(130);
         }
     });
-    let wanted = Wanted { rewrite: arguments.rewrite, seed: arguments.seed };
-    let found = watched(&robot, known.as_ref(), wanted, arguments.seconds)
+    let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
+    let found = watched(&robot, known.as_ref(), &options, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let written = output_file::replace(&path, &found.to_yaml())
         .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
@@ -87,13 +92,26 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     Ok(Outcome::text(summary(&found, known.as_ref(), &path, written)))
 }
 
+/// The functions whose graphs are to be rewritten.
+fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
+    let functions = &arguments.functions;
+    if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
+        return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
+    }
+    Ok(match (arguments.rewrite, functions.is_empty()) {
+        (false, _) => Vec::new(),
+        (true, true) => vec![Function::InverseDynamics],
+        (true, false) => Function::ALL.into_iter().filter(|function| functions.contains(function)).collect(),
+    })
+}
+
 /// Searches with a progress bar on a terminal.
 fn watched(
     robot: &rne_model::Robot,
     known: Option<&PlanFile>,
-    wanted: Wanted,
+    options: &SearchOptions,
     seconds: f64,
-) -> Result<Found, rne_codegen::CompileError> {
+) -> Result<PlanFile, rne_codegen::CompileError> {
     const STEPS: u64 = 1000;
     let bar = ProgressBar::new(STEPS);
     let style = ProgressStyle::with_template("{prefix:>10} [{bar:30}] {msg}").map(|style| style.progress_chars("=> "));
@@ -102,7 +120,7 @@ fn watched(
     }
     let start = Instant::now();
     let mut shown = start;
-    let found = plan::search(robot, known, wanted, &mut |progress: &Progress| {
+    let found = plan::search(robot, known, options, &mut |progress: &Progress| {
         if INTERRUPTED.load(Ordering::Relaxed) {
             return None;
         }
@@ -122,25 +140,25 @@ fn watched(
     found
 }
 
-fn summary(found: &Found, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
+fn summary(found: &PlanFile, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
-    let mut line = |form: Form, operations: &Cost, accuracy: &Accuracy| {
+    let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {
         let _ = writeln!(
             text,
-            "{form:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
+            "{name:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
              largest torque{QUIET:#}",
             count(operations),
             operations.sincos,
             accuracy.double,
             accuracy.single,
             accuracy.single_of_seven_steps,
-            form = form.name(),
         );
     };
-    line(Form::Reduced, &found.file.reduced.operations, &found.file.reduced.accuracy);
-    if let Some(rewritten) = &found.file.rewritten {
-        line(Form::Rewritten, &rewritten.operations, &rewritten.accuracy);
+    line("reduced", &found.reduced.operations, &found.reduced.accuracy);
+    for (function, rewritten) in &found.rewritten {
+        let name = if *function == Function::InverseDynamics { "rewritten" } else { function.name() };
+        line(name, &rewritten.operations, &rewritten.accuracy);
     }
     let state = match (written, known) {
         (Written::Unchanged, _) => "is as good as it was",

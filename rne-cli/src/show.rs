@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 use rne_codegen::emit::{self, Listing};
-use rne_codegen::{Form, Function, Quantity, Step, compile_keeping};
+use rne_codegen::plan::Trick;
+use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
 use rne_model::Robot;
 
 use crate::outcome::{Failure, Outcome};
@@ -23,6 +24,7 @@ Examples:
   rne show robots/planar2.yaml --step 3                 the velocities, which torques do not need
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
+  rne show robots/puma560.yaml --form reduced --without rewriting
   rne show robots/puma560.yaml --base-parameters        what the torques can see of the links
 
 Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of link 2 along z, dw ω̇, dc ċ, ddc c̈,
@@ -47,8 +49,11 @@ pub(crate) struct Arguments {
     /// Compute these for every link, even where no torque needs them; --step 3 keeps the velocity
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
     keep: Vec<Kept>,
+    /// Leave these tricks out of the reduced form; a recursion that can be read is left `--without rewriting`
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick())]
+    without: Vec<Trick>,
     /// Instead of code: which combinations of link parameters the torques depend on, for identification
-    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep"])]
+    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without"])]
     base_parameters: bool,
 }
 
@@ -121,9 +126,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
     let program = match arguments.form {
-        Form::SevenSteps => compile_keeping(&robot, arguments.function, arguments.form, &quantities)
+        Form::SevenSteps => codegen::Compiler::new(&robot)
+            .with_intermediates(&quantities)
+            .compile(arguments.function, arguments.form)
             .map_err(|error| Failure::compile(&file, &error))?,
-        form if keep.is_empty() => Compiler::new(&arguments.file, &robot).compile(arguments.function, form)?,
+        form if keep.is_empty() => {
+            Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(arguments.function, form)?
+        }
         form => {
             return Err(Failure::usage(format_args!(
                 "only the seven steps have {}; the form {form} keeps torques alone",

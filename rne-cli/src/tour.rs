@@ -5,7 +5,7 @@ use std::path::Path;
 
 use rne::{DynArm, InverseDynamics as _};
 use rne_codegen::emit::{self, Listing};
-use rne_codegen::{Form, Function, Program, Step, compile};
+use rne_codegen::{self as codegen, Form, Function, Program, Step};
 use rne_model::{Robot, check};
 
 use crate::layout::{Align, columns, wrap};
@@ -38,8 +38,9 @@ const WIDTH: usize = 80;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
     let robot = check(FILE, YAML).map_err(|report| Failure::from(&report))?.robot;
-    let program =
-        compile(&robot, Function::InverseDynamics, Form::SevenSteps).map_err(|error| Failure::compile(FILE, &error))?;
+    let program = codegen::Compiler::new(&robot)
+        .compile(Function::InverseDynamics, Form::SevenSteps)
+        .map_err(|error| Failure::compile(FILE, &error))?;
     let arm = DynArm::from_robot(&robot);
     let runtime = arm.inverse_dynamics(&Q, &QD, &QDD).map_err(Failure::input)?;
     let generated = Puma560.inverse_dynamics(&Q, &QD, &QDD);
@@ -56,14 +57,8 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
          The functions that leave velocities or accelerations out are compiled for themselves.",
     );
     let file = Path::new(FILE);
-    let counts = ops::counts(
-        file,
-        &robot,
-        &Compiler::built_in(file, &robot, PLAN)?,
-        &Function::TORQUES,
-        &[],
-        &mut String::new(),
-    )?;
+    let counts =
+        ops::counts(file, &Compiler::built_in(file, &robot, PLAN)?, &Function::TORQUES, true, &mut String::new())?;
     text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
     chapter(
         &mut text,

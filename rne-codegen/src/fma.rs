@@ -23,11 +23,11 @@ use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
 ///
 /// ```
 /// use rne_codegen::fma;
-/// # use rne_codegen::{Form, Function, compile};
+/// # use rne_codegen::{Compiler, Form, Function};
 /// # let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
 /// #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
 /// # let robot = rne_model::Robot::from_yaml(yaml).unwrap();
-/// # let program = compile(&robot, Function::InverseDynamics, Form::SevenSteps).unwrap();
+/// # let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::SevenSteps).unwrap();
 /// let fused = fma::fused(&program);
 /// assert!(fma::instructions(&fused) <= fma::instructions(&program));
 /// ```
@@ -405,13 +405,13 @@ impl Term {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Form, Function, compile};
+    use crate::{Compiler, Form, Function};
 
     #[test]
     fn the_choice_of_products_is_not_quadratic() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/dense/dense7.yaml");
         let robot = rne_model::check_bytes("dense7", &std::fs::read(path).unwrap()).unwrap().robot;
-        let program = compile(&robot, Function::Regressor, Form::SevenSteps).unwrap();
+        let program = Compiler::new(&robot).compile(Function::Regressor, Form::SevenSteps).unwrap();
         let (mut graph, _) = Graph::new(&program);
         graph.flatten(Named::Too);
         let (steps, nodes) = (graph.choose_products(), graph.nodes.len());

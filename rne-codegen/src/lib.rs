@@ -1,9 +1,14 @@
 //! The symbolic compiler: a robot in, straight-line code out.
 //!
-//! [`compile`] writes a function of the robot as a graph of sums and products (the seven steps stand once, in
-//! `seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns a [`Program`] of named
-//! statements. Everything else renders that program: [`emit::Body`] as tokens for the macro, [`emit::rust_file`] as
-//! text for people, [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`] as counts.
+//! [`Compiler`] is the one door. It writes a function of the robot as a graph of sums and products (the seven steps
+//! stand once, in `formulate/seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns
+//! a [`Program`] of named statements. Everything else renders that program: [`emit::Body`] as tokens for the macro,
+//! [`emit::rust_file`] as text for people, [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`]
+//! as counts.
+//!
+//! ```text
+//! Robot → formulate → ir::Graph → value numbering, rewriting → lower → Program → fma, latency → prove → emit
+//! ```
 //!
 //! Data in, data out: nothing here opens a file or prints.
 #![forbid(unsafe_code)]
@@ -11,6 +16,7 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 pub mod emit;
+mod error;
 pub mod fma;
 mod formulate;
 mod function;
@@ -18,15 +24,17 @@ mod interpret;
 mod ir;
 mod latency;
 mod lower;
+mod pipeline;
 pub mod plan;
 mod program;
 mod prove;
 mod reduced;
 
-use std::fmt;
+use std::sync::OnceLock;
 
 use rne_model::Robot;
 
+pub use error::{CompileError, Extreme, Suspect};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
     UnknownName,
@@ -35,268 +43,123 @@ pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use ir::name::{By, Name};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
+pub use pipeline::Target;
 pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
 
-use crate::ir::{Builder, Policy, Reading};
+use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
+use crate::plan::PlanSet;
+use crate::prove::Reference;
 
-/// Compiles one function of a robot.
+/// Compiles the functions of one robot.
 ///
-/// # Errors
-/// When a constant that the code needs is not finite: numbers of the file are, but their products can overflow.
-pub fn compile(robot: &Robot, function: Function, form: Form) -> Result<Program, CompileError> {
-    compile_keeping(robot, function, form, &[])
+/// ```
+/// use rne_codegen::{Compiler, Form, Function};
+/// # let yaml = "format: 1\nname: one\nsource: doc\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - type: revolute\n    dh: {theta: 0, d: 0, a: 1, alpha: 0}\n    link: {mass: 1, com: [-0.5, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1, xy: 0, xz: 0, yz: 0}}\n";
+/// # let robot = rne_model::Robot::from_yaml(yaml).unwrap();
+/// let compiler = Compiler::new(&robot);
+/// let program = compiler.compile(Function::InverseDynamics, Form::Reduced)?;
+/// assert!(program.operations().total() < 10);
+/// # Ok::<(), rne_codegen::CompileError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Compiler<'r> {
+    robot: &'r Robot,
+    /// Those of a plan file, or those that the build makes by itself when they are first needed.
+    plans: OnceLock<PlanSet>,
+    target: Target,
+    intermediates: Vec<Quantity>,
 }
 
-/// Compiles one function of a robot and returns, behind its own outputs, every component of the quantities in `keep`.
-///
-/// Torques do not need the velocity ċ of step 3, so it disappears unless it is kept.
-///
-/// # Errors
-/// As [`compile`].
-pub fn compile_keeping(
-    robot: &Robot,
-    function: Function,
-    form: Form,
-    keep: &[Quantity],
-) -> Result<Program, CompileError> {
-    if form != Form::SevenSteps {
-        return plan::Choice::default_of(robot).compile(robot, function, form);
-    }
-    seven_steps_within(LARGEST, robot, function, keep)
-}
-
-/// The seven steps, if they are not more than `most` operations.
-fn seven_steps_within(
-    most: usize,
-    robot: &Robot,
-    function: Function,
-    keep: &[Quantity],
-) -> Result<Program, CompileError> {
-    let builder = Builder::traced(Policy::Structure, Reading::default(), function);
-    let (mut names, outputs): (Vec<Name>, Vec<_>) = formulate::outputs(&builder, robot, function).into_iter().unzip();
-    let mut written = builder.finish(outputs);
-    if written.graph.operations() > most {
-        return Err(CompileError::TooLarge { function, dof: robot.dof(), most });
-    }
-    for definition in &written.trace.definitions {
-        if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {
-            names.push(definition.name);
-            written.graph.outputs.push(definition.at);
-        }
-    }
-    Ok(lower::lower(&lower::Heading { robot, function, form: Form::SevenSteps }, written, &names)?.0)
-}
-
-/// Why a robot cannot be compiled.
-#[derive(Clone, Debug, PartialEq)]
-pub enum CompileError {
-    /// A constant made from finite numbers of the table overflows.
-    NotFinite {
-        /// The constant.
-        name: Name,
-    },
-    /// Code that would be another function than the seven steps; it is never emitted.
-    NotIdentical {
-        /// The function.
-        function: Function,
-        /// The first number returned that differs, counted from 1: for torques, the joint.
-        output: usize,
-        /// What may be the cause.
-        suspect: Suspect,
-    },
-    /// Code that rounds too far away from the seven steps; it is never emitted.
-    Imprecise {
-        /// The function.
-        function: Function,
-        /// The largest difference, relative to the largest number returned.
-        rounding: f64,
-        /// What may be the cause.
-        suspect: Suspect,
-    },
-    /// Two variables of one name, of which the second would shadow the first; it is never emitted.
-    TwoOfOneName {
-        /// The function.
-        function: Function,
-        /// The name.
-        name: String,
-    },
-    /// A function of so many joints that no compiler would take its code.
-    TooLarge {
-        /// The function.
-        function: Function,
-        /// Joints of the robot.
-        dof: usize,
-        /// The most operations that are compiled.
-        most: usize,
-    },
-    /// A plan that does not fit the robot.
-    Plan(String),
-    /// A rewritten graph that cannot be read.
-    Graph {
-        /// The robot's name.
-        robot: String,
-        /// The line of the graph, counted from 1.
-        line: usize,
-        /// What is wrong there.
-        message: String,
-    },
-}
-
-/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
-/// nothing folds. Its text is some 15 MB.
-const LARGEST: usize = 500_000;
-
-/// What may be the cause when a form is refused.
-#[derive(Clone, Debug, PartialEq, Default)]
-pub struct Suspect {
-    /// It was written by the plan of a plan file.
-    pub planned: bool,
-    /// A number of the robot whose products leave the range of double precision.
-    pub number: Option<Extreme>,
-}
-
-/// A number of a robot that is very large or very small.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Extreme {
-    /// What it is, and its link.
-    what: &'static str,
-    link: usize,
-    value: f64,
-}
-
-impl Extreme {
-    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the
-    /// precision of twice that, in which constants are computed.
+impl<'r> Compiler<'r> {
+    /// With the choices that a build makes by itself.
     #[must_use]
-    pub fn of(robot: &Robot) -> Option<Self> {
-        const LARGEST: f64 = 1e75;
-        let far = |value: f64| value.abs().log2().abs();
-        let mut numbers = Vec::new();
-        for (index, joint) in robot.joints.iter().enumerate() {
-            let mut put = |what, values: &[f64]| {
-                numbers.extend(values.iter().map(|&value| Self { what, link: index + 1, value }));
-            };
-            put("the length d", &[joint.row.dh.d]);
-            put("the length a", &[joint.row.dh.a]);
-            put("the angle theta", &[joint.row.dh.theta.radians]);
-            put("the angle alpha", &[joint.row.dh.alpha.radians]);
-            put("the mass", &[joint.row.link.mass]);
-            put("a coordinate of the centre of mass,", &joint.row.link.com);
-            put("an inertia,", joint.written_inertia.0.rows().as_flattened());
-        }
-        numbers.retain(|number| number.value != 0.0 && far(number.value) > LARGEST.log2());
-        numbers.into_iter().max_by(|a, b| far(a.value).total_cmp(&far(b.value)))
+    pub const fn new(robot: &'r Robot) -> Self {
+        Self { robot, plans: OnceLock::new(), target: Target::Latency, intermediates: Vec::new() }
     }
-}
 
-impl fmt::Display for Extreme {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { what, link, value } = self;
-        let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
-        write!(
-            f,
-            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double \
-            precision. \
-             Other units help, `form = \"seven_steps\"` multiplies less"
-        )
-    }
-}
-
-impl CompileError {
-    /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
+    /// With these choices, such as those of a plan file.
     #[must_use]
-    pub fn is_refusal(&self) -> bool {
-        matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
+    pub fn with_plans(self, plans: impl Into<PlanSet>) -> Self {
+        Self { plans: OnceLock::from(plans.into()), ..self }
     }
 
-    /// The error with what may be the cause.
-    fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
-        if let Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. } = &mut self {
-            *suspect = Suspect { planned: is_planned, number: Extreme::of(robot) };
+    /// Arranged for another target.
+    #[must_use]
+    pub fn for_target(self, target: Target) -> Self {
+        Self { target, ..self }
+    }
+
+    /// Programs of the seven steps return, behind their own outputs, every component of these quantities. Torques do
+    /// not need the velocity ċ of step 3, so it disappears unless it is kept. The reduced form has no such quantities.
+    #[must_use]
+    pub fn with_intermediates(self, quantities: &[Quantity]) -> Self {
+        Self { intermediates: quantities.to_vec(), ..self }
+    }
+
+    /// The choices of the reduced form.
+    pub fn plans(&self) -> &PlanSet {
+        self.plans.get_or_init(|| PlanSet::default_of(self.robot))
+    }
+
+    /// Compiles a function. A program in the reduced form has been proved to be that of the seven steps.
+    ///
+    /// # Errors
+    /// When a constant that the code needs is not finite (numbers of the file are, but their products can overflow),
+    /// when the code would be too large for any compiler, or when a plan of a plan file does not fit the robot or
+    /// cannot be proved.
+    pub fn compile(&self, function: Function, form: Form) -> Result<Program, CompileError> {
+        let robot = self.robot;
+        // then there is nothing else to take, or nothing to be held against
+        let is_irreducible = function.entry().is_irreducible
+            || form == Form::Reduced && function.divides().is_some() && prove::divides_by_zero(robot, function);
+        if form == Form::SevenSteps || is_irreducible {
+            let keep: &[Quantity] = if form == Form::SevenSteps { &self.intermediates } else { &[] };
+            return seven_steps_within(LARGEST, robot, function, keep);
         }
-        self
-    }
-}
-
-impl fmt::Display for CompileError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite { name } => write!(
-                f,
-                "the constant {name} ({}) of link {} is too large for a number of double precision",
-                name.quantity.meaning(),
-                name.joint
-            ),
-            Self::NotIdentical { function, output, suspect } => {
-                let what = if function.returns_torques() { "the torque of joint" } else { "of its result, number" };
-                write!(
-                    f,
-                    "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
-                )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => f.write_str(
-                        "A graph in a plan file that has been edited does that; `rne search --fresh` writes it anew",
-                    ),
-                    Suspect { planned: false, .. } => f.write_str("Please report this robot"),
-                }
+        let reference = reference(robot, function)?;
+        // numbers that are not known cannot be regrouped
+        if !robot.run_time.is_empty() {
+            return self.numbered(function, reference);
+        }
+        if let Some(rewritten) = self.plans.get().and_then(|plans| plans.rewritten.get(&function)) {
+            let program = rewritten
+                .formulation(robot, function)
+                .and_then(|formulation| formulation.proved(function, self.target, &reference))
+                .map_err(|error| error.suspecting(robot, true))?;
+            return Ok(Program { choices: rewritten.choices(), is_rewritten: true, ..program });
+        }
+        if !plan::is_planned(function) {
+            return self.numbered(function, reference);
+        }
+        let plans = self.plans();
+        match self.planned(plans, function, &reference) {
+            Ok(program) => Ok(program),
+            // fewer choices make no program shorter
+            Err(error @ CompileError::TooLarge { .. }) => Err(error),
+            Err(_) if plans.is_of_build() => {
+                let fewer = plans.with_ever_fewer_choices();
+                let program = fewer.iter().find_map(|plans| self.planned(plans, function, &reference).ok());
+                program.map_or_else(|| self.numbered(function, reference), Ok)
             }
-            Self::Imprecise { function, rounding, suspect } => {
-                let what = match function {
-                    _ if function.returns_torques() => "torque",
-                    _ if function.returns_accelerations() => "acceleration",
-                    _ => "number that it returns",
-                };
-                write!(
-                    f,
-                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
-                    {what}. "
-                )?;
-                match suspect {
-                    Suspect { number: Some(number), .. } => number.fmt(f),
-                    Suspect { planned: true, .. } => {
-                        f.write_str("`rne search --fresh` finds another plan, `form = \"seven_steps\"` needs none")
-                    }
-                    Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
-                }
-            }
-            Self::TwoOfOneName { function, name } => write!(
-                f,
-                "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \
-                 meant. No code is written. Please report this robot"
-            ),
-            Self::TooLarge { function, dof, most } => write!(
-                f,
-                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no \
-                compiler takes in \
-                 reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
-            ),
-            Self::Plan(why) => f.write_str(why),
-            Self::Graph { robot, line, message } => write!(
-                f,
-                "line {line} of the rewritten graph in the plan of `{robot}`: {message}; `rne search --rewrite \
-                --fresh` writes \
-                 the plan anew"
-            ),
+            Err(error) => Err(error.suspecting(robot, true)),
         }
     }
-}
 
-impl std::error::Error for CompileError {}
+    /// By the plan, with the algorithm that takes the fewest operations.
+    fn planned(&self, plans: &PlanSet, function: Function, reference: &Reference<'_>) -> Result<Program, CompileError> {
+        let (plan, algorithm) = plans.cheapest(self.robot, function);
+        let formulation = plan::formulation(self.robot, &plan, function, algorithm)?;
+        let program = formulation.proved(function, self.target, reference)?;
+        let choices = algorithm.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
+        Ok(Program { choices, ..program })
+    }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_too_large_is_refused_with_what_to_do() {
-        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
-        let robot = rne_model::check_bytes("ur5", &std::fs::read(path).unwrap()).unwrap().robot;
-        let function = Function::InverseDynamicsDerivatives;
-        let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
-        assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });
-        let message = error.to_string();
-        assert!(message.contains("more than 1000 operations") && message.contains("rne::DynArm"), "{message}");
-        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[]).is_ok());
+    /// The plain formulas with every value computed once; as they are where that is cheaper, or cannot be proved.
+    fn numbered(&self, function: Function, reference: Reference<'_>) -> Result<Program, CompileError> {
+        match Formulation::numbered(self.robot, function).proved(function, self.target, &reference) {
+            // a value that is found where it is not used otherwise costs what it takes there
+            Ok(numbered) if numbered.operations().total() <= reference.operations() => Ok(numbered),
+            _ => Ok(reference.into_program()),
+        }
     }
 }

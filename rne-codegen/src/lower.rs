@@ -54,6 +54,7 @@ pub(crate) fn lower(
         outputs,
         findings: schedule.findings(),
         ledger: written.trace.ledger,
+        is_rewritten: false,
         choices: Vec::new(),
         proof: None,
     };

@@ -40,6 +40,8 @@ pub struct Program {
     pub findings: Vec<Finding>,
     /// What became of every operation of the recursion.
     pub ledger: Ledger,
+    /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
+    pub is_rewritten: bool,
     /// The choices of a program that is not the seven steps, one line each.
     pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their torques.
@@ -342,12 +344,12 @@ mod tests {
 
     use super::*;
     use crate::ir::quantity::Quantity;
-    use crate::{Interpreter, compile};
+    use crate::{Compiler, Interpreter};
 
     fn rod() -> Program {
         let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
             {type: revolute, dh: {theta: 0.1, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0.1, 0]}}]}";
-        compile(&Robot::from_yaml(yaml).unwrap(), Function::InverseDynamics, Form::SevenSteps).unwrap()
+        Compiler::new(&Robot::from_yaml(yaml).unwrap()).compile(Function::InverseDynamics, Form::SevenSteps).unwrap()
     }
 
     fn refused(program: &Program) -> String {

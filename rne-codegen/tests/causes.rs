@@ -9,7 +9,7 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet};
 
 use common::shipped;
-use rne_codegen::{Axis, Cause, Component, Form, Found, Function, Name, Quantity, compile};
+use rne_codegen::{Axis, Cause, Compiler, Component, Form, Found, Function, Name, Quantity};
 use rne_model::{Angle, Entry, Formula, InertiaElement, JointKind, Robot};
 
 /// A number of the robot file that can be another one.
@@ -54,7 +54,7 @@ fn changed<'c>(robot: &Robot, changes: impl IntoIterator<Item = &'c Change>) -> 
 
 /// Whether each component is zero, with the causes.
 fn zeros(robot: &Robot, function: Function) -> BTreeMap<Name, Option<Vec<Cause>>> {
-    let program = compile(robot, function, Form::SevenSteps).expect("finite constants");
+    let program = Compiler::new(robot).compile(function, Form::SevenSteps).expect("finite constants");
     let of = |found: &Found| match found {
         Found::Constant(value, causes) if *value == 0.0 => Some(causes.iter().collect()),
         _ => None,

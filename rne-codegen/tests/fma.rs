@@ -2,8 +2,8 @@
 
 mod common;
 
-use common::{choice, compiled, shipped};
-use rne_codegen::{Form, Function, Name, Program, fma};
+use common::{compiled, plans, shipped};
+use rne_codegen::{Compiler, Form, Function, Name, Program, Target, fma};
 use std::collections::BTreeSet;
 
 /// What is defined, in order, is what is used, later.
@@ -60,11 +60,16 @@ fn the_shortest_wait_has_the_same_operations_under_the_same_names() {
 #[test]
 fn every_reduced_program_is_proved_as_it_is_fused() {
     for robot in shipped() {
-        let choice = choice(&robot);
-        let program = choice.compile_fused(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let plans = plans(&robot);
+        let program = Compiler::new(&robot)
+            .with_plans(&plans)
+            .for_target(Target::Throughput)
+            .compile(Function::InverseDynamics, Form::Reduced)
+            .expect("proved");
         let proof = program.proof.expect("a proof");
         assert!(proof.rounding < 1e-13, "{}: {:e}", robot.name, proof.rounding);
-        let plain = choice.compile(&robot, Function::InverseDynamics, Form::Reduced).expect("proved");
+        let plain =
+            Compiler::new(&robot).with_plans(&plans).compile(Function::InverseDynamics, Form::Reduced).expect("proved");
         let [before, after] = [&plain, &program].map(fma::instructions);
         println!("{:<20} {before} instructions as written, {after} fused", robot.name);
         assert!(after <= before, "{}", robot.name);

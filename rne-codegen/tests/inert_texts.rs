@@ -12,7 +12,7 @@ use proptest::test_runner::TestRunner;
 use pulldown_cmark::{Event, Options, Parser};
 use quote::ToTokens;
 use rne_codegen::emit::{self, Precision, Prefix};
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::{Robot, is_control};
 
 /// A robot whose title and joints are to be called otherwise, and its code.
@@ -20,7 +20,8 @@ static PLAIN: LazyLock<(Robot, Vec<Program>)> = LazyLock::new(|| {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/planar2.yaml");
     let robot = Robot::from_yaml(&fs::read_to_string(file).expect("a file")).expect("a robot");
     let robot = named(&robot, "title", ["shoulder".to_owned(), "elbow".to_owned()]);
-    let programs = Function::TORQUES.map(|function| compile(&robot, function, Form::SevenSteps).expect("a program"));
+    let programs =
+        Function::TORQUES.map(|function| Compiler::new(&robot).compile(function, Form::SevenSteps).expect("a program"));
     (robot, programs.to_vec())
 });
 

@@ -2,12 +2,12 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
-use rne_codegen::{Form, Function, emit};
+use rne_codegen::{Capability, Form, Function, Target as Machine, emit};
 use syn::DeriveInput;
 
 use crate::attribute::Attribute;
 use crate::error::Errors;
-use crate::expand::{choice, load};
+use crate::expand::{compiler, load};
 use crate::implementation::Target;
 use crate::parameters::Parameters;
 
@@ -36,8 +36,9 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         if !robot.run_time.is_empty() {
             return None;
         }
-        let choice = choice(&robot, attribute.form, loaded.plan.as_ref(), Span::call_site(), &mut said)?;
-        choice.compile_fused(&robot, Function::InverseDynamics, attribute.form).ok()
+        let (capability, span) = (Capability::InverseDynamics, Span::call_site());
+        let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut said)?;
+        compiler.for_target(Machine::Throughput).compile(Function::InverseDynamics, attribute.form).ok()
     });
     let target = Target { item: &item, krate: &attribute.krate };
     let (ident, krate) = (&item.ident, &attribute.krate);

@@ -5,8 +5,8 @@ use std::sync::{Mutex, PoisonError};
 
 use proc_macro2::{Span, TokenStream};
 use quote::quote;
-use rne_codegen::plan::{self, Choice, Fingerprint, PlanFile};
-use rne_codegen::{Capability, Form, Program};
+use rne_codegen::plan::{self, Fingerprint, PlanFile, PlanSet};
+use rne_codegen::{Capability, Compiler, Form, Program};
 use rne_model::{Report, Robot, check_bytes, check_bytes_with_run_time};
 use syn::{Data, DeriveInput};
 
@@ -32,11 +32,8 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
-        // what makes no choices is compiled without
-        let is_planned = capability.functions().iter().any(|&function| plan::is_planned(function));
-        let form = if is_planned { attribute.form } else { Form::SevenSteps };
-        let choice = choice(&robot, form, loaded.plan.as_ref(), span, &mut errors)?;
-        let programs = programs(&robot, capability, attribute.form, &choice, span, &mut errors)?;
+        let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
+        let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
     let target = Target { item: &item, krate: &attribute.krate };
@@ -149,53 +146,56 @@ fn watch(file: &Path) -> TokenStream {
     )
 }
 
-/// The choices of the form: those of the plan file, or those that a build makes by itself.
-pub(crate) fn choice(
-    robot: &Robot,
+/// A compiler with the choices of the plan file, or those that a build makes by itself.
+pub(crate) fn compiler<'r>(
+    robot: &'r Robot,
+    capability: Capability,
     form: Form,
     plan: Option<&RobotFile>,
     span: Span,
     errors: &mut Errors,
-) -> Option<Choice> {
+) -> Option<Compiler<'r>> {
+    let compiler = Compiler::new(robot);
+    let is_planned = capability.functions().iter().any(|&function| plan::is_planned(function));
     match (form, plan) {
-        // whatever the choices, the seven steps make none
-        (Form::SevenSteps, _) => Some(Choice::none(robot)),
-        (Form::Reduced | Form::Rewritten, None) => Some(default_choice(robot)),
-        (Form::Reduced | Form::Rewritten, Some(file)) => {
+        (Form::Reduced, None) if is_planned => Some(compiler.with_plans(default_plans(robot))),
+        // nothing is chosen
+        (Form::SevenSteps, _) | (Form::Reduced, None) => Some(compiler),
+        (Form::Reduced, Some(file)) => {
             let Ok(text) = std::str::from_utf8(&file.bytes) else {
                 errors.at_span(span, format!("`{}` is no text in UTF-8", file.shown));
                 return None;
             };
             let plan = PlanFile::read(&file.shown, text, robot);
-            plan.map(Choice::from).map_err(|report| errors.at_span(span, describe(report))).ok()
+            plan.map(|plan| compiler.with_plans(plan)).map_err(|report| errors.at_span(span, describe(report))).ok()
         }
     }
 }
 
-/// The choice that a build makes by itself. The derives of one crate are expanded in one process, so it is made once
+/// The choices that a build makes by itself. The derives of one crate are expanded in one process, so they are made once
 /// per robot.
-fn default_choice(robot: &Robot) -> Choice {
-    static KNOWN: Mutex<Vec<(Fingerprint, Choice)>> = Mutex::new(Vec::new());
+fn default_plans(robot: &Robot) -> PlanSet {
+    static KNOWN: Mutex<Vec<(Fingerprint, PlanSet)>> = Mutex::new(Vec::new());
     let print = plan::fingerprint(robot);
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, choice)) = known.iter().find(|(other, _)| *other == print) {
-        return choice.clone();
+    if let Some((_, plans)) = known.iter().find(|(other, _)| *other == print) {
+        return plans.clone();
     }
-    let choice = Choice::default_of(robot);
-    known.push((print, choice.clone()));
-    choice
+    let plans = PlanSet::default_of(robot);
+    known.push((print, plans.clone()));
+    plans
 }
 
 fn programs(
     robot: &Robot,
     capability: Capability,
     form: Form,
-    choice: &Choice,
+    compiler: &Compiler<'_>,
     span: Span,
     errors: &mut Errors,
 ) -> Option<Vec<Program>> {
     let programs: Result<Vec<_>, _> =
-        capability.functions().iter().map(|&function| choice.compile(robot, function, form)).collect();
+        capability.functions().iter().map(|&function| compiler.compile(function, form)).collect();
     programs.map_err(|error| errors.at_span(span, format!("{}: {error}", robot.name))).ok()
 }
 

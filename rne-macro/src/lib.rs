@@ -80,8 +80,7 @@ use rne_codegen::Capability;
 /// | form | |
 /// |---|---|
 /// | `seven_steps` | the default: every intermediate value is one of the textbook's ω, ω̇, ċ, c̈, g, f, n of a link; the bits are those of `rne::Arm` |
-/// | `reduced` | about half the operations: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning |
-/// | `rewritten` | `inverse_dynamics` after algebraic rewriting as well, a few percent less; what `rne search --rewrite` left in the plan file |
+/// | `reduced` | about half the operations: regrouped inertias, shared kinematics, choices per joint; only the torques keep a meaning. A few percent less where `rne search --rewrite` left a graph in the plan file |
 ///
 /// A form that is not the seven steps is proved identical to them while it is compiled, in exact arithmetic; its
 /// documentation says so, with its rounding error. The choices come from `NAME.plan.yaml` beside the robot file, which
@@ -89,7 +88,7 @@ use rne_codegen::Capability;
 /// plan that a build has read; one that appears later, other than by `rne search`, is seen when the robot file is
 /// touched. Without a plan, a fixed number of plans is tried, the same on every machine.
 ///
-/// Products that are added become `Scalar::mul_add` in these two forms: one instruction where the target has it.
+/// Products that are added become `Scalar::mul_add` in this form: one instruction where the target has it.
 ///
 /// ```
 /// # use rne::InverseDynamics;

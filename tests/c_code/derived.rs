@@ -84,12 +84,6 @@ fn numbers<const DOF: usize, T: Scalar>(
     }
 }
 
-/// Of the rewritten form, which has this one function.
-fn torques<const DOF: usize, T: Scalar>(robot: &impl InverseDynamics<DOF>, given: &Numbers<T>) -> Vec<T> {
-    let [q, qd, qdd, _] = given.joints.each_ref().map(|array| array.as_slice().try_into().expect("one per joint"));
-    robot.inverse_dynamics(q, qd, qdd).to_vec()
-}
-
 macro_rules! robot {
     ($robot:ident $dof:literal $path:literal $form:literal) => {
         #[derive(
@@ -133,24 +127,6 @@ macro_rules! robots {
             $(robot!($robot $dof $path "reduced");)*
         }
 
-        mod rewritten {
-            $(
-                #[derive(rne::InverseDynamics)]
-                #[robot(path = $path, form = "rewritten")]
-                pub(super) struct $robot;
-
-                impl super::Derived for $robot {
-                    fn single(&self, _: super::Function, given: &super::Numbers<f32>) -> Vec<f32> {
-                        super::torques(self, given)
-                    }
-
-                    fn double(&self, _: super::Function, given: &super::Numbers<f64>) -> Vec<f64> {
-                        super::torques(self, given)
-                    }
-                }
-            )*
-        }
-
         /// Names of robots, with their forms.
         pub(crate) fn all() -> Vec<(&'static str, Vec<(Form, Box<dyn Derived>)>)> {
             vec![$((
@@ -158,7 +134,6 @@ macro_rules! robots {
                 vec![
                     (Form::SevenSteps, Box::new(seven_steps::$robot) as Box<dyn Derived>),
                     (Form::Reduced, Box::new(reduced::$robot)),
-                    (Form::Rewritten, Box::new(rewritten::$robot)),
                 ],
             )),*]
         }

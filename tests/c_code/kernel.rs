@@ -6,7 +6,7 @@ use std::slice::from_ref;
 use fastrand::Rng;
 use rne::Scalar;
 use rne_codegen::emit::{self, Precision};
-use rne_codegen::{Form, Function, compile};
+use rne_codegen::{Form, Function};
 use rne_model::Robot;
 
 use crate::compiler::Compiler;
@@ -38,7 +38,9 @@ fn angles(rng: &mut Rng) -> Vec<f64> {
 fn sine_and_cosine_have_the_bits_of_the_runtime() {
     let Some(compiler) = Compiler::found() else { return };
     let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/planar1.yaml"))).expect("a robot");
-    let program = compile(&robot, Function::GravityTorques, Form::SevenSteps).expect("finite constants");
+    let program = rne_codegen::Compiler::new(&robot)
+        .compile(Function::GravityTorques, Form::SevenSteps)
+        .expect("finite constants");
     let angles = angles(&mut Rng::with_seed(7));
     for precision in Precision::ALL {
         let real = precision.c_type();

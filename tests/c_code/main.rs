@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rne_codegen::emit::Precision;
-use rne_codegen::plan::{Choice, PlanFile};
+use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Form, Function, Program};
 use rne_model::Robot;
 
@@ -23,14 +23,11 @@ use crate::driver::{Driver, Unit};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
-/// The functions of a robot in a form; the rewritten form has one.
-fn programs(robot: &Robot, choice: &Choice, form: Form) -> Vec<Program> {
-    let is_there = |function: &Function| match form {
-        Form::Rewritten => *function == Function::InverseDynamics,
-        _ => true,
-    };
-    let compiled = |function| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
-    Function::ALL.into_iter().filter(is_there).map(compiled).collect()
+/// The functions of a robot in a form.
+fn programs(robot: &Robot, plans: &PlanSet, form: Form) -> Vec<Program> {
+    let compiler = rne_codegen::Compiler::new(robot).with_plans(plans);
+    let compiled = |function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}"));
+    Function::ALL.map(compiled).to_vec()
 }
 
 fn read(path: &str) -> String {
@@ -42,9 +39,9 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler
     let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/{name}.yaml"))).unwrap_or_else(|why| panic!("{why}"));
     let plan = read(&format!("{ROOT}/robots/{name}.plan.yaml"));
     let plan = PlanFile::read(name, &plan, &robot).unwrap_or_else(|report| panic!("{report}"));
-    let choice = Choice::from(plan);
+    let plans = PlanSet::from(plan);
     let code: Vec<(Form, Vec<Program>)> =
-        derived.iter().map(|(form, _)| (*form, programs(&robot, &choice, *form))).collect();
+        derived.iter().map(|(form, _)| (*form, programs(&robot, &plans, *form))).collect();
 
     let units: Vec<Unit> = code
         .iter()

@@ -6,8 +6,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
 use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Pose, Scalar, Wrench};
-use rne_codegen::plan::{Choice, PlanFile};
-use rne_codegen::{Arguments, Form, Function, Interpreter, Program, Real};
+use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::Robot;
 
 use crate::check::{ROOT, flat};
@@ -88,7 +88,7 @@ impl<T: Scalar> Real for Number<T> {
 /// The functions of a robot in a form, each compiled when it is first asked for.
 struct Code {
     form: Form,
-    choice: OnceLock<Choice>,
+    plans: OnceLock<PlanSet>,
     functions: [OnceLock<(Program, Interpreter)>; Function::ALL.len()],
 }
 
@@ -102,7 +102,7 @@ pub(crate) struct Arm {
 impl Arm {
     /// By the choices of a build without a plan file.
     pub(crate) fn new(robot: &Robot, maker: Maker) -> Self {
-        let code = |form| Code { form, choice: OnceLock::new(), functions: Default::default() };
+        let code = |form| Code { form, plans: OnceLock::new(), functions: Default::default() };
         let code = match maker {
             Maker::Runtime => None,
             Maker::Code(form) => Some(code(form)),
@@ -110,11 +110,11 @@ impl Arm {
         Self { robot: robot.clone(), runtime: DynArm::from_robot(robot), code }
     }
 
-    /// By no choice at all, which fits every robot and takes no time to find.
+    /// By no plans at all, which fits every robot and takes no time to find.
     pub(crate) fn by_no_choice(robot: &Robot, maker: Maker) -> Self {
         let arm = Self::new(robot, maker);
         if let Some(code) = &arm.code {
-            code.choice.set(Choice::none(robot)).expect("no choice has been made before");
+            code.plans.set(PlanSet::none(robot)).expect("plans are made once");
         }
         arm
     }
@@ -135,7 +135,7 @@ impl Arm {
             && let Ok(plan) = std::fs::read_to_string(path.replace(".yaml", ".plan.yaml"))
         {
             let plan = PlanFile::read(file, &plan, &robot).unwrap_or_else(|report| panic!("{report}"));
-            code.choice.set(Choice::from(plan)).expect("no choice has been made before");
+            code.plans.set(PlanSet::from(plan)).expect("plans are made once");
         }
         arm
     }
@@ -149,10 +149,10 @@ impl Arm {
         let index = Function::ALL.iter().position(|other| *other == function).expect("all are in it");
         code.functions[index].get_or_init(|| {
             let program = match code.form {
-                Form::SevenSteps => rne_codegen::compile(&self.robot, function, code.form),
+                Form::SevenSteps => Compiler::new(&self.robot).compile(function, code.form),
                 form => {
-                    let choice = code.choice.get_or_init(|| Choice::default_of(&self.robot));
-                    choice.compile(&self.robot, function, form)
+                    let plans = code.plans.get_or_init(|| PlanSet::default_of(&self.robot));
+                    Compiler::new(&self.robot).with_plans(plans).compile(function, form)
                 }
             };
             let program = program.unwrap_or_else(|error| panic!("{}: {error}", self.robot.name));

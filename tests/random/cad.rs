@@ -4,8 +4,8 @@
 
 use fastrand::Rng;
 use rne::DynArm;
-use rne_codegen::plan::Choice;
-use rne_codegen::{Form, Function};
+use rne_codegen::plan::PlanSet;
+use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
 
 use super::interpreted::{State, interpreted, runtime};
@@ -85,14 +85,14 @@ fn yaml(seed: u64, most: usize) -> String {
     )
 }
 
-/// Compiles a robot in the reduced form by the choice of a build, and compares torques with the runtime. How many of
+/// Compiles a robot in the reduced form by the plans of a build, and compares torques with the runtime. How many of
 /// its functions that have a recursion of their own it had to leave in their plain form.
 fn left_plain(robot: &Robot, functions: &[Function]) -> usize {
-    let (arm, choice) = (DynArm::from_robot(robot), Choice::default_of(robot));
+    let (arm, plans) = (DynArm::from_robot(robot), PlanSet::default_of(robot));
     let mut rng = Rng::with_seed(9);
     let mut plain = 0;
     for &function in functions {
-        let program = choice.compile(robot, function, Form::Reduced);
+        let program = Compiler::new(robot).with_plans(&plans).compile(function, Form::Reduced);
         let program = program.unwrap_or_else(|error| panic!("{}, {function}: {error}", robot.name));
         if !Function::TORQUES.contains(&function) {
             continue;
@@ -126,8 +126,8 @@ fn a_tensor_about_the_origin_is_no_obstacle() {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/random/files/about_origin.yaml");
     let robot = Robot::from_yaml(&std::fs::read_to_string(path).expect("a robot file")).expect("a robot");
     assert_eq!(left_plain(&robot, &Function::ALL), 0);
-    // the choice that needs a root is made all the same
-    assert!(Choice::default_of(&robot).plan.turned_last_frame);
+    // the plans that needs a root is made all the same
+    assert!(PlanSet::default_of(&robot).plan.turned_last_frame);
 }
 
 /// Numbers whose products leave the range of double precision: the reduced form is then the seven steps.
@@ -146,10 +146,10 @@ fn numbers_out_of_range_are_no_obstacle() {
     ] {
         let text = text.replacen(from, to, 1).replace(", inertia_about: origin", "");
         let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
-        let choice = Choice::default_of(&robot);
+        let plans = PlanSet::default_of(&robot);
         for function in [Function::InverseDynamics, Function::MassMatrix, Function::ForwardDynamics] {
-            let plain = choice.compile(&robot, function, Form::SevenSteps);
-            let reduced = choice.compile(&robot, function, Form::Reduced);
+            let plain = Compiler::new(&robot).with_plans(&plans).compile(function, Form::SevenSteps);
+            let reduced = Compiler::new(&robot).with_plans(&plans).compile(function, Form::Reduced);
             assert_eq!(plain.is_ok(), reduced.is_ok(), "{to} {function}: {:?}", reduced.map_err(|e| e.to_string()));
         }
     }

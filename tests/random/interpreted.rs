@@ -4,7 +4,7 @@
 use fastrand::Rng;
 use proptest::prelude::*;
 use rne::{DynArm, Scalar, Wrench};
-use rne_codegen::{Arguments, Component, Form, Function, Interpreter, Program, Quantity, compile, compile_keeping};
+use rne_codegen::{Arguments, Compiler, Component, Form, Function, Interpreter, Program, Quantity};
 use rne_model::Robot;
 
 use super::robots;
@@ -58,7 +58,7 @@ fn torques_agree(yaml: &str, seed: u64) -> Result<(), TestCaseError> {
     let arm = DynArm::from_robot(&robot);
     let mut rng = Rng::with_seed(seed);
     for function in Function::TORQUES {
-        let program = compile(&robot, function, Form::SevenSteps).expect("finite constants");
+        let program = Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite constants");
         for _ in 0..3 {
             let state = State::random(&mut rng, robot.dof());
             prop_assert_eq!(
@@ -88,7 +88,9 @@ fn intermediates_agree(yaml: &str, seed: u64) -> Result<(), TestCaseError> {
         Quantity::JointForce,
         Quantity::JointMoment,
     ];
-    let program = compile_keeping(&robot, Function::InverseDynamicsWithWrench, Form::SevenSteps, &kept)
+    let program = Compiler::new(&robot)
+        .with_intermediates(&kept)
+        .compile(Function::InverseDynamicsWithWrench, Form::SevenSteps)
         .expect("finite constants");
     let state = State::random(&mut Rng::with_seed(seed), robot.dof());
     let values = interpreted(&program, &state);

@@ -1,10 +1,10 @@
-//! Random robots in the reduced form, by no choice at all, by random ones and by those of a build: the proof passes,
+//! Random robots in the reduced form, by no plans at all, by random ones and by those of a build: the proof passes,
 //! and the torques are the runtime's but for rounding.
 
 use fastrand::Rng;
 use rne::{Arm, DynArm, InverseDynamics, Wrench};
-use rne_codegen::plan::{Choice, JointPlan, Moment, Plan, Scale, Side, Slide, Target};
-use rne_codegen::{CompileError, Form, Function, Program};
+use rne_codegen::plan::{JointPlan, Moment, Plan, PlanSet, Scale, Side, Slide, Target};
+use rne_codegen::{CompileError, Compiler, Form, Function, Program};
 use rne_model::Robot;
 
 use super::interpreted::{State, interpreted, runtime};
@@ -72,11 +72,11 @@ fn random_plan(rng: &mut Rng, dof: usize, rarity: usize) -> Plan {
 }
 
 /// Compares a function under some choices at a few states; nothing when the choices do not fit the robot.
-fn agrees(robot: &Robot, arm: &DynArm, choice: &Choice, function: Function, rng: &mut Rng) -> Option<Program> {
-    let program = match choice.compile(robot, function, Form::Reduced) {
+fn agrees(robot: &Robot, arm: &DynArm, plans: &PlanSet, function: Function, rng: &mut Rng) -> Option<Program> {
+    let program = match Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced) {
         Ok(program) => program,
         Err(CompileError::Plan(_)) => return None,
-        Err(error) => panic!("{}: {error}\n{:#?}", robot.name, choice.plan.choices()),
+        Err(error) => panic!("{}: {error}\n{:#?}", robot.name, plans.plan.choices()),
     };
     let proof = program.proof.expect("a proof");
     assert!(proof.rounding <= TOLERANCE, "{}: {proof:?}", robot.name);
@@ -103,11 +103,11 @@ fn reduced_forms_of_random_robots_are_the_runtime() {
         let dof = rng.usize(1..=8);
         let (robot, arm) = read(seed, dof);
         for function in Function::TORQUES {
-            let plain = agrees(&robot, &arm, &Choice::of(Plan::new(dof)), function, &mut rng);
-            assert!(plain.is_some(), "{}: no choice fits every robot", robot.name);
+            let plain = agrees(&robot, &arm, &PlanSet::from(Plan::new(dof)), function, &mut rng);
+            assert!(plain.is_some(), "{}: no plans fits every robot", robot.name);
             for rarity in [3, 8] {
-                let choice = Choice::of(random_plan(&mut rng, dof, rarity));
-                planned += usize::from(agrees(&robot, &arm, &choice, function, &mut rng).is_some());
+                let plans = PlanSet::from(random_plan(&mut rng, dof, rarity));
+                planned += usize::from(agrees(&robot, &arm, &plans, function, &mut rng).is_some());
             }
         }
     }
@@ -119,9 +119,9 @@ fn the_choice_of_a_build_fits_random_robots() {
     let mut rng = Rng::with_seed(5);
     for seed in 2000..2012 {
         let (robot, arm) = read(seed, rng.usize(1..=4));
-        let choice = Choice::default_of(&robot);
+        let plans = PlanSet::default_of(&robot);
         for function in Function::TORQUES {
-            assert!(agrees(&robot, &arm, &choice, function, &mut rng).is_some(), "{}", robot.name);
+            assert!(agrees(&robot, &arm, &plans, function, &mut rng).is_some(), "{}", robot.name);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Two dense arms, in which nothing folds, against independent values at 32 states each.
 
 use rne::{DynArm, Scalar, Wrench};
-use rne_codegen::{Arguments, Form, Function, Interpreter, compile};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::Robot;
 use serde_json::Value;
 
@@ -13,7 +13,8 @@ fn torques_of_dense_arms_are_the_independent_ones() {
         let robot = Robot::from_yaml(&read(format!("{name}.yaml"))).unwrap_or_else(|report| panic!("{report}"));
         let arm = DynArm::from_robot(&robot);
         let golden: Value = serde_json::from_str(&read(format!("{name}.golden.json"))).expect("JSON");
-        let programs = Function::TORQUES.map(|function| compile(&robot, function, Form::SevenSteps).expect("finite"));
+        let programs = Function::TORQUES
+            .map(|function| Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite"));
         let mut worst = 0.0_f64;
         for state in golden["states"].as_array().expect("states") {
             let array = |key: &str| -> Vec<f64> {

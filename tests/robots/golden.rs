@@ -1,7 +1,7 @@
 //! Torques against independent values: Pinocchio's, at 16 states each, for generated code, interpreter and runtime.
 
 use rne::{InverseDynamics, Scalar, Wrench};
-use rne_codegen::{Arguments, Form, Function, Interpreter, compile};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::Robot;
 use serde_json::Value;
 
@@ -84,7 +84,7 @@ fn interpret<const DOF: usize>(
 ) -> [f64; DOF] {
     let text = std::fs::read_to_string(format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR")));
     let robot = Robot::from_yaml(&text.expect("a robot file")).unwrap_or_else(|report| panic!("{report}"));
-    let program = compile(&robot, function, Form::SevenSteps).expect("finite constants");
+    let program = Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite constants");
     let arguments = Arguments { force: wrench.force, moment: wrench.moment, ..Arguments::of_joints(q, qd, qdd, 0.0) };
     let torques = Interpreter::new(&program).run(&arguments, f64::from_f64, Scalar::sin_cos);
     torques.expect("arrays of the right length").try_into().expect("one torque per joint")

@@ -76,14 +76,9 @@ pub(crate) mod seven_steps {
     in_form!(shipped, "seven_steps");
 }
 
-/// The reduced form of every robot, by its plan.
+/// The reduced form of every robot, by its plan file.
 pub(crate) mod reduced {
     in_form!(shipped, "reduced");
-}
-
-/// The rewritten form of every robot.
-pub(crate) mod rewritten {
-    in_form!(shipped, "rewritten");
 }
 
 #[test]

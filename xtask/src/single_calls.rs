@@ -14,13 +14,8 @@ const KINDS: [(&str, &str); 6] = [
 ];
 
 /// Competitors in the tree, and their titles.
-const COLUMNS: [(&str, &str); 5] = [
-    ("seven_steps", "seven_steps"),
-    ("reduced", "reduced"),
-    ("rewritten", "rewritten"),
-    ("arm", "`rne::Arm`"),
-    ("dynibo", "`dynibo`"),
-];
+const COLUMNS: [(&str, &str); 4] =
+    [("seven_steps", "seven_steps"), ("reduced", "reduced"), ("arm", "`rne::Arm`"), ("dynibo", "`dynibo`")];
 
 /// A line per robot, measurement and scalar, a column per competitor: median and, in brackets, the fastest, in ns.
 ///

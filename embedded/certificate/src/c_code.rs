@@ -7,8 +7,8 @@ use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
 use rne_codegen::emit::{Precision, Prefix, c_code};
-use rne_codegen::plan::{Choice, PlanFile};
-use rne_codegen::{Argument, Form, Function, Layout};
+use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::{Argument, Compiler, Form, Function, Layout};
 use rne_model::Robot;
 use robots::puma560::Arguments;
 use robots::{STATES, State};
@@ -110,10 +110,10 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     let file = workspace.join(format!("../robots/{name}.yaml"));
     let text = fs::read_to_string(&file).with_context(|| file.display().to_string())?;
     let robot = Robot::from_yaml(&text).map_err(|report| anyhow!("{report}"))?;
-    let choice = choice_of(&file, &robot)?;
+    let plans = choice_of(&file, &robot)?;
     let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
-    let programs: Result<Vec<_>, _> = all.iter().map(|&function| choice.compile(&robot, function, kind)).collect();
+    let programs: Result<Vec<_>, _> = all.iter().map(|&function| Compiler::new(&robot).with_plans(&plans).compile(function, kind)).collect();
     let prefix = format!("{name}_{form}");
     let code = c_code(&robot, &programs?, Precision::Single, &prefix.parse::<Prefix>()?)?;
     fs::write(folder.join(format!("{prefix}.h")), code.header())?;
@@ -122,15 +122,15 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
 }
 
 /// The choices of the plan beside a robot file; where there is none, those that the derive takes as well.
-fn choice_of(file: &Path, robot: &Robot) -> Result<Choice> {
+fn choice_of(file: &Path, robot: &Robot) -> Result<PlanSet> {
     let file = file.with_extension("plan.yaml");
     let shown = file.display().to_string();
     match fs::read_to_string(&file) {
         Ok(text) => {
             let plan = PlanFile::read(&shown, &text, robot).map_err(|report| anyhow!("{report}"))?;
-            Ok(Choice::from(plan))
+            Ok(PlanSet::from(plan))
         }
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(Choice::default_of(robot)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(PlanSet::default_of(robot)),
         Err(error) => Err(error).context(shown),
     }
 }
@@ -239,8 +239,8 @@ mod tests {
     use std::path::Path;
 
     use rne_codegen::emit::{Precision, c_code};
-    use rne_codegen::plan::Choice;
-    use rne_codegen::{Form, Function};
+    use rne_codegen::plan::PlanSet;
+    use rne_codegen::{Compiler, Form, Function};
     use rne_model::Robot;
 
     use super::choice_of;
@@ -251,15 +251,15 @@ mod tests {
         let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
         let text = fs::read_to_string(shipped.join("planar2.yaml")).expect("a shipped robot");
         let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
-        let source = |choice: &Choice| {
-            let program = choice.compile(&robot, Function::InverseDynamics, Form::Reduced).expect("it compiles");
+        let source = |plans: &PlanSet| {
+            let program = Compiler::new(&robot).with_plans(&plans).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
             let prefix = "planar2".parse().expect("a prefix");
             c_code(&robot, &[program], Precision::Single, &prefix).expect("C code").source("planar2.h")
         };
         let folder = tempfile::tempdir().expect("a folder");
         let file = folder.path().join("planar2.yaml");
-        let choice = choice_of(&file, &robot).expect("no plan is no error");
-        assert_eq!(source(&choice), source(&Choice::default_of(&robot)));
+        let plans = choice_of(&file, &robot).expect("no plan is no error");
+        assert_eq!(source(&plans), source(&PlanSet::default_of(&robot)));
 
         // a plan that is there is read, and a mistake in it is told with its place
         fs::copy(shipped.join("planar2.plan.yaml"), file.with_extension("plan.yaml")).expect("a plan");

@@ -1,20 +1,17 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
-use crate::function::Form;
 use crate::program::{Program, Proof};
 
 /// What the form is, its proof and its choices, one sentence or choice per line.
 #[must_use]
 pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
-    let form = match program.form {
-        Form::Rewritten => {
-            "Rewritten form: fewest operations, algebra without a recursion; torques are those of the seven steps."
-        }
-        _ if program.function.returns_torques() && !program.choices.is_empty() => {
+    let form = match () {
+        () if program.is_rewritten => "Reduced form, rewritten: fewest operations, algebra without a recursion.",
+        () if program.function.returns_torques() && !program.choices.is_empty() => {
             "Reduced form: fewest operations; only the torques keep a physical meaning."
         }
-        _ if !program.choices.is_empty() => "Reduced form: fewest operations; only what is returned keeps a meaning.",
-        _ => "Reduced form: the plain formulas, every value computed once however it comes about.",
+        () if !program.choices.is_empty() => "Reduced form: fewest operations; only what is returned keeps a meaning.",
+        () => "Reduced form: the plain formulas, every value computed once however it comes about.",
     };
     let (what, largest) =
         if program.function.returns_torques() { ("all torques", "torque") } else { ("all results", "result") };

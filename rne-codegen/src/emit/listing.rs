@@ -109,7 +109,7 @@ fn in_order(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> 
             (None, Step::Beyond) => beyond_title(program, place.quantity, joint),
             (None, _) => step_title(program, joint, step),
         };
-        if program.form != Form::Rewritten && section.as_ref() != Some(&title) {
+        if !program.is_rewritten && section.as_ref() != Some(&title) {
             if section.is_some() {
                 text.push('\n');
             }

@@ -131,6 +131,12 @@ impl Function {
         self.entry().own.iter().find(|own| own.quantity == quantity)
     }
 
+    /// Whether it has a reduced form, whose graph can be rewritten.
+    #[must_use]
+    pub const fn can_be_rewritten(self) -> bool {
+        !self.entry().is_irreducible
+    }
+
     /// What it means that its numbers are not finite, for a function that divides.
     #[must_use]
     pub const fn divides(self) -> Option<&'static str> {
@@ -141,6 +147,20 @@ impl Function {
 impl fmt::Display for Function {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+impl From<Function> for &str {
+    fn from(function: Function) -> Self {
+        function.name()
+    }
+}
+
+impl TryFrom<String> for Function {
+    type Error = UnknownName;
+
+    fn try_from(text: String) -> Result<Self, UnknownName> {
+        text.parse()
     }
 }
 
@@ -164,14 +184,11 @@ pub enum Form {
     SevenSteps,
     /// Fewest operations: only the torques keep a physical meaning.
     Reduced,
-    /// The reduced form after algebraic rewriting, which no longer resembles a recursion. `inverse_dynamics` alone is
-    /// rewritten, and only where a plan file holds the result.
-    Rewritten,
 }
 
 impl Form {
     /// All forms.
-    pub const ALL: [Self; 3] = [Self::SevenSteps, Self::Reduced, Self::Rewritten];
+    pub const ALL: [Self; 2] = [Self::SevenSteps, Self::Reduced];
 
     /// Its name in the attribute and on the command line.
     #[must_use]
@@ -179,7 +196,6 @@ impl Form {
         match self {
             Self::SevenSteps => "seven_steps",
             Self::Reduced => "reduced",
-            Self::Rewritten => "rewritten",
         }
     }
 }

@@ -3,13 +3,16 @@
 //! A function is added by a variant and an entry here, its formulas in `formulate`, and the runtime's own
 //! implementation. The entries stand in the order of the variants, those of a capability beside each other.
 
+use serde::{Deserialize, Serialize};
+
 use super::Argument::{Accelerations, Base, Cosines, Positions, Rates, Sines, Torques, Wrench};
 use super::Length::{Fixed, Joints};
 use super::{Answer, AnswerTable, Entry, Labels, MatrixUnit, Own, Record, Shape};
 use crate::ir::quantity::Quantity;
 
 /// A function of a robot, named as its trait method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "&str")]
 pub enum Function {
     /// τ(q, q̇, q̈).
     InverseDynamics,

@@ -3,8 +3,8 @@
 use rne_model::Robot;
 
 use crate::function::Function;
-use crate::ir::name::Name;
-use crate::ir::{Builder, Cost, Graph, Policy, Ref, Traced, number_values};
+use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
+use crate::pipeline::Formulation;
 use crate::plan::Plan;
 use crate::reduced::algorithm::{self, Way};
 use crate::reduced::forward::Arm;
@@ -67,18 +67,18 @@ impl Frame {
     }
 
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
-    pub(crate) fn written(&self, plan: &Plan, function: Function, way: Way) -> Option<(Vec<Name>, Traced)> {
+    pub(crate) fn written(&self, plan: &Plan, function: Function, way: Way) -> Option<Formulation> {
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.table.reading, function);
         let arm = Arm { table: &self.table, plan, parameters: &parameters };
-        let (names, outputs): (Vec<Name>, Vec<_>) = algorithm::write(&builder, &arm, function, way)
+        let (names, outputs) = algorithm::write(&builder, &arm, function, way)
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
-        let mut written = builder.finish(outputs);
+        let mut traced = builder.finish(outputs);
         // a number of the plan means what it is called, or nothing, wherever it is first used
-        written.trace.forget_births_of_leaves(&written.graph);
-        Some((names, written.numbered()))
+        traced.trace.forget_births_of_leaves(&traced.graph);
+        Some(Formulation { names, traced: traced.numbered() })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Plan files: the choices for one robot, replayed by every build.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -7,9 +8,11 @@ use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::choices::{Plan, parsed};
+use super::plan_set::PlanSet;
 use crate::ir::Cost;
 use crate::program::{Program, Proof};
-use crate::{CompileError, Form};
+use crate::reduced::algorithm::Way;
+use crate::{CompileError, Function};
 
 /// A plan file, as it stands on disk.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,9 +25,9 @@ pub struct PlanFile {
     pub fingerprint: Fingerprint,
     /// The reduced form.
     pub reduced: Reduced,
-    /// A graph that has been rewritten, with the plan of the graph that it was made from.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub rewritten: Option<Rewritten>,
+    /// The graphs that have been rewritten, each with the plan of the graph that it was made from.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub rewritten: BTreeMap<Function, Rewritten>,
 }
 
 /// What decides whether the rest of a plan file is to be read at all.
@@ -47,16 +50,20 @@ pub struct Reduced {
     pub plan: Plan,
 }
 
-/// A rewritten graph.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// The rewritten graph of a function.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rewritten {
-    /// Operations of `inverse_dynamics`.
+    /// Operations of the function.
     pub operations: Cost,
     /// How precise it is.
     pub accuracy: Accuracy,
-    /// The plan that gives the graph its numbers.
-    pub plan: Plan,
+    /// How the function was written under the plan.
+    #[serde(default, skip_serializing_if = "Way::is_rnea")]
+    pub(crate) algorithm: Way,
+    /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub plan: Option<Plan>,
     /// One operation per line.
     pub graph: String,
 }
@@ -114,7 +121,7 @@ impl FromStr for Fingerprint {
 }
 
 /// The format of plan files.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
 
 /// A fingerprint of all numbers of a robot that its torques depend on.
 #[must_use]
@@ -143,7 +150,7 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
 
 impl PlanFile {
     /// What a search found for a robot.
-    pub(super) fn new(robot: &Robot, reduced: Reduced, rewritten: Option<Rewritten>) -> Self {
+    pub(super) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
         Self { format: FORMAT, robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
     }
 
@@ -181,39 +188,55 @@ impl PlanFile {
             return Err(refused(&["fingerprint"], message));
         }
         let file: Self = serde_yaml::from_str(text).map_err(invalid)?;
-        let plans = [("reduced", Some(&file.reduced.plan)), ("rewritten", file.rewritten.as_ref().map(|of| &of.plan))];
-        for (form, plan) in plans {
-            if let Some(count) = plan.map(|plan| plan.joints.len()).filter(|&count| count != robot.dof()) {
+        let rewritten = file.rewritten.iter();
+        let rewritten =
+            rewritten.filter_map(|(function, of)| Some((vec!["rewritten", function.name()], of.plan.as_ref()?)));
+        for (mut keys, plan) in std::iter::once((vec!["reduced"], &file.reduced.plan)).chain(rewritten) {
+            let count = plan.joints.len();
+            if count != robot.dof() {
                 let message = format!("this plan has {count} joints, `{}` has {}", robot.name, robot.dof());
-                return Err(refused(&[form, "joints"], message));
+                keys.push("joints");
+                return Err(refused(&keys, message));
             }
+        }
+        if let Some(&function) = file.rewritten.keys().find(|function| function.entry().is_irreducible) {
+            let message = format!("`{function}` has no reduced form that could be rewritten");
+            return Err(refused(&["rewritten", function.name()], message));
         }
         Ok(file)
     }
 
-    /// Where in the text of a plan file the cause of an error is that the compiler found.
+    /// The functions whose programs the file describes, as a compiler takes them from it: the torques by the plan, and
+    /// those that are rewritten.
     #[must_use]
-    pub fn located(name: &str, text: &str, form: Form, error: &CompileError) -> Report {
-        let section = form.name();
+    pub fn described(&self) -> Vec<(Function, PlanSet)> {
+        let plan = (Function::InverseDynamics, PlanSet::from(self.reduced.plan.clone()));
+        let rewritten = self.rewritten.keys().map(|&function| (function, PlanSet::from(self.clone())));
+        [plan].into_iter().chain(rewritten).collect()
+    }
+
+    /// Where in the text of a plan file the cause of an error is that the compiler found in one of the functions that it
+    /// describes.
+    #[must_use]
+    pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {
-            CompileError::Graph { line, message, .. } => (line_of_graph(text, *line), message.clone()),
-            CompileError::NotIdentical { .. } if form == Form::Rewritten => {
-                (value_of(text, &[section, "graph"]), error.to_string())
+            CompileError::Graph { line, message, .. } => (line_of_graph(text, function, *line), message.clone()),
+            _ if !plans.rewritten.contains_key(&function) => (value_of(text, &["reduced", "plan"]), error.to_string()),
+            CompileError::NotIdentical { .. } => {
+                (value_of(text, &["rewritten", function.name(), "graph"]), error.to_string())
             }
-            _ => (value_of(text, &[section, "plan"]), error.to_string()),
+            _ => (value_of(text, &["rewritten", function.name()]), error.to_string()),
         };
         Report::of_error(name, text, place, message, Some(REFRESH))
     }
 
-    /// Checks that a form takes as many operations as the file says.
+    /// Checks that a function that it describes takes as many operations as the file says.
     ///
     /// # Errors
     /// The operations that are not those of the program.
     pub fn counts(&self, name: &str, text: &str, program: &Program) -> Result<(), Report> {
-        let written = match (program.form, &self.rewritten) {
-            (Form::Rewritten, Some(rewritten)) => rewritten.operations,
-            _ => self.reduced.operations,
-        };
+        let rewritten = self.rewritten.get(&program.function).filter(|_| program.is_rewritten);
+        let written = rewritten.map_or(self.reduced.operations, |rewritten| rewritten.operations);
         let counted = program.operations();
         let counted = Cost { mul: counted.mul, add: counted.add, sincos: counted.sincos };
         if counted == written {
@@ -223,8 +246,12 @@ impl PlanFile {
             "the file says {} products, {} sums and {} angles; the code that its plan gives has {}, {} and {}",
             written.mul, written.add, written.sincos, counted.mul, counted.add, counted.sincos
         );
-        let place = value_of(text, &[program.form.name(), "operations"]);
-        Err(Report::of_error(name, text, place, message, Some("`rne search ROBOT.yaml` counts anew")))
+        let keys: &[&str] = if rewritten.is_some() {
+            &["rewritten", program.function.name(), "operations"]
+        } else {
+            &["reduced", "operations"]
+        };
+        Err(Report::of_error(name, text, value_of(text, keys), message, Some("`rne search ROBOT.yaml` counts anew")))
     }
 
     /// The text of the file.
@@ -298,9 +325,9 @@ fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
     found
 }
 
-/// A line of the graph, counted from 1.
-fn line_of_graph(text: &str, line: usize) -> Range<usize> {
-    let graph = value_of(text, &["rewritten", "graph"]);
+/// A line of the graph of a function, counted from 1.
+fn line_of_graph(text: &str, function: Function, line: usize) -> Range<usize> {
+    let graph = value_of(text, &["rewritten", function.name(), "graph"]);
     let before = text.get(..graph.start).map_or(0, |before| before.matches('\n').count());
     let start = byte(text, before + 1 + line, 1);
     let content = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();

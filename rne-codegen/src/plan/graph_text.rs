@@ -4,18 +4,15 @@
 //! d1 = k4 / k7       a constant made from others, without its sign; k7 is a number of the reduced form under its plan
 //! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
 //! t13 = d1 * qd3
-//! tau2 = -t13
+//! out2 = -t13           the second number returned
 //! ```
 
 use std::collections::HashMap;
 use std::fmt::Write;
 
 use crate::function::Function;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol, Traced, mark_live_outside_angles};
 use crate::plan::choices::count;
-use crate::plan::cost::Frame;
 
 /// A graph as text, when the numbers in the places `given` are those of its plan.
 pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
@@ -38,7 +35,7 @@ pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
             Op::Product(a, b) => Ok(format!("{} * {}", operand(a), operand(b))),
             Op::Quotient(a, b) => Ok(format!("{} / {}", operand(a), operand(b))),
             // nothing that is rewritten chooses
-            Op::BySign(_) => Err("k0".to_owned()),
+            Op::BySign(_) => Err(String::new()),
         };
         names[at.index()] = match line {
             Err(name) => name,
@@ -49,9 +46,9 @@ pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {
             }
         };
     }
-    for (joint, at) in graph.outputs.iter().enumerate() {
+    for (index, at) in graph.outputs.iter().enumerate() {
         let sign = if at.is_negative() { "-" } else { "" };
-        let _ = writeln!(text, "tau{} = {sign}{}", joint + 1, names[at.index()]);
+        let _ = writeln!(text, "out{} = {sign}{}", index + 1, names[at.index()]);
     }
     constants.text + &text
 }
@@ -108,15 +105,15 @@ impl Constants<'_> {
     }
 }
 
-/// The graph of a text; `plain` is that of the reduced form under the plan.
+/// The graph of a text; `plain` is the one before it was rewritten.
 ///
 /// # Errors
 /// What is wrong in which line of the text, counted from 1.
-pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
-    let builder = Builder::traced(Policy::Numbered, frame.table.reading, function);
+pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
+    let builder = Builder::traced(Policy::Numbered, plain.reading(), function);
     let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
-    let mut reader = Reader { frame, given, builder: &builder, known: HashMap::new() };
-    let mut outputs = vec![None; frame.table.rows.len()];
+    let mut reader = Reader { given, builder: &builder, known: leaves(plain, &builder) };
+    let mut outputs = vec![None; plain.outputs.len()];
     for (index, line) in text.lines().enumerate() {
         let at = index + 1;
         let line = line.trim();
@@ -130,24 +127,54 @@ pub(crate) fn read(text: &str, frame: &Frame, plain: &Graph, function: Function)
         let term = reader.operation(value).map_err(|message| (at, message))?;
         // a constant is kept without its sign
         let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
-        if let Some(joint) = name.strip_prefix("tau").and_then(count) {
-            let slot = joint.checked_sub(1).and_then(|joint| outputs.get_mut(joint));
-            let slot = slot.ok_or_else(|| (at, format!("there is no joint {joint}")))?;
+        if let Some(number) = name.strip_prefix("out").and_then(count) {
+            let slot = number.checked_sub(1).and_then(|index| outputs.get_mut(index));
+            let slot = slot.ok_or_else(|| (at, format!("`{name}`: {} numbers are returned", plain.outputs.len())))?;
             if slot.replace(term.at).is_some() {
                 return Err((at, format!("`{name}` stands there twice")));
             }
         } else if !is_name(name) {
             return Err((
                 at,
-                format!("`{name}` is no name of a graph: `d1` is a constant, `t1` a term, `tau1` a torque"),
+                format!("`{name}` is no name of a graph: `d1` is a constant, `t1` a term, `out1` a result"),
             ));
         } else if reader.known.insert(name.to_owned(), term).is_some() {
             return Err((at, format!("`{name}` stands there twice")));
         }
     }
-    let outputs: Option<Vec<Ref>> = outputs.into_iter().collect();
     let end = text.lines().count();
-    outputs.map(|outputs| builder.finish(outputs)).ok_or_else(|| (end, "a torque is missing".to_owned()))
+    let outputs = outputs.into_iter().enumerate();
+    let outputs: Result<Vec<Ref>, _> =
+        outputs.map(|(index, at)| at.ok_or_else(|| (end, format!("`out{}` is missing", index + 1)))).collect();
+    outputs.map(|outputs| builder.finish(outputs))
+}
+
+/// What a graph calls by name without having computed it: its arguments, and the sines and cosines of its angles.
+fn leaves<'s>(graph: &Graph, builder: &'s Builder) -> HashMap<String, Symbol<'s>> {
+    let mut leaves = HashMap::from([("1".to_owned(), builder.one())]);
+    for (_, op) in graph.nodes() {
+        match op {
+            Op::Input(input) => _ = leaves.insert(input.name().to_string(), builder.argument(input.name())),
+            Op::Sine(angle) | Op::Cosine(angle) => {
+                let (sine, cosine) = builder.sine_and_cosine(angle_of(graph, angle, builder));
+                let (letter, value) = if matches!(op, Op::Sine(_)) { ("s", sine) } else { ("c", cosine) };
+                leaves.insert(format!("{letter}{}", group(graph, angle)), value);
+            }
+            _ => {}
+        }
+    }
+    leaves
+}
+
+/// An angle of one graph, written in another.
+fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
+    let angle = match graph.op(at) {
+        Op::Input(input) => builder.argument(input.name()),
+        Op::Sum(a, b) => angle_of(graph, a, builder) + angle_of(graph, b, builder),
+        // angles are sums of positions and of constants
+        _ => graph.turn(at.magnitude()).map_or_else(|| builder.zero(), |turn| builder.angle(turn)),
+    };
+    angle.signed(at.is_negative())
 }
 
 /// Whether a line may define this name.
@@ -203,14 +230,13 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
     at
 }
 
-struct Reader<'a, 's> {
-    frame: &'a Frame,
+struct Reader<'s> {
     given: Vec<Number>,
     builder: &'s Builder,
     known: HashMap<String, Symbol<'s>>,
 }
 
-impl<'s> Reader<'_, 's> {
+impl<'s> Reader<'s> {
     fn operation(&mut self, text: &str) -> Result<Symbol<'s>, String> {
         let parts: Vec<&str> = text.split_whitespace().collect();
         match parts[..] {
@@ -222,7 +248,7 @@ impl<'s> Reader<'_, 's> {
                     "-" => Ok(a - b),
                     "*" => Ok(a * b),
                     "/" if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
-                    "/" => Err(format!("`{text}` divides by what is no constant")),
+                    "/" => Ok(self.builder.quotient(a, b)),
                     _ => Err(format!("`{sign}` is no operation of a graph")),
                 }
             }
@@ -239,30 +265,8 @@ impl<'s> Reader<'_, 's> {
         Ok(term.signed(negative))
     }
 
-    fn leaf(&mut self, name: &str) -> Option<Symbol<'s>> {
-        if name == "1" {
-            return Some(self.builder.one());
-        }
-        let digits = name.find(|c: char| c.is_ascii_digit())?;
-        let (letters, digits) = name.split_at(digits);
-        let rows = &self.frame.table.rows;
-        let joint = |text: &str| count(text)?.checked_sub(1).filter(|&at| at < rows.len());
-        let argument = |quantity| Some(self.builder.argument(Name::scalar(quantity, joint(digits)? + 1)));
-        match letters {
-            "k" => Some(self.builder.number(*self.given.get(count(digits)?)?)),
-            "q" => argument(Quantity::Position),
-            "qd" => argument(Quantity::Rate),
-            "qdd" => argument(Quantity::RateDot),
-            "s" | "c" => {
-                let (first, last) = digits.split_once('_').unwrap_or((digits, digits));
-                let (first, last) = (joint(first)?, joint(last)?);
-                if first > last {
-                    return None;
-                }
-                let (s, c) = self.builder.turned(rows, first, last).0;
-                Some(if letters == "s" { s } else { c })
-            }
-            _ => None,
-        }
+    /// A number of the graph before.
+    fn leaf(&self, name: &str) -> Option<Symbol<'s>> {
+        Some(self.builder.number(*self.given.get(count(name.strip_prefix('k')?)?)?))
     }
 }

@@ -3,6 +3,7 @@
 
 mod choices;
 mod cost;
+mod exploration;
 mod file;
 mod graph_text;
 mod neighbourhood;
@@ -15,7 +16,9 @@ mod trick;
 
 pub use crate::ir::Cost;
 pub use choices::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
+pub use exploration::{Clock, Progress};
 pub use file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
-pub use plan_set::{Choice, Found, Maker, Wanted, cost, is_planned, savings, search};
-pub use search::{Clock, Progress};
+pub(crate) use plan_set::formulation;
+pub use plan_set::{PlanSet, cost, is_planned, savings};
+pub use search::{SearchOptions, search};
 pub use trick::Trick;

@@ -4,7 +4,7 @@
 //! node whatever their history.
 
 use crate::ir::{Cost, Graph, Op, Ref, mark_live, mark_live_outside_angles};
-use crate::plan::search::{Clock, Over, Progress};
+use crate::plan::exploration::{Clock, Over, Progress};
 
 /// Factors that a move introduces stay within these bounds.
 const FACTORS: std::ops::Range<f64> = 1e-4..1e4;

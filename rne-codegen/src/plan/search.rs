@@ -1,351 +1,245 @@
-//! Looking for a cheap plan: greedy, by descent, by annealing. None depends on a clock; who calls decides how long.
+//! The search for better choices: plans first, then the algebra of the graphs that they give.
 
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 use rne_model::Robot;
 
+use crate::CompileError;
 use crate::function::Function;
-use crate::ir::Cost;
-use crate::plan::cost::Evaluator;
-use crate::plan::neighbourhood::Moves;
-use crate::plan::trick::Trick;
-use crate::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
+use crate::ir::{Cost, Graph};
+use crate::pipeline::{Formulation, Target, reference};
+use crate::plan::Plan;
+use crate::plan::exploration::{Clock, Exploration, Over, Progress};
+use crate::plan::file::{Accuracy, PlanFile, Reduced, Rewritten};
+use crate::plan::graph_text;
+use crate::plan::plan_set::{PlanSet, formulation, is_planned};
+use crate::plan::rewriting::Rewriting;
+use crate::prove::{self, Reference};
+use crate::reduced::algorithm::Way;
 
-/// Plans counted by a build that finds no plan file.
-const DEFAULT_EVALUATIONS: usize = 240;
-
-/// How far a search has come.
-#[derive(Clone, Debug)]
-pub struct Progress {
-    /// Plans counted so far.
-    pub plans: usize,
-    /// What the best of them costs.
-    pub best: Cost,
-    /// What the search is doing.
-    pub phase: &'static str,
+/// What a search is asked to do.
+#[derive(Clone, Debug, Default)]
+pub struct SearchOptions {
+    /// The functions whose graphs are rewritten.
+    pub rewrite: Vec<Function>,
+    /// Seed of the random numbers.
+    pub seed: u64,
 }
 
-/// Asked now and then how much of the time is over, 0 to 1; `None` ends the search with what it has.
-pub type Clock<'a> = &'a mut dyn FnMut(&Progress) -> Option<f64>;
+/// Looks for a cheaper plan, from the one at hand onwards, and rewrites the graphs that the best plans give. What it
+/// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of which
+/// that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
+///
+/// `clock` is asked now and then how much of the time is over.
+///
+/// # Errors
+/// When the result cannot be proved, which would be a mistake of this program.
+pub fn search(
+    robot: &Robot,
+    known: Option<&PlanFile>,
+    options: &SearchOptions,
+    clock: Clock<'_>,
+) -> Result<PlanFile, CompileError> {
+    let torques = Function::InverseDynamics;
+    let torques_by = |plan: &Plan| formulation(robot, plan, torques, Way::Recursion);
+    let of_torques = reference(robot, torques)?;
+    let mut plans = Exploration::new(robot, &[]);
+    plans.refuse(|plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false));
+    plans.greedy(usize::MAX);
+    if let Some(known) = known {
+        let rewritten = known.rewritten.values().filter_map(|rewritten| rewritten.plan.as_ref());
+        [&known.reduced.plan].into_iter().chain(rewritten).for_each(|plan| plans.start_from(plan));
+    }
+    // the first part of the time goes to plans, the rest to rewriting
+    let share = if options.rewrite.is_empty() { 1.0 } else { 0.45 };
+    let _ = explore(&mut plans, options.seed, share, clock);
+    let plan = plans.best.1.clone();
+    let plan = plans.tidied(&plan);
+    let operations = plans.cost(&plan).unwrap_or_default();
+    // the plan was made here
+    let accuracy =
+        accuracy(&of_torques, torques, torques_by(&plan)?).map_err(|error| error.suspecting(robot, false))?;
+    let reduced = Reduced { operations, accuracy, plan };
 
-/// Something that is wrong with a plan, whatever it costs.
-type Veto<'v> = Box<dyn Fn(&Plan) -> bool + 'v>;
-
-/// A search over the plans of one robot.
-pub(crate) struct Search<'v> {
-    pub(crate) evaluator: Evaluator,
-    moves: Moves,
-    without: Vec<Trick>,
-    /// Refuses plans that would be the best but for something else that is wrong with them.
-    veto: Option<Veto<'v>>,
-    known: HashMap<Plan, Option<Cost>>,
-    pub(crate) plans: usize,
-    pub(crate) best: (Cost, Plan),
-    /// Cheap plans that differ in cost or structure, for rewriting.
-    pub(crate) pool: Vec<(usize, Plan)>,
-}
-
-/// The end of a search: out of plans to count, or of time.
-pub(crate) struct Over;
-
-impl<'v> Search<'v> {
-    pub(crate) fn new(robot: &Robot, without: &[Trick]) -> Self {
-        let evaluator = Evaluator::new(robot, Function::InverseDynamics);
-        let moves = Moves::new(evaluator.frames());
-        let plan = without.iter().fold(Plan::new(robot.dof()), |plan, trick| trick.left_out_of(&plan));
-        let mut search = Self {
-            evaluator,
-            moves,
-            without: without.to_vec(),
-            veto: None,
-            known: HashMap::new(),
-            plans: 0,
-            best: (Cost::default(), plan.clone()),
-            pool: Vec::new(),
+    let mut rewritten = BTreeMap::new();
+    for function in Function::ALL {
+        let place = options.rewrite.iter().position(|&other| other == function);
+        let known = known.and_then(|known| known.rewritten.get(&function));
+        let reference = if place.is_some() || known.is_some() { reference(robot, function)? } else { continue };
+        // one that has lost too much precision may be replaced by a dearer one
+        let mut best = match known {
+            Some(known) if place.is_none() || is_sound(&reference, function, known.formulation(robot, function)?)? => {
+                Some(known.clone())
+            }
+            _ => None,
         };
-        // the plain plan applies to every robot
-        let cost = search.evaluator.cost(&plan).unwrap_or_default();
-        search.best = (cost, plan);
-        search
-    }
-
-    /// From now on no plan becomes the best that `veto` is true of.
-    pub(crate) fn refuse(&mut self, veto: impl Fn(&Plan) -> bool + 'v) {
-        self.veto = Some(Box::new(veto));
-    }
-
-    /// What a plan costs, all tricks in it being allowed.
-    pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
-        if self.without.iter().any(|trick| trick.is_in(plan)) {
-            return None;
+        if let Some(place) = place {
+            #[allow(clippy::cast_precision_loss)] // a handful
+            let end = |place: usize| share + (1.0 - share) * place as f64 / options.rewrite.len() as f64;
+            let time = (end(place), end(place + 1));
+            rewrite(&reference, function, &mut plans, &mut best, time, options.seed, clock)?;
         }
-        if let Some(known) = self.known.get(plan) {
-            return *known;
-        }
-        self.plans += 1;
-        let would_be_best = |cost: &Cost| cost.weight() < self.best.0.weight();
-        let cost = self.evaluator.cost(plan);
-        let cost = cost.filter(|cost| !would_be_best(cost) || !self.veto.as_ref().is_some_and(|veto| veto(plan)));
-        if self.known.len() > 400_000 {
-            self.known.clear();
-        }
-        self.known.insert(plan.clone(), cost);
-        if let Some(cost) = cost
-            && cost.weight() < self.best.0.weight()
+        if let Some(best) = best
+            && best.operations.weight() < without_rewriting(robot, &reduced, function)?.weight()
         {
-            self.best = (cost, plan.clone());
-        }
-        cost
-    }
-
-    /// The best plan so far is tried in a different place.
-    pub(crate) fn start_from(&mut self, plan: &Plan) {
-        let _ = self.cost(plan);
-    }
-
-    pub(crate) fn progress(&self, phase: &'static str) -> Progress {
-        Progress { plans: self.plans, best: self.best.0, phase }
-    }
-
-    /// Takes the choices in the order in which they pay, each for all joints at once and then joint by joint.
-    pub(crate) fn greedy(&mut self, most: usize) {
-        let limit = self.plans + most;
-        for round in 0..2 {
-            for candidate in 0.. {
-                if self.plans >= limit {
-                    return;
-                }
-                let plan = self.best.1.clone();
-                let Some(other) = greedy_candidate(&self.moves, &plan, candidate, round) else { break };
-                if other != plan {
-                    let _ = self.cost(&other);
-                }
-            }
+            let accuracy = self::accuracy(&reference, function, best.formulation(robot, function)?)
+                .map_err(|error| error.suspecting(robot, false))?;
+            rewritten.insert(function, Rewritten { accuracy, ..best });
         }
     }
-
-    /// Coordinate descent: the best of all neighbours, again and again; when none is better, neighbours of those that
-    /// cost little more. No random numbers.
-    pub(crate) fn descend(&mut self, clock: Clock<'_>) -> Result<(), Over> {
-        let mut plan = self.best.1.clone();
-        let Some(mut weight) = self.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };
-        loop {
-            let mut weighed = self.weigh(&plan, clock)?;
-            weighed.sort_by_key(|(weight, _)| *weight);
-            let Some((least, best)) = weighed.first() else { return Ok(()) };
-            if *least < weight {
-                (weight, plan) = (*least, best.clone());
-                continue;
-            }
-            // A first step that costs something, and a second one that gains more.
-            let limit = weight + 6;
-            let mut found = None;
-            'first: for (_, first) in weighed.iter().take_while(|(cost, _)| *cost <= limit) {
-                self.tick(clock, "descent")?;
-                for second in self.moves.neighbours(first) {
-                    if let Some(cost) = self.cost(&second)
-                        && cost.weight() < weight
-                    {
-                        found = Some((cost.weight(), second));
-                        break 'first;
-                    }
-                }
-            }
-            match found {
-                Some((least, best)) => (weight, plan) = (least, best),
-                None => return Ok(()),
-            }
-        }
-    }
-
-    /// All neighbours of a plan with what they weigh.
-    fn weigh(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
-        let mut weighed = Vec::new();
-        for (index, other) in self.moves.neighbours(plan).into_iter().enumerate() {
-            if index % 64 == 0 {
-                self.tick(clock, "descent")?;
-            }
-            if let Some(cost) = self.cost(&other) {
-                weighed.push((cost.weight(), other));
-            }
-        }
-        Ok(weighed)
-    }
-
-    fn tick(&self, clock: Clock<'_>, phase: &'static str) -> Result<f64, Over> {
-        clock(&self.progress(phase)).ok_or(Over)
-    }
-
-    /// Annealing: random changes, dearer ones accepted ever more rarely. The clock says how hot it is.
-    pub(crate) fn anneal(&mut self, seed: u64, hottest: f64, clock: Clock<'_>) -> Result<(), Over> {
-        let mut rng = fastrand::Rng::with_seed(seed);
-        let mut plan = self.best.1.clone();
-        let Some(mut weight) = self.cost(&plan).map(|cost| cost.weight()) else { return Ok(()) };
-        let mut over = 0.0;
-        for step in 0_u64.. {
-            if step % 64 == 0 {
-                over = self.tick(clock, "annealing")?;
-                if over >= 1.0 {
-                    return Ok(());
-                }
-            }
-            let other = self.moves.random(&plan, &mut rng);
-            let Some(cost) = self.cost(&other) else { continue };
-            let temperature = hottest * (1.0 - over).powf(1.5) + 0.05;
-            #[allow(clippy::cast_precision_loss)] // small integers
-            let worse = cost.weight() as f64 - weight as f64;
-            if worse <= 0.0 || rng.f64() < (-worse / temperature).exp() {
-                (weight, plan) = (cost.weight(), other);
-                self.keep_in_pool(weight, &plan);
-            }
-        }
-        Ok(())
-    }
-
-    /// The plan without the choices that gain nothing, so that the others can be read.
-    pub(crate) fn tidied(&mut self, plan: &Plan) -> Plan {
-        let Some(weight) = self.cost(plan).map(|cost| cost.weight()) else { return plan.clone() };
-        let mut tidy = plan.clone();
-        let keep = |search: &mut Self, tidy: &mut Plan, other: Plan| {
-            if other != *tidy && search.cost(&other).is_some_and(|cost| cost.weight() <= weight) {
-                *tidy = other;
-            }
-        };
-        for trick in Trick::ALL {
-            let other = trick.left_out_of(&tidy);
-            keep(self, &mut tidy, other);
-        }
-        let plain = JointPlan::default();
-        for index in 0..tidy.joints.len() {
-            let changes: [fn(&mut JointPlan, &JointPlan); 5] = [
-                |joint, plain| joint.gauge = plain.gauge,
-                |joint, plain| joint.slide = plain.slide,
-                |joint, plain| joint.outward_offset = plain.outward_offset,
-                |joint, plain| joint.inward_offset = plain.inward_offset,
-                |joint, plain| joint.moment = plain.moment,
-            ];
-            for change in changes {
-                let mut other = tidy.clone();
-                change(&mut other.joints[index], &plain);
-                keep(self, &mut tidy, other);
-            }
-            for target in 0..plain.gauge.len() {
-                let mut other = tidy.clone();
-                other.joints[index].gauge[target] = plain.gauge[target];
-                keep(self, &mut tidy, other);
-            }
-            for switch in 0..Switches::NAMES.len() {
-                let mut other = tidy.clone();
-                if let Some(on) = other.joints[index].switches.at(switch) {
-                    *on = false;
-                }
-                keep(self, &mut tidy, other);
-            }
-        }
-        tidy
-    }
-
-    fn keep_in_pool(&mut self, weight: usize, plan: &Plan) {
-        const MOST: usize = 28;
-        if weight > self.best.0.weight() + 9 || self.pool.iter().any(|(_, other)| other == plan) {
-            return;
-        }
-        let alike = self.pool.iter().filter(|(other, _)| *other == weight).count();
-        if alike < 8 {
-            self.pool.push((weight, plan.clone()));
-            self.pool.sort_by_key(|(weight, _)| *weight);
-            self.pool.truncate(MOST);
-        }
-    }
+    Ok(PlanFile::new(robot, reduced, rewritten))
 }
 
-/// Candidates of a greedy search that concern all joints.
-const OF_THE_ARM: usize = 12;
+/// What a function costs by the plan alone.
+fn without_rewriting(robot: &Robot, reduced: &Reduced, function: Function) -> Result<Cost, CompileError> {
+    if !is_planned(function) {
+        return Ok(Formulation::numbered(robot, function).cost());
+    }
+    let (plan, algorithm) = PlanSet::from(reduced.plan.clone()).cheapest(robot, function);
+    Ok(formulation(robot, &plan, function, algorithm)?.cost())
+}
 
-/// The candidates of a greedy search, in their order; `None` behind the last.
-fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
-    let dof = plan.joints.len();
-    let mut other = plan.clone();
-    let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
-        other.joints.iter_mut().for_each(change);
+fn accuracy(reference: &Reference<'_>, function: Function, graph: Formulation) -> Result<Accuracy, CompileError> {
+    let program = graph.proved(function, Target::Latency, reference)?;
+    let proof = program.proof.ok_or_else(|| CompileError::Plan("a program without proof".to_owned()))?;
+    Ok(Accuracy::from(&proof))
+}
+
+/// How much less precise than the seven steps a form may be in single precision, on the average.
+const PRECISION: f64 = 3.0;
+
+/// States over which the average is taken.
+const STATES: usize = 200;
+
+/// Whether a graph can be proved, and is not much less precise than the seven steps.
+fn is_sound(reference: &Reference<'_>, function: Function, graph: Formulation) -> Result<bool, CompileError> {
+    let (robot, reading) = (reference.robot(), graph.reading());
+    let (program, exactly) = graph.lowered(robot, function)?;
+    let is_identical = prove::identical(robot, &program, &exactly, reading).is_ok();
+    Ok(is_identical && prove::loss_of_precision(reference, &program, STATES) <= PRECISION)
+}
+
+/// Descent, then annealing in rounds until `share` of the time is over.
+fn explore(plans: &mut Exploration<'_>, seed: u64, share: f64, clock: Clock<'_>) -> Result<(), Over> {
+    const ROUNDS: u32 = 4;
+    let until = |end: f64, clock: &mut dyn FnMut(&Progress) -> Option<f64>, progress: &Progress| {
+        clock(progress).filter(|over| *over < end)
     };
-    match candidate {
-        0 => other.gyrostat = !other.gyrostat,
-        1 => other.carried_prismatics = !other.carried_prismatics,
-        2 => other.turned_last_frame = !other.turned_last_frame,
-        3 => all(&mut other, &|joint| joint.switches.axis_column = true),
-        4 => all(&mut other, &|joint| {
-            joint.switches.group_omega = true;
-            joint.switches.group_omega_dot = true;
-            joint.switches.group_acceleration = true;
-            joint.switches.group_wrench = true;
-        }),
-        5 | 6 => {
-            let rule = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
-            for (index, joint) in other.joints.iter_mut().enumerate().filter(|(index, _)| moves.offers(*index, rule)) {
-                joint.slide = rule;
-                if index > 0 {
-                    (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
-                }
-            }
-        }
-        7 => all(&mut other, &|joint| (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent)),
-        8 => all(&mut other, &|joint| joint.outward_offset = Side::Joint),
-        9 => all(&mut other, &|joint| {
-            joint.switches.scaled_twist_outward = true;
-            joint.switches.scaled_twist_inward = true;
-        }),
-        10 => {
-            for (index, joint) in other.joints.iter_mut().enumerate() {
-                if moves.offers(index, Slide::MinusD) {
-                    joint.slide = Slide::MinusD;
-                }
-            }
-        }
-        11 => all(&mut other, &|joint| joint.switches.origin_unturned = true),
-        _ => {
-            let (index, choice) = ((candidate - OF_THE_ARM) % dof, (candidate - OF_THE_ARM) / dof);
-            let joint = &mut other.joints[index];
-            match choice {
-                0 => joint.switches.axis_column = !joint.switches.axis_column,
-                1 => joint.outward_offset = Side::Parent,
-                2 => joint.outward_offset = Side::Joint,
-                3 => joint.outward_offset = Side::Link,
-                4 => joint.inward_offset = if joint.inward_offset == Side::Link { Side::Parent } else { Side::Link },
-                5 => joint.slide = Slide::MinusD,
-                6 => joint.slide = Slide::AnnulS13,
-                7 => joint.slide = Slide::AnnulS23,
-                8 => joint.slide = Slide::GroupInward,
-                9 => joint.slide = Slide::None,
-                10 => other.length_scale = Scale::A(index + 1),
-                11 => other.length_scale = Scale::D(index + 1),
-                12 => other.force_scale = Scale::FirstMoment(index + 1, 0),
-                13 => other.force_scale = Scale::FirstMoment(index + 1, 1),
-                14 => joint.moment = Moment::Diagonal,
-                15 => joint.moment = Moment::Inertia,
-                16 => joint.switches.wrench_unturned = !joint.switches.wrench_unturned,
-                17 => joint.switches.origin_unturned = !joint.switches.origin_unturned,
-                18 => joint.switches.first_moment_unturned = !joint.switches.first_moment_unturned,
-                19 => joint.switches.omega_dot_unturned = !joint.switches.omega_dot_unturned,
-                20 => joint.switches.group_omega = !joint.switches.group_omega,
-                21 => joint.switches.group_wrench = !joint.switches.group_wrench,
-                22 if round > 0 => joint.slide = Slide::NextOffset,
-                23 if round > 0 => joint.gauge[2] = Target::Sxx,
-                24 if round > 0 => joint.gauge[2] = Target::Syy,
-                25 if round > 0 => joint.gauge[1] = Target::Hy,
-                26 if round > 0 => joint.gauge[1] = Target::Syz,
-                27 if round > 0 => joint.slide = Slide::AnnulParentH,
-                _ => return None,
+    let half = share * 0.5;
+    // it ends when it is done, or out of its own time, or out of all
+    let _ = plans.descend(&mut |progress| until(half, clock, progress));
+    let start = clock(&plans.progress("descent")).ok_or(Over)?;
+    for round in 0..ROUNDS {
+        let length = (share - start) / f64::from(ROUNDS);
+        let begin = start + length * f64::from(round);
+        let hottest = if round + 1 == ROUNDS { 2.0 } else { 4.0 };
+        let mut local = |progress: &Progress| clock(progress).map(|over| ((over - begin) / length).clamp(0.0, 1.0));
+        plans.anneal(seed.wrapping_add(u64::from(round)), hottest, &mut local)?;
+    }
+    // what annealing found may have better neighbours
+    let _ = plans.descend(&mut |progress| until(share + 0.02, clock, progress));
+    Ok(())
+}
+
+/// A graph that is being rewritten.
+struct Candidate {
+    /// What will stand in the plan file, but for the graph as text.
+    of: Rewritten,
+    graph: Graph,
+    /// Places of the numbers of the graph as the plan gives it.
+    given: Vec<u32>,
+}
+
+impl Candidate {
+    fn new(robot: &Robot, function: Function, of: Rewritten) -> Result<Self, CompileError> {
+        let before = of.before(robot, function)?.traced.graph;
+        let given = before.factors();
+        // the graph's own constants follow those of the plan, as in a graph that has just been rewritten
+        let read = graph_text::read(&of.graph, &before, function).ok();
+        let graph = read.map(|read| graph_text::on_numbers_of(&read.graph, &before)).unwrap_or(before);
+        Ok(Self { of: Rewritten { operations: graph.cost(&mut Vec::new()), ..of }, graph, given })
+    }
+
+    fn weight(&self) -> usize {
+        self.of.operations.weight()
+    }
+}
+
+/// The best plans for a function, of those that the search met.
+fn candidates(robot: &Robot, function: Function, plans: &mut Exploration<'_>) -> Vec<Rewritten> {
+    if !is_planned(function) {
+        return vec![Rewritten::default()];
+    }
+    // those of the torques differ little; what the plan means to another function, its algorithm hides
+    let most = if function == Function::InverseDynamics { 16 } else { 4 };
+    let best = plans.best.1.clone();
+    let mut found: Vec<_> = plans.pool.iter().map(|(_, plan)| plan.clone()).filter(|plan| *plan != best).collect();
+    found.insert(0, best);
+    found.truncate(most);
+    let mut found: Vec<_> = found.iter().map(|plan| plans.tidied(plan)).collect();
+    found.dedup();
+    let candidate = |plan| {
+        let (plan, algorithm) = PlanSet::from(plan).cheapest(robot, function);
+        Rewritten { plan: Some(plan), algorithm, ..Rewritten::default() }
+    };
+    found.into_iter().map(candidate).collect()
+}
+
+/// Rewrites the graphs of the best plans in the time from `begin` to `end`: half of it all of them, half the four that
+/// came out best.
+fn rewrite(
+    reference: &Reference<'_>,
+    function: Function,
+    plans: &mut Exploration<'_>,
+    best: &mut Option<Rewritten>,
+    (begin, end): (f64, f64),
+    seed: u64,
+    clock: Clock<'_>,
+) -> Result<(), CompileError> {
+    let robot = reference.robot();
+    let known = best.iter().cloned().map(|known| Candidate::new(robot, function, known));
+    let mut graphs: Vec<Candidate> = known.collect::<Result<_, _>>()?;
+    let fresh = candidates(robot, function, plans).into_iter();
+    graphs.extend(fresh.filter_map(|of| Candidate::new(robot, function, of).ok()));
+    let middle = f64::midpoint(begin, end);
+    'stages: for (stage, begin, end, hottest, most) in [(0, begin, middle, 0.2, usize::MAX), (1, middle, end, 0.22, 4)]
+    {
+        graphs.sort_by_key(Candidate::weight);
+        graphs.truncate(most);
+        #[allow(clippy::cast_precision_loss)] // a handful
+        let length = (end - begin) / graphs.len() as f64;
+        for (index, candidate) in graphs.iter_mut().enumerate() {
+            #[allow(clippy::cast_precision_loss)]
+            let start = begin + length * index as f64;
+            let seed = seed.wrapping_add(stage * 100 + index as u64);
+            let mut rewriting = Rewriting::new(candidate.graph.clone(), seed, Graph::cost);
+            let mut local = |progress: &Progress| clock(progress).map(|over| ((over - start) / length).clamp(0.0, 1.0));
+            let count = plans.plans;
+            let least = best.as_ref().map(|best| best.operations);
+            let report = |cost: Cost| Progress {
+                plans: count,
+                best: least.filter(|least| least.weight() < cost.weight()).unwrap_or(cost),
+                phase: "rewriting",
+            };
+            let ended = rewriting.anneal(hottest, report, &mut local);
+            (candidate.of.operations, candidate.graph) = rewriting.best();
+            if ended.is_err() {
+                break 'stages;
             }
         }
     }
-    Some(other)
-}
-
-/// The plan of a build that finds no plan file: a fixed number of plans is counted, on every machine the same.
-pub(crate) fn default_plan(robot: &Robot, without: &[Trick]) -> Plan {
-    let mut search = Search::new(robot, without);
-    search.greedy(DEFAULT_EVALUATIONS);
-    let plan = search.best.1.clone();
-    search.tidied(&plan)
+    graphs.sort_by_key(Candidate::weight);
+    for Candidate { of, graph, given } in graphs {
+        if best.as_ref().is_some_and(|best| of.operations.weight() >= best.operations.weight()) {
+            break;
+        }
+        let rewritten = Rewritten { graph: graph_text::written(&graph, &given), ..of };
+        // what cannot be read again, or is worth something else, is not kept
+        let Ok(formulation) = rewritten.formulation(robot, function) else { continue };
+        if is_sound(reference, function, formulation)? {
+            *best = Some(rewritten);
+            break;
+        }
+    }
+    Ok(())
 }

@@ -7,17 +7,16 @@ use rne_model::{Robot, check_bytes};
 
 use super::*;
 use crate::fma::{fused, soonest};
-use crate::ir::name::Name;
-use crate::ir::{Graph, Traced};
-use crate::lower::{Heading, lower};
-use crate::plan::cost::{Evaluator, Frame, frame};
+use crate::ir::{Graph, Reading, Traced};
+use crate::pipeline::{Formulation, reference};
+use crate::plan::cost::{Evaluator, frame};
+use crate::plan::exploration::{Exploration, default_plan};
 use crate::plan::neighbourhood::Moves;
 use crate::plan::rewriting::Rewriting;
-use crate::plan::search::{Search, default_plan};
 use crate::program::Exactly;
 use crate::prove;
-use crate::prove::Reference;
-use crate::{CompileError, Expression, Form, Function, Program};
+use crate::reduced::algorithm::Way;
+use crate::{CompileError, Compiler, Expression, Form, Function, Program};
 
 fn robot(name: &str) -> Robot {
     let folder = match name {
@@ -33,31 +32,31 @@ fn robot(name: &str) -> Robot {
 const SEVERAL: [&str; 8] =
     ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp", "dense6_2p"];
 
-fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<(Frame, Vec<Name>, Traced)> {
-    let frame = frame(robot, plan)?;
-    let (names, written) = frame.written(plan, function, crate::reduced::algorithm::Way::Recursion)?;
-    Some((frame, names, written))
+fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<Formulation> {
+    frame(robot, plan)?.written(plan, function, Way::Recursion)
 }
 
-fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<(Program, Exactly, Frame)> {
-    let (frame, names, written) = drawn(robot, plan, function)?;
-    let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
-    Some((program, exactly, frame))
+/// A program that has not been proved, with what its constants are exactly and how they are read.
+type Unproved = (Program, Exactly, Reading);
+
+fn lowered(robot: &Robot, function: Function, formulation: Formulation) -> Unproved {
+    let reading = formulation.reading();
+    let (program, exactly) = formulation.lowered(robot, function).unwrap();
+    (program, exactly, reading)
 }
 
-fn reference(robot: &Robot) -> Reference<'_> {
-    let seven_steps = |function| crate::compile(robot, function, Form::SevenSteps);
-    Reference::new(robot, Function::InverseDynamics, seven_steps).unwrap()
+fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<Unproved> {
+    Some(lowered(robot, function, drawn(robot, plan, function)?))
 }
 
-fn is_identical(robot: &Robot, (program, exactly, frame): &(Program, Exactly, Frame)) -> bool {
-    prove::identical(robot, program, exactly, frame.table.reading).is_ok()
+fn is_identical(robot: &Robot, (program, exactly, reading): &Unproved) -> bool {
+    prove::identical(robot, program, exactly, *reading).is_ok()
 }
 
 /// Fails with these words, by which `cargo xtask mutate` knows that it was the proof that refused.
-fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, frame): &(Program, Exactly, Frame)) {
+fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, reading): &Unproved) {
     for (arranged, what) in [(program, ""), (&soonest(program), " soonest"), (&fused(program), " fused")] {
-        if let Err(error) = prove::identical(robot, arranged, exactly, frame.table.reading) {
+        if let Err(error) = prove::identical(robot, arranged, exactly, *reading) {
             panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
         }
     }
@@ -102,7 +101,7 @@ fn the_default_plan_is_the_same_every_time() {
     for name in ["puma560", "dense6_2p"] {
         let robot = robot(name);
         assert_eq!(default_plan(&robot, &[]), default_plan(&robot, &[]));
-        let mut search = Search::new(&robot, &[]);
+        let mut search = Exploration::new(&robot, &[]);
         search.greedy(50);
         assert!(search.plans <= 51, "a bounded number of evaluations");
     }
@@ -122,7 +121,7 @@ fn a_trick_that_is_left_out_is_not_used() {
 fn rewritten_graphs_survive_as_text() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (frame, names, plain) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
+    let Formulation { names, traced: plain } = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
     let given = plain.graph.factors();
     let before = plain.graph.cost(&mut Vec::new());
     let mut rewriting = Rewriting::new(plain.graph.clone(), 3, Graph::cost);
@@ -136,16 +135,16 @@ fn rewritten_graphs_survive_as_text() {
     let (cost, graph) = rewriting.best();
     assert!(cost.weight() < before.weight(), "{cost:?} from {before:?}");
     let text = graph_text::written(&graph, &given);
-    let read = graph_text::read(&text, &frame, &plain.graph, Function::InverseDynamics).unwrap();
+    let read = graph_text::read(&text, &plain.graph, Function::InverseDynamics).unwrap();
     assert_eq!(read.graph.cost(&mut Vec::new()), cost);
     let on = graph_text::on_numbers_of(&read.graph, &plain.graph);
     assert_eq!(on.cost(&mut Vec::new()), cost);
     // in another order of summands and factors, perhaps
     let again = graph_text::written(&on, &given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
-    let heading = Heading { robot: &robot, function: Function::InverseDynamics, form: Form::Rewritten };
-    let (program, exactly) = lower(&heading, read.told_by(&plain), &names).unwrap();
-    prove::prove(&reference(&robot), &program, &exactly, frame.table.reading).unwrap();
+    let rewritten = Formulation { names, traced: read.told_by(&plain) };
+    let (program, exactly, reading) = lowered(&robot, Function::InverseDynamics, rewritten);
+    prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, reading).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 
@@ -153,18 +152,18 @@ fn rewritten_graphs_survive_as_text() {
 fn mistakes_in_a_graph_name_their_line() {
     let robot = robot("planar2");
     let plan = Plan::new(2);
-    let (frame, _, plain) = drawn(&robot, &plan, Function::InverseDynamics).unwrap();
+    let plain = drawn(&robot, &plan, Function::InverseDynamics).unwrap().traced;
     for (text, line, what) in [
         ("t1 = q1 * qd9", 1, "there is no `qd9`"),
         ("t1 = qd1 ^ qd2", 1, "`^` is no operation"),
         ("t1 = qd1 + qd2\nt1 = qd1 * qd2", 2, "twice"),
         ("nonsense", 1, "no line of a graph"),
-        ("tau3 = qd1", 1, "no joint 3"),
-        ("t1 = qd1 / qd2", 1, "divides by what is no constant"),
-        ("tau1 = qd1", 1, "a torque is missing"),
+        ("out3 = qd1", 1, "2 numbers are returned"),
+        ("out1 = qd1", 1, "`out2` is missing"),
+        ("tau1 = qd1", 1, "`tau1` is no name of a graph"),
         ("t1 = k999 * qd1", 1, "there is no `k999`"),
     ] {
-        let read = graph_text::read(text, &frame, &plain.graph, Function::InverseDynamics);
+        let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
         let Err((at, message)) = read else { panic!("{text}") };
         assert_eq!(at, line, "{text}");
         assert!(message.contains(what), "{text}: {message}");
@@ -216,8 +215,7 @@ fn one_wrong_operation_anywhere_is_refused() {
     for name in ["planar3", "scara_cobra600", "stanford", "puma560"] {
         let robot = robot(name);
         let plan = default_plan(&robot, &[]);
-        let (program, exactly, frame) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-        let reading = frame.table.reading;
+        let (program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
         let mut refused = 0;
         for mutant in mutants(&program) {
             if mutant == program {
@@ -236,8 +234,7 @@ fn one_wrong_operation_anywhere_is_refused() {
 fn one_constant_off_by_the_last_digit_is_refused() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (program, exactly, frame) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-    let reading = frame.table.reading;
+    let (program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
     assert!(prove::identical(&robot, &program, &exactly, reading).is_ok());
     let tiny = crate::ir::Reading::default().decimal(1e-18);
     for constant in &program.constants {
@@ -251,11 +248,11 @@ fn one_constant_off_by_the_last_digit_is_refused() {
 fn a_wrong_literal_is_refused_by_rounding() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (mut program, exactly, frame) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
+    let (mut program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
     // the proof does not see how a constant was rounded, the states in double precision do
     let largest = program.constants.iter_mut().max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
     largest.value *= 1.0 + 1e-9;
-    let verdict = prove::prove(&reference(&robot), &program, &exactly, frame.table.reading);
+    let verdict = prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, reading);
     assert!(matches!(verdict, Err(CompileError::Imprecise { .. })), "{verdict:?}");
 }
 
@@ -279,12 +276,12 @@ fn prismatic_links_are_carried_and_last_frames_turned() {
 fn plans_survive_as_files_and_belong_to_one_robot() {
     let robot = robot("ur5");
     let mut clock = |progress: &Progress| (progress.plans < 600).then_some(0.0);
-    let found = search(&robot, None, Wanted::default(), &mut clock).unwrap();
+    let found = search(&robot, None, &SearchOptions::default(), &mut clock).unwrap();
     let text = found.to_yaml();
     let read = PlanFile::read("ur5.plan.yaml", &text, &robot).unwrap();
-    assert_eq!(read, found.file);
-    let again = search(&robot, Some(&read), Wanted::default(), &mut |_| None).unwrap();
-    assert!(again.file.reduced.operations.weight() <= found.file.reduced.operations.weight(), "never worse");
+    assert_eq!(read, found);
+    let again = search(&robot, Some(&read), &SearchOptions::default(), &mut |_| None).unwrap();
+    assert!(again.reduced.operations.weight() <= found.reduced.operations.weight(), "never worse");
 
     let mut other = robot.clone();
     other.joints[2].row.link.mass += 1.0;
@@ -294,10 +291,10 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     assert!(error.message.contains("numbers of its robot file have changed"), "{}", error.message);
     assert!(error.help.as_ref().unwrap().contains("rne search"), "{report}");
     for (from, to, what, line) in [
-        ("format: 1", "format: 2", "format: 1", "format: 2"),
-        ("format: 1", "format: one", "invalid type: string \"one\", expected u32", "format: one"),
+        ("format: 2", "format: 1", "format: 2", "format: 1"),
+        ("format: 2", "format: one", "invalid type: string \"one\", expected u32", "format: one"),
         ("robot: ur5", "robot: ur6", "this plan is of `ur6`, not of `ur5`", "robot: ur6"),
-        ("robot:", "robt:", "missing field `robot`", "format: 1"),
+        ("robot:", "robt:", "missing field `robot`", "format: 2"),
         ("fingerprint: ", "fingerprint: +", "is no fingerprint", "fingerprint: +"),
         ("fingerprint: ", "fingerprint: 0", "is no fingerprint", "fingerprint: 0"),
         ("    mul: ", "    mull: ", "unknown field `mull`, expected one of `mul`, `add`, `sincos`", "mull"),
@@ -340,7 +337,7 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         ("3", "invalid type: integer `3`"),
         ("- 3", "invalid type: sequence"),
         ("reduced: {plan: [\n", "did not find expected"),
-        ("format: 1\nformat: 1\n", "duplicate"),
+        ("format: 2\nformat: 2\n", "duplicate"),
         (&format!("{text}---\n{text}"), "more than one document"),
         (&format!("{text}reduced: {{}}\n"), "duplicate"),
         (&format!("{text}# {}\n", "x".repeat(1 << 20)), "more than 1048576 bytes"),
@@ -361,12 +358,11 @@ fn dense(dof: usize) -> Robot {
 #[test]
 fn long_arms_take_no_more_plans_and_no_ways_that_lose() {
     for dof in [4, 16, 32] {
-        let mut search = Search::new(&dense(dof), &[]);
+        let mut search = Exploration::new(&dense(dof), &[]);
         search.greedy(240);
         assert!(search.plans <= 240, "{} plans for {dof} joints", search.plans);
     }
     for function in Function::ALL {
-        use crate::reduced::algorithm::Way;
         assert_eq!(Way::of_so_many(function, 7), Way::of(function), "{function}");
         let many = Way::of_so_many(function, 32);
         assert_eq!(many.is_empty(), Way::of(function).is_empty(), "{function}");

@@ -34,11 +34,13 @@ pub enum Trick {
     ScaledTwists,
     /// Parts of a link are evaluated in the frame that does not turn with it.
     UnturnedFrames,
+    /// The finished graph is made smaller by exact algebra: no choice of a plan, but what comes after it.
+    Rewriting,
 }
 
 impl Trick {
     /// All of them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Regrouping,
         Self::Gauges,
         Self::Gyrostat,
@@ -52,6 +54,7 @@ impl Trick {
         Self::MomentForms,
         Self::ScaledTwists,
         Self::UnturnedFrames,
+        Self::Rewriting,
     ];
 
     /// Its name on the command line.
@@ -71,6 +74,7 @@ impl Trick {
             Self::MomentForms => "moment-forms",
             Self::ScaledTwists => "scaled-twists",
             Self::UnturnedFrames => "unturned-frames",
+            Self::Rewriting => "rewriting",
         }
     }
 
@@ -96,6 +100,7 @@ impl Trick {
             Self::MomentForms => "antisym(U S) = J ω̇ + ω × J ω, or with the diagonal split (3.3)",
             Self::ScaledTwists => "u = v_y + tan α v_z turns a vector with seven products (5.1)",
             Self::UnturnedFrames => "p, ω̇, h, S or the wrench from behind are evaluated in frame N (5.7)",
+            Self::Rewriting => "u w + v w = (u + v) w, c₁ x + c₂ y = c₁ (x + (c₂/c₁) y), 1 - s² = c², and so on (10)",
         }
     }
 

@@ -7,6 +7,8 @@ use crate::reduced::forward::{Arm, motions};
 use crate::reduced::joint_frames::Table;
 use crate::reduced::rnea_derivatives::sensitivity;
 
+use serde::{Deserialize, Serialize};
+
 use crate::formulate::ldlt;
 use crate::formulate::square;
 use crate::function::Function;
@@ -15,9 +17,11 @@ use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol};
 
 /// How a function is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
 pub(crate) enum Way {
     /// The recursion, out and back, and what follows from its torques.
+    #[default]
     Recursion,
     /// Composite bodies.
     Composite(Gathering),
@@ -28,6 +32,20 @@ pub(crate) enum Way {
 }
 
 impl Way {
+    /// All of them, with their names in plan files.
+    const NAMES: [(Self, &'static str); 6] = [
+        (Self::Recursion, "rnea"),
+        (Self::Composite(Gathering::Groups), "crba_by_groups"),
+        (Self::Composite(Gathering::Joints), "crba_by_joints"),
+        (Self::Columns, "unit_columns"),
+        (Self::Articulated(Gathering::Groups), "aba_by_groups"),
+        (Self::Articulated(Gathering::Joints), "aba_by_joints"),
+    ];
+
+    pub(crate) fn is_rnea(&self) -> bool {
+        *self == Self::Recursion
+    }
+
     /// The ways of a function; none for what has no reduced recursion.
     pub(crate) const fn of(function: Function) -> &'static [Self] {
         const BY_GROUPS: Way = Way::Composite(Gathering::Groups);
@@ -73,6 +91,24 @@ impl Way {
             Self::Articulated(Gathering::Groups) => Some("articulated bodies, gathered per group of parallel axes"),
             Self::Articulated(Gathering::Joints) => Some("articulated bodies, gathered joint by joint"),
         }
+    }
+}
+
+impl From<Way> for String {
+    fn from(way: Way) -> Self {
+        Way::NAMES.into_iter().find(|(other, _)| *other == way).map_or("", |(_, name)| name).to_owned()
+    }
+}
+
+impl TryFrom<String> for Way {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        let known = Self::NAMES.into_iter().find(|(_, name)| *name == text);
+        known.map(|(way, _)| way).ok_or_else(|| {
+            let names = Self::NAMES.map(|(_, name)| name).join("`, `");
+            format!("`{}` is no algorithm; expected one of `{names}`", text.escape_debug())
+        })
     }
 }
 

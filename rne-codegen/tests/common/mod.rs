@@ -2,8 +2,8 @@
 
 use std::sync::OnceLock;
 
-use rne_codegen::plan::{Choice, PlanFile};
-use rne_codegen::{Form, Function, Program, compile};
+use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::Robot;
 
 /// Every robot of `robots/`, in the order of their names.
@@ -42,25 +42,32 @@ pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
     static SHIPPED: OnceLock<Vec<String>> = OnceLock::new();
     let names = SHIPPED.get_or_init(|| shipped().into_iter().map(|robot| robot.name).collect());
     let functions = if names.contains(&robot.name) { &Function::ALL[..] } else { &Function::TORQUES };
-    functions.iter().map(|&function| compile(robot, function, Form::SevenSteps).expect("finite constants")).collect()
+    functions
+        .iter()
+        .map(|&function| Compiler::new(robot).compile(function, Form::SevenSteps).expect("finite constants"))
+        .collect()
 }
 
 /// The plan file of a shipped robot.
 #[allow(dead_code)] // not every test needs it
-pub(crate) fn choice(robot: &Robot) -> Choice {
+pub(crate) fn plans(robot: &Robot) -> PlanSet {
     let path = format!("{}/../robots/{}.plan.yaml", env!("CARGO_MANIFEST_DIR"), robot.name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let plan = PlanFile::read(&path, &text, robot).unwrap_or_else(|report| panic!("{report}"));
-    Choice::from(plan)
+    PlanSet::from(plan)
 }
 
-/// All functions of a shipped robot in the reduced form of its plan, and `inverse_dynamics` rewritten.
+/// All functions of a shipped robot in the reduced form of its plan file, and `inverse_dynamics` as its plan gives it
+/// before it is rewritten.
 #[allow(dead_code)] // not every test needs them
 pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
-    let choice = choice(robot);
-    let compiled = |function, form| choice.compile(robot, function, form).unwrap_or_else(|error| panic!("{error}"));
-    let mut programs = Function::ALL.map(|function| compiled(function, Form::Reduced)).to_vec();
-    programs.push(compiled(Function::InverseDynamics, Form::Rewritten));
+    let plans = plans(robot);
+    let compiled = |plans: &PlanSet, function| {
+        let program = Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced);
+        program.unwrap_or_else(|error| panic!("{error}"))
+    };
+    let mut programs = Function::ALL.map(|function| compiled(&plans, function)).to_vec();
+    programs.push(compiled(&PlanSet::from(plans.plan.clone()), Function::InverseDynamics));
     programs
 }
 
@@ -73,9 +80,9 @@ pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
     });
     let reduced = shipped().into_iter().flat_map(|robot| {
         let programs = reduced_programs(&robot);
-        let (reduced, rewritten) = programs.split_at(Function::ALL.len());
+        let (reduced, planned) = programs.split_at(Function::ALL.len());
         // functions of one name are in different files
-        [(robot.clone(), reduced.to_vec()), (robot, rewritten.to_vec())]
+        [(robot.clone(), reduced.to_vec()), (robot, planned.to_vec())]
     });
     faithful.chain(reduced).collect()
 }

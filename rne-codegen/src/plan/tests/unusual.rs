@@ -53,7 +53,7 @@ fn rewritten_graphs_are_the_seven_steps() {
             // squares of cosines
             joint.switches.second_moment_unturned = true;
         }
-        let (frame, names, plain) = drawn(&robot, &plan, function).unwrap();
+        let Formulation { names, traced: plain } = drawn(&robot, &plan, function).unwrap();
         let images = |graph: &Graph| graph.outputs.iter().map(|at| graph.image(*at)).collect::<Vec<_>>();
         let expected = images(&plain.graph);
         let (graphs, seen, found) = (RefCell::new(Vec::new()), Cell::new(0_usize), Cell::new(false));
@@ -79,10 +79,8 @@ fn rewritten_graphs_are_the_seven_steps() {
         // the last one first: that is the one whose value has changed
         for graph in graphs.into_iter().rev() {
             let written = Traced { graph, trace: Trace::default() }.told_by(&plain);
-            let heading = Heading { robot: &robot, function, form: Form::Rewritten };
-            let (program, exactly) = lower(&heading, written, &names).unwrap();
-            let program = (program, exactly, frame.clone());
-            must_be_identical(&robot, &plan, &program);
+            let rewritten = Formulation { names: names.clone(), traced: written };
+            must_be_identical(&robot, &plan, &lowered(&robot, function, rewritten));
         }
     }
 }
@@ -94,9 +92,9 @@ fn angles_that_are_close_have_their_own_constants() {
         // that of the first joint goes into gravity
         robot.joints.rotate_right(1);
         let angles: Vec<f64> = robot.joints[1..].iter().map(|joint| joint.row.dh.alpha.radians).collect();
-        for (choice, is_plain) in [(Choice::none(&robot), true), (Choice::default_of(&robot), false)] {
+        for (plans, is_plain) in [(PlanSet::none(&robot), true), (PlanSet::default_of(&robot), false)] {
             for function in Function::TORQUES {
-                let program = choice.compile(&robot, function, Form::Reduced).unwrap();
+                let program = Compiler::new(&robot).with_plans(&plans).compile(function, Form::Reduced).unwrap();
                 let has = |value: f64| program.constants.iter().any(|constant| constant.value.abs() == value);
                 for angle in angles.iter().filter(|_| is_plain) {
                     assert!(has(angle.sin()), "{function} needs the sine of {angle}");

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::*;
-use crate::reduced::algorithm::Way;
 
 const FUNCTIONS: [Function; 5] = [
     Function::GravityTorques,
@@ -14,11 +13,8 @@ const FUNCTIONS: [Function; 5] = [
 ];
 
 /// The program of a function in one of its ways; `None` where the plan does not apply.
-fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<(Program, Exactly, Frame)> {
-    let frame = frame(robot, plan)?;
-    let (names, written) = frame.written(plan, function, way)?;
-    let (program, exactly) = lower(&Heading { robot, function, form: Form::Reduced }, written, &names).unwrap();
-    Some((program, exactly, frame))
+fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<Unproved> {
+    Some(lowered(robot, function, frame(robot, plan)?.written(plan, function, way)?))
 }
 
 #[test]
@@ -29,7 +25,7 @@ fn all_ways_are_the_seven_steps() {
         for function in FUNCTIONS {
             for &way in Way::of(function) {
                 let program = written(&robot, &plan, function, way).unwrap_or_else(|| panic!("{name}: {way:?}"));
-                if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2.table.reading) {
+                if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
                     panic!("the proof refuses {name}, {way:?}: {error}");
                 }
             }
@@ -51,7 +47,7 @@ fn all_ways_under_random_plans_are_the_seven_steps() {
             let ways = Way::of(function);
             let way = ways[(round / FUNCTIONS.len()) % ways.len()];
             let Some(program) = written(&robot, &other, function, way) else { continue };
-            if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2.table.reading) {
+            if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
                 panic!("the proof refuses {name}, {way:?}: {error}\n{:#?}", other.choices());
             }
             plan = other;

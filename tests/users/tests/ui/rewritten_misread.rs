@@ -1,7 +1,7 @@
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "robots/misread_graph.yaml", form = "rewritten")]
+#[robot(path = "robots/misread_graph.yaml", form = "reduced")]
 struct Rod;
 
 fn main() {

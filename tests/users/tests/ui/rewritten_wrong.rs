@@ -1,7 +1,7 @@
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "robots/wrong_graph.yaml", form = "rewritten")]
+#[robot(path = "robots/wrong_graph.yaml", form = "reduced")]
 struct Rod;
 
 fn main() {

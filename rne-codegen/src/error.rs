@@ -1,0 +1,202 @@
+//! Why a robot cannot be compiled, in words for people.
+
+use std::fmt;
+
+use rne_model::Robot;
+
+use crate::function::Function;
+use crate::ir::name::Name;
+
+/// Why a robot cannot be compiled.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CompileError {
+    /// A constant made from finite numbers of the table overflows.
+    NotFinite {
+        /// The constant.
+        name: Name,
+    },
+    /// Code that would be another function than the seven steps; it is never emitted.
+    NotIdentical {
+        /// The function.
+        function: Function,
+        /// The first number returned that differs, counted from 1: for torques, the joint.
+        output: usize,
+        /// What may be the cause.
+        suspect: Suspect,
+    },
+    /// Code that rounds too far away from the seven steps; it is never emitted.
+    Imprecise {
+        /// The function.
+        function: Function,
+        /// The largest difference, relative to the largest number returned.
+        rounding: f64,
+        /// What may be the cause.
+        suspect: Suspect,
+    },
+    /// Two variables of one name, of which the second would shadow the first; it is never emitted.
+    TwoOfOneName {
+        /// The function.
+        function: Function,
+        /// The name.
+        name: String,
+    },
+    /// A function of so many joints that no compiler would take its code.
+    TooLarge {
+        /// The function.
+        function: Function,
+        /// Joints of the robot.
+        dof: usize,
+        /// The most operations that are compiled.
+        most: usize,
+    },
+    /// A plan that does not fit the robot.
+    Plan(String),
+    /// A rewritten graph that cannot be read.
+    Graph {
+        /// The robot's name.
+        robot: String,
+        /// The function whose graph it is.
+        function: Function,
+        /// The line of the graph, counted from 1.
+        line: usize,
+        /// What is wrong there.
+        message: String,
+    },
+}
+
+/// What may be the cause when a form is refused.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Suspect {
+    /// It was written by the plan of a plan file.
+    pub planned: bool,
+    /// A number of the robot whose products leave the range of double precision.
+    pub number: Option<Extreme>,
+}
+
+/// A number of a robot that is very large or very small.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Extreme {
+    /// What it is, and its link.
+    what: &'static str,
+    link: usize,
+    value: f64,
+}
+
+impl Extreme {
+    /// The number of a robot that is farthest from one, if its powers leave the range of double precision or the
+    /// precision of twice that, in which constants are computed.
+    #[must_use]
+    pub fn of(robot: &Robot) -> Option<Self> {
+        const LARGEST: f64 = 1e75;
+        let far = |value: f64| value.abs().log2().abs();
+        let mut numbers = Vec::new();
+        for (index, joint) in robot.joints.iter().enumerate() {
+            let mut put = |what, values: &[f64]| {
+                numbers.extend(values.iter().map(|&value| Self { what, link: index + 1, value }));
+            };
+            put("the length d", &[joint.row.dh.d]);
+            put("the length a", &[joint.row.dh.a]);
+            put("the angle theta", &[joint.row.dh.theta.radians]);
+            put("the angle alpha", &[joint.row.dh.alpha.radians]);
+            put("the mass", &[joint.row.link.mass]);
+            put("a coordinate of the centre of mass,", &joint.row.link.com);
+            put("an inertia,", joint.written_inertia.0.rows().as_flattened());
+        }
+        numbers.retain(|number| number.value != 0.0 && far(number.value) > LARGEST.log2());
+        numbers.into_iter().max_by(|a, b| far(a.value).total_cmp(&far(b.value)))
+    }
+}
+
+impl fmt::Display for Extreme {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { what, link, value } = self;
+        let (size, beyond) = if value.abs() > 1.0 { ("large", "overflow") } else { ("small", "vanish") };
+        write!(
+            f,
+            "{what} {value:e} of link {link} is too {size} for it: products of such numbers {beyond} in double \
+            precision. \
+             Other units help, `form = \"seven_steps\"` multiplies less"
+        )
+    }
+}
+
+impl CompileError {
+    /// Whether a form was written and refused, for it is another function than the seven steps or a worse one.
+    #[must_use]
+    pub fn is_refusal(&self) -> bool {
+        matches!(self, Self::NotIdentical { .. } | Self::Imprecise { .. })
+    }
+
+    /// The error with what may be the cause.
+    pub(crate) fn suspecting(mut self, robot: &Robot, is_planned: bool) -> Self {
+        if let Self::NotIdentical { suspect, .. } | Self::Imprecise { suspect, .. } = &mut self {
+            *suspect = Suspect { planned: is_planned, number: Extreme::of(robot) };
+        }
+        self
+    }
+}
+
+impl fmt::Display for CompileError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NotFinite { name } => write!(
+                f,
+                "the constant {name} ({}) of link {} is too large for a number of double precision",
+                name.quantity.meaning(),
+                name.joint
+            ),
+            Self::NotIdentical { function, output, suspect } => {
+                let what = if function.returns_torques() { "the torque of joint" } else { "of its result, number" };
+                write!(
+                    f,
+                    "this form of `{function}` is not the seven steps: {what} {output} differs. No code is written. "
+                )?;
+                match suspect {
+                    Suspect { number: Some(number), .. } => number.fmt(f),
+                    Suspect { planned: true, .. } => f.write_str(
+                        "A graph in a plan file that has been edited does that; `rne search --fresh` writes it anew",
+                    ),
+                    Suspect { planned: false, .. } => f.write_str("Please report this robot"),
+                }
+            }
+            Self::Imprecise { function, rounding, suspect } => {
+                let what = match function {
+                    _ if function.returns_torques() => "torque",
+                    _ if function.returns_accelerations() => "acceleration",
+                    _ => "number that it returns",
+                };
+                write!(
+                    f,
+                    "this form of `{function}` rounds too far from the seven steps: {rounding:.1e} of the largest \
+                    {what}. "
+                )?;
+                match suspect {
+                    Suspect { number: Some(number), .. } => number.fmt(f),
+                    Suspect { planned: true, .. } => {
+                        f.write_str("`rne search --fresh` finds another plan, `form = \"seven_steps\"` needs none")
+                    }
+                    Suspect { planned: false, .. } => f.write_str("`form = \"seven_steps\"` does not"),
+                }
+            }
+            Self::TwoOfOneName { function, name } => write!(
+                f,
+                "the code of `{function}` has two variables called `{name}`: the second would stand where the first is \
+                 meant. No code is written. Please report this robot"
+            ),
+            Self::TooLarge { function, dof, most } => write!(
+                f,
+                "`{function}` of {dof} joints is straight-line code of more than {most} operations, which no \
+                compiler takes in \
+                 reasonable time. Leave this function out; `rne::DynArm` computes it in a loop"
+            ),
+            Self::Plan(why) => f.write_str(why),
+            Self::Graph { robot, function, line, message } => write!(
+                f,
+                "line {line} of the rewritten graph of `{function}` in the plan of `{robot}`: {message}; `rne search \
+                 --rewrite --fresh` writes the plan anew"
+            ),
+        }
+    }
+}
+
+impl std::error::Error for CompileError {}

@@ -1,0 +1,132 @@
+//! The passes in their order, for one function: formulas, graph, lowering, the target's arrangement, proof.
+
+use rne_model::Robot;
+
+use crate::error::CompileError;
+use crate::fma;
+use crate::formulate;
+use crate::function::{Form, Function};
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Cost, Policy, Reading, Traced};
+use crate::lower::{Heading, lower};
+use crate::program::{Exactly, Program};
+use crate::prove::{self, Reference};
+
+/// Sums and products of a function that are compiled: `inverse_dynamics_derivatives` of an arm of 40 joints in which
+/// nothing folds. Its text is some 15 MB.
+pub(crate) const LARGEST: usize = 500_000;
+
+/// What a program is arranged for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Target {
+    /// The shortest wait for the result of one call ([`fma::soonest`]); the fewest instructions where a program is so
+    /// long that they matter more.
+    #[default]
+    Latency,
+    /// The fewest instructions of a machine with fused multiply-add ([`fma::fused`]), as batches want.
+    Throughput,
+}
+
+impl Target {
+    fn arranged(self, program: &Program) -> Program {
+        match self {
+            Self::Latency if !program.is_long() => fma::soonest(program),
+            Self::Latency | Self::Throughput => fma::fused(program),
+        }
+    }
+}
+
+/// A function as a graph that has not been lowered: what it returns, by name, and the graph of that with its trace.
+pub(crate) struct Formulation {
+    pub(crate) names: Vec<Name>,
+    pub(crate) traced: Traced,
+}
+
+impl Formulation {
+    /// The plain formulas of a function.
+    pub(crate) fn plain(policy: Policy, robot: &Robot, function: Function) -> Self {
+        let builder = Builder::traced(policy, Reading::default(), function);
+        let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
+        Self { names, traced: builder.finish(outputs) }
+    }
+
+    /// The plain formulas with every value computed once, however often and in whatever way they compute it: the
+    /// reduced form of what has no recursion of its own.
+    pub(crate) fn numbered(robot: &Robot, function: Function) -> Self {
+        let Self { names, traced } = Self::plain(Policy::Value, robot, function);
+        Self { names, traced: traced.numbered() }
+    }
+
+    /// How its constants are read in the fields of the proof.
+    pub(crate) fn reading(&self) -> Reading {
+        self.traced.graph.reading()
+    }
+
+    /// Its operations.
+    pub(crate) fn cost(&self) -> Cost {
+        self.traced.graph.cost(&mut Vec::new())
+    }
+
+    /// The reduced form that it is, with its constants, not proved.
+    pub(crate) fn lowered(self, robot: &Robot, function: Function) -> Result<(Program, Exactly), CompileError> {
+        lower(&Heading { robot, function, form: Form::Reduced }, self.traced, &self.names)
+    }
+
+    /// The reduced form that it is: lowered, arranged for a target, and proved to be that of the seven steps.
+    pub(crate) fn proved(
+        self,
+        function: Function,
+        target: Target,
+        reference: &Reference<'_>,
+    ) -> Result<Program, CompileError> {
+        let reading = self.reading();
+        let (program, exactly) = self.lowered(reference.robot(), function)?;
+        let mut program = target.arranged(&program);
+        program.proof = Some(prove::prove(reference, &program, &exactly, reading)?);
+        Ok(program)
+    }
+}
+
+/// A function by the seven steps, if they are not more than `most` operations; behind its own outputs stands every
+/// component of the quantities in `keep`.
+pub(crate) fn seven_steps_within(
+    most: usize,
+    robot: &Robot,
+    function: Function,
+    keep: &[Quantity],
+) -> Result<Program, CompileError> {
+    let Formulation { mut names, mut traced } = Formulation::plain(Policy::Structure, robot, function);
+    if traced.graph.operations() > most {
+        return Err(CompileError::TooLarge { function, dof: robot.dof(), most });
+    }
+    for definition in &traced.trace.definitions {
+        if keep.contains(&definition.name.quantity) && (1..=robot.dof()).contains(&definition.name.joint) {
+            names.push(definition.name);
+            traced.graph.outputs.push(definition.at);
+        }
+    }
+    Ok(lower(&Heading { robot, function, form: Form::SevenSteps }, traced, &names)?.0)
+}
+
+/// A function by the seven steps, to be held against.
+pub(crate) fn reference(robot: &Robot, function: Function) -> Result<Reference<'_>, CompileError> {
+    Reference::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_large_is_refused_with_what_to_do() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
+        let robot = rne_model::check_bytes("ur5", &std::fs::read(path).unwrap()).unwrap().robot;
+        let function = Function::InverseDynamicsDerivatives;
+        let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
+        assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });
+        let message = error.to_string();
+        assert!(message.contains("more than 1000 operations") && message.contains("rne::DynArm"), "{message}");
+        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[]).is_ok());
+    }
+}
