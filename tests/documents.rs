@@ -407,6 +407,33 @@ fn links_lead_somewhere() {
     assert!(links > 80, "{links} links of {} pages", pages.len());
 }
 
+/// A source that any page names by its last part (`prove.rs`, `ir/graph.rs`) is there.
+#[test]
+fn pages_name_sources_that_are_there() {
+    let (mut pages, mut sources) = (Vec::new(), Vec::new());
+    files_below(root(), ".md", &mut pages);
+    files_below(root(), ".rs", &mut sources);
+    let mut named = 0;
+    for page in &pages {
+        for word in read(page).split('`').skip(1).step_by(2) {
+            let is_path = word.chars().all(|c| c.is_ascii_alphanumeric() || "_/.-".contains(c));
+            if is_path
+                && word.ends_with(".rs")
+                && !word.starts_with('.')
+                && page.file_name() != Some("CHANGELOG.md".as_ref())
+            {
+                named += 1;
+                assert!(
+                    sources.iter().any(|source| source.ends_with(word)),
+                    "{}: there is no `{word}`",
+                    page.display()
+                );
+            }
+        }
+    }
+    assert!(named > 60, "{named} sources are named");
+}
+
 /// Files and tests that the guides name are there. A test is what has three underscores or more; a name in capitals
 /// (`robots/NAME.yaml`) stands for any.
 #[test]
