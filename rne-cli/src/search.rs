@@ -13,6 +13,7 @@ use rne_codegen::Function;
 use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions};
 use rne_model::plan_of;
 
+use crate::arguments::FunctionOrAll;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
@@ -24,7 +25,7 @@ use crate::{arguments, plan_file, robot_file};
 Examples:
   rne search robots/puma560.yaml --seconds 60             choices only
   rne search robots/puma560.yaml --seconds 300 --rewrite  and rewrite the graph that they give
-  rne search robots/puma560.yaml --rewrite --function gravity_torques,mass_matrix
+  rne search robots/puma560.yaml --seconds 600 --rewrite --function all
 
 Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs no search. A search goes on from the
 plan that is there, and what it writes is never worse, but that a plan that has lost much precision in f32 may give
@@ -40,10 +41,10 @@ pub(crate) struct Arguments {
     /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
     #[arg(long)]
     rewrite: bool,
-    /// Rewrite these functions instead of inverse_dynamics; may be repeated
-    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function(),
+    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all(),
         requires = "rewrite")]
-    functions: Vec<Function>,
+    functions: Vec<FunctionOrAll>,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -94,15 +95,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// The functions whose graphs are to be rewritten.
 fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
-    let functions = &arguments.functions;
-    if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
-        return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
+    let asked = &arguments.functions;
+    let is_asked = |function: Function| match asked.as_slice() {
+        [] => function == Function::InverseDynamics,
+        _ => asked.contains(&FunctionOrAll::One(function)),
+    };
+    if !arguments.rewrite {
+        return Ok(Vec::new());
     }
-    Ok(match (arguments.rewrite, functions.is_empty()) {
-        (false, _) => Vec::new(),
-        (true, true) => vec![Function::InverseDynamics],
-        (true, false) => Function::ALL.into_iter().filter(|function| functions.contains(function)).collect(),
-    })
+    if asked.contains(&FunctionOrAll::All) {
+        return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
+    }
+    let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
+    match functions.iter().find(|function| !function.can_be_rewritten()) {
+        Some(function) => {
+            Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")))
+        }
+        None => Ok(functions),
+    }
 }
 
 /// Searches with a progress bar on a terminal.

@@ -60,21 +60,21 @@ fn plans_are_compiled() {
     let good = fs::read_to_string(format!("{ROOT}/robots/planar3.plan.yaml")).expect("a plan");
     fs::write(&plan, &good).expect("written");
     assert!(fine(&["check", &robot]).starts_with("ok "));
-    assert!(fine(&["check", &plan, &robot]).contains("plan of planar3: reduced "));
+    assert!(fine(&["check", &plan, &robot]).contains("plan of planar3: inverse_dynamics "));
 
-    let last = |start: &str| good.lines().rfind(|line| line.trim_start().starts_with(start)).expect(start).to_owned();
+    let first = |start: &str| good.lines().find(|line| line.trim_start().starts_with(start)).expect(start).to_owned();
     let replaced = |from: &str, to: &str| good.replacen(from, to, 1);
-    let (torque, sum) = (last("tau3 = "), good.lines().find(|line| line.contains(" + t")).expect("a sum"));
+    let (torque, sum) = (first("out3 = "), good.lines().find(|line| line.contains(" + t")).expect("a sum"));
     let products = good.lines().find(|line| line.contains("mul: ")).expect("products");
     for (wrong, at, what) in [
         (replaced(sum, &sum.replace('+', "-")), "graph: |", "is not the seven steps"),
-        (replaced(&format!("{torque}\n"), ""), "tau2", "a torque is missing"),
-        (replaced(&torque, &format!("{torque}\n{torque}")), "tau3", "`tau3` stands there twice"),
-        (replaced(&torque, &torque.replace("tau3", "tau+3")), "tau+3", "`tau+3` is no name of a graph"),
-        (replaced(&torque, &torque.replace("tau3", "tau4")), "tau4", "there is no joint 4"),
-        (replaced(&torque, "    tau3 = k99"), "tau3 = k99", "there is no `k99` before this line"),
-        (replaced(&torque, "    tau3 = k+1"), "tau3 = k+1", "there is no `k+1` before this line"),
-        (replaced(&torque, "    tau3 = t1 ^ t2"), "t1 ^ t2", "`^` is no operation"),
+        (replaced(&format!("{torque}\n"), ""), "out2", "`out3` is missing"),
+        (replaced(&torque, &format!("{torque}\n{torque}")), "out3", "`out3` stands there twice"),
+        (replaced(&torque, &torque.replace("out3", "out+3")), "out+3", "`out+3` is no name of a graph"),
+        (replaced(&torque, &torque.replace("out3", "out4")), "out4", "3 numbers are returned"),
+        (replaced(&torque, "      out3 = k99"), "out3 = k99", "there is no `k99` before this line"),
+        (replaced(&torque, "      out3 = k+1"), "out3 = k+1", "there is no `k+1` before this line"),
+        (replaced(&torque, "      out3 = t1 ^ t2"), "t1 ^ t2", "`^` is no operation"),
         (replaced("length_scale: a2", "length_scale: a99"), "  plan:", "does not fit"),
         (replaced("    joints:", "    gyrostat: true\n    joints:"), "  plan:", "does not fit"),
         (replaced(products, "    mul: 1"), "  operations:", "the file says 1 products"),

@@ -24,7 +24,9 @@ fn a_plan_is_written_replayed_and_never_becomes_worse() {
     let first = fine(&["search", &robot, "--seconds", "1", "--rewrite"]);
     assert!(first.ends_with("arm.plan.yaml is written\n"), "{first}");
     let written = fs::read_to_string(&plan).expect("a plan");
-    for part in ["format: 1\n", "fingerprint: ", "\nreduced:\n", "\nrewritten:\n", "  graph: |\n"] {
+    for part in
+        ["format: 2\n", "fingerprint: ", "\nreduced:\n", "\nrewritten:\n  inverse_dynamics:\n", "    graph: |\n"]
+    {
         assert!(written.contains(part), "no `{part}` in {written}");
     }
     let found = totals(&first);
@@ -32,9 +34,11 @@ fn a_plan_is_written_replayed_and_never_becomes_worse() {
     assert!(found[1] <= found[0], "rewriting only helps: {first}");
 
     // what was found is what is built
-    let ops = fine(&["ops", &robot]);
-    for (form, total) in [("reduced", found[0]), ("rewritten", found[1])] {
-        let line = ops.lines().find(|line| line.contains("inverse_dynamics ") && line.contains(form)).expect(form);
+    for (without, total) in [(&["--without", "rewriting"][..], found[0]), (&[], found[1])] {
+        let call: Vec<&str> = ["ops", &robot].iter().chain(without).copied().collect();
+        let ops = fine(&call);
+        let line = ops.lines().find(|line| line.contains("inverse_dynamics ") && line.contains("reduced"));
+        let line = line.expect("the reduced form");
         let generated = line.split_once('→').expect("an arrow").1;
         assert_eq!(generated.split_whitespace().nth(2), Some(total.to_string().as_str()), "{line}");
     }
@@ -95,17 +99,51 @@ fn a_stale_plan_is_refused_and_stays_as_it_is() {
     fs::write(&robot, format!("# a comment\n{heavier}")).expect("written");
     fine(&["show", &robot, "--form", "reduced"]);
 
-    fs::write(&plan, "format: 1\nrobot: arm\n").expect("written");
+    fs::write(&plan, "format: 2\nrobot: arm\n").expect("written");
     fails(1, &["search", &robot, "--seconds", "0"], &["arm.plan.yaml:", "fingerprint"]);
-    fails(1, &["show", &robot, "--form", "rewritten"], &["arm.plan.yaml:", "fingerprint"]);
+    fails(1, &["show", &robot, "--form", "reduced"], &["arm.plan.yaml:", "fingerprint"]);
+    let older = written.replacen("format: 2", "format: 1", 1);
+    fs::write(&plan, older).expect("written");
+    fails(1, &["show", &robot, "--form", "reduced"], &["arm.plan.yaml:5:9", "`format: 2`", "rne search"]);
 }
 
+/// Functions that other algorithms write, and one that no choice touches.
 #[test]
-fn a_rewritten_form_needs_its_graph() {
-    let (robot, _) = arm("search_rewritten");
-    fails(1, &["show", &robot, "--form", "rewritten"], &["has no rewritten graph", "rne search", "--rewrite"]);
-    fine(&["search", &robot, "--seconds", "0"]);
-    fails(1, &["emit", &robot, "--form", "rewritten"], &["has no rewritten graph", "rne search", "--rewrite"]);
+fn any_function_is_rewritten_where_it_pays() {
+    let (robot, plan) = arm("search_rewritten");
+    let total = |function: &str, without: &[&str]| -> u64 {
+        let call: Vec<&str> = ["ops", &robot, "--function", function].iter().chain(without).copied().collect();
+        let ops = fine(&call);
+        let line = ops.lines().find(|line| line.contains(" reduced ")).unwrap_or_else(|| panic!("{ops}"));
+        let generated = line.split_once('→').expect("an arrow").1;
+        generated.split_whitespace().nth(2).and_then(|total| total.parse().ok()).unwrap_or_else(|| panic!("{line}"))
+    };
+    let functions = ["mass_matrix", "forward_dynamics", "jacobian_rate_times_velocity"];
+    let found = fine(&["search", &robot, "--seconds", "3", "--rewrite", "--function", &functions.join(",")]);
+    let written = fs::read_to_string(&plan).expect("a plan");
+    for function in functions {
+        assert!(found.contains(&format!("{function}  ")), "{found}");
+        assert!(total(function, &[]) < total(function, &["--without", "rewriting"]), "{function}: {found}");
+    }
+    let at = |text: &str| written.find(text).unwrap_or_else(|| panic!("no `{text}` in {written}"));
+    assert!(written[at("  forward_dynamics:")..].contains("    algorithm: "), "{written}");
+    let checked = fine(&["check", &robot.replace(".yaml", ".plan.yaml")]);
+    assert!(checked.contains("mass_matrix rewritten ") && checked.contains("proved"), "{checked}");
+    let shown = fine(&["show", &robot, "--function", "mass_matrix", "--form", "reduced"]);
+    assert!(shown.contains("rewritten by algebra") && shown.contains("Proved identical"), "{shown}");
+
+    // one that is not rewritten, and one with a wrong number
+    let wrong = written.replacen("  mass_matrix:", "  joint_wrenches:", 1);
+    fs::write(&plan, wrong).expect("written");
+    let refused = |parts: &[&str]| {
+        let called = rne(&["check", &robot]);
+        assert!(called.status == 1 && parts.iter().all(|part| called.out.contains(part)), "{called:?}");
+    };
+    refused(&["`joint_wrenches` has no reduced form that could be rewritten"]);
+    let (before, graph) = written.split_at(at("  mass_matrix:"));
+    let wrong = format!("{before}{}", graph.replacen("out1 = ", "out1 = -", 1).replacen("= --", "= ", 1));
+    fs::write(&plan, wrong).expect("written");
+    refused(&["graph: |", "this form of `mass_matrix` is not the seven steps"]);
 }
 
 #[test]
@@ -119,6 +157,8 @@ fn arguments_of_a_search() {
         fails(2, &["search", &robot, "--seconds", seconds], &["--seconds", "a number of seconds, 0 to 1000000"]);
     }
     fails(2, &["search", &robot, "--seed", "x"], &["--seed"]);
+    fails(2, &["search", &robot, "--function", "mass_matrix"], &["--rewrite"]);
+    fails(2, &["search", &robot, "--rewrite", "--function", "joint_wrenches"], &["seven steps only"]);
     assert_eq!(rne(&["search"]).status, 2);
     fails(1, &["search", "nowhere.yaml"], &["no robot file nowhere.yaml"]);
     assert!(!fs::exists(&plan).expect("a folder"), "nothing was written");

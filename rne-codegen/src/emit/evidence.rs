@@ -5,18 +5,20 @@ use crate::program::{Program, Proof};
 /// What the form is, its proof and its choices, one sentence or choice per line.
 #[must_use]
 pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
+    let meaning = if program.function.returns_torques() {
+        "only the torques keep a physical meaning."
+    } else {
+        "only what is returned keeps a meaning."
+    };
     let form = match () {
-        () if program.is_rewritten => "Reduced form, rewritten: fewest operations, algebra without a recursion.",
-        () if program.function.returns_torques() && !program.choices.is_empty() => {
-            "Reduced form: fewest operations; only the torques keep a physical meaning."
-        }
-        () if !program.choices.is_empty() => "Reduced form: fewest operations; only what is returned keeps a meaning.",
-        () => "Reduced form: the plain formulas, every value computed once however it comes about.",
+        () if program.is_rewritten => format!("Reduced form, rewritten by algebra: fewest operations; {meaning}"),
+        () if !program.choices.is_empty() => format!("Reduced form: fewest operations; {meaning}"),
+        () => "Reduced form: the plain formulas, every value computed once however it comes about.".to_owned(),
     };
     let (what, largest) =
         if program.function.returns_torques() { ("all torques", "torque") } else { ("all results", "result") };
     let mut lines = vec![
-        form.to_owned(),
+        form,
         format!(
             "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and \
             2^61 - 31.",
