@@ -313,7 +313,7 @@ impl Builder {
 /// The lines of one joint: each gives a quantity of the lecture its value.
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
-    builder: &'s Builder,
+    pub(crate) builder: &'s Builder,
     /// The joint at whose place the lines stand.
     joint: usize,
     /// The joint whose name the quantities bear.
@@ -321,26 +321,36 @@ pub(crate) struct JointLines<'s> {
 }
 
 impl<'s> JointLines<'s> {
-    /// The same lines, for quantities that belong to the link before.
-    pub(crate) fn of_link_before(self) -> Self {
-        Self { named: self.joint.saturating_sub(1), ..self }
+    /// The same lines, for quantities that bear the number of another joint.
+    pub(crate) fn named(self, joint: usize) -> Self {
+        Self { named: joint, ..self }
     }
 
-    /// The same lines, for quantities that belong to the link after.
-    pub(crate) fn of_link_after(self) -> Self {
-        Self { named: self.joint + 1, ..self }
+    /// A number of the table.
+    pub(crate) fn entry(&self, quantity: Quantity, value: f64) -> Symbol<'s> {
+        self.builder.entry(Name::scalar(quantity, self.named), value)
+    }
+
+    /// Gives a number a name.
+    pub(crate) fn name(&self, quantity: Quantity, symbol: Symbol<'s>) -> Symbol<'s> {
+        self.builder.name(Name::scalar(quantity, self.named), symbol)
+    }
+
+    /// Names the components of a vector.
+    pub(crate) fn name_vector(&self, quantity: Quantity, vector: Vector<'s>) -> Vector<'s> {
+        self.builder.name_vector(quantity, self.named, vector)
     }
 
     /// A quantity that is one number.
     pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
         let value = self.within(quantity, formula);
-        self.builder.name(Name::scalar(quantity, self.named), value)
+        self.name(quantity, value)
     }
 
     /// A vector.
     pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
         let value = self.within(quantity, formula);
-        self.builder.name_vector(quantity, self.named, value)
+        self.name_vector(quantity, value)
     }
 
     /// A matrix.
