@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::ir::quantity::{Axis, Component, Quantity};
+use crate::ir::quantity::{Axis, Component, Indices, Quantity};
 
 /// The full name of a number: `w2_z` is component z of ω of link 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -61,16 +61,7 @@ impl Name {
 
     /// Whether its text has the joint in it: of what there is one of, it has not.
     pub(crate) const fn tells_joint(&self) -> bool {
-        !matches!(
-            self.quantity,
-            Quantity::Two
-                | Quantity::One
-                | Quantity::Half
-                | Quantity::KineticEnergy
-                | Quantity::PotentialEnergy
-                | Quantity::Constant
-                | Quantity::Term
-        )
+        !matches!(self.quantity.indices(), Indices::Alone | Indices::Counted)
     }
 
     /// An element of a matrix.
@@ -84,9 +75,7 @@ impl Name {
     pub const fn indexed(quantity: Quantity, joint: usize, index: usize) -> Self {
         Self { indices: [index, 0], ..Self::scalar(quantity, joint) }
     }
-}
 
-impl Name {
     /// The name under which the table has an element of an inertia: that of the upper half.
     pub(crate) fn of_upper_half(self) -> Self {
         match (self.quantity, self.component) {
@@ -102,20 +91,13 @@ impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
         let mut indices = self.indices;
-        match self.quantity {
-            _ if !self.tells_joint() => {}
-            Quantity::GroupPosition
-            | Quantity::GroupTheta
-            | Quantity::GroupAngle
-            | Quantity::GroupSine
-            | Quantity::GroupCosine => {
+        match self.quantity.indices() {
+            Indices::Alone | Indices::Counted => {}
+            Indices::Group => {
                 write!(f, "{}_{}", indices[0], self.joint)?;
                 indices[0] = 0;
             }
-            // f_{i-1,i}: both links, as in the lecture
-            Quantity::JointForce | Quantity::JointMoment => {
-                write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?;
-            }
+            Indices::Links => write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?,
             _ => write!(f, "{}", self.joint)?,
         }
         match self.component {
