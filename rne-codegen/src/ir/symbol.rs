@@ -1,8 +1,8 @@
 //! Symbolic numbers, vectors and matrices, with the operators that formulas are written in.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::Mul;
 
-use super::{Builder, CausesId, Number, Ref};
+use super::{Builder, CausesId, Number, Ref, operators};
 use crate::ir::quantity::Axis;
 
 /// A number of a graph that is being written.
@@ -36,36 +36,11 @@ impl Symbol<'_> {
     }
 }
 
-impl<'s> Add for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn add(self, other: Self) -> Self {
-        self.builder.sum(self, other)
-    }
-}
-
-impl<'s> Sub for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn sub(self, other: Self) -> Self {
-        self.builder.sum(self, -other)
-    }
-}
-
-impl<'s> Mul for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn mul(self, other: Self) -> Self {
-        self.builder.product(self, other)
-    }
-}
-
-impl Neg for Symbol<'_> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        self.signed(true)
-    }
+operators! { Symbol<'_>:
+    a + b => a.builder.sum(a, b);
+    a - b => a.builder.sum(a, -b);
+    a * b => a.builder.product(a, b);
+    -a => a.signed(true);
 }
 
 /// A vector of three symbols.
@@ -121,28 +96,10 @@ impl<'s> Vector<'s> {
     }
 }
 
-impl Add for Vector<'_> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Vector<'_> {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl Neg for Vector<'_> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        self.map(|_, x| -x)
-    }
+operators! { Vector<'_>:
+    a + b => a.zip(b, |a, b| a + b);
+    a - b => a.zip(b, |a, b| a - b);
+    -a => a.map(|_, x| -x);
 }
 
 impl<'s> Mul<Symbol<'s>> for Vector<'s> {
