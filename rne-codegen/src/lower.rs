@@ -327,10 +327,9 @@ impl<'w> Schedule<'w> {
     /// Outputs as variables; a torque, and whatever is computed for it alone, gets a statement of its own name.
     fn outputs(&self, outputs: &[(Name, Ref)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
         let mut returned = Vec::with_capacity(outputs.len());
-        let mut first: HashMap<Name, usize> = HashMap::new();
-        for (order, definition) in self.written.trace.definitions.iter().enumerate() {
-            first.entry(definition.name).or_insert(order);
-        }
+        let definitions = self.written.trace.definitions.iter().enumerate();
+        let first: HashMap<Name, usize> =
+            definitions.rev().map(|(order, definition)| (definition.name, order)).collect();
         let mut stated = BTreeSet::new();
         for &(name, term) in outputs {
             let value = self.expression(term);

@@ -300,14 +300,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             .collect();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
-        let arguments = Arguments {
-            force: wrench,
-            moment: wrench,
-            tau: &qdd,
-            base: [wrench; 4],
-            parameters: &parameters,
-            ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
-        };
+        let arguments = state([&q, &qd, &qdd], wrench, &parameters);
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
         let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
@@ -327,14 +320,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
             #[allow(clippy::cast_possible_truncation)]
             let wrench = wrench.map(|x| x as f32);
-            let arguments = Arguments {
-                force: wrench,
-                moment: wrench,
-                tau: &qdd,
-                base: [wrench; 4],
-                parameters: &parameters_in_single,
-                ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
-            };
+            let arguments = state([&q, &qd, &qdd], wrench, &parameters_in_single);
             #[allow(clippy::cast_possible_truncation)]
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
@@ -351,6 +337,11 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         }
     }
     all
+}
+
+/// Arguments of any function: forces and the motion of the base are all the same vector.
+fn state<'a, T: Copy>([q, qd, qdd]: [&'a [T]; 3], vector: [T; 3], parameters: &'a [T]) -> Arguments<'a, T> {
+    Arguments { q, qd, qdd, force: vector, moment: vector, tau: qdd, base: [vector; 4], parameters }
 }
 
 /// The larger of two; what is no number is larger than any.

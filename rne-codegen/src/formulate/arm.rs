@@ -153,22 +153,10 @@ pub(crate) struct Placement<'s> {
 impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
     fn new(builder: &'s Builder, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
-        let number = |value: f64| builder.constant(value, Cause::Arithmetic);
-        let (zero, one) = (number(0.0), number(1.0));
         let [roll, pitch, yaw] = rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
-        let about_x = {
-            let (s, c) = roll;
-            Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
-        };
-        let about_y = {
-            let (s, c) = pitch;
-            Matrix::from_rows([[c, zero, s], [zero, one, zero], [-s, zero, c]])
-        };
-        let about_z = {
-            let (s, c) = yaw;
-            Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]])
-        };
-        Self { rotation: (about_z * about_y) * about_x, translation: Vector(translation) }
+        let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);
+        let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);
+        Self { rotation, translation: Vector(translation) }
     }
 
     fn tool(builder: &'s Builder, robot: &Robot) -> Self {
@@ -221,11 +209,25 @@ fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> 
 
 /// Rx(α) of a row of the table.
 fn turn_about_x<'s>(builder: &'s Builder, row: usize, alpha: &Angle) -> Matrix<'s> {
-    let (zero, one) = (builder.constant(0.0, Cause::TurnAboutX), builder.constant(1.0, Cause::TurnAboutX));
     let (s, c) = builder.constant_turn(alpha, Cause::Arithmetic);
     let s = builder.name(Name::scalar(Quantity::TwistSine, row), s);
     let c = builder.name(Name::scalar(Quantity::TwistCosine, row), c);
-    Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
+    turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
+}
+
+/// A turn about an axis by sine and cosine; `cause` tells why it leaves the axis alone.
+pub(crate) fn turned<'s>(
+    builder: &'s Builder,
+    axis: Axis,
+    (s, c): (Symbol<'s>, Symbol<'s>),
+    cause: Cause,
+) -> Matrix<'s> {
+    let [zero, one] = [0.0, 1.0].map(|value| builder.constant(value, cause));
+    Matrix::from_rows(match axis {
+        Axis::X => [[one, zero, zero], [zero, c, -s], [zero, s, c]],
+        Axis::Y => [[c, zero, s], [zero, one, zero], [-s, zero, c]],
+        Axis::Z => [[c, -s, zero], [s, c, zero], [zero, zero, one]],
+    })
 }
 
 /// α_0 of a standard table is 0.

@@ -259,7 +259,7 @@ fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
 }
 
 /// The components of a vector that bears this name.
-fn components<'s>(name: Name, vector: Vector<'s>) -> [(Name, Symbol<'s>); 3] {
+fn components(name: Name, vector: Vector<'_>) -> [(Name, Symbol<'_>); 3] {
     Axis::ALL.map(|axis| (Name { component: Component::Vector(axis), ..name }, vector.0[axis as usize]))
 }
 

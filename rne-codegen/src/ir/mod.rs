@@ -35,6 +35,6 @@ pub(crate) use numbers::{Numbers, Source};
 pub(crate) use operators::operators;
 pub(crate) use residue::Image;
 pub(crate) use sample_point::Point;
-pub(crate) use symbol::{Matrix, Symbol, Vector};
+pub(crate) use symbol::{Matrix, Symbol, Vector, by_quarters};
 pub(crate) use trace::{Birth, Definition, Trace, Traced};
 pub(crate) use value_numbering::number_values;

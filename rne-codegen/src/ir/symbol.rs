@@ -2,6 +2,8 @@
 
 use std::ops::Mul;
 
+use rne_model::QuarterTurns;
+
 use super::{Builder, CausesId, Number, Ref, operators};
 use crate::ir::quantity::Axis;
 
@@ -43,6 +45,16 @@ operators! { Symbol<'_>:
     -a => a.signed(true);
 }
 
+/// Sine and cosine of an angle that is so many right angles larger.
+pub(crate) fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
+    match turns {
+        QuarterTurns::Zero => (s, c),
+        QuarterTurns::One => (c, -s),
+        QuarterTurns::Two => (-s, -c),
+        QuarterTurns::Three => (-c, s),
+    }
+}
+
 /// A vector of three symbols.
 #[derive(Clone, Copy)]
 pub(crate) struct Vector<'s>(pub(crate) [Symbol<'s>; 3]);
@@ -50,8 +62,7 @@ pub(crate) struct Vector<'s>(pub(crate) [Symbol<'s>; 3]);
 impl<'s> Vector<'s> {
     /// Applies `f` to each component.
     pub(crate) fn map(self, f: impl Fn(Axis, Symbol<'s>) -> Symbol<'s>) -> Self {
-        let [x, y, z] = self.0;
-        Self([f(Axis::X, x), f(Axis::Y, y), f(Axis::Z, z)])
+        Self(Axis::ALL.map(|axis| f(axis, self.0[axis as usize])))
     }
 
     /// Component z, along the joint axis: e · v.
@@ -121,12 +132,7 @@ impl<'s> Matrix<'s> {
 
     /// Applies `f` to each element: row, column, element.
     pub(crate) fn map(self, f: impl Fn(Axis, Axis, Symbol<'s>) -> Symbol<'s>) -> Self {
-        let [x, y, z] = self.0;
-        Self([
-            x.map(|column, e| f(Axis::X, column, e)),
-            y.map(|column, e| f(Axis::Y, column, e)),
-            z.map(|column, e| f(Axis::Z, column, e)),
-        ])
+        Self(Axis::ALL.map(|row| self.0[row as usize].map(|column, element| f(row, column, element))))
     }
 
     pub(crate) fn transpose(self) -> Self {

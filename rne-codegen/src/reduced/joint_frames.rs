@@ -62,6 +62,13 @@ pub(crate) struct Frames {
     pub(crate) carried: bool,
 }
 
+impl Row {
+    /// Rx(α) Rz(θ)
+    pub(crate) fn rotation(&self) -> Square {
+        compose(&about_x(self.alpha), &about_z(self.theta))
+    }
+}
+
 impl Table {
     /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does:
     /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
@@ -183,8 +190,7 @@ impl Table {
     /// The base is turned into the frame of joint 1 at q = 0. Where it stands is no matter.
     fn normalise_first(&mut self) {
         let Some(first) = self.rows.first_mut() else { return };
-        let rotation = compose(&about_x(first.alpha), &about_z(first.theta));
-        self.gravity = apply(&transpose(&rotation), self.gravity);
+        self.gravity = apply(&transpose(&first.rotation()), self.gravity);
         (first.alpha, first.theta) = (Turn::NONE, Turn::NONE);
         (first.offset, first.d) = ([Number::ZERO; 3], Number::ZERO);
     }
@@ -232,7 +238,7 @@ impl Table {
         let kinds: Vec<_> = self.rows.iter().map(|row| row.kind).collect();
         let slides = |at: usize| kinds.get(at) == Some(&JointKind::Prismatic);
         let mut carriers = (0..kinds.len()).filter(|&at| !slides(at) && slides(at + 1)).peekable();
-        let end = |first: usize| (first + 1..).find(|&at| !slides(at)).unwrap_or(kinds.len());
+        let end = |first: usize| (first + 1..kinds.len()).find(|&at| !slides(at)).unwrap_or(kinds.len());
         carriers.peek().is_some() && carriers.all(|first| self.carry_behind(first, end(first)))
     }
 
@@ -242,7 +248,7 @@ impl Table {
         let mut axes = IDENTITY;
         for row in &mut self.rows[first + 1..end] {
             row.offset = apply(&axes, row.offset);
-            axes = compose(&axes, &compose(&about_x(row.alpha), &about_z(row.theta)));
+            axes = compose(&axes, &row.rotation());
             row.axis = apply(&axes, IDENTITY[2]);
             row.matter = row.matter.turned(&axes);
             (row.alpha, row.theta, row.carried) = (Turn::NONE, Turn::NONE, true);

@@ -6,7 +6,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::Number;
 use crate::plan::{Plan, Scale, Slide, Target};
 use crate::reduced::joint_frames::{Row, Table};
-use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple, about_x, about_z, compose};
+use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
 const LEAST_PIVOT: f64 = 1e-5;
@@ -146,7 +146,7 @@ fn regrouped(
                 // a sliding link turns as the one before: all second moments belong to that
                 let s = std::mem::take(&mut links[index].s);
                 if index > 0 {
-                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rotation(&rows[index]));
+                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation());
                     links[index - 1] = links[index - 1] + moved;
                 }
             }
@@ -233,11 +233,6 @@ fn line(rows: &[Row], slides: &[Number], index: usize) -> (Triple, Triple) {
     let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
     let [x, y, z] = row.offset;
     ([x, y + d * u[1], z - before + d * u[2]], u)
-}
-
-/// Rx(α) Rz(θ) of a prismatic row.
-fn rotation(row: &Row) -> Square {
-    compose(&about_x(row.alpha), &about_z(row.theta))
 }
 
 /// Whether the last link is axisymmetric about a revolute joint.

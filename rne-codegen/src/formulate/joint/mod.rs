@@ -8,10 +8,10 @@ mod revolute;
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::formulate::arm::{Arm, Link};
+use crate::formulate::arm::{Arm, Link, turned};
 use crate::formulate::seven_steps::Wrench;
 use crate::ir::ledger::Cause;
-use crate::ir::quantity::Quantity;
+use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
 
 /// Position, rate and acceleration of one joint.
@@ -56,9 +56,7 @@ impl<'s> Joint<'_, 's> {
 
     /// R_i: how the joint is mounted, then Rz(θ_i).
     pub(crate) fn rotation(&self) -> Matrix<'s> {
-        let (s, c) = self.sine_and_cosine();
-        let [zero, one] = [0.0, 1.0].map(|value| self.lines.builder.constant(value, Cause::TurnAboutZ));
-        let about_z = Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]]);
+        let about_z = turned(self.lines.builder, Axis::Z, self.sine_and_cosine(), Cause::TurnAboutZ);
         self.lines.matrix(Quantity::Rotation, || self.link.mount.rotation * about_z)
     }
 

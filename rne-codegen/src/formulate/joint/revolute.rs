@@ -5,7 +5,7 @@ use rne_model::QuarterTurns;
 use super::Joint;
 use crate::formulate::seven_steps::Wrench;
 use crate::ir::quantity::Quantity;
-use crate::ir::{Symbol, Vector};
+use crate::ir::{Symbol, Vector, by_quarters};
 
 /// Of θ + q. A right angle θ permutes and negates those of q exactly; any other is added to q.
 pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<'s>) {
@@ -31,16 +31,6 @@ pub(super) fn sine_and_cosine<'s>(joint: &Joint<'_, 's>) -> (Symbol<'s>, Symbol<
             let turn = (line.name(Quantity::Sine, s), line.name(Quantity::Cosine, c));
             by_quarters(turn, right.unwrap_or(QuarterTurns::Zero))
         }
-    }
-}
-
-/// Sine and cosine of an angle that is so many right angles larger.
-fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
-    match turns {
-        QuarterTurns::Zero => (s, c),
-        QuarterTurns::One => (c, -s),
-        QuarterTurns::Two => (-s, -c),
-        QuarterTurns::Three => (-c, s),
     }
 }
 
