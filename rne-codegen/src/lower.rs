@@ -154,7 +154,7 @@ impl<'w> Schedule<'w> {
             let index = id.index();
             match node {
                 Op::Input(input) => self.names[index] = Some(Given { name: input.name(), negative: false }),
-                Op::Sum(..) | Op::Product(..) | Op::Quotient(..) | Op::BySign(_) => {
+                _ if node.is_operation() => {
                     let keeps = self.names[index].is_some_and(|given| given.name.quantity.is_of_the_lecture());
                     // an auxiliary quantity that is used once is clearer where it is used
                     if !keeps && self.uses[index] < 2 && !self.is_angle(id) {
@@ -228,11 +228,13 @@ impl<'w> Schedule<'w> {
         self.uses[id.index()] > 0
     }
 
+    fn live_nodes(&self) -> impl Iterator<Item = (Ref, Op)> {
+        self.written.graph.nodes().filter(|&(id, _)| self.is_live(id))
+    }
+
     fn arguments(&self) -> Vec<Name> {
-        let live = self.written.graph.nodes().filter(|&(id, _)| self.is_live(id));
-        let names: BTreeSet<Name> =
-            live.filter_map(|(_, op)| if let Op::Input(input) = op { Some(input.name()) } else { None }).collect();
-        names.into_iter().collect()
+        let input = |(_, op)| if let Op::Input(input) = op { Some(input.name()) } else { None };
+        self.live_nodes().filter_map(input).collect::<BTreeSet<_>>().into_iter().collect()
     }
 
     fn constants(&self) -> Result<Vec<(Constant, Ref)>, CompileError> {
@@ -257,7 +259,7 @@ impl<'w> Schedule<'w> {
     /// The live nodes that use each constant, in order.
     fn users_of_constants(&self) -> HashMap<Ref, Vec<Ref>> {
         let mut users: HashMap<Ref, Vec<Ref>> = HashMap::new();
-        for (user, node) in self.written.graph.nodes().filter(|&(user, _)| self.is_live(user)) {
+        for (user, node) in self.live_nodes() {
             for operand in node.operands().map(Ref::magnitude) {
                 if matches!(self.written.graph.op(operand), Op::Constant(_)) {
                     users.entry(operand).or_default().push(user);
@@ -269,24 +271,13 @@ impl<'w> Schedule<'w> {
 
     /// The names under which `users`, live statements, use a constant.
     fn constant_names(&self, id: Ref, users: &[Ref]) -> Vec<Given> {
-        let mut names: Vec<Given> = Vec::new();
-        let mut put = |given: Option<Given>| {
-            if let Some(given) = given
-                && !names.iter().any(|known| known.name == given.name)
-            {
-                names.push(given);
-            }
-        };
-        if self.uses[id.index()] == 0 || self.is_zero(id) {
-            return names;
+        if !self.is_live(id) || self.is_zero(id) {
+            return Vec::new();
         }
-        for &user in users {
-            put(self.constant_name(user, id));
-        }
-        if self.is_output[id.index()] {
-            put(self.names[id.index()]);
-        }
-        names
+        let returned = self.names[id.index()].filter(|_| self.is_output[id.index()]);
+        let mut seen = HashSet::new();
+        let used = users.iter().filter_map(|&user| self.constant_name(user, id));
+        used.chain(returned).filter(|given| seen.insert(given.name)).collect()
     }
 
     /// The name of a constant where `user` uses it.
@@ -299,10 +290,8 @@ impl<'w> Schedule<'w> {
     /// Statements with their position.
     fn statements(&self) -> Vec<(Position, Statement)> {
         let mut statements = Vec::new();
-        for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
-            if let (Op::Sum(..) | Op::Product(..) | Op::Quotient(..) | Op::BySign(_), Some(given)) =
-                (node, self.names[id.index()])
-            {
+        for (id, node) in self.live_nodes() {
+            if let (true, Some(given)) = (node.is_operation(), self.names[id.index()]) {
                 let (negative, value) = self.operation(id);
                 let value = signed(negative != given.negative, value);
                 let place = self.place(id, given.name);
@@ -315,7 +304,7 @@ impl<'w> Schedule<'w> {
     /// The sines and cosines, in the order in which they were asked for.
     fn turns(&self) -> Vec<Turn> {
         let mut turns: Vec<(Ref, Turn)> = Vec::new();
-        for (id, node) in self.written.graph.nodes().filter(|&(id, _)| self.is_live(id)) {
+        for (id, node) in self.live_nodes() {
             let (Op::Sine(angle) | Op::Cosine(angle)) = node else { continue };
             let name = self.names[id.index()].map(|given| given.name);
             let known = turns.iter().position(|(other, _)| *other == angle);
@@ -332,18 +321,16 @@ impl<'w> Schedule<'w> {
     }
 
     fn place(&self, id: Ref, name: Name) -> Place {
-        let step = name.quantity.step().unwrap_or(Step::AngularVelocity);
-        let own = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
-        self.written.trace.births[id.index()].as_ref().map_or(own, |birth| birth.place)
+        let own = || place_of(name, Step::AngularVelocity);
+        self.written.trace.births[id.index()].as_ref().map_or_else(own, |birth| birth.place)
     }
 
     /// Outputs as variables; a torque, and whatever is computed for it alone, gets a statement of its own name.
     fn outputs(&self, outputs: &[(Name, Ref)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
         let mut returned = Vec::with_capacity(outputs.len());
-        let mut first: HashMap<Name, usize> = HashMap::new();
-        for (order, definition) in self.written.trace.definitions.iter().enumerate() {
-            first.entry(definition.name).or_insert(order);
-        }
+        let definitions = self.written.trace.definitions.iter().enumerate();
+        let first: HashMap<Name, usize> =
+            definitions.rev().map(|(order, definition)| (definition.name, order)).collect();
         let mut stated = BTreeSet::new();
         for &(name, term) in outputs {
             let value = self.expression(term);
@@ -362,8 +349,7 @@ impl<'w> Schedule<'w> {
                 continue;
             }
             let definition = &self.written.trace.definitions[order];
-            let step = name.quantity.step().unwrap_or(Step::Torque);
-            let place = Place { joint: name.joint, step, quantity: name.quantity, by: name.by };
+            let place = place_of(name, Step::Torque);
             // after the last node that was there when it was named, and after torques named before it
             statements.push(((definition.after.saturating_sub(1), order), Statement { place, name, value }));
             returned.push(Output { name, value: Expression::Variable(name) });
@@ -416,39 +402,38 @@ impl<'w> Schedule<'w> {
     }
 
     fn operation(&self, id: Ref) -> (bool, Expression) {
+        let operand = |at: Ref| {
+            let (negative, value) = self.operand(Some(id), at.magnitude());
+            (negative != at.is_negative(), Box::new(value))
+        };
         match self.written.graph.op(id) {
-            Op::Sum(a, b) => {
-                let (a_sign, a_value) = self.operand(Some(id), a.magnitude());
-                let (b_sign, b_value) = self.operand(Some(id), b.magnitude());
-                let (a_value, b_value) = (Box::new(a_value), Box::new(b_value));
-                match (a_sign != a.is_negative(), b_sign != b.is_negative()) {
-                    (false, false) => (false, Expression::Sum(a_value, b_value)),
-                    (false, true) => (false, Expression::Difference(a_value, b_value)),
-                    (true, false) => (false, Expression::Difference(b_value, a_value)),
-                    (true, true) => (true, Expression::Sum(a_value, b_value)),
-                }
-            }
+            Op::Sum(a, b) => match (operand(a), operand(b)) {
+                ((false, a), (false, b)) => (false, Expression::Sum(a, b)),
+                ((false, a), (true, b)) | ((true, b), (false, a)) => (false, Expression::Difference(a, b)),
+                ((true, a), (true, b)) => (true, Expression::Sum(a, b)),
+            },
             Op::Product(a, b) => {
-                let (a_sign, a_value) = self.operand(Some(id), a);
-                let (b_sign, b_value) = self.operand(Some(id), b);
-                (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
+                let ((a_negative, a), (b_negative, b)) = (operand(a), operand(b));
+                (a_negative != b_negative, Expression::Product(a, b))
             }
             Op::Quotient(a, b) => {
-                let (a_sign, a_value) = self.operand(Some(id), a);
-                let (b_sign, b_value) = self.operand(Some(id), b);
-                (a_sign != b_sign, Expression::Quotient(Box::new(a_value), Box::new(b_value)))
+                let ((a_negative, a), (b_negative, b)) = (operand(a), operand(b));
+                (a_negative != b_negative, Expression::Quotient(a, b))
             }
-            Op::BySign([x, a, b]) => {
-                let [x, a, b] = [x, a, b].map(|term| {
-                    let (sign, value) = self.operand(Some(id), term.magnitude());
-                    Box::new(signed(sign != term.is_negative(), value))
-                });
+            Op::BySign(operands) => {
+                let [x, a, b] = operands.map(operand).map(|(negative, value)| Box::new(signed(negative, *value)));
                 (false, Expression::BySign(x, a, b))
             }
             // leaves always have a name, but for the zero that no operation keeps
             Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Expression::Zero),
         }
     }
+}
+
+/// Where what bears a name belongs; `otherwise` is the step of what no step computes.
+fn place_of(name: Name, otherwise: Step) -> Place {
+    let step = name.quantity.step().unwrap_or(otherwise);
+    Place { joint: name.joint, step, quantity: name.quantity, by: name.by }
 }
 
 fn sign(negative: bool) -> Sign {
@@ -460,10 +445,7 @@ fn signed(negative: bool, expression: Expression) -> Expression {
     if !negative {
         return expression;
     }
-    match negated(&expression) {
-        Some(negated) => negated,
-        None => Expression::Negative(Box::new(expression)),
-    }
+    negated(&expression).unwrap_or_else(|| Expression::Negative(Box::new(expression)))
 }
 
 /// The negative of an expression without a minus sign in front, if there is one. Rounding is symmetric, so it is exact.

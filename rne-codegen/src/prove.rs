@@ -4,8 +4,6 @@
 //! identical, but for a probability below 10⁻¹⁰⁰ (J. T. Schwartz, J. ACM 27, 1980). That says nothing of how constants
 //! were rounded, so both are run in double precision at random states as well.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
-
 use rne_model::{JointKind, Robot};
 
 use crate::formulate;
@@ -13,7 +11,7 @@ use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref};
+use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref, operators};
 use crate::program::{Exactly, Program, Proof};
 use crate::{CompileError, Suspect};
 
@@ -185,52 +183,18 @@ impl Value {
     }
 }
 
-impl Add for Value {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self { number: self.number + other.number, turn: composed(self.turn, other.turn) }
-    }
-}
-
-impl Neg for Value {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { number: -self.number, turn: signed(self.turn, true) }
-    }
-}
-
-impl Sub for Value {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-#[allow(clippy::suspicious_arithmetic_impl)] // a field divides by multiplying with the inverse
-impl Div for Value {
-    type Output = Self;
-
-    fn div(self, other: Self) -> Self {
-        let inverse = Self::number(other.number.inverse().unwrap_or(Image::ZERO));
-        self * inverse
-    }
+operators! { Value:
+    a + b => Self { number: a.number + b.number, turn: composed(a.turn, b.turn) };
+    -a => Self { number: -a.number, turn: signed(a.turn, true) };
+    a - b => a + -b;
+    a * b => Self::number(a.number * b.number);
+    a / b => Self::number(a.number * b.number.inverse().unwrap_or(Image::ZERO));
 }
 
 impl Real for Value {
     /// No rational function: an unknown, the same for the same operands.
     fn by_sign(self, positive: Self, negative: Self) -> Self {
         Self::number(Image::by_sign([self, positive, negative].map(|value| value.number)))
-    }
-}
-
-impl Mul for Value {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Self::number(self.number * other.number)
     }
 }
 
@@ -336,14 +300,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             .collect();
         let mut random = |range: f64| (0..robot.dof()).map(|_| between(-range, range)).collect::<Vec<f64>>();
         let (qd, qdd, wrench) = (random(2.0), random(4.0), [5.0, -3.0, 2.0]);
-        let arguments = Arguments {
-            force: wrench,
-            moment: wrench,
-            tau: &qdd,
-            base: [wrench; 4],
-            parameters: &parameters,
-            ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
-        };
+        let arguments = state([&q, &qd, &qdd], wrench, &parameters);
         let [expected, found] =
             [&steps, &reduced].map(|code| code.run(&arguments, |x| x, f64::sin_cos).unwrap_or_default());
         let largest = |torques: &[f64]| torques.iter().fold(0.0_f64, |largest, torque| largest.max(torque.abs()));
@@ -363,14 +320,7 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
             let (q, qd, qdd) = (round(&q), round(&qd), round(&qdd));
             #[allow(clippy::cast_possible_truncation)]
             let wrench = wrench.map(|x| x as f32);
-            let arguments = Arguments {
-                force: wrench,
-                moment: wrench,
-                tau: &qdd,
-                base: [wrench; 4],
-                parameters: &parameters_in_single,
-                ..Arguments::of_joints(&q, &qd, &qdd, 0.0)
-            };
+            let arguments = state([&q, &qd, &qdd], wrench, &parameters_in_single);
             #[allow(clippy::cast_possible_truncation)]
             let torques = code.run(&arguments, |x| x as f32, f32::sin_cos).unwrap_or_default();
             torques.into_iter().map(f64::from).collect::<Vec<f64>>()
@@ -387,6 +337,11 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
         }
     }
     all
+}
+
+/// Arguments of any function: forces and the motion of the base are all the same vector.
+fn state<'a, T: Copy>([q, qd, qdd]: [&'a [T]; 3], vector: [T; 3], parameters: &'a [T]) -> Arguments<'a, T> {
+    Arguments { q, qd, qdd, force: vector, moment: vector, tau: qdd, base: [vector; 4], parameters }
 }
 
 /// The larger of two; what is no number is larger than any.

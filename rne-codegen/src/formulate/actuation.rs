@@ -3,7 +3,7 @@
 use rne_model::{Entry, Robot};
 
 use crate::formulate::arm::number;
-use crate::formulate::seven_steps::JointState;
+use crate::formulate::joint::JointState;
 use crate::ir::Builder;
 use crate::ir::Symbol;
 use crate::ir::ledger::Cause;

@@ -1,36 +1,48 @@
 //! From the rows of the table to the constants of the seven steps, in form P: frame i at joint i, fixed to link i.
 //!
 //! ```text
-//! standard  Rx(α_{i-1})  d = (a_i, 0, b_i) + Rx(α_i) c̄   r = -Rx(α_i) c̄        I = Rx(α_i) Ī Rx(α_i)ᵀ  α_0 = 0
-//! modified  Rx(α_{i-1})  d = (0, 0, b_i) + c̄             r = (a_i, 0, 0) - c̄   I = Ī                 r_n = -c̄
+//! standard   d = (a_i, 0, b_i) + Rx(α_i) c̄   I = Rx(α_i) Ī Rx(α_i)ᵀ
+//! modified   d = (0, 0, b_i) + c̄             I = Ī
+//!
+//! mount       rotation   lever l_i      r_i                  of the tip: rotation   lever
+//! standard    Rx(α_p)    0              l_i - Rx(α_p) c̄_p    Rx(α_n) R_t            Rx(α_n) p_t
+//! modified    Rx(α_i)    (a_i, 0, 0)    l_i - c̄_p            R_t                    p_t
 //! ```
 //!
-//! The tip frame: R_{n+1} = Rx(α_n) R_t (standard) or R_t (modified), and r_n grows by the tool's translation turned
-//! into frame n. Row i of a modified table carries α_{i-1} and a_{i-1}.
+//! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
+//! the base the rotation of a standard table is 1. R_t and p_t are the tool's.
 
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
 
+use crate::function::Argument;
 use crate::ir::Builder;
 use crate::ir::ledger::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Matrix, Symbol, Vector};
 
+/// Where a joint, or the tip frame, is mounted on its parent link: the constants between a link and what it carries.
+pub(crate) struct Mount<'s> {
+    /// Turns components in the axes of the joint at θ = 0, or of the tip frame, into components in those of the parent.
+    pub(crate) rotation: Matrix<'s>,
+    /// From the parent's centre of mass to the joint or the tip; of the base, from the origin of frame 0.
+    pub(crate) r: Vector<'s>,
+    /// To the same point from the end of the parent's offset, where the link frame of the table stands.
+    pub(crate) lever: Vector<'s>,
+}
+
 /// The constants of one link and of the joint that moves it.
 pub(crate) struct Link<'s> {
+    /// The link that carries the joint, counted from 0; `None` for the base.
+    pub(crate) parent: Option<usize>,
+    pub(crate) mount: Mount<'s>,
     pub(crate) kind: JointKind,
-    /// Rx(α_{i-1}): the fixed part of R_i.
-    pub(crate) twist: Matrix<'s>,
     /// The constant part of the joint angle.
     pub(crate) theta: Angle,
-    /// (a_i, 0, b_i), J_i → J_{i+1} along the row; b_i without the joint variable.
+    /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
-    /// Centre of mass from J_{i+1} of a standard, from J_i of a modified row.
+    /// Centre of mass from the end of the offset.
     pub(crate) com: Vector<'s>,
-    /// C_i → J_{i+1}.
-    pub(crate) r: Vector<'s>,
-    /// From the end of the offset, where the link frame of the table stands, to J_{i+1} or to the tip.
-    pub(crate) lever: Vector<'s>,
     /// Turns components in the link frame of the table into components in frame i.
     pub(crate) table_axes: Matrix<'s>,
     pub(crate) mass: Symbol<'s>,
@@ -40,13 +52,12 @@ pub(crate) struct Link<'s> {
 
 /// The constants of a robot.
 pub(crate) struct Arm<'s> {
+    pub(crate) builder: &'s Builder,
     pub(crate) links: Vec<Link<'s>>,
-    /// R_{n+1}: turns components in the tip frame into components in frame n.
-    pub(crate) tip: Matrix<'s>,
+    /// Where the tip frame is mounted on the last link.
+    pub(crate) tip: Mount<'s>,
     /// Gravity in frame 0.
     pub(crate) gravity: Vector<'s>,
-    /// r_0: from the origin of frame 0 to J_1.
-    pub(crate) base_lever: Vector<'s>,
     /// World → frame 0.
     pub(crate) base: Placement<'s>,
 }
@@ -54,86 +65,81 @@ pub(crate) struct Arm<'s> {
 impl<'s> Arm<'s> {
     pub(crate) fn new(builder: &'s Builder, robot: &Robot) -> Self {
         let dof = robot.dof();
-        let rows: Vec<_> = robot.rows().collect();
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
-        let along_x = |index: usize, length: f64| Vector([number(Entry::A(index), length), zero(), zero()]);
         let tool = Placement::tool(builder, robot);
-
-        let turns: Vec<_> =
-            rows.iter().enumerate().map(|(index, row)| turn_about_x(builder, index + 1, &row.dh.alpha)).collect();
-        let mut tip = tool.rotation;
-        let mut links = Vec::with_capacity(dof);
-        for (index, row) in rows.iter().enumerate() {
-            let joint = index + 1;
-            let written_com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
-            let written_inertia = inertia(builder, robot, index);
-            let is_last = joint == dof;
-            let (twist, offset, com, mut r, inertia, mut lever, table_axes);
-            match robot.convention {
-                Convention::Standard => {
-                    // the twist before joint i stands in row i-1
-                    let own = turns[index];
-                    twist = index.checked_sub(1).map_or_else(|| identity(builder), |previous| turns[previous]);
-                    offset = [number(Entry::A(index), row.dh.a), zero(), number(Entry::D(index), row.dh.d)];
-                    com = own * written_com;
-                    inertia = (own * written_inertia) * own.transpose();
-                    r = -com;
-                    lever = builder.zeros(Cause::Arithmetic);
-                    table_axes = own;
-                    if is_last {
-                        lever = own * tool.translation;
-                        r = r + lever;
-                        tip = own * tool.rotation;
-                    }
+        let twists: Vec<_> =
+            robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, index + 1, &row.dh.alpha)).collect();
+        let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
+        for (index, row) in robot.rows().enumerate() {
+            let (joint, parent) = (index + 1, robot.parent(index));
+            let (rotation, lever) = match (robot.convention, parent) {
+                (Convention::Standard, None) => (identity(builder), builder.zeros(Cause::FirstFrame)),
+                (Convention::Standard, Some(parent)) => (twists[parent], builder.zeros(Cause::Arithmetic)),
+                (Convention::Modified, _) => {
+                    (twists[index], Vector([number(Entry::A(index), row.dh.a), zero(), zero()]))
                 }
-                Convention::Modified => {
-                    twist = turns[index];
-                    offset = [zero(), zero(), number(Entry::D(index), row.dh.d)];
-                    com = written_com;
-                    inertia = written_inertia;
-                    table_axes = identity(builder);
-                    (lever, r) = match rows.get(index + 1) {
-                        Some(next) => {
-                            let lever = along_x(joint, next.dh.a);
-                            (lever, lever - com)
-                        }
-                        None => (tool.translation, -com + tool.translation),
-                    };
-                }
-            }
+            };
+            let mount = Mount { rotation, r: from_com(builder, &links, parent, lever), lever };
+            let com = Vector([0, 1, 2].map(|axis| number(Entry::Com(index, axis), row.link.com[axis])));
+            let inertia = inertia(builder, robot, index);
+            // the twist behind joint i of a standard table is that of its own row
+            let (length, table_axes) = match robot.convention {
+                Convention::Standard => (number(Entry::A(index), row.dh.a), Some(twists[index])),
+                Convention::Modified => (zero(), None),
+            };
             links.push(Link {
+                parent,
+                mount,
                 kind: row.kind,
-                twist,
                 theta: row.dh.theta,
-                offset: Vector(offset),
-                com,
-                r: builder.name_vector(Quantity::R, joint, r),
-                lever,
-                table_axes,
-                mass: {
-                    let name = Name::scalar(Quantity::Mass, joint);
-                    let is_fixed = robot.run_time.formula(Entry::Mass(index)).is_none();
-                    // a constant says of itself which one it is
-                    if is_fixed {
-                        builder.entry(name, row.link.mass)
-                    } else {
-                        builder.name(name, number(Entry::Mass(index), row.link.mass))
-                    }
-                },
-                inertia: builder.name_matrix(Quantity::Inertia, joint, inertia),
+                offset: Vector([length, zero(), number(Entry::D(index), row.dh.d)]),
+                com: table_axes.map_or(com, |axes| axes * com),
+                table_axes: table_axes.unwrap_or_else(|| identity(builder)),
+                mass: mass(builder, robot, index),
+                inertia: builder.name_matrix(
+                    Quantity::Inertia,
+                    joint,
+                    table_axes.map_or(inertia, |axes| (axes * inertia) * axes.transpose()),
+                ),
             });
         }
+        let (rotation, lever) = match (robot.convention, twists.last()) {
+            (Convention::Standard, Some(&twist)) => (twist * tool.rotation, twist * tool.translation),
+            _ => (tool.rotation, tool.translation),
+        };
+        let r = from_com(builder, &links, dof.checked_sub(1), lever);
+        let rotation = builder.name_matrix(Quantity::TipRotation, dof + 1, rotation);
         Self {
+            builder,
             links,
-            tip: builder.name_matrix(Quantity::TipRotation, dof + 1, tip),
+            tip: Mount { rotation, r, lever },
             gravity: gravity(builder, robot),
-            base_lever: match (robot.convention, rows.first()) {
-                (Convention::Modified, Some(first)) => along_x(0, first.dh.a),
-                _ => builder.zeros(Cause::FirstFrame),
-            },
             base: Placement::base(builder, robot),
         }
+    }
+
+    /// What a link carries on the way to the tip: the next joint, or the tip.
+    pub(crate) fn carried_by(&self, index: usize) -> &Mount<'s> {
+        self.links.iter().find(|link| link.parent == Some(index)).map_or(&self.tip, |link| &link.mount)
+    }
+}
+
+/// A lever from the parent's centre of mass. A base that stands still moves no point of itself, whatever the lever.
+fn from_com<'s>(builder: &'s Builder, links: &[Link<'s>], parent: Option<usize>, lever: Vector<'s>) -> Vector<'s> {
+    match parent {
+        Some(parent) => builder.name_vector(Quantity::R, parent + 1, lever - links[parent].com),
+        None if builder.function.takes(Argument::Base) => lever,
+        None => builder.zeros(Cause::FixedBase),
+    }
+}
+
+/// The mass of a link. A constant says of itself which one it is.
+fn mass<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Symbol<'s> {
+    let name = Name::scalar(Quantity::Mass, index + 1);
+    match robot.run_time.formula(Entry::Mass(index)) {
+        Some(written) => builder.name(name, formula(builder, written)),
+        None => builder.entry(name, robot.joints[index].row.link.mass),
     }
 }
 
@@ -147,22 +153,10 @@ pub(crate) struct Placement<'s> {
 impl<'s> Placement<'s> {
     /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
     fn new(builder: &'s Builder, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
-        let number = |value: f64| builder.constant(value, Cause::Arithmetic);
-        let (zero, one) = (number(0.0), number(1.0));
         let [roll, pitch, yaw] = rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
-        let about_x = {
-            let (s, c) = roll;
-            Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
-        };
-        let about_y = {
-            let (s, c) = pitch;
-            Matrix::from_rows([[c, zero, s], [zero, one, zero], [-s, zero, c]])
-        };
-        let about_z = {
-            let (s, c) = yaw;
-            Matrix::from_rows([[c, -s, zero], [s, c, zero], [zero, zero, one]])
-        };
-        Self { rotation: (about_z * about_y) * about_x, translation: Vector(translation) }
+        let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);
+        let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);
+        Self { rotation, translation: Vector(translation) }
     }
 
     fn tool(builder: &'s Builder, robot: &Robot) -> Self {
@@ -215,11 +209,25 @@ fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> 
 
 /// Rx(α) of a row of the table.
 fn turn_about_x<'s>(builder: &'s Builder, row: usize, alpha: &Angle) -> Matrix<'s> {
-    let (zero, one) = (builder.constant(0.0, Cause::TurnAboutX), builder.constant(1.0, Cause::TurnAboutX));
     let (s, c) = builder.constant_turn(alpha, Cause::Arithmetic);
     let s = builder.name(Name::scalar(Quantity::TwistSine, row), s);
     let c = builder.name(Name::scalar(Quantity::TwistCosine, row), c);
-    Matrix::from_rows([[one, zero, zero], [zero, c, -s], [zero, s, c]])
+    turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
+}
+
+/// A turn about an axis by sine and cosine; `cause` tells why it leaves the axis alone.
+pub(crate) fn turned<'s>(
+    builder: &'s Builder,
+    axis: Axis,
+    (s, c): (Symbol<'s>, Symbol<'s>),
+    cause: Cause,
+) -> Matrix<'s> {
+    let [zero, one] = [0.0, 1.0].map(|value| builder.constant(value, cause));
+    Matrix::from_rows(match axis {
+        Axis::X => [[one, zero, zero], [zero, c, -s], [zero, s, c]],
+        Axis::Y => [[c, zero, s], [zero, one, zero], [-s, zero, c]],
+        Axis::Z => [[c, -s, zero], [s, c, zero], [zero, zero, one]],
+    })
 }
 
 /// α_0 of a standard table is 0.

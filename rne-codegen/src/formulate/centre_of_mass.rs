@@ -13,18 +13,14 @@ use crate::formulate::arm::Arm;
 use crate::formulate::kinematics::Frames;
 use crate::ir::ledger::Cause;
 use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Symbol, Vector};
 
 /// In the world. `frames` start at the base, in world axes; `centres` lead from the joints to the centres of mass.
-pub(crate) fn position<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'s>,
-    frames: &Frames<'s>,
-    centres: &[Vector<'s>],
-) -> Vector<'s> {
+pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vector<'s> {
+    let builder = arm.builder;
     let line = builder.joint(arm.links.len());
-    let centre = match parts(builder, arm) {
+    let centre = match parts(arm) {
         Ok(parts) => {
             let links = links(builder, frames, centres);
             let sum = links.into_iter().zip(parts).enumerate().fold(
@@ -41,13 +37,9 @@ pub(crate) fn position<'s>(
 }
 
 /// Columns, base to tip; arguments as of [`position`].
-pub(crate) fn jacobian<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'s>,
-    frames: &Frames<'s>,
-    centres: &[Vector<'s>],
-) -> Vec<Vector<'s>> {
-    let parts = match parts(builder, arm) {
+pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vec<Vector<'s>> {
+    let builder = arm.builder;
+    let parts = match parts(arm) {
         Ok(parts) => parts,
         Err(infinite) => return vec![Vector([infinite; 3]); arm.links.len()],
     };
@@ -57,7 +49,7 @@ pub(crate) fn jacobian<'s>(
     let mut columns = Vec::with_capacity(links.len());
     for (index, link) in arm.links.iter().enumerate().rev() {
         let (line, frame) = (builder.joint(index + 1), &frames.joints[index]);
-        let axis = Vector(frame.rotation.0.map(Vector::z));
+        let axis = frame.axis();
         let column = line.within(Quantity::JacobianLinear, || {
             moment = moment + links[index] * parts[index];
             part = part + parts[index];
@@ -84,7 +76,8 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
 
 /// What part of the mass each link has: constants, unless a mass is given at run time. Of an arm without mass, what is
 /// not finite: a product with its zeros would fold.
-fn parts<'s>(builder: &'s Builder, arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
+fn parts<'s>(arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
+    let builder = arm.builder;
     let line = builder.joint(arm.links.len());
     line.within(Quantity::ComPosition, || {
         let nothing = builder.constant(0.0, Cause::Arithmetic);
@@ -96,15 +89,4 @@ fn parts<'s>(builder: &'s Builder, arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Sym
         }
         Ok(arm.links.iter().map(|link| link.mass * inverse).collect())
     })
-}
-
-/// The rows of the Jacobian by name.
-pub(crate) fn rows<'s>(columns: &[Vector<'s>]) -> Vec<(Name, Symbol<'s>)> {
-    let row = |axis: Axis| {
-        let columns = columns.iter().enumerate();
-        columns.map(move |(index, column)| {
-            (Name::vector(Quantity::JacobianLinear, index + 1, axis), column.0[axis as usize])
-        })
-    };
-    Axis::ALL.into_iter().flat_map(row).collect()
 }

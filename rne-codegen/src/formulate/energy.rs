@@ -5,40 +5,34 @@
 use crate::formulate::arm::Arm;
 use crate::formulate::kinematics::Frames;
 use crate::formulate::seven_steps::Motion;
-use crate::ir::Builder;
-use crate::ir::Symbol;
 use crate::ir::ledger::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
+use crate::ir::{Symbol, Vector};
 
-pub(crate) fn kinetic<'s>(builder: &'s Builder, arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
+pub(crate) fn kinetic<'s>(arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
+    let builder = arm.builder;
     let mut twice = builder.constant(0.0, Cause::Arithmetic);
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
-        let line = builder.joint(index + 1);
-        twice = line.within(Quantity::KineticEnergy, || {
-            let momentum = link.inertia * motion.omega;
-            let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + motion.omega.dot(momentum);
+        let omega = motion.turning.omega;
+        twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
+            let momentum = link.inertia * omega;
+            let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + omega.dot(momentum);
             twice + of_link
         });
     }
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
-    let line = builder.joint(motions.len());
-    let energy = line.within(Quantity::KineticEnergy, || twice * half);
+    let energy = builder.joint(motions.len()).within(Quantity::KineticEnergy, || twice * half);
     builder.name(Name::scalar(Quantity::KineticEnergy, 0), energy)
 }
 
 /// `frames` in frame 0, where gravity is given.
-pub(crate) fn potential<'s>(
-    builder: &'s Builder,
-    arm: &Arm<'s>,
-    frames: &Frames<'s>,
-    centres: &[crate::ir::Vector<'s>],
-) -> Symbol<'s> {
+pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Symbol<'s> {
+    let builder = arm.builder;
     let mut lost = builder.constant(0.0, Cause::Arithmetic);
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
-        let centre = line.within(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
-        let centre = builder.name_vector(Quantity::ComPosition, index + 1, centre);
+        let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
         lost = line.within(Quantity::PotentialEnergy, || lost + arm.gravity.dot(centre) * link.mass);
     }
     builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)

@@ -4,6 +4,7 @@ pub(crate) mod actuation;
 pub(crate) mod arm;
 pub(crate) mod centre_of_mass;
 pub(crate) mod energy;
+pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
 pub(crate) mod mass_matrix;
@@ -13,12 +14,13 @@ pub(crate) mod seven_steps;
 use rne_model::Robot;
 
 use crate::formulate::arm::Arm;
-use crate::formulate::kinematics::Frame;
-use crate::formulate::seven_steps::{Base, JointState, Load, Wrench};
+use crate::formulate::joint::JointState;
+use crate::formulate::kinematics::{Frame, Frames};
+use crate::formulate::seven_steps::{Load, Motion, Wrench};
 use crate::function::{Argument, Function};
 use crate::ir::ledger::Cause;
 use crate::ir::name::{By, Name};
-use crate::ir::quantity::{Axis, Quantity};
+use crate::ir::quantity::{Axis, Component, Quantity};
 use crate::ir::{Builder, Ref, Symbol, Vector};
 
 /// What a function of a robot returns, by name, in the order of its layout. Zeros of the function are put in before
@@ -59,7 +61,7 @@ struct Derivation<'s, 'r> {
     robot: &'r Robot,
     arm: Arm<'s>,
     states: Vec<JointState<'s>>,
-    base: Base<'s>,
+    base: Motion<'s>,
     tip: Wrench<'s>,
 }
 
@@ -70,48 +72,43 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let of_joint = |quantity, joint| builder.argument(Name::scalar(quantity, joint));
         let vector =
             |quantity, joint| Vector(Axis::ALL.map(|axis| builder.argument(Name::vector(quantity, joint, axis))));
+        let given = |argument, quantity, joint, otherwise| {
+            if function.takes(argument) { of_joint(quantity, joint) } else { builder.constant(0.0, otherwise) }
+        };
         let state = |joint| JointState {
             q: of_joint(Quantity::Position, joint),
             turn: function
                 .takes(Argument::Sines)
                 .then(|| (of_joint(Quantity::Sine, joint), of_joint(Quantity::Cosine, joint))),
-            qd: if function.takes(Argument::Rates) {
-                of_joint(Quantity::Rate, joint)
-            } else {
-                builder.constant(0.0, Cause::AtRest)
-            },
-            qdd: if function.takes(Argument::Accelerations) {
-                of_joint(Quantity::RateDot, joint)
-            } else {
-                builder.constant(0.0, Cause::NoAcceleration)
-            },
+            qd: given(Argument::Rates, Quantity::Rate, joint, Cause::AtRest),
+            qdd: given(Argument::Accelerations, Quantity::RateDot, joint, Cause::NoAcceleration),
         };
         let states = (1..=dof).map(state).collect();
         let tip = if function.takes(Argument::Wrench) {
             Wrench { force: vector(Quantity::JointForce, dof + 1), moment: vector(Quantity::JointMoment, dof + 1) }
         } else {
-            Wrench { force: builder.zeros(Cause::FreeTip), moment: builder.zeros(Cause::FreeTip) }
+            Wrench::of_free_tip(builder)
         };
         let base = if function.takes(Argument::Base) {
-            Base {
-                omega: vector(Quantity::Omega, 0),
-                omega_dot: vector(Quantity::OmegaDot, 0),
-                acceleration: vector(Quantity::Acceleration, 0),
-                gravity: vector(Quantity::Gravity, 0),
-                lever: arm.base_lever,
-            }
+            let motion = [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration];
+            Motion::of_base(builder, motion.map(|quantity| vector(quantity, 0)), vector(Quantity::Gravity, 0))
         } else {
-            Base::fixed(builder, arm.gravity)
+            Motion::of_fixed_base(builder, arm.gravity)
         };
         Self { builder, robot, arm, states, base, tip }
     }
 
     fn loads(&self) -> Vec<Load<'s>> {
-        seven_steps::inverse_dynamics(self.builder, &self.arm, &self.states, &self.base, self.tip)
+        seven_steps::inverse_dynamics(&self.arm, &self.states, &self.base, &self.tip)
     }
 
-    fn motions(&self) -> Vec<seven_steps::Motion<'s>> {
-        seven_steps::forward(self.builder, &self.arm, &self.states, &self.base)
+    fn motions(&self) -> Vec<Motion<'s>> {
+        seven_steps::forward(&self.arm, &self.states, &self.base)
+    }
+
+    /// The torques of the seven steps.
+    fn tau(&self) -> Vec<Symbol<'s>> {
+        self.loads().into_iter().map(|load| load.torque).collect()
     }
 
     /// From each joint to the centre of mass of its link, in its axes.
@@ -119,23 +116,22 @@ impl<'s, 'r> Derivation<'s, 'r> {
         self.motions().iter().map(|motion| motion.d).collect()
     }
 
-    fn frames(&self) -> kinematics::Frames<'s> {
-        kinematics::frames(self.builder, &self.arm, &self.states, kinematics::base(&self.arm))
+    fn frames(&self) -> Frames<'s> {
+        kinematics::frames(&self.arm, &self.states, kinematics::base(&self.arm))
     }
 
     /// In world axes, with their origins from that of the base: where the base stands moves no difference of them.
-    fn frames_from_base(&self) -> kinematics::Frames<'s> {
+    fn frames_from_base(&self) -> Frames<'s> {
         let start = Frame { origin: self.builder.zeros(Cause::FirstFrame), ..kinematics::base(&self.arm) };
-        kinematics::frames(self.builder, &self.arm, &self.states, start)
+        kinematics::frames(&self.arm, &self.states, start)
     }
 
     fn torques(&self) -> Outputs<'s> {
-        let torques = self.loads().into_iter().enumerate();
-        torques.map(|(index, load)| (Name::scalar(Quantity::Torque, index + 1), load.torque)).collect()
+        by_joint(Quantity::Torque, self.tau())
     }
 
     fn mass_matrix(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(self.builder, &self.arm, &self.states);
+        let upper = mass_matrix::upper_half(&self.arm, &self.states);
         square(self.states.len(), |row, column| {
             let (row, column) = (row.min(column), row.max(column));
             let name = Name { by: Some(By::RateDot(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
@@ -145,7 +141,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
 
     /// ½ ∂(bias torques)/∂q̇
     fn coriolis_matrix(&self) -> Outputs<'s> {
-        let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
+        let torques = self.tau();
         let dof = torques.len();
         let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
         let columns = self.builder.derivatives(&torques, (1..=dof).map(By::Rate));
@@ -158,18 +154,13 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn forward_dynamics(&self) -> Outputs<'s> {
-        let upper = mass_matrix::upper_half(self.builder, &self.arm, &self.states);
-        let loads = self.loads().into_iter().enumerate();
-        let rest: Vec<_> = loads
-            .map(|(index, load)| {
-                let joint = index + 1;
-                let applied = self.builder.argument(Name::scalar(Quantity::AppliedTorque, joint));
-                self.builder.joint(joint).within(Quantity::Reduced, || applied - load.torque)
-            })
-            .collect();
-        let accelerations = ldlt::solved(self.builder, &upper, &rest);
-        let accelerations = accelerations.into_iter().enumerate();
-        accelerations.map(|(index, value)| (Name::scalar(Quantity::RateDot, index + 1), value)).collect()
+        let upper = mass_matrix::upper_half(&self.arm, &self.states);
+        let rest = |(index, torque): (usize, Symbol<'s>)| {
+            let applied = self.builder.argument(Name::scalar(Quantity::AppliedTorque, index + 1));
+            self.builder.joint(index + 1).within(Quantity::Reduced, || applied - torque)
+        };
+        let rest: Vec<_> = self.tau().into_iter().enumerate().map(rest).collect();
+        by_joint(Quantity::RateDot, ldlt::solved(self.builder, &upper, &rest))
     }
 
     fn tip_pose(&self) -> Outputs<'s> {
@@ -181,75 +172,53 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn jacobian(&self) -> Outputs<'s> {
-        let columns = kinematics::jacobian(self.builder, &self.arm, &self.frames());
-        let halves = [Quantity::JacobianLinear, Quantity::JacobianAngular].into_iter().enumerate();
-        halves
-            .flat_map(|(half, quantity)| Axis::ALL.map(|axis| (half, quantity, axis)))
-            .flat_map(|(half, quantity, axis)| {
-                columns.iter().enumerate().map(move |(index, column)| {
-                    (Name::vector(quantity, index + 1, axis), column[half].0[axis as usize])
-                })
-            })
-            .collect()
+        let columns = kinematics::jacobian(&self.arm, &self.frames());
+        let [linear, angular] = [0, 1].map(|half| columns.iter().map(|column| column[half]).collect::<Vec<_>>());
+        [by_row(Quantity::JacobianLinear, &linear), by_row(Quantity::JacobianAngular, &angular)].concat()
     }
 
     fn tip_acceleration(&self) -> Outputs<'s> {
-        let parts = kinematics::tip_acceleration(self.builder, &self.arm, &self.states, &self.base);
-        let tip = self.states.len() + 1;
-        parts
-            .into_iter()
-            .enumerate()
-            .flat_map(|(part, vector)| {
-                let name =
-                    move |axis| Name { indices: [part, 0], ..Name::vector(Quantity::TipAcceleration, tip, axis) };
-                Axis::ALL.map(|axis| (name(axis), vector.0[axis as usize]))
-            })
-            .collect()
+        let parts = kinematics::tip_acceleration(&self.arm, &self.states, &self.base);
+        let parts = parts.into_iter().enumerate();
+        let tip = Name::scalar(Quantity::TipAcceleration, self.states.len() + 1);
+        parts.flat_map(|(part, vector)| components(Name { indices: [part, 0], ..tip }, vector)).collect()
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {
-        let energy = energy::kinetic(self.builder, &self.arm, &self.motions());
-        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy)]
+        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy::kinetic(&self.arm, &self.motions()))]
     }
 
     fn potential_energy(&self) -> Outputs<'s> {
-        let zero_frame = Frame {
-            rotation: crate::formulate::arm::identity(self.builder),
-            origin: self.builder.zeros(Cause::FirstFrame),
-        };
-        let frames = kinematics::frames(self.builder, &self.arm, &self.states, zero_frame);
-        let energy = energy::potential(self.builder, &self.arm, &frames, &self.centres());
+        let frame_0 = Frame { rotation: arm::identity(self.builder), origin: self.builder.zeros(Cause::FirstFrame) };
+        let frames = kinematics::frames(&self.arm, &self.states, frame_0);
+        let energy = energy::potential(&self.arm, &frames, &self.centres());
         vec![(Name::scalar(Quantity::PotentialEnergy, 0), energy)]
     }
 
     fn centre_of_mass(&self) -> Outputs<'s> {
-        let (frames, centres) = (self.frames_from_base(), self.centres());
-        let centre = centre_of_mass::position(self.builder, &self.arm, &frames, &centres);
-        Axis::ALL.map(|axis| (Name::vector(Quantity::ComPosition, 0, axis), centre.0[axis as usize])).into()
+        let centre = centre_of_mass::position(&self.arm, &self.frames_from_base(), &self.centres());
+        components(Name::scalar(Quantity::ComPosition, 0), centre).into()
     }
 
     fn centre_of_mass_jacobian(&self) -> Outputs<'s> {
-        let (frames, centres) = (self.frames_from_base(), self.centres());
-        centre_of_mass::rows(&centre_of_mass::jacobian(self.builder, &self.arm, &frames, &centres))
+        let columns = centre_of_mass::jacobian(&self.arm, &self.frames_from_base(), &self.centres());
+        by_row(Quantity::JacobianLinear, &columns)
     }
 
     fn regressor(&self) -> Outputs<'s> {
-        let rows = regressor::regressor(self.builder, &self.arm, &self.states, &self.motions());
-        let element = |joint: usize, link: usize, parameter: usize| Name {
-            indices: [link + 1, parameter + 1],
-            ..Name::scalar(Quantity::RegressorElement, joint + 1)
-        };
-        rows.iter()
-            .enumerate()
-            .flat_map(|(joint, row)| row.iter().enumerate().map(move |(link, elements)| (joint, link, elements)))
-            .flat_map(|(joint, link, elements)| {
-                elements.iter().enumerate().map(move |(parameter, value)| (element(joint, link, parameter), *value))
-            })
-            .collect()
+        let rows = regressor::regressor(&self.arm, &self.states, &self.motions());
+        let mut outputs = Vec::new();
+        for (joint, row) in rows.iter().enumerate() {
+            for (link, elements) in row.iter().enumerate() {
+                let elements = elements.iter().enumerate();
+                outputs.extend(elements.map(|(i, element)| (regressor::element_name(joint, link, i), *element)));
+            }
+        }
+        outputs
     }
 
     fn derivatives(&self) -> Outputs<'s> {
-        let torques: Vec<_> = self.loads().into_iter().map(|load| load.torque).collect();
+        let torques = self.tau();
         let dof = torques.len();
         let by = |kind: fn(usize) -> By| {
             let columns = self.builder.derivatives(&torques, (1..=dof).map(kind));
@@ -262,20 +231,16 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn joint_wrenches(&self) -> Outputs<'s> {
-        let loads = self.loads().into_iter().enumerate();
-        loads
-            .flat_map(|(index, Load { wrench, .. })| {
-                let parts = [(Quantity::JointForce, wrench.force), (Quantity::JointMoment, wrench.moment)];
-                parts.into_iter().flat_map(move |(quantity, vector)| {
-                    Axis::ALL.map(|axis| (Name::vector(quantity, index + 1, axis), vector.0[axis as usize]))
-                })
-            })
-            .collect()
+        let wrenches = self.loads().into_iter().enumerate();
+        let named = wrenches.flat_map(|(index, Load { wrench: Wrench { force, moment }, .. })| {
+            let parts = [(Quantity::JointForce, force), (Quantity::JointMoment, moment)];
+            parts.into_iter().flat_map(move |(part, vector)| components(Name::scalar(part, index + 1), vector))
+        });
+        named.collect()
     }
 
     fn actuator_torques(&self) -> Outputs<'s> {
-        let torques = actuation::torques(self.builder, self.robot, &self.states).into_iter().enumerate();
-        torques.map(|(index, torque)| (Name::scalar(Quantity::ActuatorTorque, index + 1), torque)).collect()
+        by_joint(Quantity::ActuatorTorque, actuation::torques(self.builder, self.robot, &self.states))
     }
 }
 
@@ -287,12 +252,30 @@ pub(crate) fn square<S>(dof: usize, element: impl Fn(usize, usize) -> (Name, S))
         .collect()
 }
 
+/// One number per joint.
+fn by_joint(quantity: Quantity, numbers: Vec<Symbol<'_>>) -> Outputs<'_> {
+    let numbers = numbers.into_iter().enumerate();
+    numbers.map(|(index, number)| (Name::scalar(quantity, index + 1), number)).collect()
+}
+
+/// The components of a vector that bears this name.
+fn components(name: Name, vector: Vector<'_>) -> [(Name, Symbol<'_>); 3] {
+    Axis::ALL.map(|axis| (Name { component: Component::Vector(axis), ..name }, vector.0[axis as usize]))
+}
+
+/// Vectors of the joints as the columns of a matrix, by rows.
+fn by_row<'s>(quantity: Quantity, columns: &[Vector<'s>]) -> Outputs<'s> {
+    let row = |axis: Axis| {
+        let columns = columns.iter().enumerate();
+        columns.map(move |(index, column)| (Name::vector(quantity, index + 1, axis), column.0[axis as usize]))
+    };
+    Axis::ALL.into_iter().flat_map(row).collect()
+}
+
 /// Rotation by rows, then translation.
 fn pose<'s>(joint: usize, frame: &Frame<'s>) -> Outputs<'s> {
     let rotation = Axis::ALL.into_iter().zip(frame.rotation.0).flat_map(|(row, values)| {
         Axis::ALL.map(|column| (Name::matrix(Quantity::FrameRotation, joint, row, column), values.0[column as usize]))
     });
-    let translation =
-        Axis::ALL.map(|axis| (Name::vector(Quantity::FrameOrigin, joint, axis), frame.origin.0[axis as usize]));
-    rotation.chain(translation).collect()
+    rotation.chain(components(Name::scalar(Quantity::FrameOrigin, joint), frame.origin)).collect()
 }

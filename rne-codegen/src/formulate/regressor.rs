@@ -10,9 +10,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::Arm;
-use crate::formulate::kinematics::offset;
-use crate::formulate::seven_steps::{JointState, Motion};
-use crate::ir::Builder;
+use crate::formulate::joint::JointState;
+use crate::formulate::seven_steps::{Motion, Turning};
 use crate::ir::ledger::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
@@ -23,68 +22,54 @@ pub(crate) const PARAMETERS: usize = 10;
 
 /// Y by torque, link and parameter; zero where a link is nearer to the base than the joint.
 pub(crate) fn regressor<'s>(
-    builder: &'s Builder,
     arm: &Arm<'s>,
     states: &[JointState<'s>],
     motions: &[Motion<'s>],
 ) -> Vec<Vec<[Symbol<'s>; PARAMETERS]>> {
-    let dof = states.len();
-    let zero = builder.constant(0.0, Cause::Arithmetic);
-    let (zeros, e) = (
-        builder.zeros(Cause::JointAxis),
-        Vector([0.0, 0.0, 1.0].map(|value| builder.constant(value, Cause::JointAxis))),
-    );
-    let mut rows = vec![vec![[zero; PARAMETERS]; dof]; dof];
-    // acceleration of the joint's point less gravity, in the axes of the link before
+    let (builder, dof) = (arm.builder, states.len());
+    let mut rows = vec![vec![[builder.constant(0.0, Cause::Arithmetic); PARAMETERS]; dof]; dof];
+    let zeros = builder.zeros(Cause::JointAxis);
+    // acceleration of the joint's point less gravity, in the axes of its parent
     let mut point = -arm.gravity;
-    // (u, v) at the joint's point of every joint so far, in the axes of the link before
+    // (u, v) at the joint's point of every joint so far, in the axes of its parent
     let mut twists: Vec<[Vector<'s>; 2]> = Vec::with_capacity(dof);
-    for (index, ((link, state), motion)) in arm.links.iter().zip(states).zip(motions).enumerate() {
-        let line = builder.joint(index + 1);
-        let back = motion.rotation.transpose();
-        let Motion { omega, omega_dot, .. } = *motion;
-        let reach = line.within(Quantity::Partial, || offset(link.offset, link.kind, state.q));
+    for (joint, motion) in arm.joints(states).zip(motions) {
+        let (line, link, lever) = (joint.lines, joint.link, arm.carried_by(joint.index).lever);
+        let Turning { rotation, omega, omega_dot } = motion.turning;
+        let back = rotation.transpose();
+        let reach = line.within(Quantity::Partial, || joint.offset(link.offset));
         let gradient = line.within(Quantity::Gradient, || gradient(omega, omega_dot));
-        let origin = line.within(Quantity::OriginAcceleration, || {
-            let at_joint = back * point;
-            let sliding = match link.kind {
-                Revolute => at_joint,
-                Prismatic => {
-                    let twice = builder.entry(Name::scalar(Quantity::Two, 0), 2.0) * state.qd;
-                    at_joint + e * state.qdd + omega.cross(e) * twice
-                }
-            };
-            sliding + gradient * reach
-        });
-        point = line.within(Quantity::JointPointAcceleration, || origin + gradient * link.lever);
+        let origin =
+            line.within(Quantity::OriginAcceleration, || joint.acceleration(back * point, omega) + gradient * reach);
+        point = line.within(Quantity::JointPointAcceleration, || origin + gradient * lever);
         for twist in &mut twists {
-            *twist = line.within(Quantity::Partial, || [back * twist[0], back * twist[1]]);
+            *twist = line.within(Quantity::Partial, || twist.map(|part| back * part));
         }
         twists.push(match link.kind {
-            Revolute => [e, zeros],
-            Prismatic => [zeros, e],
+            Revolute => [joint.e, zeros],
+            Prismatic => [zeros, joint.e],
         });
         // in the axes of the link frame
         let into = link.table_axes.transpose();
         let in_frame = line.within(Quantity::Partial, || [omega, omega_dot, origin].map(|v| into * v));
         let gradient_in_frame = line.within(Quantity::Gradient, || self::gradient(in_frame[0], in_frame[1]));
-        for (joint, [u, v]) in twists.iter_mut().enumerate() {
+        for (row, [u, v]) in twists.iter_mut().enumerate() {
             let at_origin = line.within(Quantity::Partial, || *v + u.cross(reach));
-            let (u_in_frame, v_in_frame) = line.within(Quantity::Partial, || (into * *u, into * at_origin));
-            let elements =
-                line.within(Quantity::Partial, || columns(in_frame, gradient_in_frame, u_in_frame, v_in_frame));
-            let mut parameter = 0;
-            rows[joint][index] = elements.map(|element| {
-                parameter += 1;
-                builder.name(
-                    Name { indices: [index + 1, parameter], ..Name::scalar(Quantity::RegressorElement, joint + 1) },
-                    element,
-                )
-            });
-            *v = line.within(Quantity::Partial, || at_origin + u.cross(link.lever));
+            let in_axes = line.within(Quantity::Partial, || [*u, at_origin].map(|v| into * v));
+            let elements = line.within(Quantity::Partial, || columns(in_frame, gradient_in_frame, in_axes));
+            for (parameter, element) in elements.into_iter().enumerate() {
+                let name = element_name(row, joint.index, parameter);
+                rows[row][joint.index][parameter] = builder.name(name, element);
+            }
+            *v = line.within(Quantity::Partial, || at_origin + u.cross(lever));
         }
     }
     rows
+}
+
+/// Of an element of Y; all counted from 0.
+pub(crate) fn element_name(joint: usize, link: usize, parameter: usize) -> Name {
+    Name { indices: [link + 1, parameter + 1], ..Name::scalar(Quantity::RegressorElement, joint + 1) }
 }
 
 /// U = [ω̇]× + [ω]×[ω]×
@@ -98,8 +83,7 @@ fn gradient<'s>(omega: Vector<'s>, omega_dot: Vector<'s>) -> Matrix<'s> {
 fn columns<'s>(
     [omega, omega_dot, a]: [Vector<'s>; 3],
     gradient: Matrix<'s>,
-    u: Vector<'s>,
-    v: Vector<'s>,
+    [u, v]: [Vector<'s>; 2],
 ) -> [Symbol<'s>; PARAMETERS] {
     let mass = v.dot(a);
     let [hx, hy, hz] = (gradient.transpose() * v + a.cross(u)).0;

@@ -5,7 +5,7 @@ use std::cell::{Cell, RefCell};
 use rne_model::{Angle, Joint};
 
 use super::trace::{Birth, Definition, Trace, Traced};
-use super::{CausesId, Graph, Input, Matrix, Number, Outcome, Policy, Reading, Ref, Side, Symbol, Turn, Vector};
+use super::{CausesId, Graph, Input, Matrix, Number, Outcome, Policy, Reading, Ref, Symbol, Turn, Vector};
 use crate::function::Function;
 use crate::ir::ledger::{Cause, Operation, Place};
 use crate::ir::name::{By, Name};
@@ -182,74 +182,46 @@ impl Builder {
     }
 
     pub(crate) fn sum<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
-        let graph = &mut *self.graph.borrow_mut();
-        let (at, outcome) = graph.sum(a.at, b.at);
-        let Some(trace) = &self.trace else { return self.symbol(at) };
-        let trace = &mut *trace.borrow_mut();
-        let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(a.at);
-        let none = CausesId::ARITHMETIC;
-        let (causes, reason) = match outcome {
-            // a sum is zero when both are
-            Outcome::Zero(_) if both_zero => (trace.causes.both(a.causes, b.causes), b.causes),
-            Outcome::Zero(Side::Right) => (a.causes, b.causes),
-            Outcome::Zero(Side::Left) => (b.causes, a.causes),
-            _ if graph.is_zero(at) => (trace.causes.one(Cause::Cancellation), none),
-            _ => (none, none),
-        };
-        trace.record(graph.len(), Operation::Sum, outcome, reason);
-        trace.record_roles(graph, at, outcome, [a, b]);
-        Symbol { builder: self, at, causes }
+        let made = self.graph.borrow_mut().sum(a.at, b.at);
+        self.recorded(made, Some(Operation::Sum), [a, b])
     }
 
     pub(crate) fn product<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
-        let graph = &mut *self.graph.borrow_mut();
-        let (at, outcome) = graph.product(a.at, b.at);
-        let Some(trace) = &self.trace else { return self.symbol(at) };
-        let trace = &mut *trace.borrow_mut();
-        let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(a.at);
-        let reason = match outcome {
-            // a product is zero when either is
-            Outcome::Zero(_) if both_zero => trace.causes.either(a.causes, b.causes),
-            Outcome::Zero(Side::Left) | Outcome::One(Side::Left) => a.causes,
-            Outcome::Zero(Side::Right) | Outcome::One(Side::Right) => b.causes,
-            _ => CausesId::ARITHMETIC,
-        };
-        let causes = match outcome {
-            Outcome::One(Side::Left) => b.causes,
-            Outcome::One(Side::Right) => a.causes,
-            _ => reason,
-        };
-        trace.record(graph.len(), Operation::Product, outcome, reason);
-        trace.record_roles(graph, at, outcome, [a, b]);
-        Symbol { builder: self, at, causes }
+        let made = self.graph.borrow_mut().product(a.at, b.at);
+        self.recorded(made, Some(Operation::Product), [a, b])
     }
 
+    /// No ledger counts it.
     pub(crate) fn quotient<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
-        let graph = &mut *self.graph.borrow_mut();
-        let (at, outcome) = graph.quotient(a.at, b.at);
-        self.record_unfolded(graph, at, outcome, [a, b])
+        let made = self.graph.borrow_mut().quotient(a.at, b.at);
+        self.recorded(made, None, [a, b])
     }
 
+    /// No ledger counts it.
     pub(crate) fn by_sign<'s>(&'s self, x: Symbol<'s>, positive: Symbol<'s>, negative: Symbol<'s>) -> Symbol<'s> {
-        let graph = &mut *self.graph.borrow_mut();
-        let (at, outcome) = graph.by_sign(x.at, positive.at, negative.at);
-        self.record_unfolded(graph, at, outcome, [positive, negative])
+        let made = self.graph.borrow_mut().by_sign(x.at, positive.at, negative.at);
+        self.recorded(made, None, [positive, negative])
     }
 
-    /// An operation that no ledger counts.
-    fn record_unfolded<'s>(
+    /// The symbol of what an operation gave, which the trace is told of.
+    fn recorded<'s>(
         &'s self,
-        graph: &Graph,
-        at: Ref,
-        outcome: Outcome,
+        (at, outcome): (Ref, Outcome),
+        operation: Option<Operation>,
         operands: [Symbol<'s>; 2],
     ) -> Symbol<'s> {
-        if let Some(trace) = &self.trace {
-            let trace = &mut *trace.borrow_mut();
+        let Some(trace) = &self.trace else { return self.symbol(at) };
+        let (graph, trace) = (&*self.graph.borrow(), &mut *trace.borrow_mut());
+        let mut causes = CausesId::ARITHMETIC;
+        if let Some(operation) = operation {
+            let reason;
+            (causes, reason) = trace.causes_of(graph, operation, at, outcome, operands);
+            trace.record(graph.len(), operation, outcome, reason);
+        } else {
             trace.record_birth(graph.len());
-            trace.record_roles(graph, at, outcome, operands);
         }
-        self.symbol(at)
+        trace.record_roles(graph, at, outcome, operands);
+        Symbol { builder: self, at, causes }
     }
 
     /// Writes what is the derivative by one variable: its quantities bear that in their names.
@@ -313,7 +285,7 @@ impl Builder {
 /// The lines of one joint: each gives a quantity of the lecture its value.
 #[derive(Clone, Copy)]
 pub(crate) struct JointLines<'s> {
-    builder: &'s Builder,
+    pub(crate) builder: &'s Builder,
     /// The joint at whose place the lines stand.
     joint: usize,
     /// The joint whose name the quantities bear.
@@ -321,26 +293,36 @@ pub(crate) struct JointLines<'s> {
 }
 
 impl<'s> JointLines<'s> {
-    /// The same lines, for quantities that belong to the link before.
-    pub(crate) fn of_link_before(self) -> Self {
-        Self { named: self.joint.saturating_sub(1), ..self }
+    /// The same lines, for quantities that bear the number of another joint.
+    pub(crate) fn named(self, joint: usize) -> Self {
+        Self { named: joint, ..self }
     }
 
-    /// The same lines, for quantities that belong to the link after.
-    pub(crate) fn of_link_after(self) -> Self {
-        Self { named: self.joint + 1, ..self }
+    /// A number of the table.
+    pub(crate) fn entry(&self, quantity: Quantity, value: f64) -> Symbol<'s> {
+        self.builder.entry(Name::scalar(quantity, self.named), value)
+    }
+
+    /// Gives a number a name.
+    pub(crate) fn name(&self, quantity: Quantity, symbol: Symbol<'s>) -> Symbol<'s> {
+        self.builder.name(Name::scalar(quantity, self.named), symbol)
+    }
+
+    /// Names the components of a vector.
+    pub(crate) fn name_vector(&self, quantity: Quantity, vector: Vector<'s>) -> Vector<'s> {
+        self.builder.name_vector(quantity, self.named, vector)
     }
 
     /// A quantity that is one number.
     pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
         let value = self.within(quantity, formula);
-        self.builder.name(Name::scalar(quantity, self.named), value)
+        self.name(quantity, value)
     }
 
     /// A vector.
     pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
         let value = self.within(quantity, formula);
-        self.builder.name_vector(quantity, self.named, value)
+        self.name_vector(quantity, value)
     }
 
     /// A matrix.

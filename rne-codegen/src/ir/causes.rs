@@ -17,15 +17,15 @@ impl CausesId {
 pub(crate) struct KnownCauses {
     list: Vec<Alternatives>,
     ids: HashMap<Alternatives, CausesId>,
-    both: HashMap<(CausesId, CausesId), CausesId>,
-    either: HashMap<(CausesId, CausesId), CausesId>,
+    /// By two of them, and whether both are needed.
+    joined: HashMap<(CausesId, CausesId, bool), CausesId>,
 }
 
 impl Default for KnownCauses {
     fn default() -> Self {
         let arithmetic = Alternatives::one(Cause::Arithmetic);
         let ids = HashMap::from([(arithmetic.clone(), CausesId::ARITHMETIC)]);
-        Self { list: vec![arithmetic], ids, both: HashMap::new(), either: HashMap::new() }
+        Self { list: vec![arithmetic], ids, joined: HashMap::new() }
     }
 }
 
@@ -55,27 +55,28 @@ impl KnownCauses {
 
     /// Of a sum of two zeros.
     pub(crate) fn both(&mut self, a: CausesId, b: CausesId) -> CausesId {
-        if a == b {
-            return a;
-        }
-        if let Some(&known) = self.both.get(&(a, b)) {
-            return known;
-        }
-        let id = self.id(self.alternatives(a).and(self.alternatives(b)));
-        self.both.insert((a, b), id);
-        id
+        self.joined((a, b, true), Alternatives::and)
     }
 
     /// Of a product of two zeros.
     pub(crate) fn either(&mut self, a: CausesId, b: CausesId) -> CausesId {
+        self.joined((a, b, false), Alternatives::or)
+    }
+
+    fn joined(
+        &mut self,
+        key: (CausesId, CausesId, bool),
+        join: fn(&Alternatives, &Alternatives) -> Alternatives,
+    ) -> CausesId {
+        let (a, b, _) = key;
         if a == b {
             return a;
         }
-        if let Some(&known) = self.either.get(&(a, b)) {
+        if let Some(&known) = self.joined.get(&key) {
             return known;
         }
-        let id = self.id(self.alternatives(a).or(self.alternatives(b)));
-        self.either.insert((a, b), id);
+        let id = self.id(join(self.alternatives(a), self.alternatives(b)));
+        self.joined.insert(key, id);
         id
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18, 1971.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use super::operators;
 
 /// `high + low`, with |low| at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
@@ -106,58 +106,25 @@ fn two_product(a: f64, b: f64) -> Double {
     Double { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
 }
 
-impl From<f64> for Double {
-    fn from(value: f64) -> Self {
-        Self::new(value)
-    }
-}
-
-impl Add for Double {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        let (s, t) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
+operators! { Double:
+    a + b => {
+        let (s, t) = (two_sum(a.high, b.high), two_sum(a.low, b.low));
         let s = quick_sum(s.high, s.low + t.high);
         quick_sum(s.high, s.low + t.low)
-    }
-}
-
-impl Neg for Double {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { high: -self.high, low: -self.low }
-    }
-}
-
-impl Sub for Double {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Double {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        let p = two_product(self.high, other.high);
-        quick_sum(p.high, p.low + (self.high * other.low + self.low * other.high))
-    }
-}
-
-impl Div for Double {
-    type Output = Self;
-
-    fn div(self, other: Self) -> Self {
-        let first = self.high / other.high;
-        let rest = self - other * Self::new(first);
-        let second = rest.high / other.high;
-        let rest = rest - other * Self::new(second);
-        let quotient = quick_sum(first, second);
-        quotient + Self::new(rest.high / other.high)
-    }
+    };
+    -a => Self { high: -a.high, low: -a.low };
+    a - b => a + -b;
+    a * b => {
+        let p = two_product(a.high, b.high);
+        quick_sum(p.high, p.low + (a.high * b.low + a.low * b.high))
+    };
+    a / b => {
+        let first = a.high / b.high;
+        let rest = a - b * Self::new(first);
+        let second = rest.high / b.high;
+        let rest = rest - b * Self::new(second);
+        quick_sum(first, second) + Self::new(rest.high / b.high)
+    };
 }
 
 #[cfg(test)]

@@ -161,13 +161,8 @@ impl Alternatives {
 
 impl fmt::Display for Causes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, cause) in self.iter().enumerate() {
-            if index > 0 {
-                f.write_str(" and ")?;
-            }
-            cause.fmt(f)?;
-        }
-        Ok(())
+        let causes: Vec<String> = self.iter().map(|cause| cause.to_string()).collect();
+        f.write_str(&causes.join(" and "))
     }
 }
 
@@ -196,7 +191,7 @@ impl Cause {
 
     /// Whether it holds for every arm: zeros of Rx, Rz and e.
     const fn is_geometry(&self) -> bool {
-        matches!(self, Self::Arithmetic | Self::TurnAboutZ | Self::TurnAboutX | Self::JointAxis | Self::FirstFrame)
+        self.weight() < 2
     }
 }
 

@@ -1,7 +1,10 @@
 //! The one representation in which formulas are written, and what can be done with any of them.
 
+mod arithmetic;
 mod builder;
 mod causes;
+mod constants;
+mod cost;
 mod differentiation;
 mod double;
 mod graph;
@@ -9,8 +12,10 @@ mod input;
 pub(crate) mod ledger;
 mod live;
 pub(crate) mod name;
+mod node;
 mod number;
 mod numbers;
+mod operators;
 pub(crate) mod quantity;
 mod residue;
 mod sample_point;
@@ -20,14 +25,16 @@ mod value_numbering;
 
 pub(crate) use builder::{Builder, JointLines};
 pub(crate) use causes::CausesId;
-pub use graph::Cost;
-pub(crate) use graph::{Graph, Node, Op, Outcome, Policy, Ref, Side};
+pub use cost::Cost;
+pub(crate) use graph::{Graph, Outcome, Policy, Side};
 pub(crate) use input::Input;
 pub(crate) use live::{mark_live, mark_live_outside_angles};
-pub(crate) use number::{Number, Reading, Turn};
+pub(crate) use node::{Node, Op, Ref};
+pub(crate) use number::{Number, Reading, Turn, square};
 pub(crate) use numbers::{Numbers, Source};
+pub(crate) use operators::operators;
 pub(crate) use residue::Image;
 pub(crate) use sample_point::Point;
-pub(crate) use symbol::{Matrix, Symbol, Vector};
+pub(crate) use symbol::{Matrix, Symbol, Vector, by_quarters};
 pub(crate) use trace::{Birth, Definition, Trace, Traced};
 pub(crate) use value_numbering::number_values;

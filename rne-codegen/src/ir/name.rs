@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use crate::ir::quantity::{Axis, Component, Quantity};
+use crate::ir::quantity::{Axis, Component, Indices, Quantity};
 
 /// The full name of a number: `w2_z` is component z of ω of link 2.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -61,16 +61,7 @@ impl Name {
 
     /// Whether its text has the joint in it: of what there is one of, it has not.
     pub(crate) const fn tells_joint(&self) -> bool {
-        !matches!(
-            self.quantity,
-            Quantity::Two
-                | Quantity::One
-                | Quantity::Half
-                | Quantity::KineticEnergy
-                | Quantity::PotentialEnergy
-                | Quantity::Constant
-                | Quantity::Term
-        )
+        !matches!(self.quantity.indices(), Indices::Alone | Indices::Counted)
     }
 
     /// An element of a matrix.
@@ -84,9 +75,7 @@ impl Name {
     pub const fn indexed(quantity: Quantity, joint: usize, index: usize) -> Self {
         Self { indices: [index, 0], ..Self::scalar(quantity, joint) }
     }
-}
 
-impl Name {
     /// The name under which the table has an element of an inertia: that of the upper half.
     pub(crate) fn of_upper_half(self) -> Self {
         match (self.quantity, self.component) {
@@ -102,20 +91,13 @@ impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(self.quantity.prefix())?;
         let mut indices = self.indices;
-        match self.quantity {
-            _ if !self.tells_joint() => {}
-            Quantity::GroupPosition
-            | Quantity::GroupTheta
-            | Quantity::GroupAngle
-            | Quantity::GroupSine
-            | Quantity::GroupCosine => {
+        match self.quantity.indices() {
+            Indices::Alone | Indices::Counted => {}
+            Indices::Group => {
                 write!(f, "{}_{}", indices[0], self.joint)?;
                 indices[0] = 0;
             }
-            // f_{i-1,i}: both links, as in the lecture
-            Quantity::JointForce | Quantity::JointMoment => {
-                write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?;
-            }
+            Indices::Links => write!(f, "{}_{}", self.joint.saturating_sub(1), self.joint)?,
             _ => write!(f, "{}", self.joint)?,
         }
         match self.component {
@@ -130,45 +112,5 @@ impl fmt::Display for Name {
             write!(f, "_{}", by.variable())?;
         }
         Ok(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn names_are_the_interface() {
-        use Axis::{X, Y, Z};
-        for (name, text) in [
-            (Name::vector(Quantity::Omega, 2, Z), "w2_z"),
-            (Name::vector(Quantity::OmegaDot, 2, X), "dw2_x"),
-            (Name::vector(Quantity::Velocity, 2, Y), "dc2_y"),
-            (Name::vector(Quantity::Acceleration, 2, Y), "ddc2_y"),
-            (Name::vector(Quantity::Gravity, 2, Z), "g2_z"),
-            (Name::vector(Quantity::InertiaForce, 2, X), "f2_x"),
-            (Name::vector(Quantity::InertiaMoment, 2, X), "n2_x"),
-            (Name::vector(Quantity::JointForce, 2, X), "f1_2_x"),
-            (Name::vector(Quantity::JointMoment, 2, X), "n1_2_x"),
-            (Name::scalar(Quantity::Torque, 2), "tau2"),
-            (Name::scalar(Quantity::Sine, 2), "s2"),
-            (Name::scalar(Quantity::Cosine, 2), "c2"),
-            (Name::matrix(Quantity::Rotation, 3, X, Y), "rot3_xy"),
-            (Name { part: 1, ..Name::vector(Quantity::Acceleration, 3, X) }, "ddc3_x_1"),
-        ] {
-            assert_eq!(name.to_string(), text);
-        }
-    }
-
-    #[test]
-    fn an_index_is_no_number_of_a_shared_term() {
-        let element = Name::indexed(Quantity::ScaledFactor, 5, 2);
-        let shared = Name { part: 2, ..Name::scalar(Quantity::ScaledFactor, 5) };
-        assert_ne!(element, shared);
-        assert_eq!(element.to_string(), shared.to_string(), "why texts are compared, not names");
-        assert_eq!(Name { part: 1, ..element }.to_string(), "lowd5_2_1");
-        assert_eq!(Name::indexed(Quantity::GroupSine, 4, 2).to_string(), "s2_4");
-        let parameter = Name { indices: [3, 10], ..Name::scalar(Quantity::RegressorElement, 2) };
-        assert_eq!(parameter.to_string(), "y2_3_10");
     }
 }

@@ -1,10 +1,9 @@
 //! Exact constants: a value to 106 bits beside its images in two prime fields.
 
-use std::ops::{Add, Mul, Neg, Sub};
-
 use rne_model::{Angle, InertiaReference, Joint, QuarterTurns};
 
 use super::double::{Double, decimal_digits};
+use super::operators;
 use super::residue::Image;
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
@@ -86,51 +85,20 @@ impl Number {
     }
 }
 
-impl Add for Number {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        if self.is_zero() {
-            return other;
-        }
-        if other.is_zero() {
-            return self;
-        }
-        Self { value: self.value + other.value, image: self.image + other.image }.settled()
-    }
-}
-
-impl Neg for Number {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        Self { value: -self.value, image: -self.image }
-    }
-}
-
-impl Sub for Number {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Number {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        if self.is_zero() || other.is_zero() {
-            return Self::ZERO;
-        }
-        if self.image == Image::ONE {
-            return other;
-        }
-        if other.image == Image::ONE {
-            return self;
-        }
-        Self { value: self.value * other.value, image: self.image * other.image }
-    }
+operators! { Number:
+    a + b => match (a.is_zero(), b.is_zero()) {
+        (true, _) => b,
+        (_, true) => a,
+        _ => Self { value: a.value + b.value, image: a.image + b.image }.settled(),
+    };
+    -a => Self { value: -a.value, image: -a.image };
+    a - b => a + -b;
+    a * b => match (a.image, b.image) {
+        (Image::ZERO, _) | (_, Image::ZERO) => Self::ZERO,
+        (Image::ONE, _) => b,
+        (_, Image::ONE) => a,
+        (x, y) => Self { value: a.value * b.value, image: x * y },
+    };
 }
 
 /// A constant turn: sine and cosine of an angle.
@@ -221,9 +189,9 @@ impl Reading {
             InertiaReference::Com => written,
             InertiaReference::Origin => {
                 let moved = self.moments_of_mass(joint);
-                let square = moved[0][0] + moved[1][1] + moved[2][2];
+                let trace = moved[0][0] + moved[1][1] + moved[2][2];
                 // Steiner: I = J - m (c·c 1 - c cᵀ)
-                by_entries(|i, j| written[i][j] - if i == j { square - moved[i][j] } else { -moved[i][j] })
+                square(|i, j| written[i][j] - if i == j { trace - moved[i][j] } else { -moved[i][j] })
             }
         }
     }
@@ -237,12 +205,12 @@ impl Reading {
         // ∫ r rᵀ dm, of which an inertia is the trace less the matrix
         let second = |inertia: &[[Number; 3]; 3]| {
             let trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) * half;
-            by_entries(|i, j| if i == j { trace - inertia[i][j] } else { -inertia[i][j] })
+            square(|i, j| if i == j { trace - inertia[i][j] } else { -inertia[i][j] })
         };
         let (moved, moved_if_known) = (self.moments_of_mass(joint), known.moments_of_mass(joint));
         let (about_com, written) = (second(&known.inertia(joint)), second(written));
         let is_about_com = joint.written_inertia.1 == InertiaReference::Com;
-        let s = by_entries(|i, j| {
+        let s = square(|i, j| {
             let is_zero_about_origin = (about_com[i][j] + moved_if_known[i][j]).is_zero();
             match (is_about_com, about_com[i][j].is_zero()) {
                 (_, true) => Number::ZERO,
@@ -251,14 +219,14 @@ impl Reading {
                 (false, _) => written[i][j] - moved[i][j],
             }
         });
-        by_entries(|i, j| if i == j { s[0][0] + s[1][1] + s[2][2] - s[i][j] } else { -s[i][j] })
+        square(|i, j| if i == j { s[0][0] + s[1][1] + s[2][2] - s[i][j] } else { -s[i][j] })
     }
 
     /// Second moments about the origin of a link's mass at its centre: m c cᵀ.
     fn moments_of_mass(&self, joint: &Joint) -> [[Number; 3]; 3] {
         let mass = self.decimal(joint.row.link.mass);
         let com = joint.row.link.com.map(|x| self.decimal(x));
-        by_entries(|i, j| mass * com[i] * com[j])
+        square(|i, j| mass * com[i] * com[j])
     }
 
     /// A constant angle of the file.
@@ -296,7 +264,8 @@ impl Reading {
     }
 }
 
-fn by_entries(f: impl Fn(usize, usize) -> Number) -> [[Number; 3]; 3] {
+/// A 3 × 3 matrix by its elements.
+pub(crate) fn square<T>(f: impl Fn(usize, usize) -> T) -> [[T; 3]; 3] {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
 }
 

@@ -35,6 +35,15 @@ impl Step {
         Self::Torque,
     ];
 
+    /// The one of a number: 0 of none, 8 beyond the lecture.
+    const fn of(number: usize) -> Option<Self> {
+        match number {
+            0 => None,
+            1..=7 => Some(Self::ALL[number - 1]),
+            _ => Some(Self::Beyond),
+        }
+    }
+
     /// Its number in the lecture, 1 to 7.
     #[must_use]
     pub const fn number(self) -> usize {
@@ -75,11 +84,7 @@ impl Axis {
 
 impl fmt::Display for Axis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::X => "x",
-            Self::Y => "y",
-            Self::Z => "z",
-        })
+        f.write_str(["x", "y", "z"][*self as usize])
     }
 }
 
@@ -105,295 +110,214 @@ impl Component {
     }
 }
 
-/// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Quantity {
-    // Arguments of the function.
-    /// q: joint position.
-    Position,
-    /// q̇: joint rate.
-    Rate,
-    /// q̈: joint acceleration.
-    RateDot,
-    /// τ of an actuator, as an argument.
-    AppliedTorque,
-    /// A parameter that is known at run time only.
+/// Which indices stand behind the beginning of a name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Indices {
+    /// None: there is one of it.
+    Alone,
+    /// A count.
+    Counted,
+    /// The joint.
+    Joint,
+    /// The joint and the axis.
+    Vector,
+    /// The joint, row and column.
+    Matrix,
+    /// The joint as the row of a matrix, and the column.
+    Column,
+    /// The joint, the link and which of its parameters.
     Parameter,
+    /// The first and the last joint of a group.
+    Group,
+    /// Both links of a joint, as in f_{i-1,i}, and the axis.
+    Links,
+}
+
+impl Indices {
+    /// How they look in a legend.
+    const fn pattern(self) -> &'static str {
+        match self {
+            Self::Alone => "",
+            Self::Counted => "_1",
+            Self::Joint => "i",
+            Self::Vector => "i_x",
+            Self::Matrix => "i_xy",
+            Self::Column => "i_j",
+            Self::Parameter => "i_j_1",
+            Self::Group => "h_i",
+            Self::Links => "h_i_x",
+        }
+    }
+}
+
+/// What there is to know of a quantity; the methods of [`Quantity`] tell what each of these is.
+struct Row {
+    prefix: &'static str,
+    indices: Indices,
+    step: Option<Step>,
+    has_statements: bool,
+    meaning: &'static str,
+}
+
+/// The enumeration of the quantities and the table of what is known of each, from one row per quantity.
+macro_rules! quantities {
+    ($($quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $meaning:literal;)*) => {
+        /// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
+        #[allow(rustdoc::broken_intra_doc_links)] // [ω]× is no link
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub enum Quantity {
+            $(#[doc = $meaning] $quantity,)*
+        }
+
+        /// By quantity, in the order of the variants.
+        const TABLE: &[Row] = &[$(Row {
+            prefix: $prefix,
+            indices: Indices::$indices,
+            step: Step::of($step),
+            has_statements: $has_statements,
+            meaning: $meaning,
+        },)*];
+    };
+}
+
+quantities! {
+    // quantity                 its name, indices,     step (0: none, 8: beyond), statements of its own, meaning
+    // Arguments of the function.
+    Position:                   "q",         Joint,     0, false, "joint position";
+    Rate:                       "qd",        Joint,     0, false, "joint rate";
+    RateDot:                    "qdd",       Joint,     0, false, "joint acceleration";
+    AppliedTorque:              "tau",       Joint,     0, false, "τ of the actuator";
+    Parameter:                  "par",       Joint,     0, false,
+        "a parameter of the robot file that is given at run time";
 
     // Constants of the table.
-    /// A number without a name of its own.
-    Constant,
-    /// The number 2 of step 4 (prismatic joint).
-    Two,
-    /// The number 1 of a quotient.
-    One,
-    /// The number 1/2.
-    Half,
-    /// Rotor inertia as seen at the joint, G² Jm.
-    RotorInertia,
-    /// Viscous friction as seen at the joint, G² B.
-    ViscousFriction,
-    /// Coulomb friction as seen at the joint, |G| Tc⁺ and |G| Tc⁻.
-    CoulombFriction,
-    /// Constant part of a joint angle θ.
-    Theta,
-    /// Sine of a twist angle α.
-    TwistSine,
-    /// Cosine of a twist angle α.
-    TwistCosine,
-    /// Sine of the constant θ of a prismatic joint.
-    ThetaSine,
-    /// Cosine of the constant θ of a prismatic joint.
-    ThetaCosine,
-    /// Constant part of the offset along a prismatic joint's axis.
-    Offset,
-    /// c̄: centre of mass from the link frame's origin, turned into frame i.
-    Com,
-    /// m: mass of the link.
-    Mass,
-    /// r: C_i → J_{i+1}.
-    R,
-    /// I: inertia about the centre of mass.
-    Inertia,
-    /// Rotation into the tip frame, of the table's last twist and the tool.
-    TipRotation,
-    /// h = m c̄ of regrouped matter, about the origin of the link's frame.
-    FirstMoment,
-    /// S = ∫ r rᵀ dm of regrouped matter.
-    SecondMoment,
+    Constant:                   "k",         Counted,   0, false, "a number";
+    Two:                        "two",       Alone,     0, false, "the number 2";
+    One:                        "one",       Alone,     0, false, "the number 1";
+    Half:                       "half",      Alone,     0, false, "the number 1/2";
+    RotorInertia:               "jm",        Joint,     0, false, "rotor inertia at the joint, G² Jm";
+    ViscousFriction:            "bv",        Joint,     0, false, "viscous friction at the joint, G² B";
+    CoulombFriction:            "tc",        Joint,     0, false, "Coulomb friction at the joint, |G| Tc";
+    Theta:                      "theta",     Joint,     0, false, "constant part of the joint angle";
+    TwistSine:                  "sa",        Joint,     0, false, "sine of the twist α";
+    TwistCosine:                "ca",        Joint,     0, false, "cosine of the twist α";
+    ThetaSine:                  "st",        Joint,     0, false, "sine of the constant θ";
+    ThetaCosine:                "ct",        Joint,     0, false, "cosine of the constant θ";
+    Offset:                     "b",         Joint,     0, false, "constant part of the offset along the axis";
+    Com:                        "com",       Vector,    0, false, "centre of mass from the link frame's origin";
+    Mass:                       "m",         Joint,     0, false, "mass";
+    R:                          "r",         Vector,    0, false, "r: centre of mass → next joint";
+    Inertia:                    "i",         Matrix,    0, false, "inertia about the centre of mass";
+    TipRotation:                "rot",       Matrix,    0, false, "rotation from the last link to the tip frame";
+    FirstMoment:                "h",         Vector,    0, false,
+        "first moment of regrouped matter about the frame's origin";
+    SecondMoment:               "p",         Matrix,    0, false, "second moment ∫ r rᵀ dm of regrouped matter";
 
     // Step 1.
-    /// θ + q, where θ is no right angle.
-    Angle,
-    /// Sine of the joint angle.
-    Sine,
-    /// Cosine of the joint angle.
-    Cosine,
-    /// Sine of θ + q, from the sine and cosine of q.
-    TurnedSine,
-    /// Its cosine.
-    TurnedCosine,
-    /// The sum of the positions of parallel joints; the first of them is the name's index.
-    GroupPosition,
-    /// Constant part of the sum of their angles.
-    GroupTheta,
-    /// The sum of the angles of parallel joints.
-    GroupAngle,
-    /// Sine of such a sum.
-    GroupSine,
-    /// Cosine of such a sum.
-    GroupCosine,
-    /// A term of a rewritten graph.
-    Term,
-    /// R: turns components of frame i into components of frame i-1.
-    Rotation,
-    /// ω: angular velocity.
-    Omega,
-    /// ω in frame N, on the axis but not turning with the joint.
-    OmegaUnturned,
+    Angle:                      "angle",     Joint,     1, false, "θ + q";
+    Sine:                       "s",         Joint,     1, false, "sine of the joint angle";
+    Cosine:                     "c",         Joint,     1, false, "cosine of the joint angle";
+    TurnedSine:                 "sj",        Joint,     1, false, "sine of θ + q, from those of q";
+    TurnedCosine:               "cj",        Joint,     1, false, "its cosine";
+    GroupPosition:              "q",         Group,     1, false,
+        "sum of the positions of joints h to i, whose axes are parallel";
+    GroupTheta:                 "theta",     Group,     0, false, "constant part of the sum of their angles";
+    GroupAngle:                 "angle",     Group,     1, false,
+        "sum of the angles of joints h to i, whose axes are parallel";
+    GroupSine:                  "s",         Group,     1, false, "its sine";
+    GroupCosine:                "c",         Group,     1, false, "its cosine";
+    Term:                       "t",         Counted,   0, false, "a term that has no meaning of its own";
+    Rotation:                   "rot",       Matrix,    1, false, "R: frame i → frame i-1";
+    Omega:                      "w",         Vector,    1, true,  "ω: angular velocity";
+    OmegaUnturned:              "wn",        Vector,    1, false,
+        "ω in frame N, on the axis but not turning with the joint";
+
     // Step 2.
-    /// ω̇: angular acceleration.
-    OmegaDot,
-    /// U = ω̇× + ω× ω×: accelerations of the points of a link.
-    Gradient,
-    /// U in frame N.
-    GradientUnturned,
+    OmegaDot:                   "dw",        Vector,    2, true,  "ω̇: angular acceleration";
+    Gradient:                   "u",         Matrix,    2, false, "U = [ω̇]× + [ω]×[ω]×";
+    GradientUnturned:           "un",        Matrix,    2, false, "U in frame N";
+
     // Step 3.
-    /// ω × r: velocity of the next joint as seen from the centre of mass.
-    OmegaCrossR,
-    /// d: J_i → C_i. Constant for a revolute joint.
-    D,
-    /// ω × d: velocity of the centre of mass as seen from the joint.
-    OmegaCrossD,
-    /// ċ: velocity of the centre of mass.
-    Velocity,
+    OmegaCrossR:                "wxr",       Vector,    4, false, "ω × r";
+    D:                          "d",         Vector,    4, false, "d: joint → centre of mass";
+    OmegaCrossD:                "wxd",       Vector,    4, false, "ω × d";
+    Velocity:                   "dc",        Vector,    3, true,  "ċ: velocity of the centre of mass";
+
     // Step 4.
-    /// Acceleration of the joint's point J_i, in frame i-1.
-    JointPointAcceleration,
-    /// 2 q̇ of a prismatic joint.
-    TwiceRate,
-    /// c̈: acceleration of the centre of mass.
-    Acceleration,
-    /// a: acceleration of the frame's origin, less gravity.
-    OriginAcceleration,
-    /// a in frame N.
-    OriginAccelerationUnturned,
+    JointPointAcceleration:     "ddj",       Vector,    4, false,
+        "acceleration of the joint's point, in the frame before it";
+    TwiceRate:                  "twice_qd",  Joint,     4, false, "2 q̇";
+    Acceleration:               "ddc",       Vector,    4, true,  "c̈: acceleration of the centre of mass";
+    OriginAcceleration:         "a",         Vector,    4, true,  "acceleration of the frame's origin, less gravity";
+    OriginAccelerationUnturned: "an",        Vector,    4, true,  "the same in frame N";
+
     // Step 5.
-    /// g: acceleration of gravity.
-    Gravity,
+    Gravity:                    "g",         Vector,    5, true,  "g: acceleration of gravity";
+
     // Step 6.
-    /// f_{i,i+1}, turned into frame i.
-    ChildForce,
-    /// n_{i,i+1}, turned into frame i.
-    ChildMoment,
-    /// f_i = m c̈.
-    InertiaForce,
-    /// I ω: angular momentum about the centre of mass.
-    AngularMomentum,
-    /// n_i = I ω̇ + ω × I ω.
-    InertiaMoment,
-    /// f_{i-1,i}: force exerted by link i-1 on link i.
-    JointForce,
-    /// n_{i-1,i}: moment exerted by link i-1 on link i, about J_i.
-    JointMoment,
-    /// f: force on a link and all behind it, of regrouped matter.
-    ReducedForce,
-    /// n: moment on a link and all behind it, of regrouped matter.
-    ReducedMoment,
-    /// f of the next joint in the axes of this link, or of its frame N.
-    TurnedForce,
-    /// n of the next joint there.
-    TurnedMoment,
-    /// First moment of all bodies behind a joint.
-    CompositeFirstMoment,
-    /// Their second moment.
-    CompositeSecondMoment,
-    /// Force for a unit acceleration of one joint.
-    UnitForce,
-    /// Moment for it.
-    UnitMoment,
+    ChildForce:                 "fc",        Vector,    6, false, "f of the next joint, turned into this frame";
+    ChildMoment:                "nc",        Vector,    6, false, "n of the next joint, turned into this frame";
+    InertiaForce:               "f",         Vector,    6, true,  "f = m c̈";
+    AngularMomentum:            "h",         Vector,    6, false, "I ω";
+    InertiaMoment:              "n",         Vector,    6, true,  "n = I ω̇ + ω × I ω";
+    JointForce:                 "f",         Links,     6, true,  "force exerted by link h = i - 1 on link i";
+    JointMoment:                "n",         Links,     6, true,
+        "moment exerted by link h = i - 1 on link i, about joint i";
+    ReducedForce:               "f",         Vector,    6, true,
+        "force on the link and all behind it, of regrouped matter";
+    ReducedMoment:              "n",         Vector,    6, true,
+        "moment on the link and all behind it, of regrouped matter";
+    TurnedForce:                "fc",        Vector,    6, true,
+        "f of the next joint, in the axes of this link or of its frame N";
+    TurnedMoment:               "nc",        Vector,    6, true,  "n of the next joint there";
+    CompositeFirstMoment:       "hc",        Vector,    6, false, "first moment of all links from i on, as one body";
+    CompositeSecondMoment:      "pc",        Matrix,    6, false, "their second moment ∫ r rᵀ dm";
+    UnitForce:                  "fu",        Vector,    6, false,
+        "force on link i and all behind it, for q̈ = 1 of one joint";
+    UnitMoment:                 "nu",        Vector,    6, false, "moment on them";
+
     // Step 7.
-    /// τ: torque of a revolute, force of a prismatic joint.
-    Torque,
+    Torque:                     "tau",       Joint,     7, true,  "τ: joint torque (force, for a prismatic joint)";
 
     // Beyond the seven steps.
-    /// A term that has no meaning of its own.
-    Partial,
-    /// Rotation from the axes of a frame to those of the world.
-    FrameRotation,
-    /// Origin of a frame in the world.
-    FrameOrigin,
-    /// A column of the Jacobian, linear rows.
-    JacobianLinear,
-    /// A column of the Jacobian, angular rows.
-    JacobianAngular,
-    /// Acceleration of the tip, linear and angular.
-    TipAcceleration,
-    /// Centre of mass in frame 0.
-    ComPosition,
-    /// T
-    KineticEnergy,
-    /// V
-    PotentialEnergy,
-    /// An element of the Coriolis matrix.
-    CoriolisElement,
-    /// An element of the regressor.
-    RegressorElement,
-    /// L of M = L D Lᵀ.
-    LowerFactor,
-    /// L D.
-    ScaledFactor,
-    /// D
-    Pivot,
-    /// 1/D
-    InversePivot,
-    /// τ less the bias torque, then solved with L.
-    Reduced,
-    /// The same times 1/D.
-    Scaled,
-    /// What a motor adds.
-    ActuatorTorque,
+    Partial:                    "x",         Joint,     8, false, "a term that has no meaning of its own";
+    FrameRotation:              "frame",     Matrix,    8, true,
+        "rotation from the axes of frame i to those of the world; of the tip for i = n + 1";
+    FrameOrigin:                "origin",    Vector,    8, true,  "origin of that frame in the world";
+    JacobianLinear:             "jv",        Vector,    8, true,  "velocity of the tip per rate of joint i, world axes";
+    JacobianAngular:            "jw",        Vector,    8, true,
+        "angular velocity of the tip per rate of joint i, world axes";
+    TipAcceleration:            "acc",       Vector,    8, false,
+        "acceleration of the tip where joints do not accelerate";
+    ComPosition:                "pos",       Vector,    8, true,  "centre of mass in frame 0";
+    KineticEnergy:              "kinetic",   Alone,     8, false, "kinetic energy";
+    PotentialEnergy:            "potential", Alone,     8, false, "potential energy";
+    CoriolisElement:            "cor",       Column,    8, false, "element (i, j) of the Coriolis matrix";
+    RegressorElement:           "y",         Parameter, 8, false, "torque i per parameter of link j";
+    LowerFactor:                "low",       Column,    8, true,  "element (i, j) of L, M = L D Lᵀ";
+    ScaledFactor:               "lowd",      Column,    8, false, "the same times D";
+    Pivot:                      "pivot",     Joint,     8, true,  "element i of D";
+    InversePivot:               "inv",       Joint,     8, true,  "1/D";
+    Reduced:                    "rhs",       Joint,     8, true,  "L⁻¹ (τ - bias)";
+    Scaled:                     "sol",       Joint,     8, true,  "the same divided by D";
+    ActuatorTorque:             "act",       Joint,     8, false, "what the motor adds";
 }
 
 impl Quantity {
+    const fn row(self) -> &'static Row {
+        &TABLE[self as usize]
+    }
+
     /// The step that computes it; `None` for arguments and constants.
     #[must_use]
     pub const fn step(self) -> Option<Step> {
-        match self {
-            Self::Angle
-            | Self::Sine
-            | Self::Cosine
-            | Self::TurnedSine
-            | Self::TurnedCosine
-            | Self::GroupPosition
-            | Self::GroupAngle
-            | Self::GroupSine
-            | Self::GroupCosine
-            | Self::Rotation
-            | Self::Omega
-            | Self::OmegaUnturned => Some(Step::AngularVelocity),
-            Self::OmegaDot | Self::Gradient | Self::GradientUnturned => Some(Step::AngularAcceleration),
-            Self::Velocity => Some(Step::Velocity),
-            Self::OmegaCrossR
-            | Self::D
-            | Self::OmegaCrossD
-            | Self::JointPointAcceleration
-            | Self::TwiceRate
-            | Self::OriginAcceleration
-            | Self::OriginAccelerationUnturned
-            | Self::Acceleration => Some(Step::Acceleration),
-            Self::Gravity => Some(Step::Gravity),
-            Self::ChildForce
-            | Self::ChildMoment
-            | Self::InertiaForce
-            | Self::AngularMomentum
-            | Self::InertiaMoment
-            | Self::ReducedForce
-            | Self::ReducedMoment
-            | Self::TurnedForce
-            | Self::TurnedMoment
-            | Self::CompositeFirstMoment
-            | Self::CompositeSecondMoment
-            | Self::UnitForce
-            | Self::UnitMoment
-            | Self::JointForce
-            | Self::JointMoment => Some(Step::Wrenches),
-            Self::Torque => Some(Step::Torque),
-            Self::Partial
-            | Self::FrameRotation
-            | Self::FrameOrigin
-            | Self::JacobianLinear
-            | Self::JacobianAngular
-            | Self::TipAcceleration
-            | Self::ComPosition
-            | Self::KineticEnergy
-            | Self::PotentialEnergy
-            | Self::CoriolisElement
-            | Self::RegressorElement
-            | Self::LowerFactor
-            | Self::ScaledFactor
-            | Self::Pivot
-            | Self::InversePivot
-            | Self::Reduced
-            | Self::Scaled
-            | Self::ActuatorTorque => Some(Step::Beyond),
-            _ => None,
-        }
+        self.row().step
     }
 
-    /// Whether the lecture gives it a letter of its own, or the reduced form does: then each of its components is a
-    /// statement.
+    /// Whether each component gets a statement of its own.
     #[must_use]
     pub const fn is_of_the_lecture(self) -> bool {
-        matches!(
-            self,
-            Self::Omega
-                | Self::OmegaDot
-                | Self::Velocity
-                | Self::Acceleration
-                | Self::Gravity
-                | Self::InertiaForce
-                | Self::InertiaMoment
-                | Self::JointForce
-                | Self::JointMoment
-                | Self::OriginAcceleration
-                | Self::OriginAccelerationUnturned
-                | Self::ReducedForce
-                | Self::ReducedMoment
-                | Self::TurnedForce
-                | Self::TurnedMoment
-                | Self::Torque
-                | Self::FrameRotation
-                | Self::FrameOrigin
-                | Self::JacobianLinear
-                | Self::JacobianAngular
-                | Self::ComPosition
-                | Self::LowerFactor
-                | Self::Pivot
-                | Self::InversePivot
-                | Self::Reduced
-                | Self::Scaled
-        )
+        self.row().has_statements
     }
 
     /// Whether it is an angle, or a sum that becomes one.
@@ -404,223 +328,23 @@ impl Quantity {
 
     /// How its names begin.
     pub(crate) const fn prefix(self) -> &'static str {
-        match self {
-            Self::Position | Self::GroupPosition => "q",
-            Self::Rate => "qd",
-            Self::RateDot => "qdd",
-            Self::Constant => "k",
-            Self::Two => "two",
-            Self::Theta | Self::GroupTheta => "theta",
-            Self::TwistSine => "sa",
-            Self::TwistCosine => "ca",
-            Self::ThetaSine => "st",
-            Self::ThetaCosine => "ct",
-            Self::Offset => "b",
-            Self::Com => "com",
-            Self::Mass => "m",
-            Self::R => "r",
-            Self::Inertia => "i",
-            Self::TipRotation | Self::Rotation => "rot",
-            Self::SecondMoment => "p",
-            Self::OmegaUnturned => "wn",
-            Self::Gradient => "u",
-            Self::GradientUnturned => "un",
-            Self::OriginAcceleration => "a",
-            Self::OriginAccelerationUnturned => "an",
-            Self::Angle | Self::GroupAngle => "angle",
-            Self::Sine | Self::GroupSine => "s",
-            Self::Cosine | Self::GroupCosine => "c",
-            Self::TurnedSine => "sj",
-            Self::TurnedCosine => "cj",
-            Self::Term => "t",
-            Self::Omega => "w",
-            Self::OmegaDot => "dw",
-            Self::OmegaCrossR => "wxr",
-            Self::D => "d",
-            Self::OmegaCrossD => "wxd",
-            Self::Velocity => "dc",
-            Self::JointPointAcceleration => "ddj",
-            Self::TwiceRate => "twice_qd",
-            Self::Acceleration => "ddc",
-            Self::Gravity => "g",
-            Self::ChildForce | Self::TurnedForce => "fc",
-            Self::ChildMoment | Self::TurnedMoment => "nc",
-            Self::InertiaForce | Self::JointForce | Self::ReducedForce => "f",
-            Self::AngularMomentum | Self::FirstMoment => "h",
-            Self::InertiaMoment | Self::JointMoment | Self::ReducedMoment => "n",
-            Self::Torque | Self::AppliedTorque => "tau",
-            Self::Parameter => "par",
-            Self::One => "one",
-            Self::Half => "half",
-            Self::RotorInertia => "jm",
-            Self::ViscousFriction => "bv",
-            Self::CoulombFriction => "tc",
-            Self::CompositeFirstMoment => "hc",
-            Self::CompositeSecondMoment => "pc",
-            Self::UnitForce => "fu",
-            Self::UnitMoment => "nu",
-            Self::Partial => "x",
-            Self::FrameRotation => "frame",
-            Self::FrameOrigin => "origin",
-            Self::JacobianLinear => "jv",
-            Self::JacobianAngular => "jw",
-            Self::TipAcceleration => "acc",
-            Self::ComPosition => "pos",
-            Self::KineticEnergy => "kinetic",
-            Self::PotentialEnergy => "potential",
-            Self::CoriolisElement => "cor",
-            Self::RegressorElement => "y",
-            Self::LowerFactor => "low",
-            Self::ScaledFactor => "lowd",
-            Self::Pivot => "pivot",
-            Self::InversePivot => "inv",
-            Self::Reduced => "rhs",
-            Self::Scaled => "sol",
-            Self::ActuatorTorque => "act",
-        }
+        self.row().prefix
+    }
+
+    /// What follows in its names.
+    pub(crate) const fn indices(self) -> Indices {
+        self.row().indices
     }
 
     /// How its names look, for the legend of a listing: `wi_x`.
     #[must_use]
     pub fn pattern(self) -> String {
-        let prefix = self.prefix();
-        match self {
-            Self::Two | Self::One | Self::Half | Self::KineticEnergy | Self::PotentialEnergy => prefix.to_owned(),
-            Self::CoriolisElement | Self::LowerFactor | Self::ScaledFactor => format!("{prefix}i_j"),
-            Self::RegressorElement => format!("{prefix}i_j_1"),
-            Self::Constant | Self::Term => format!("{prefix}_1"),
-            Self::GroupPosition | Self::GroupTheta | Self::GroupAngle | Self::GroupSine | Self::GroupCosine => {
-                format!("{prefix}h_i")
-            }
-            Self::JointForce | Self::JointMoment => format!("{prefix}h_i_x"),
-            Self::Inertia
-            | Self::Rotation
-            | Self::TipRotation
-            | Self::SecondMoment
-            | Self::Gradient
-            | Self::FrameRotation
-            | Self::CompositeSecondMoment
-            | Self::GradientUnturned => format!("{prefix}i_xy"),
-            Self::Position
-            | Self::Rate
-            | Self::RateDot
-            | Self::Theta
-            | Self::TwistSine
-            | Self::TwistCosine
-            | Self::ThetaSine
-            | Self::ThetaCosine
-            | Self::Offset
-            | Self::Mass
-            | Self::Angle
-            | Self::Sine
-            | Self::Cosine
-            | Self::TurnedSine
-            | Self::TurnedCosine
-            | Self::TwiceRate
-            | Self::AppliedTorque
-            | Self::Parameter
-            | Self::RotorInertia
-            | Self::ViscousFriction
-            | Self::CoulombFriction
-            | Self::Partial
-            | Self::Pivot
-            | Self::InversePivot
-            | Self::Reduced
-            | Self::Scaled
-            | Self::ActuatorTorque
-            | Self::Torque => format!("{prefix}i"),
-            _ => format!("{prefix}i_x"),
-        }
+        [self.prefix(), self.indices().pattern()].concat()
     }
 
     /// What its name stands for, for the legend of a listing.
     #[must_use]
     pub const fn meaning(self) -> &'static str {
-        match self {
-            Self::Position => "joint position",
-            Self::Rate => "joint rate",
-            Self::RateDot => "joint acceleration",
-            Self::Constant => "a number",
-            Self::Two => "the number 2",
-            Self::Theta => "constant part of the joint angle",
-            Self::TwistSine => "sine of the twist α",
-            Self::TwistCosine => "cosine of the twist α",
-            Self::ThetaSine => "sine of the constant θ",
-            Self::ThetaCosine => "cosine of the constant θ",
-            Self::Offset => "constant part of the offset along the axis",
-            Self::Com => "centre of mass from the link frame's origin",
-            Self::Mass => "mass",
-            Self::R => "r: centre of mass → next joint",
-            Self::Inertia => "inertia about the centre of mass",
-            Self::TipRotation => "rotation from the last link to the tip frame",
-            Self::Angle => "θ + q",
-            Self::Sine => "sine of the joint angle",
-            Self::Cosine => "cosine of the joint angle",
-            Self::TurnedSine => "sine of θ + q, from those of q",
-            Self::GroupPosition => "sum of the positions of joints h to i, whose axes are parallel",
-            Self::GroupTheta => "constant part of the sum of their angles",
-            Self::GroupAngle => "sum of the angles of joints h to i, whose axes are parallel",
-            Self::GroupSine => "its sine",
-            Self::TurnedCosine | Self::GroupCosine => "its cosine",
-            Self::Term | Self::Partial => "a term that has no meaning of its own",
-            Self::Rotation => "R: frame i → frame i-1",
-            Self::FirstMoment => "first moment of regrouped matter about the frame's origin",
-            Self::SecondMoment => "second moment ∫ r rᵀ dm of regrouped matter",
-            Self::Omega => "ω: angular velocity",
-            Self::OmegaUnturned => "ω in frame N, on the axis but not turning with the joint",
-            Self::Gradient => "U = [ω̇]× + [ω]×[ω]×",
-            Self::GradientUnturned => "U in frame N",
-            Self::OriginAcceleration => "acceleration of the frame's origin, less gravity",
-            Self::OriginAccelerationUnturned => "the same in frame N",
-            Self::ReducedForce => "force on the link and all behind it, of regrouped matter",
-            Self::TurnedForce => "f of the next joint, in the axes of this link or of its frame N",
-            Self::TurnedMoment => "n of the next joint there",
-            Self::ReducedMoment => "moment on the link and all behind it, of regrouped matter",
-            Self::OmegaDot => "ω̇: angular acceleration",
-            Self::OmegaCrossR => "ω × r",
-            Self::D => "d: joint → centre of mass",
-            Self::OmegaCrossD => "ω × d",
-            Self::Velocity => "ċ: velocity of the centre of mass",
-            Self::JointPointAcceleration => "acceleration of the joint's point, in the frame before it",
-            Self::TwiceRate => "2 q̇",
-            Self::Acceleration => "c̈: acceleration of the centre of mass",
-            Self::Gravity => "g: acceleration of gravity",
-            Self::ChildForce => "f of the next joint, turned into this frame",
-            Self::ChildMoment => "n of the next joint, turned into this frame",
-            Self::InertiaForce => "f = m c̈",
-            Self::AngularMomentum => "I ω",
-            Self::InertiaMoment => "n = I ω̇ + ω × I ω",
-            Self::JointForce => "force exerted by link h = i - 1 on link i",
-            Self::JointMoment => "moment exerted by link h = i - 1 on link i, about joint i",
-            Self::Torque => "τ: joint torque (force, for a prismatic joint)",
-            Self::CompositeFirstMoment => "first moment of all links from i on, as one body",
-            Self::CompositeSecondMoment => "their second moment ∫ r rᵀ dm",
-            Self::UnitForce => "force on link i and all behind it, for q̈ = 1 of one joint",
-            Self::UnitMoment => "moment on them",
-            Self::AppliedTorque => "τ of the actuator",
-            Self::Parameter => "a parameter of the robot file that is given at run time",
-            Self::One => "the number 1",
-            Self::Half => "the number 1/2",
-            Self::RotorInertia => "rotor inertia at the joint, G² Jm",
-            Self::ViscousFriction => "viscous friction at the joint, G² B",
-            Self::CoulombFriction => "Coulomb friction at the joint, |G| Tc",
-            Self::FrameRotation => "rotation from the axes of frame i to those of the world; of the tip for i = n + 1",
-            Self::FrameOrigin => "origin of that frame in the world",
-            Self::JacobianLinear => "velocity of the tip per rate of joint i, world axes",
-            Self::JacobianAngular => "angular velocity of the tip per rate of joint i, world axes",
-            Self::TipAcceleration => "acceleration of the tip where joints do not accelerate",
-            Self::ComPosition => "centre of mass in frame 0",
-            Self::KineticEnergy => "kinetic energy",
-            Self::PotentialEnergy => "potential energy",
-            Self::CoriolisElement => "element (i, j) of the Coriolis matrix",
-            Self::RegressorElement => "torque i per parameter of link j",
-            Self::LowerFactor => "element (i, j) of L, M = L D Lᵀ",
-            Self::ScaledFactor => "the same times D",
-            Self::Pivot => "element i of D",
-            Self::InversePivot => "1/D",
-            Self::Reduced => "L⁻¹ (τ - bias)",
-            Self::Scaled => "the same divided by D",
-            Self::ActuatorTorque => "what the motor adds",
-        }
+        self.row().meaning
     }
 }

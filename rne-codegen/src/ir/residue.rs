@@ -1,6 +1,6 @@
 //! Images of numbers in two prime fields.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use super::operators;
 
 const BITS: u32 = 61;
 const MASK: u64 = (1 << BITS) - 1;
@@ -146,37 +146,14 @@ fn root(square: u64, field: usize) -> Option<u64> {
     Some(r)
 }
 
-impl Add for Image {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        Self([add(self.0[0], other.0[0], 0), add(self.0[1], other.0[1], 1)])
-    }
-}
-
-impl Neg for Image {
-    type Output = Self;
-
-    fn neg(self) -> Self {
+operators! { Image:
+    a + b => Self([add(a.0[0], b.0[0], 0), add(a.0[1], b.0[1], 1)]);
+    -a => {
         let negative = |residue: u64, field: usize| if residue == 0 { 0 } else { prime(field) - residue };
-        Self([negative(self.0[0], 0), negative(self.0[1], 1)])
-    }
-}
-
-impl Sub for Image {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self + -other
-    }
-}
-
-impl Mul for Image {
-    type Output = Self;
-
-    fn mul(self, other: Self) -> Self {
-        Self([multiply(self.0[0], other.0[0], 0), multiply(self.0[1], other.0[1], 1)])
-    }
+        Self([negative(a.0[0], 0), negative(a.0[1], 1)])
+    };
+    a - b => a + -b;
+    a * b => Self([multiply(a.0[0], b.0[0], 0), multiply(a.0[1], b.0[1], 1)]);
 }
 
 #[cfg(test)]

@@ -1,8 +1,10 @@
 //! Symbolic numbers, vectors and matrices, with the operators that formulas are written in.
 
-use std::ops::{Add, Mul, Neg, Sub};
+use std::ops::Mul;
 
-use super::{Builder, CausesId, Number, Ref};
+use rne_model::QuarterTurns;
+
+use super::{Builder, CausesId, Number, Ref, operators};
 use crate::ir::quantity::Axis;
 
 /// A number of a graph that is being written.
@@ -36,35 +38,20 @@ impl Symbol<'_> {
     }
 }
 
-impl<'s> Add for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn add(self, other: Self) -> Self {
-        self.builder.sum(self, other)
-    }
+operators! { Symbol<'_>:
+    a + b => a.builder.sum(a, b);
+    a - b => a.builder.sum(a, -b);
+    a * b => a.builder.product(a, b);
+    -a => a.signed(true);
 }
 
-impl<'s> Sub for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn sub(self, other: Self) -> Self {
-        self.builder.sum(self, -other)
-    }
-}
-
-impl<'s> Mul for Symbol<'s> {
-    type Output = Symbol<'s>;
-
-    fn mul(self, other: Self) -> Self {
-        self.builder.product(self, other)
-    }
-}
-
-impl Neg for Symbol<'_> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        self.signed(true)
+/// Sine and cosine of an angle that is so many right angles larger.
+pub(crate) fn by_quarters<'s>((s, c): (Symbol<'s>, Symbol<'s>), turns: QuarterTurns) -> (Symbol<'s>, Symbol<'s>) {
+    match turns {
+        QuarterTurns::Zero => (s, c),
+        QuarterTurns::One => (c, -s),
+        QuarterTurns::Two => (-s, -c),
+        QuarterTurns::Three => (-c, s),
     }
 }
 
@@ -75,8 +62,7 @@ pub(crate) struct Vector<'s>(pub(crate) [Symbol<'s>; 3]);
 impl<'s> Vector<'s> {
     /// Applies `f` to each component.
     pub(crate) fn map(self, f: impl Fn(Axis, Symbol<'s>) -> Symbol<'s>) -> Self {
-        let [x, y, z] = self.0;
-        Self([f(Axis::X, x), f(Axis::Y, y), f(Axis::Z, z)])
+        Self(Axis::ALL.map(|axis| f(axis, self.0[axis as usize])))
     }
 
     /// Component z, along the joint axis: e · v.
@@ -121,28 +107,10 @@ impl<'s> Vector<'s> {
     }
 }
 
-impl Add for Vector<'_> {
-    type Output = Self;
-
-    fn add(self, other: Self) -> Self {
-        self.zip(other, |a, b| a + b)
-    }
-}
-
-impl Sub for Vector<'_> {
-    type Output = Self;
-
-    fn sub(self, other: Self) -> Self {
-        self.zip(other, |a, b| a - b)
-    }
-}
-
-impl Neg for Vector<'_> {
-    type Output = Self;
-
-    fn neg(self) -> Self {
-        self.map(|_, x| -x)
-    }
+operators! { Vector<'_>:
+    a + b => a.zip(b, |a, b| a + b);
+    a - b => a.zip(b, |a, b| a - b);
+    -a => a.map(|_, x| -x);
 }
 
 impl<'s> Mul<Symbol<'s>> for Vector<'s> {
@@ -164,12 +132,7 @@ impl<'s> Matrix<'s> {
 
     /// Applies `f` to each element: row, column, element.
     pub(crate) fn map(self, f: impl Fn(Axis, Axis, Symbol<'s>) -> Symbol<'s>) -> Self {
-        let [x, y, z] = self.0;
-        Self([
-            x.map(|column, e| f(Axis::X, column, e)),
-            y.map(|column, e| f(Axis::Y, column, e)),
-            z.map(|column, e| f(Axis::Z, column, e)),
-        ])
+        Self(Axis::ALL.map(|row| self.0[row as usize].map(|column, element| f(row, column, element))))
     }
 
     pub(crate) fn transpose(self) -> Self {

@@ -4,8 +4,8 @@
 use std::collections::HashMap;
 
 use super::causes::{CausesId, KnownCauses};
-use super::{Graph, Outcome, Ref, Symbol};
-use crate::ir::ledger::{Causes, Fate, Ledger, Operation, Place};
+use super::{Graph, Outcome, Ref, Side, Symbol};
+use crate::ir::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Component};
 
@@ -89,6 +89,38 @@ impl Trace {
             {
                 self.roles.insert((at.magnitude(), operand.at.magnitude()), name);
             }
+        }
+    }
+
+    /// Why a sum or a product is the constant that it is, and why the operation was folded.
+    pub(super) fn causes_of(
+        &mut self,
+        graph: &Graph,
+        operation: Operation,
+        at: Ref,
+        outcome: Outcome,
+        operands: [Symbol<'_>; 2],
+    ) -> (CausesId, CausesId) {
+        let [a, b] = operands.map(|operand| operand.causes);
+        let none = CausesId::ARITHMETIC;
+        let both_zero = outcome == Outcome::Zero(Side::Right) && graph.is_zero(operands[0].at);
+        match (operation, outcome) {
+            // a sum is zero when both are
+            (Operation::Sum, Outcome::Zero(_)) if both_zero => (self.causes.both(a, b), b),
+            // the other operand is left
+            (Operation::Sum, Outcome::Zero(Side::Right)) | (_, Outcome::One(Side::Right)) => (a, b),
+            (Operation::Sum, Outcome::Zero(Side::Left)) | (_, Outcome::One(Side::Left)) => (b, a),
+            (Operation::Sum, _) if graph.is_zero(at) => (self.causes.one(Cause::Cancellation), none),
+            // a product is zero when either is
+            (Operation::Product, Outcome::Zero(side)) => {
+                let either = match side {
+                    _ if both_zero => self.causes.either(a, b),
+                    Side::Left => a,
+                    Side::Right => b,
+                };
+                (either, either)
+            }
+            _ => (none, none),
         }
     }
 

@@ -13,15 +13,14 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::{Wrench, antisymmetric_of};
-use crate::reduced::crba::{Gathering, turned_about_x, turned_about_z};
+
 use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::regrouping::is_parallel;
+use crate::reduced::inward::{Gathering, Inward, Turned};
 use crate::reduced::rnea_derivatives::{Station, matter, stations};
 
 use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::{Builder, Number, Symbol, Vector, square};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
 
@@ -57,7 +56,7 @@ fn of<'s>(matrix: &Square<'s>, v: Vector<'s>) -> Vector<'s> {
 }
 
 fn transposed<'s>(matrix: &Square<'s>) -> Square<'s> {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| matrix[j][i]))
+    square(|i, j| matrix[j][i])
 }
 
 /// a aᵀ times a factor, taken away.
@@ -71,33 +70,21 @@ impl<'s> Articulated<'s> {
     fn plus(self, other: Self) -> Self {
         Self {
             angular: std::array::from_fn(|k| self.angular[k] + other.angular[k]),
-            mixed: [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] + other.mixed[i][j])),
+            mixed: square(|i, j| self.mixed[i][j] + other.mixed[i][j]),
             linear: std::array::from_fn(|k| self.linear[k] + other.linear[k]),
             bias: self.bias.plus(other.bias),
         }
     }
 
-    fn turned(
-        self,
-        symmetric: impl Fn(Symmetric<'s>) -> Symmetric<'s>,
-        turn: impl Fn(Vector<'s>) -> Vector<'s>,
-    ) -> Self {
-        let rows = self.mixed.map(|row| turn(Vector(row)).0);
-        let columns = transposed(&rows).map(|column| turn(Vector(column)).0);
+    fn turned(self, turn: Turned<'s>) -> Self {
+        let rows = self.mixed.map(|row| turn.of(Vector(row)).0);
+        let columns = transposed(&rows).map(|column| turn.of(Vector(column)).0);
         Self {
-            angular: symmetric(self.angular),
+            angular: turn.of_symmetric(self.angular),
             mixed: transposed(&columns),
-            linear: symmetric(self.linear),
-            bias: self.bias.map(&turn),
+            linear: turn.of_symmetric(self.linear),
+            bias: self.bias.turned(turn),
         }
-    }
-
-    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        self.turned(|matrix| turned_about_z(matrix, turn), |v| turn.about_z(v))
-    }
-
-    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        self.turned(|matrix| turned_about_x(matrix, turn), |v| turn.about_x(v))
     }
 
     /// About a point from which the old one is at p, on a link that turns with ω.
@@ -105,7 +92,7 @@ impl<'s> Articulated<'s> {
         let linear = full(self.linear);
         let columns = transposed(&linear).map(|column| p.cross(Vector(column)).0);
         let shift = transposed(&columns);
-        let mixed: Square<'s> = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] + shift[i][j]));
+        let mixed = square(|i, j| self.mixed[i][j] + shift[i][j]);
         // -B' [p]×: each row b becomes p × b; [p]× Bᵀ: each column of Bᵀ, a row of B, becomes p × it
         let first = mixed.map(|row| p.cross(Vector(row)).0);
         let second = transposed(&self.mixed.map(|row| p.cross(Vector(row)).0));
@@ -147,7 +134,7 @@ impl<'s> Articulated<'s> {
         };
         let inverse = pivot.inverse();
         let scaled = resistance.map(|v| v * inverse);
-        let mixed = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.mixed[i][j] - resistance[0].0[i] * scaled[1].0[j]));
+        let mixed = square(|i, j| self.mixed[i][j] - resistance[0].0[i] * scaled[1].0[j]);
         let given = Self {
             angular: less(self.angular, resistance[0], scaled[0]),
             mixed,
@@ -182,9 +169,7 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gatherin
     let rows = arm.rows();
     let dof = rows.len();
     let stations = stations(builder, arm, gathering, Number::ONE);
-    let zero = builder.zero();
-    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
-    let grouped = |index: usize| is_parallel(rows, index) && gathering == Gathering::Groups;
+    let grouped = |index: usize| arm.is_grouped(gathering, index);
     let mut pivots = Vec::with_capacity(dof);
     // in the axes of link i or, behind a parallel axis, in N of its group
     let mut behind: Option<Articulated<'s>> = None;
@@ -192,12 +177,13 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gatherin
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
         let (offset, d) = arm.lengths(index, Number::ONE);
-        let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
+        let (offset, twist) = (builder.vector(offset), Turned::AboutX(builder.fixed_turn(row.alpha)));
+        let turn = Turned::AboutZ(station.turn);
         let own = rigid(builder, arm, index, station);
         let is_unturned = index + 1 < dof && grouped(index + 1);
         let here = match (row.kind, behind) {
-            (Revolute, Some(behind)) if is_unturned => own.about_z(station.turn).plus(behind),
-            (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).about_z(station.turn),
+            (Revolute, Some(behind)) if is_unturned => own.turned(turn).plus(behind),
+            (Revolute, behind) => behind.map_or(own, |behind| own.plus(behind)).turned(turn),
             (Prismatic, behind) => behind.map_or(own, |behind| own.plus(behind)),
         };
         let (given, pivot) = here.released(builder, arm, index, station);
@@ -208,14 +194,19 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gatherin
             _ if index == 0 => break,
             Revolute if grouped(index) => {
                 let before = stations[index - 1].turn;
-                given.moved(before.about_z(offset) + along(d), omega)
+                given.moved(before.about_z(offset) + builder.along_z(d), omega)
             }
-            Revolute => given.moved(along(d), omega).about_x(twist).moved(offset, stations[index - 1].own.omega),
+            Revolute => {
+                given.moved(builder.along_z(d), omega).turned(twist).moved(offset, stations[index - 1].own.omega)
+            }
             Prismatic => {
                 let q = builder.position(rows, index) + builder.number(d);
                 let given = given.moved(builder.vector(row.axis) * q, omega);
-                let given =
-                    if row.carried { given } else { given.about_z(builder.fixed_turn(row.theta)).about_x(twist) };
+                let given = if row.carried {
+                    given
+                } else {
+                    given.turned(Turned::AboutZ(builder.fixed_turn(row.theta))).turned(twist)
+                };
                 given.moved(offset, stations[index - 1].own.omega)
             }
         });
@@ -233,8 +224,6 @@ fn outward<'s>(
     pivots: &[Pivot<'s>],
 ) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
-    let zero = builder.zero();
-    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
     let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.table.gravity.map(|g| -g)));
     let mut unturned = (omega_dot, acceleration);
     let mut accelerations = Vec::with_capacity(rows.len());
@@ -248,9 +237,9 @@ fn outward<'s>(
         let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
         let theta = builder.fixed_turn(row.theta);
         let before = match row.kind {
-            Revolute if is_parallel(rows, index) && gathering == Gathering::Groups => {
+            Revolute if arm.is_grouped(gathering, index) => {
                 let turned = stations[index - 1].turn.about_z(offset);
-                at(unturned, turned + along(d), station.before.omega)
+                at(unturned, turned + builder.along_z(d), station.before.omega)
             }
             _ => {
                 let own = index.checked_sub(1).map_or(builder.no_vector(), |last| stations[last].own.omega);
@@ -261,7 +250,7 @@ fn outward<'s>(
                     Prismatic => theta.back_about_z(twist.back_about_x(v)),
                 };
                 let p = match row.kind {
-                    Revolute => along(d),
+                    Revolute => builder.along_z(d),
                     Prismatic => builder.vector(row.axis) * (builder.position(rows, index) + builder.number(d)),
                 };
                 at((turn(omega_dot), turn(acceleration)), p, station.before.omega)

@@ -3,19 +3,21 @@
 use crate::function::Argument;
 use crate::ir::name::{By, Name};
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Symbol, Turn, Vector};
+use crate::ir::{Builder, Number, Symbol, Turn, Vector, by_quarters};
 use crate::reduced::joint_frames::Row;
 use rne_model::QuarterTurns;
 
 use crate::reduced::link_parameters::Triple;
 
+/// The name of what belongs to a group of joints, or to a single one.
+fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
+    if first == last { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) }
+}
+
 /// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the
 /// others, and a constant. It is counted with the sign of the first joint; right angles are left to the sine and
 /// cosine.
 fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
-    let group = |kind: Quantity, single: Quantity, at: usize| {
-        if at == first { Name::scalar(single, at + 1) } else { Name::indexed(kind, at + 1, first + 1) }
-    };
     let position = |at: usize| builder.argument(Name::scalar(Quantity::Position, at + 1));
     let theta = |at: usize| rows[first..=at].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
     let reversed = rows[first].reversed;
@@ -24,20 +26,25 @@ fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (
         sum = sum + position(at).signed(row.reversed != reversed);
         // without the constant part, if that has one
         let kind = if theta(at).quarters().is_some() { Quantity::GroupAngle } else { Quantity::GroupPosition };
-        builder.name(group(kind, Quantity::Angle, at), sum);
+        builder.name(group_name(kind, Quantity::Angle, first, at), sum);
     }
     let theta = theta(last);
     if let Some(quarters) = theta.quarters() {
         return (sum, quarters);
     }
     let theta = builder.angle(if reversed { theta.back() } else { theta });
-    let theta = builder.name(group(Quantity::GroupTheta, Quantity::Theta, last), theta);
-    (builder.name(group(Quantity::GroupAngle, Quantity::Angle, last), theta + sum), QuarterTurns::Zero)
+    let theta = builder.name(group_name(Quantity::GroupTheta, Quantity::Theta, first, last), theta);
+    (builder.name(group_name(Quantity::GroupAngle, Quantity::Angle, first, last), theta + sum), QuarterTurns::Zero)
 }
 
 impl Builder {
     pub(crate) fn vector(&self, v: Triple) -> Vector<'_> {
         Vector(v.map(|x| self.number(x)))
+    }
+
+    /// (0, 0, x)
+    pub(crate) fn along_z(&self, x: Number) -> Vector<'_> {
+        self.vector([Number::ZERO, Number::ZERO, x])
     }
 
     /// An argument of a joint, counted from 0, in the direction of its row.
@@ -95,16 +102,7 @@ impl Builder {
 
     fn turn_by_angle(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
         let ((s, c), quarters) = self.turned(rows, first, last);
-        let (mut s, mut c) = (s.signed(rows[first].reversed), c);
-        let turns = match quarters {
-            QuarterTurns::Zero => 0,
-            QuarterTurns::One => 1,
-            QuarterTurns::Two => 2,
-            QuarterTurns::Three => 3,
-        };
-        for _ in 0..turns {
-            (s, c) = (c, -s);
-        }
+        let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
         SymbolicTurn { s, c }
     }
 
@@ -112,12 +110,7 @@ impl Builder {
     pub(crate) fn turned(&self, rows: &[Row], first: usize, last: usize) -> ((Symbol<'_>, Symbol<'_>), QuarterTurns) {
         let (angle, quarters) = angle(self, rows, first, last);
         let (s, c) = self.sine_and_cosine(angle);
-        let name = |group: Quantity, single: Quantity, x| {
-            let is_single = first == last;
-            let name =
-                if is_single { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) };
-            self.name(name, x)
-        };
+        let name = |group, single, x| self.name(group_name(group, single, first, last), x);
         ((name(Quantity::GroupSine, Quantity::Sine, s), name(Quantity::GroupCosine, Quantity::Cosine, c)), quarters)
     }
 

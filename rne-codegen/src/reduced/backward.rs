@@ -353,9 +353,7 @@ fn name_matter(builder: &Builder, joint: usize, matter: &PseudoInertia) {
         return;
     }
     builder.name(Name::scalar(Quantity::Mass, joint), builder.number(matter.mass));
-    for (axis, h) in Axis::ALL.into_iter().zip(matter.h) {
-        builder.name(Name::vector(Quantity::FirstMoment, joint, axis), builder.number(h));
-    }
+    builder.name_vector(Quantity::FirstMoment, joint, builder.vector(matter.h));
     for (row, values) in Axis::ALL.into_iter().zip(matter.s) {
         for (column, s) in Axis::ALL.into_iter().zip(values).filter(|(column, _)| *column >= row) {
             builder.name(Name::matrix(Quantity::SecondMoment, joint, row, column), builder.number(s));

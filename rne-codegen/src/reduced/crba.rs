@@ -13,23 +13,18 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::Wrench;
 use crate::reduced::forward::Arm;
+use crate::reduced::inward::{Carried, Inward, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::regrouping::{group_start, is_parallel};
+use crate::reduced::regrouping::group_start;
+
+pub(crate) use crate::reduced::inward::Gathering;
 
 use crate::ir::name::{By, Name};
 use crate::ir::quantity::Axis::{self, X, Y, Z};
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol, Vector};
-
-/// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Gathering {
-    Joints,
-    Groups,
-}
 
 /// The matter of all links from one on. Its mass is a number.
 #[derive(Clone, Copy)]
@@ -40,25 +35,6 @@ pub(crate) struct Composite<'s> {
     s: [Symbol<'s>; 6],
     /// S11 + S22, which a turn about z leaves alone, where it has been turned so.
     around: Option<Symbol<'s>>,
-}
-
-/// Rz S Rzᵀ of a symmetric matrix: xx, yy, zz, xy, xz, yz.
-pub(crate) fn turned_about_z<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>) -> [Symbol<'s>; 6] {
-    let SymbolicTurn { s: sine, c: cosine } = turn;
-    let [xx, yy, zz, xy, xz, yz] = matrix;
-    let difference = xx - yy;
-    let twice = xy + xy;
-    let (both, square) = (cosine * sine, cosine * cosine);
-    let u = square * difference - both * twice;
-    let turned_xy = both * difference + (square * twice - xy);
-    [u + yy, xx - u, zz, turned_xy, cosine * xz - sine * yz, sine * xz + cosine * yz]
-}
-
-/// Rx S Rxᵀ: the same with y, z, x in the places of x, y, z.
-pub(crate) fn turned_about_x<'s>(matrix: [Symbol<'s>; 6], turn: SymbolicTurn<'s>) -> [Symbol<'s>; 6] {
-    let [xx, yy, zz, xy, xz, yz] = matrix;
-    let [yy, zz, xx, yz, xy, xz] = turned_about_z([yy, zz, xx, yz, xy, xz], turn);
-    [xx, yy, zz, xy, xz, yz]
 }
 
 impl<'s> Composite<'s> {
@@ -91,38 +67,6 @@ impl<'s> Composite<'s> {
         self.around.unwrap_or_else(|| self.s[0] + self.s[1])
     }
 
-    /// Rz P Rzᵀ
-    pub(crate) fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        Self { mass: self.mass, h: turn.about_z(self.h), s: turned_about_z(self.s, turn), around: Some(self.around()) }
-    }
-
-    /// Rx P Rxᵀ
-    pub(crate) fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        Self { mass: self.mass, h: turn.about_x(self.h), s: turned_about_x(self.s, turn), around: None }
-    }
-
-    /// The same matter about a point from which the old one is at t.
-    pub(crate) fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
-        let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
-        let m = builder.number(self.mass);
-        let [xx, yy, zz, xy, xz, yz] = self.s;
-        let ([mx, my, mz], twice) = ([x * m, y * m, z * m], |a: Symbol<'s>| a + a);
-        let (dx, dy) = (x * (twice(hx) + mx), y * (twice(hy) + my));
-        Self {
-            mass: self.mass,
-            h: Vector([hx + mx, hy + my, hz + mz]),
-            around: self.around.map(|around| around + (dx + dy)),
-            s: [
-                xx + dx,
-                yy + dy,
-                zz + z * (twice(hz) + mz),
-                xy + (x * hy + y * (hx + mx)),
-                xz + (x * hz + z * (hx + mx)),
-                yz + (y * hz + z * (hy + my)),
-            ],
-        }
-    }
-
     /// What gives its points the accelerations b + e × r.
     pub(crate) fn carried(&self, builder: &'s Builder, e: Vector<'s>, b: Vector<'s>) -> Wrench<'s> {
         let ([xx, yy, zz, xy, xz, yz], [x, y, z]) = (self.s, e.0);
@@ -147,52 +91,61 @@ impl<'s> Composite<'s> {
     }
 }
 
-/// What link i carries: its composite body and the columns of the joints from there on, about the origin of its frame,
-/// in its axes or in the frame N of its group.
-struct Carried<'s> {
-    composite: Option<Composite<'s>>,
-    columns: Vec<(usize, Wrench<'s>)>,
-    unturned: bool,
+impl<'s> Inward<'s> for Composite<'s> {
+    /// R P Rᵀ
+    fn turned(self, turn: Turned<'s>) -> Self {
+        let (h, s) = (turn.of(self.h), turn.of_symmetric(self.s));
+        let around = if let Turned::AboutZ(_) = turn { Some(self.around()) } else { None };
+        Self { mass: self.mass, h, s, around }
+    }
+
+    /// The same matter about a point from which the old one is at t.
+    fn moved(self, t: Vector<'s>) -> Self {
+        let ([hx, hy, hz], [x, y, z]) = (self.h.0, t.0);
+        let m = x.builder.number(self.mass);
+        let [xx, yy, zz, xy, xz, yz] = self.s;
+        let ([mx, my, mz], twice) = ([x * m, y * m, z * m], |a: Symbol<'s>| a + a);
+        let (dx, dy) = (x * (twice(hx) + mx), y * (twice(hy) + my));
+        Self {
+            mass: self.mass,
+            h: Vector([hx + mx, hy + my, hz + mz]),
+            around: self.around.map(|around| around + (dx + dy)),
+            s: [
+                xx + dx,
+                yy + dy,
+                zz + z * (twice(hz) + mz),
+                xy + (x * hy + y * (hx + mx)),
+                xz + (x * hz + z * (hx + mx)),
+                yz + (y * hz + z * (hy + my)),
+            ],
+        }
+    }
 }
 
-impl<'s> Carried<'s> {
-    fn map(
-        self,
-        unturned: bool,
-        composite: impl Fn(Composite<'s>) -> Composite<'s>,
-        wrench: impl Fn(Wrench<'s>) -> Wrench<'s>,
-    ) -> Self {
-        Self {
-            composite: self.composite.map(composite),
-            columns: self.columns.into_iter().map(|(column, one)| (column, wrench(one))).collect(),
-            unturned,
+/// The column of M of a joint, counted from 0.
+type Column<'s> = (usize, Wrench<'s>);
+
+impl<'s> Inward<'s> for Column<'s> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        (self.0, self.1.turned(turn))
+    }
+
+    fn moved(self, t: Vector<'s>) -> Self {
+        (self.0, self.1.about(t))
+    }
+}
+
+/// Names what is there, in frame N of a joint.
+fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>, Column<'s>>) {
+    if let Some(composite) = &carried.behind {
+        composite.name(builder, joint);
+    }
+    for (column, Wrench { force, moment }) in &carried.columns {
+        for (axis, (f, n)) in Axis::ALL.into_iter().zip(force.0.into_iter().zip(moment.0)) {
+            let by = Some(By::RateDot(column + 1));
+            builder.name(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
+            builder.name(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
         }
-    }
-
-    fn name(&self, builder: &'s Builder, joint: usize) {
-        if let Some(composite) = &self.composite {
-            composite.name(builder, joint);
-        }
-        for (column, Wrench { force, moment }) in &self.columns {
-            for (axis, (f, n)) in Axis::ALL.into_iter().zip(force.0.into_iter().zip(moment.0)) {
-                let by = Some(By::RateDot(column + 1));
-                builder.name(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
-                builder.name(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
-            }
-        }
-    }
-
-    fn turned_about_z(self, turn: SymbolicTurn<'s>, unturned: bool) -> Self {
-        self.map(unturned, |body| body.about_z(turn), |wrench| wrench.map(|v| turn.about_z(v)))
-    }
-
-    fn turned_about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        self.map(false, |body| body.about_x(turn), |wrench| wrench.map(|v| turn.about_x(v)))
-    }
-
-    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
-        let unturned = self.unturned;
-        self.map(unturned, |body| body.moved(t, builder), |wrench| wrench.about(t))
     }
 }
 
@@ -201,11 +154,10 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
     let rows = arm.rows();
     let dof = rows.len();
     let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
-    let mut carried = Carried { composite: None, columns: Vec::new(), unturned: false };
+    let mut carried: Carried<Composite<'s>, Column<'s>> = Carried::NOTHING;
     for index in (0..dof).rev() {
         let row = &rows[index];
         builder.at(Quantity::ReducedForce, index + 1);
-        let (offset, d) = arm.lengths(index, Number::ONE);
         let twist = builder.fixed_turn(row.alpha);
         if arm.is_spin(index) {
             let c = builder.number(arm.parameters.sphere.unwrap_or_default());
@@ -215,67 +167,49 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
             continue;
         }
         let own = Composite::of(builder, &arm.parameters.links[index]);
-        let parallel = is_parallel(rows, index);
-        match row.kind {
+        let u = builder.vector(row.axis);
+        // what the joint feels of a wrench
+        let along = |wrench: &Wrench<'s>| match row.kind {
+            Revolute => wrench.moment.0[2],
+            Prismatic => u.dot(wrench.force),
+        };
+        for (column, wrench) in &carried.columns {
+            matrix[index][*column] = along(wrench);
+        }
+        let Carried { behind, columns, unturned } = carried;
+        let with = |body: Composite<'s>| behind.map_or(body, |behind| body.plus(behind));
+        let (whole, mut columns) = match row.kind {
+            Prismatic => (with(own), columns),
             Revolute => {
-                let grouped = parallel && gathering == Gathering::Groups;
-                let start = if grouped { group_start(rows, index) } else { index };
-                let turn = builder.turn(rows, start, index);
-                for (column, wrench) in &carried.columns {
-                    matrix[index][*column] = wrench.moment.0[2];
+                let turn = Turned::AboutZ(arm.turn_of_group(builder, gathering, index));
+                if unturned {
+                    (with(own.turned(turn)), columns)
+                } else {
+                    let whole = with(own);
+                    let columns = columns.into_iter().map(|column| column.turned(turn)).collect();
+                    (whole.turned(turn), columns)
                 }
-                let (own_unturned, rest) = if carried.unturned {
-                    (own.about_z(turn), carried)
-                } else {
-                    let whole = carried.composite.map_or(own, |behind| own.plus(behind));
-                    let rest = carried.map(false, |body| body, |wrench| wrench);
-                    let rest = Carried { composite: None, ..rest }.turned_about_z(turn, true);
-                    (whole.about_z(turn), rest)
-                };
-                let whole = rest.composite.map_or(own_unturned, |behind| own_unturned.plus(behind));
-                let column = whole.turning(builder);
-                matrix[index][index] = column.moment.0[2];
-                let mut next = Carried { composite: Some(whole), columns: rest.columns, unturned: true };
-                next.columns.push((index, column));
-                next.name(builder, index + 1);
-                let along = |x: Number| Vector([builder.zero(), builder.zero(), builder.number(x)]);
-                carried = if index == 0 {
-                    next
-                } else if grouped {
-                    // the frame of the group goes on, but for its origin
-                    let before = builder.turn(rows, start, index - 1);
-                    next.moved(before.about_z(builder.vector(offset)) + along(d), builder)
-                } else {
-                    next.moved(along(d), builder).turned_about_x(twist).moved(builder.vector(offset), builder)
-                };
             }
-            Prismatic => {
-                let u = builder.vector(row.axis);
-                for (column, wrench) in &carried.columns {
-                    matrix[index][*column] = u.dot(wrench.force);
-                }
-                let whole = carried.composite.map_or(own, |behind| own.plus(behind));
-                let column = whole.sliding(u, builder);
-                matrix[index][index] = u.dot(column.force);
-                let mut next = Carried { composite: Some(whole), columns: carried.columns, unturned: false };
-                next.columns.push((index, column));
-                let q = builder.position(rows, index) + builder.number(d);
-                let next = next.moved(u * q, builder);
-                let next = if row.carried {
-                    next
-                } else {
-                    next.turned_about_z(builder.fixed_turn(row.theta), false).turned_about_x(twist)
-                };
-                carried = next.moved(builder.vector(offset), builder);
-            }
+        };
+        let column = match row.kind {
+            Revolute => whole.turning(builder),
+            Prismatic => whole.sliding(u, builder),
+        };
+        matrix[index][index] = along(&column);
+        columns.push((index, column));
+        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(gathering, index) };
+        if row.kind == Revolute {
+            name(builder, index + 1, &carried);
+        }
+        if index > 0 {
+            carried = arm.inward(builder, gathering, index, carried);
         }
     }
     (0..dof)
         .map(|row| {
             (row..dof)
                 .map(|column| {
-                    let element = matrix[row][column];
-                    let element = if rows[row].reversed == rows[column].reversed { element } else { -element };
+                    let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
                     let by = Some(By::RateDot(column + 1));
                     builder.name(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
                     element
@@ -295,50 +229,41 @@ pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
         let twist = builder.fixed_turn(row.alpha);
-        let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
+        let grouped = arm.is_grouped(gathering, index);
         let field = match fields.last() {
             Some(field) if grouped => *field,
             _ => twist.back_about_x(own),
         };
         own = match row.kind {
-            Revolute => {
-                let start = if grouped { group_start(rows, index) } else { index };
-                builder.turn(rows, start, index).back_about_z(field)
-            }
+            Revolute => arm.turn_of_group(builder, gathering, index).back_about_z(field),
             Prismatic if row.carried => own,
             Prismatic => builder.fixed_turn(row.theta).back_about_z(field),
         };
         fields.push(if row.kind == Revolute { field } else { own });
     }
-    let zero = builder.zero();
-    let mut torques = vec![zero; dof];
+    let mut torques = vec![builder.zero(); dof];
     // first moment of what is behind, in the axes of link i or in its frame N
     let (mut h, mut mass, mut unturned) = (builder.no_vector(), Number::ZERO, false);
-    for index in (0..dof).rev() {
-        let row = &rows[index];
+    for (index, (row, matter)) in rows.iter().zip(&arm.parameters.links).enumerate().rev() {
         builder.at(Quantity::ReducedMoment, index + 1);
         if arm.is_spin(index) {
             continue;
         }
-        let matter = &arm.parameters.links[index];
         mass = mass + matter.mass;
         let (offset, d) = arm.lengths(index, Number::ONE);
         let twist = builder.fixed_turn(row.alpha);
-        let own = builder.vector(matter.h);
-        let field = fields[index];
+        let (own, field) = (builder.vector(matter.h), fields[index]);
         let m = builder.number(mass);
         let torque = match row.kind {
             Revolute => {
-                let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
-                let start = if grouped { group_start(rows, index) } else { index };
-                let turn = builder.turn(rows, start, index);
+                let turn = arm.turn_of_group(builder, gathering, index);
                 h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
                 let ([hx, hy, _], [ax, ay, _]) = (h.0, field.0);
                 let torque = hx * ay - hy * ax;
-                let along = Vector([zero, zero, builder.number(d)]);
-                unturned = grouped;
-                if grouped {
-                    let before = builder.turn(rows, start, index - 1);
+                let along = builder.along_z(d);
+                unturned = arm.is_grouped(gathering, index);
+                if unturned {
+                    let before = builder.turn(rows, group_start(rows, index), index - 1);
                     h = h + (before.about_z(builder.vector(offset)) + along) * m;
                 } else {
                     h = twist.about_x(h + along * m) + builder.vector(offset) * m;
@@ -357,7 +282,7 @@ pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering
                 torque
             }
         };
-        torques[index] = if row.reversed { -torque } else { torque };
+        torques[index] = torque.signed(row.reversed);
         builder.name(Name::scalar(Quantity::Torque, index + 1), torques[index]);
     }
     torques

@@ -15,9 +15,8 @@ use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::joint_frames::{Row, Table};
 use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
 
-use crate::ir::name::Name;
-use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Matrix, Number, Symbol, Vector};
 
 /// U = [ω̇]× + [ω]×[ω]×, with the differences of its diagonal.
 #[derive(Clone, Copy)]
@@ -340,8 +339,8 @@ impl<'s> Revolving<'s, '_> {
         } else {
             (Gradient::new(omega, omega_dot), Gradient::new(omega_unturned, omega_dot_unturned))
         };
-        name_gradient(builder, Quantity::Gradient, joint, &gradient);
-        name_gradient(builder, Quantity::GradientUnturned, joint, &gradient_unturned);
+        builder.name_matrix(Quantity::Gradient, joint, Matrix::from_rows(gradient.u));
+        builder.name_matrix(Quantity::GradientUnturned, joint, Matrix::from_rows(gradient_unturned.u));
         ((omega, omega_dot, gradient), (omega_unturned, omega_dot_unturned, gradient_unturned))
     }
 
@@ -402,14 +401,13 @@ fn prismatic<'s>(
     let q = builder.position(rows, index).times(lambda) + builder.number(d);
     let u = builder.vector(row.axis);
 
+    builder.at(Quantity::OriginAcceleration, joint);
     let own = if row.carried {
-        builder.at(Quantity::OriginAcceleration, joint);
         let arm_vector = builder.vector(offset) + u * q;
         let acceleration =
             before.acceleration + before.gradient.of(arm_vector) + before.omega.cross(u * twice_rate) + u * qdd;
         Motion { acceleration, ..before }
     } else {
-        builder.at(Quantity::OriginAcceleration, joint);
         let (point, ..) = joint_point(builder, arm, index, before, moved, offset);
         let outward = |v: Vector<'s>| turn.back_about_z(twist.back_about_x(v));
         builder.at(Quantity::Omega, joint);
@@ -418,7 +416,7 @@ fn prismatic<'s>(
         let omega_dot = builder.name_vector(Quantity::OmegaDot, joint, outward(before.omega_dot));
         builder.at(Quantity::Gradient, joint);
         let gradient = Gradient::new(omega, omega_dot);
-        name_gradient(builder, Quantity::Gradient, joint, &gradient);
+        builder.name_matrix(Quantity::Gradient, joint, Matrix::from_rows(gradient.u));
         builder.at(Quantity::OriginAcceleration, joint);
         let [wx, wy, _] = omega.0;
         let [x, y, z] = (outward(point) + gradient.column_z() * q).0;
@@ -427,16 +425,6 @@ fn prismatic<'s>(
     };
     builder.name_vector(Quantity::OriginAcceleration, joint, own.acceleration);
     Moved { own, unturned: own, twist, group_turn: turn, turn }
-}
-
-fn name_gradient(builder: &Builder, quantity: Quantity, joint: usize, gradient: &Gradient<'_>) {
-    if builder.is_traced() {
-        for (row, values) in Axis::ALL.into_iter().zip(gradient.u) {
-            for (column, value) in Axis::ALL.into_iter().zip(values) {
-                builder.name(Name::matrix(quantity, joint, row, column), value);
-            }
-        }
-    }
 }
 
 /// The smaller of sin α and cos α as a multiple of the larger.

@@ -9,7 +9,7 @@ use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
 use crate::ir::{Number, Reading, Turn};
 use crate::reduced::link_parameters::{
-    PseudoInertia, Square, Triple, about_x, about_z, apply, compose, square, transpose,
+    IDENTITY, PseudoInertia, Square, Triple, about_x, about_z, apply, compose, transpose,
 };
 
 /// One joint and the link that it moves.
@@ -60,6 +60,13 @@ pub(crate) struct Frames {
     pub(crate) turned_last: bool,
     /// Prismatic links keep the axes of the last revolute link (section 5.9).
     pub(crate) carried: bool,
+}
+
+impl Row {
+    /// Rx(α) Rz(θ)
+    pub(crate) fn rotation(&self) -> Square {
+        compose(&about_x(self.alpha), &about_z(self.theta))
+    }
 }
 
 impl Table {
@@ -140,7 +147,7 @@ impl Table {
                 offset: [a, Number::ZERO, Number::ZERO],
                 theta: reading.turn(&row.dh.theta),
                 d: decimal(row.dh.d),
-                axis: [Number::ZERO, Number::ZERO, Number::ONE],
+                axis: IDENTITY[2],
                 carried: false,
                 matter,
             });
@@ -161,8 +168,7 @@ impl Table {
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
     fn straighten(&mut self) {
-        let flip =
-            [0, 1, 2].map(|i| [0, 1, 2].map(|j| if i == j { minus_if(i > 0, Number::ONE) } else { Number::ZERO }));
+        let flip = about_x(Turn { sin: Number::ZERO, cos: -Number::ONE });
         let mut reversed = false;
         for (index, row) in self.rows.iter_mut().enumerate() {
             if index > 0 && row.alpha.quarters() == Some(QuarterTurns::Two) {
@@ -184,8 +190,7 @@ impl Table {
     /// The base is turned into the frame of joint 1 at q = 0. Where it stands is no matter.
     fn normalise_first(&mut self) {
         let Some(first) = self.rows.first_mut() else { return };
-        let rotation = compose(&about_x(first.alpha), &about_z(first.theta));
-        self.gravity = apply(&transpose(&rotation), self.gravity);
+        self.gravity = apply(&transpose(&first.rotation()), self.gravity);
         (first.alpha, first.theta) = (Turn::NONE, Turn::NONE);
         (first.offset, first.d) = ([Number::ZERO; 3], Number::ZERO);
     }
@@ -230,31 +235,21 @@ impl Table {
     /// the next revolute joint: φ2 joins its angle, φ1 that of the revolute joint before, whose link it turns. So a
     /// prismatic joint costs no rotation at all. False when there is no such link, or no root.
     fn carry_prismatics(&mut self) -> bool {
-        let mut any = false;
-        let mut index = 0;
-        while index < self.rows.len() {
-            let follows = |at: usize| self.rows.get(at).is_some_and(|row| row.kind == JointKind::Prismatic);
-            if self.rows[index].kind == JointKind::Revolute && follows(index + 1) {
-                let end = (index + 1..=self.rows.len()).find(|&at| !follows(at)).unwrap_or(index + 1);
-                if !self.carry_behind(index, end) {
-                    return false;
-                }
-                any = true;
-            }
-            index += 1;
-        }
-        any
+        let kinds: Vec<_> = self.rows.iter().map(|row| row.kind).collect();
+        let slides = |at: usize| kinds.get(at) == Some(&JointKind::Prismatic);
+        let mut carriers = (0..kinds.len()).filter(|&at| !slides(at) && slides(at + 1)).peekable();
+        let end = |first: usize| (first + 1..kinds.len()).find(|&at| !slides(at)).unwrap_or(kinds.len());
+        carriers.peek().is_some() && carriers.all(|first| self.carry_behind(first, end(first)))
     }
 
     /// Carries the prismatic rows behind the revolute row `first`, up to `end`.
     fn carry_behind(&mut self, first: usize, end: usize) -> bool {
         // from the axes of the revolute link to those of each link behind it
-        let mut axes = square(|i, j| if i == j { Number::ONE } else { Number::ZERO });
-        let (zero, one) = (Number::ZERO, Number::ONE);
+        let mut axes = IDENTITY;
         for row in &mut self.rows[first + 1..end] {
             row.offset = apply(&axes, row.offset);
-            axes = compose(&axes, &compose(&about_x(row.alpha), &about_z(row.theta)));
-            row.axis = apply(&axes, [zero, zero, one]);
+            axes = compose(&axes, &row.rotation());
+            row.axis = apply(&axes, IDENTITY[2]);
             row.matter = row.matter.turned(&axes);
             (row.alpha, row.theta, row.carried) = (Turn::NONE, Turn::NONE, true);
         }
@@ -270,8 +265,7 @@ impl Table {
         next.alpha = twist;
         next.theta = after.then(next.theta);
         let back = about_z(before.back());
-        let next_offset = apply(&back, next.offset);
-        next.offset = next_offset;
+        next.offset = apply(&back, next.offset);
         for (index, row) in self.rows[first..end].iter_mut().enumerate() {
             row.matter = row.matter.turned(&back);
             if index > 0 {
@@ -330,10 +324,6 @@ fn root(square: Number, reading: Reading) -> Option<Number> {
         return Some(decimal);
     }
     square.sqrt()
-}
-
-fn minus_if(negative: bool, x: Number) -> Number {
-    if negative { -x } else { x }
 }
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll)

@@ -3,13 +3,20 @@
 
 use std::ops::Add;
 
-use crate::ir::{Number, Turn};
+use crate::ir::{Number, Turn, square};
 
 /// Three numbers along x, y, z.
 pub(crate) type Triple = [Number; 3];
 
 /// A 3 × 3 matrix of numbers, by rows.
 pub(crate) type Square = [[Number; 3]; 3];
+
+/// The matrix 1.
+pub(crate) const IDENTITY: Square = [
+    [Number::ONE, Number::ZERO, Number::ZERO],
+    [Number::ZERO, Number::ONE, Number::ZERO],
+    [Number::ZERO, Number::ZERO, Number::ONE],
+];
 
 /// The matter of a link: P = [S h; hᵀ m], with h = ∫ r dm and S = ∫ r rᵀ dm about the origin of its frame.
 ///
@@ -90,10 +97,6 @@ impl Add for PseudoInertia {
             s: square(|i, j| self.s[i][j] + other.s[i][j]),
         }
     }
-}
-
-pub(crate) fn square(f: impl Fn(usize, usize) -> Number) -> Square {
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| f(i, j)))
 }
 
 pub(crate) fn sum(terms: impl Iterator<Item = Number>) -> Number {

@@ -13,6 +13,7 @@ pub(crate) mod arguments;
 pub(crate) mod backward;
 pub(crate) mod crba;
 pub(crate) mod forward;
+pub(crate) mod inward;
 pub(crate) mod joint_frames;
 pub(crate) mod link_parameters;
 pub(crate) mod regrouping;

@@ -6,7 +6,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::ir::Number;
 use crate::plan::{Plan, Scale, Slide, Target};
 use crate::reduced::joint_frames::{Row, Table};
-use crate::reduced::link_parameters::{Entry, PseudoInertia, Square, Triple, about_x, about_z, compose, square};
+use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
 const LEAST_PIVOT: f64 = 1e-5;
@@ -72,7 +72,8 @@ impl Offers {
         let rods = [mass, mass * reach, mass * reach * reach].map(|x| LARGEST_ROD * x);
         let mut offers = Self { slides: Vec::new(), lengths: Vec::new(), gyrostat: has_sphere(table), rods };
         let plain = Plan::new(rows.len());
-        let links = regrouped(table, &plan_slides(&plain), &plain, &offers).map_or_else(Vec::new, |(links, _)| links);
+        let links = regrouped(table, &vec![Number::ZERO; rows.len()], &plain, &offers)
+            .map_or_else(Vec::new, |(links, _)| links);
         for (index, row) in rows.iter().enumerate() {
             let mut slides: Vec<(Slide, Number)> = Vec::new();
             for &rule in Slide::ALL {
@@ -100,16 +101,11 @@ impl Offers {
 
 /// The numbers of a table under a plan; `None` when a choice does not apply to it or leaves the bounds.
 pub(crate) fn parameters(table: &Table, offers: &Offers, plan: &Plan) -> Option<Parameters> {
-    let slides: Option<Vec<Number>> =
-        plan.joints.iter().enumerate().map(|(index, joint)| offers.slide(index, joint.slide)).collect();
-    let slides = slides?;
+    let slides = plan.joints.iter().enumerate().map(|(index, joint)| offers.slide(index, joint.slide));
+    let slides: Vec<Number> = slides.collect::<Option<_>>()?;
     let (links, sphere) = regrouped(table, &slides, plan, offers)?;
     let (lambda, mu) = scales(table, &links, plan)?;
     Some(Parameters { links, slides, sphere, lambda, mu })
-}
-
-fn plan_slides(plan: &Plan) -> Vec<Number> {
-    vec![Number::ZERO; plan.joints.len()]
 }
 
 /// The links with matter moved along the arm, and the sphere that is left of the last.
@@ -137,7 +133,7 @@ fn regrouped(
         let (p, u) = line(rows, slides, end);
         links[end - 1] = links[end - 1]
             + PseudoInertia::rod([link.mass, link.h[2], link.s[2][2] - c], p, u)
-            + PseudoInertia { s: square(|i, j| if i == j { c } else { Number::ZERO }), ..PseudoInertia::default() };
+            + PseudoInertia { s: IDENTITY.map(|row| row.map(|x| x * c)), ..PseudoInertia::default() };
         links[end] = PseudoInertia::default();
         sphere = Some(c + c);
     }
@@ -150,7 +146,7 @@ fn regrouped(
                 // a sliding link turns as the one before: all second moments belong to that
                 let s = std::mem::take(&mut links[index].s);
                 if index > 0 {
-                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rotation(&rows[index]));
+                    let moved = PseudoInertia { s, ..PseudoInertia::default() }.turned(&rows[index].rotation());
                     links[index - 1] = links[index - 1] + moved;
                 }
             }
@@ -179,28 +175,17 @@ fn share_rods(
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
     let (p, u) = line(rows, slides, index);
     let targets = if index == 0 { [Target::Own; 3] } else { plan.joints[index].gauge };
-    let units = [0, 1, 2].map(|k| {
-        let mut rod = [Number::ZERO; 3];
-        rod[k] = Number::ONE;
-        rod
-    });
     // three equations: the target vanishes
-    let mut equations = [[Number::ZERO; 4]; 3];
-    for (k, (target, equation)) in targets.iter().zip(&mut equations).enumerate() {
-        match target.entry() {
-            None => {
-                equation[k] = Number::ONE;
-                equation[3] = links[index].get(OWN[k]);
-            }
+    let equation = |k: usize| {
+        let ([x, y, z], constant) = match targets[k].entry() {
+            None => (IDENTITY[k], links[index].get(OWN[k])),
             Some(entry) => {
-                for (column, &unit) in units.iter().enumerate() {
-                    equation[column] = -PseudoInertia::rod(unit, p, u).get(entry);
-                }
-                equation[3] = links[index - 1].get(entry);
+                (IDENTITY.map(|unit| -PseudoInertia::rod(unit, p, u).get(entry)), links[index - 1].get(entry))
             }
-        }
-    }
-    let rods = solved(equations)?;
+        };
+        [x, y, z, constant]
+    };
+    let rods = solved([0, 1, 2].map(equation))?;
     // what a link has of its own it can always give, in an arm without mass too
     let is_plain = targets == [Target::Own; 3];
     if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
@@ -248,11 +233,6 @@ fn line(rows: &[Row], slides: &[Number], index: usize) -> (Triple, Triple) {
     let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
     let [x, y, z] = row.offset;
     ([x, y + d * u[1], z - before + d * u[2]], u)
-}
-
-/// Rx(α) Rz(θ) of a prismatic row.
-fn rotation(row: &Row) -> Square {
-    compose(&about_x(row.alpha), &about_z(row.theta))
 }
 
 /// Whether the last link is axisymmetric about a revolute joint.

@@ -28,13 +28,13 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::{Wrench, antisymmetric_of};
-use crate::reduced::crba::{Composite, Gathering};
+use crate::reduced::crba::Composite;
 use crate::reduced::forward::{Arm, Gradient};
+use crate::reduced::inward::{Carried, Gathering, Inward, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
-use crate::reduced::regrouping::{group_start, is_parallel};
 
 use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::{Builder, Number, Symbol, Vector, square};
 
 /// ∂τ_i/∂q_j and ∂τ_i/∂q̇_j by row i and column j.
 pub(crate) struct Sensitivity<'s> {
@@ -89,15 +89,9 @@ struct Column<'s> {
     by_rate: Wrench<'s>,
 }
 
-struct Carried<'s> {
-    behind: Option<Behind<'s>>,
-    columns: Vec<Column<'s>>,
-    unturned: bool,
-}
-
 impl<'s> Behind<'s> {
     fn plus(self, other: Self) -> Self {
-        let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + other.moment[i][j]));
+        let moment = square(|i, j| self.moment[i][j] + other.moment[i][j]);
         Self {
             body: self.body.plus(other.body),
             moment,
@@ -109,36 +103,6 @@ impl<'s> Behind<'s> {
 
     fn around(&self) -> Symbol<'s> {
         self.around.unwrap_or_else(|| self.moment[0][0] + self.moment[1][1])
-    }
-
-    fn about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        let around = Some(self.around());
-        Self { around, ..self.turned(|body| body.about_z(turn), |v| turn.about_z(v)) }
-    }
-
-    fn about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        self.turned(|body| body.about_x(turn), |v| turn.about_x(v))
-    }
-
-    /// Everything turned by a rotation of vectors.
-    fn turned(self, body: impl Fn(Composite<'s>) -> Composite<'s>, turn: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
-        // R G Rᵀ: rows, then columns
-        let rows = self.moment.map(|row| turn(Vector(row)).0);
-        let columns = [0, 1, 2].map(|j| turn(Vector([0, 1, 2].map(|i| rows[i][j]))).0);
-        Self {
-            body: body(self.body),
-            moment: [0, 1, 2].map(|i| [0, 1, 2].map(|j| columns[j][i])),
-            around: None,
-            momentum: turn(self.momentum),
-            wrench: self.wrench.map(&turn),
-        }
-    }
-
-    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
-        let moment = [0, 1, 2].map(|i| [0, 1, 2].map(|j| self.moment[i][j] + t.0[i] * self.momentum.0[j]));
-        let ([x, y, _], [px, py, _]) = (t.0, self.momentum.0);
-        let around = self.around.map(|around| around + (x * px + y * py));
-        Self { body: self.body.moved(t, builder), moment, around, wrench: self.wrench.about(t), ..self }
     }
 
     /// 2 Ω × velocity, for a doubled velocity.
@@ -154,49 +118,46 @@ impl<'s> Behind<'s> {
     }
 }
 
-impl<'s> Column<'s> {
-    fn map(self, f: impl Fn(Vector<'s>) -> Vector<'s>) -> Self {
+impl<'s> Inward<'s> for Behind<'s> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        let around = if let Turned::AboutZ(_) = turn { Some(self.around()) } else { None };
+        // R G Rᵀ: rows, then columns
+        let rows = self.moment.map(|row| turn.of(Vector(row)).0);
+        let columns = [0, 1, 2].map(|j| turn.of(Vector(rows.map(|row| row[j]))).0);
         Self {
-            unit: self.unit.map(&f),
-            spin: f(self.spin),
-            by_position: self.by_position.map(&f),
-            by_rate: self.by_rate.map(&f),
+            body: self.body.turned(turn),
+            moment: square(|i, j| columns[j][i]),
+            around,
+            momentum: turn.of(self.momentum),
+            wrench: self.wrench.turned(turn),
+        }
+    }
+
+    fn moved(self, t: Vector<'s>) -> Self {
+        let moment = square(|i, j| self.moment[i][j] + t.0[i] * self.momentum.0[j]);
+        let ([x, y, _], [px, py, _]) = (t.0, self.momentum.0);
+        let around = self.around.map(|around| around + (x * px + y * py));
+        Self { body: self.body.moved(t), moment, around, wrench: self.wrench.about(t), ..self }
+    }
+}
+
+impl<'s> Inward<'s> for Column<'s> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        Self {
+            unit: self.unit.turned(turn),
+            spin: turn.of(self.spin),
+            by_position: self.by_position.turned(turn),
+            by_rate: self.by_rate.turned(turn),
             ..self
         }
     }
 
-    fn about(self, t: Vector<'s>) -> Self {
+    fn moved(self, t: Vector<'s>) -> Self {
         Self {
             unit: self.unit.about(t),
             by_position: self.by_position.about(t),
             by_rate: self.by_rate.about(t),
             ..self
-        }
-    }
-}
-
-impl<'s> Carried<'s> {
-    fn turned_about_z(self, turn: SymbolicTurn<'s>) -> Self {
-        Self {
-            behind: self.behind.map(|behind| behind.about_z(turn)),
-            columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_z(v))).collect(),
-            unturned: self.unturned,
-        }
-    }
-
-    fn turned_about_x(self, turn: SymbolicTurn<'s>) -> Self {
-        Self {
-            behind: self.behind.map(|behind| behind.about_x(turn)),
-            columns: self.columns.into_iter().map(|column| column.map(|v| turn.about_x(v))).collect(),
-            unturned: self.unturned,
-        }
-    }
-
-    fn moved(self, t: Vector<'s>, builder: &'s Builder) -> Self {
-        Self {
-            behind: self.behind.map(|behind| behind.moved(t, builder)),
-            columns: self.columns.into_iter().map(|column| column.about(t)).collect(),
-            unturned: self.unturned,
         }
     }
 }
@@ -236,57 +197,35 @@ pub(crate) fn sensitivity<'s>(
     let rows = arm.rows();
     let zero = builder.zero();
     let mut found = Sensitivity { by_position: vec![vec![zero; dof]; dof], by_rate: vec![vec![zero; dof]; dof] };
-    let mut carried = Carried { behind: None, columns: Vec::new(), unturned: false };
-    let z = |x: Number| Vector([zero, zero, builder.number(x)]);
+    let mut carried: Carried<Behind<'s>, Column<'s>> = Carried::NOTHING;
     for index in (0..dof).rev() {
         builder.at(Quantity::ReducedForce, index + 1);
         let (row, station) = (&rows[index], &stations[index]);
-        let (offset, d) = arm.lengths(index, Number::ONE);
-        let twist = builder.fixed_turn(row.alpha);
         let own = own(builder, &matter(arm, index), &station.own);
-        let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
-        let turn = station.turn;
+        let turn = Turned::AboutZ(station.turn);
         // everything in frame N of this joint
         let here = if carried.unturned {
-            let own = own.about_z(turn);
-            let behind = carried.behind.map_or(own, |behind| own.plus(behind));
-            Carried { behind: Some(behind), ..carried }
+            let own = own.turned(turn);
+            Carried { behind: Some(carried.behind.map_or(own, |behind| own.plus(behind))), ..carried }
         } else {
-            let behind = carried.behind.map_or(own, |behind| own.plus(behind));
-            let whole = Carried { behind: Some(behind), ..carried };
-            if row.kind == Revolute { whole.turned_about_z(turn) } else { whole }
+            let whole = Carried { behind: Some(carried.behind.map_or(own, |behind| own.plus(behind))), ..carried };
+            if row.kind == Revolute { whole.turned(turn) } else { whole }
         };
-        let Some(behind) = here.behind else { break };
+        let Carried { behind: Some(behind), mut columns, .. } = here else { break };
         behind.body.name(builder, index + 1);
-        let column = column(builder, arm, index, station, &behind);
-        for other in here.columns.iter().chain([&column]) {
-            meet(builder, arm, index, station, other, &mut found);
+        columns.push(column(builder, arm, index, station, &behind));
+        for column in &columns {
+            meet(builder, arm, index, station, column, &mut found);
         }
-        let mut columns = here.columns;
-        columns.push(column);
-        let next = Carried { behind: Some(behind), columns, unturned: grouped };
-        carried = if index == 0 {
-            next
-        } else if row.kind == Prismatic {
-            let q = builder.position(rows, index) + builder.number(d);
-            let next = next.moved(builder.vector(row.axis) * q, builder);
-            let next = if row.carried {
-                next
-            } else {
-                next.turned_about_z(builder.fixed_turn(row.theta)).turned_about_x(twist)
-            };
-            next.moved(builder.vector(offset), builder)
-        } else if grouped {
-            let before = stations[index - 1].turn;
-            next.moved(before.about_z(builder.vector(offset)) + z(d), builder)
-        } else {
-            next.moved(z(d), builder).turned_about_x(twist).moved(builder.vector(offset), builder)
-        };
+        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(gathering, index) };
+        if index > 0 {
+            carried = arm.inward(builder, gathering, index, carried);
+        }
     }
-    for row in 0..dof {
-        for column in (0..dof).filter(|&column| rows[row].reversed != rows[column].reversed) {
-            for matrix in [&mut found.by_position, &mut found.by_rate] {
-                matrix[row][column] = -matrix[row][column];
+    for matrix in [&mut found.by_position, &mut found.by_rate] {
+        for (elements, row) in matrix.iter_mut().zip(rows) {
+            for (element, column) in elements.iter_mut().zip(rows) {
+                *element = element.signed(row.reversed != column.reversed);
             }
         }
     }
@@ -318,7 +257,6 @@ pub(crate) fn stations<'s>(
 ) -> Vec<Station<'s>> {
     let rows = arm.rows();
     let (zeros, zero) = (builder.no_vector(), builder.zero());
-    let along = |x: Number| Vector([zero, zero, builder.number(x)]);
     let mut last = Motion {
         omega: zeros,
         omega_dot: zeros,
@@ -338,17 +276,13 @@ pub(crate) fn stations<'s>(
         let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
         match row.kind {
             Revolute => {
-                let grouped = is_parallel(rows, index) && gathering == Gathering::Groups;
+                let grouped = arm.is_grouped(gathering, index);
                 let before = match stations.last() {
-                    Some(station) if grouped => last_unturned.at(station.turn.about_z(offset) + along(d)),
+                    Some(station) if grouped => last_unturned.at(station.turn.about_z(offset) + builder.along_z(d)),
                     _ if index == 0 => last.turned(|v| twist.back_about_x(v)),
-                    _ => last.at(offset).turned(|v| twist.back_about_x(v)).at(along(d)),
+                    _ => last.at(offset).turned(|v| twist.back_about_x(v)).at(builder.along_z(d)),
                 };
-                let turn = if arm.is_spin(index) {
-                    still
-                } else {
-                    builder.turn(rows, if grouped { group_start(rows, index) } else { index }, index)
-                };
+                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(builder, gathering, index) };
                 let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
                 let omega = before.omega.plus_z(rate);
                 let unturned = Motion {

@@ -1,0 +1,137 @@
+//! The constants of a graph: exact numbers, each kept once, and what is made from them while formulas are written.
+
+use rne_model::Angle;
+
+use super::numbers::{Source, canonical};
+use super::{Graph, Number, Op, Policy, Ref, Turn};
+
+impl Graph {
+    /// What a reference to a constant is exactly.
+    pub(crate) fn number(&self, at: Ref) -> Option<Number> {
+        let Op::Constant(place) = self.op(at) else { return None };
+        let (number, _) = self.numbers.get(place);
+        Some(if at.is_negative() { -number } else { number })
+    }
+
+    pub(crate) fn is_constant(&self, at: Ref) -> bool {
+        matches!(self.op(at), Op::Constant(_))
+    }
+
+    /// The constant 0.
+    pub(crate) fn zero(&mut self) -> Ref {
+        self.constant(Number::ZERO)
+    }
+
+    /// The constant 1.
+    pub(crate) fn one(&mut self) -> Ref {
+        self.constant(Number::ONE)
+    }
+
+    pub(crate) fn constant(&mut self, number: Number) -> Ref {
+        self.derived(number, Source::Given)
+    }
+
+    /// A constant that is an angle.
+    pub(crate) fn angle(&mut self, turn: Turn) -> Ref {
+        let at = self.constant(turn.angle());
+        if let Op::Constant(place) = self.op(at) {
+            self.turns.insert(place, if at.is_negative() { turn.back() } else { turn });
+        }
+        at
+    }
+
+    /// A constant of another graph, and what it is if it is an angle.
+    pub(crate) fn constant_like(&mut self, other: &Self, place: u32) -> Ref {
+        let at = self.constant(other.numbers.get(place).0);
+        if let (Some(turn), Op::Constant(own)) = (other.turns.get(&place), self.op(at)) {
+            self.turns.insert(own, *turn);
+        }
+        at
+    }
+
+    /// The places of its constants so far, without those that are angles.
+    pub(crate) fn factors(&self) -> Vec<u32> {
+        let places = (0..self.numbers.len()).filter_map(|place| u32::try_from(place).ok());
+        places.filter(|place| !self.turns.contains_key(place)).collect()
+    }
+
+    /// What a constant is as an angle.
+    pub(crate) fn turn(&self, at: Ref) -> Option<Turn> {
+        let Op::Constant(place) = self.op(at) else { return None };
+        let magnitude = || self.reading().turn(&Angle::new(self.numbers.get(place).0.to_f64()));
+        let turn = self.turns.get(&place).copied().unwrap_or_else(magnitude);
+        Some(if at.is_negative() { turn.back() } else { turn })
+    }
+
+    /// A constant made from others.
+    fn derived(&mut self, number: Number, source: Source) -> Ref {
+        let number =
+            if self.policy == Policy::Structure { Number::rounded(number.to_f64(), number.image) } else { number };
+        if let Some(known) = self.looked_up(number.image) {
+            return known;
+        }
+        let place = if self.policy == Policy::Structure {
+            self.numbers.intern(number.abs(), source, |a, b| a == b)
+        } else {
+            self.numbers.intern(number.abs(), source, |a, b| canonical(a.image).0 == canonical(b.image).0)
+        };
+        let negative = match self.policy {
+            Policy::Structure => number.is_negative(),
+            // what is there already may be the negative: the residue tells, as it does everywhere
+            _ => self.numbers.get(place).0.image != number.image,
+        };
+        self.constant_at(place).signed(negative)
+    }
+
+    /// The constant of that place.
+    pub(crate) fn constant_at(&mut self, place: u32) -> Ref {
+        let image = self.numbers.get(place).0.image;
+        self.leaf(Op::Constant(place), image)
+    }
+
+    /// The place of a constant, with the sign of the reference to it.
+    fn place(&self, at: Ref) -> Option<Ref> {
+        match self.op(at) {
+            Op::Constant(place) => Some(Ref::new(place as usize).signed(at.is_negative())),
+            _ => None,
+        }
+    }
+
+    pub(super) fn constant_sum(&mut self, a: Ref, b: Ref) -> Option<Ref> {
+        let (x, y) = (self.number(a)?, self.number(b)?);
+        let source = Source::Sum(self.place(a)?, self.place(b)?);
+        let sum = match self.policy {
+            Policy::Structure => Number::rounded(x.to_f64() + y.to_f64(), x.image + y.image),
+            _ => x + y,
+        };
+        Some(self.derived(sum, source))
+    }
+
+    pub(super) fn constant_product(&mut self, a: Ref, b: Ref) -> Option<Ref> {
+        let (x, y) = (self.number(a)?, self.number(b)?);
+        let source = Source::Product(self.place(a)?, self.place(b)?);
+        let product = match self.policy {
+            Policy::Structure => Number::rounded(x.to_f64() * y.to_f64(), x.image * y.image),
+            _ => x * y,
+        };
+        Some(self.derived(product, source))
+    }
+
+    /// 1/a of a constant.
+    pub(crate) fn constant_inverse(&mut self, a: Ref) -> Option<Ref> {
+        let (x, place) = (self.number(a)?.inverse()?, self.place(a)?);
+        Some(self.derived(x, Source::Inverse(u32::try_from(place.index()).ok()?)))
+    }
+
+    pub(super) fn constant_quotient(&mut self, a: Ref, b: Ref) -> Option<Ref> {
+        let (x, y) = (self.number(a)?, self.number(b)?);
+        if self.policy != Policy::Structure {
+            let inverse = self.constant_inverse(b)?;
+            return Some(self.product(a, inverse).0);
+        }
+        if y.to_f64() == 0.0 {
+            return None;
+        }
+        Some(self.constant(Number::rounded(x.to_f64() / y.to_f64(), x.image * y.image.inverse()?)))
+    }
+}

@@ -1,0 +1,143 @@
+//! From link to link towards the base: turned in two steps and moved, as every joint asks.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::backward::Wrench;
+use crate::reduced::forward::Arm;
+use crate::reduced::regrouping::{group_start, is_parallel};
+
+/// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Gathering {
+    Joints,
+    Groups,
+}
+
+/// A turn about an axis of the frames on both sides of it.
+#[derive(Clone, Copy)]
+pub(crate) enum Turned<'s> {
+    AboutX(SymbolicTurn<'s>),
+    AboutZ(SymbolicTurn<'s>),
+}
+
+impl<'s> Turned<'s> {
+    /// R v
+    pub(crate) fn of(self, v: Vector<'s>) -> Vector<'s> {
+        match self {
+            Self::AboutX(turn) => turn.about_x(v),
+            Self::AboutZ(turn) => turn.about_z(v),
+        }
+    }
+
+    /// R S Rᵀ of a symmetric matrix: xx, yy, zz, xy, xz, yz.
+    pub(crate) fn of_symmetric(self, [xx, yy, zz, xy, xz, yz]: [Symbol<'s>; 6]) -> [Symbol<'s>; 6] {
+        let SymbolicTurn { s: sine, c: cosine } = match self {
+            Self::AboutZ(turn) => turn,
+            Self::AboutX(turn) => {
+                // the same with y, z, x in the places of x, y, z
+                let [yy, zz, xx, yz, xy, xz] = Self::AboutZ(turn).of_symmetric([yy, zz, xx, yz, xy, xz]);
+                return [xx, yy, zz, xy, xz, yz];
+            }
+        };
+        let difference = xx - yy;
+        let twice = xy + xy;
+        let (both, square) = (cosine * sine, cosine * cosine);
+        let u = square * difference - both * twice;
+        let turned_xy = both * difference + (square * twice - xy);
+        [u + yy, xx - u, zz, turned_xy, cosine * xz - sine * yz, sine * xz + cosine * yz]
+    }
+}
+
+/// What can be given in other axes and about another point.
+pub(crate) trait Inward<'s>: Sized {
+    fn turned(self, turn: Turned<'s>) -> Self;
+
+    /// About a point from which the old one is at t.
+    fn moved(self, t: Vector<'s>) -> Self;
+}
+
+/// What a link carries: the bodies from there on and the columns of their joints, about the origin of its frame, in its
+/// axes or in the frame N of its group.
+pub(crate) struct Carried<B, C> {
+    pub(crate) behind: Option<B>,
+    pub(crate) columns: Vec<C>,
+    pub(crate) unturned: bool,
+}
+
+impl<B, C> Carried<B, C> {
+    /// Behind the last link.
+    pub(crate) const NOTHING: Self = Self { behind: None, columns: Vec::new(), unturned: false };
+
+    fn map(self, behind: impl Fn(B) -> B, column: impl Fn(C) -> C) -> Self {
+        let behind = self.behind.map(behind);
+        Self { behind, columns: self.columns.into_iter().map(column).collect(), ..self }
+    }
+}
+
+impl<'s, B: Inward<'s>, C: Inward<'s>> Inward<'s> for Carried<B, C> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        self.map(|body| body.turned(turn), |column| column.turned(turn))
+    }
+
+    fn moved(self, t: Vector<'s>) -> Self {
+        self.map(|body| body.moved(t), |column| column.moved(t))
+    }
+}
+
+impl<'s> Inward<'s> for Wrench<'s> {
+    fn turned(self, turn: Turned<'s>) -> Self {
+        self.map(|v| turn.of(v))
+    }
+
+    fn moved(self, t: Vector<'s>) -> Self {
+        self.about(t)
+    }
+}
+
+impl Arm<'_> {
+    /// Whether a joint shares the frame N of the one before it.
+    pub(crate) fn is_grouped(&self, gathering: Gathering, index: usize) -> bool {
+        gathering == Gathering::Groups && is_parallel(self.rows(), index)
+    }
+
+    /// From the axes of a revolute link to frame N of its group.
+    pub(crate) fn turn_of_group<'s>(
+        &self,
+        builder: &'s Builder,
+        gathering: Gathering,
+        index: usize,
+    ) -> SymbolicTurn<'s> {
+        let rows = self.rows();
+        builder.turn(rows, if self.is_grouped(gathering, index) { group_start(rows, index) } else { index }, index)
+    }
+
+    /// From frame N of a joint, or the axes of a sliding link, to the axes of the link before and about its origin. The
+    /// frame N of a group goes on, but for its origin.
+    pub(crate) fn inward<'s, T: Inward<'s>>(
+        &self,
+        builder: &'s Builder,
+        gathering: Gathering,
+        index: usize,
+        carried: T,
+    ) -> T {
+        let row = &self.rows()[index];
+        let (offset, d) = self.lengths(index, Number::ONE);
+        let twist = Turned::AboutX(builder.fixed_turn(row.alpha));
+        match row.kind {
+            Revolute if self.is_grouped(gathering, index) => {
+                let before = builder.turn(self.rows(), group_start(self.rows(), index), index - 1);
+                carried.moved(before.about_z(builder.vector(offset)) + builder.along_z(d))
+            }
+            Revolute => carried.moved(builder.along_z(d)).turned(twist).moved(builder.vector(offset)),
+            Prismatic => {
+                let q = builder.position(self.rows(), index) + builder.number(d);
+                let carried = carried.moved(builder.vector(row.axis) * q);
+                let theta = || Turned::AboutZ(builder.fixed_turn(row.theta));
+                let carried = if row.carried { carried } else { carried.turned(theta()).turned(twist) };
+                carried.moved(builder.vector(offset))
+            }
+        }
+    }
+}
