@@ -450,28 +450,21 @@ fn signed(negative: bool, expression: Expression) -> Expression {
 
 /// The negative of an expression without a minus sign in front, if there is one. Rounding is symmetric, so it is exact.
 fn negated(expression: &Expression) -> Option<Expression> {
+    let negative = |a: &Expression| negated(a).map(Box::new);
     match expression {
         Expression::Zero => Some(Expression::Zero),
         Expression::Negative(a) => Some((**a).clone()),
         Expression::Difference(a, b) => Some(Expression::Difference(b.clone(), a.clone())),
-        Expression::Sum(a, b) => {
-            let (first, second) = match (negated(a), negated(b)) {
-                (Some(a), _) => (a, b),
-                (None, Some(b)) => (b, a),
-                (None, None) => return None,
-            };
-            Some(Expression::Difference(Box::new(first), second.clone()))
-        }
-        Expression::Product(a, b) => match (negated(a), negated(b)) {
-            (Some(a), _) => Some(Expression::Product(Box::new(a), b.clone())),
-            (None, Some(b)) => Some(Expression::Product(a.clone(), Box::new(b))),
-            (None, None) => None,
+        Expression::Sum(a, b) => match negative(a) {
+            Some(a) => Some(Expression::Difference(a, b.clone())),
+            None => negative(b).map(|b| Expression::Difference(b, a.clone())),
         },
-        Expression::Quotient(a, b) => negated(a).map(|a| Expression::Quotient(Box::new(a), b.clone())),
-        Expression::BySign(x, positive, negative) => {
-            let (positive, negative) = (negated(positive)?, negated(negative)?);
-            Some(Expression::BySign(x.clone(), Box::new(positive), Box::new(negative)))
-        }
+        Expression::Product(a, b) => match negative(a) {
+            Some(a) => Some(Expression::Product(a, b.clone())),
+            None => negative(b).map(|b| Expression::Product(a.clone(), b)),
+        },
+        Expression::Quotient(a, b) => negative(a).map(|a| Expression::Quotient(a, b.clone())),
+        Expression::BySign(x, a, b) => Some(Expression::BySign(x.clone(), negative(a)?, negative(b)?)),
         Expression::Variable(_) => None,
     }
 }

@@ -12,7 +12,7 @@
 //! p is the parent link, n the last one; row i of a modified table carries the twist and the length before joint i. On
 //! the base the rotation of a standard table is 1. R_t and p_t are the tool's.
 
-use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot};
+use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot, Transform};
 
 use crate::function::Argument;
 use crate::ir::Builder;
@@ -67,7 +67,7 @@ impl<'s> Arm<'s> {
         let dof = robot.dof();
         let zero = || builder.constant(0.0, Cause::Arithmetic);
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
-        let tool = Placement::tool(builder, robot);
+        let tool = Placement::new(builder, robot, &robot.tool, Entry::ToolXyz);
         let twists: Vec<_> =
             robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, index + 1, &row.dh.alpha)).collect();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
@@ -115,7 +115,7 @@ impl<'s> Arm<'s> {
             links,
             tip: Mount { rotation, r, lever },
             gravity: gravity(builder, robot),
-            base: Placement::base(builder, robot),
+            base: Placement::new(builder, robot, &robot.base, Entry::BaseXyz),
         }
     }
 
@@ -151,22 +151,13 @@ pub(crate) struct Placement<'s> {
 }
 
 impl<'s> Placement<'s> {
-    /// R = (Rz(yaw) Ry(pitch)) Rx(roll).
-    fn new(builder: &'s Builder, rpy: [Angle; 3], translation: [Symbol<'s>; 3]) -> Self {
-        let [roll, pitch, yaw] = rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
+    /// R = (Rz(yaw) Ry(pitch)) Rx(roll); `xyz` are the entries of the translation.
+    fn new(builder: &'s Builder, robot: &Robot, transform: &Transform, xyz: fn(usize) -> Entry) -> Self {
+        let translation = [0, 1, 2].map(|axis| number(builder, robot, xyz(axis), transform.xyz[axis]));
+        let [roll, pitch, yaw] = transform.rpy.map(|angle| builder.constant_turn(&angle, Cause::Arithmetic));
         let turn = |axis, turn| turned(builder, axis, turn, Cause::Arithmetic);
         let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);
         Self { rotation, translation: Vector(translation) }
-    }
-
-    fn tool(builder: &'s Builder, robot: &Robot) -> Self {
-        let xyz = [0, 1, 2].map(|axis| number(builder, robot, Entry::ToolXyz(axis), robot.tool.xyz[axis]));
-        Self::new(builder, robot.tool.rpy, xyz)
-    }
-
-    fn base(builder: &'s Builder, robot: &Robot) -> Self {
-        let xyz = [0, 1, 2].map(|axis| number(builder, robot, Entry::BaseXyz(axis), robot.base.xyz[axis]));
-        Self::new(builder, robot.base.rpy, xyz)
     }
 }
 

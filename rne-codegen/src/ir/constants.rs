@@ -67,7 +67,9 @@ impl Graph {
     fn derived(&mut self, number: Number, source: Source) -> Ref {
         let number =
             if self.policy == Policy::Structure { Number::rounded(number.to_f64(), number.image) } else { number };
-        if let Some(known) = self.looked_up(number.image) {
+        if self.policy != Policy::Structure
+            && let Some(known) = self.valued(number.image)
+        {
             return known;
         }
         let place = if self.policy == Policy::Structure {
@@ -91,10 +93,8 @@ impl Graph {
 
     /// The place of a constant, with the sign of the reference to it.
     fn place(&self, at: Ref) -> Option<Ref> {
-        match self.op(at) {
-            Op::Constant(place) => Some(Ref::new(place as usize).signed(at.is_negative())),
-            _ => None,
-        }
+        let Op::Constant(place) = self.op(at) else { return None };
+        Some(Ref::new(place as usize).signed(at.is_negative()))
     }
 
     pub(super) fn constant_sum(&mut self, a: Ref, b: Ref) -> Option<Ref> {

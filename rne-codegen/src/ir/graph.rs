@@ -215,11 +215,6 @@ impl Graph {
         at
     }
 
-    /// A constant of that value; where structure decides, numbers do.
-    pub(super) fn looked_up(&self, image: Image) -> Option<Ref> {
-        if self.policy == Policy::Structure { None } else { self.valued(image) }
-    }
-
     /// The node of that value, or the negative of one, where equal values are one node.
     pub(super) fn numbered(&self, image: Image) -> Option<Ref> {
         if self.policy == Policy::Numbered { self.valued(image) } else { None }

@@ -115,35 +115,18 @@ fn power(base: u64, mut exponent: u64, field: usize) -> u64 {
     result
 }
 
-/// A square root modulo the prime of a field, by the method of Tonelli and Shanks.
+/// A square root modulo the prime of a field, if there is one.
 fn root(square: u64, field: usize) -> Option<u64> {
     let p = prime(field);
-    if square == 0 {
-        return Some(0);
-    }
     let power = |base, exponent| power(base, exponent, field);
-    if power(square, (p - 1) / 2) != 1 {
-        return None;
-    }
     let twos = (p - 1).trailing_zeros();
     let odd = (p - 1) >> twos;
-    let non_residue = (2..p).find(|&candidate| power(candidate, (p - 1) / 2) != 1)?;
-    let (mut order, mut generator) = (twos, power(non_residue, odd));
-    let (mut t, mut r) = (power(square, odd), power(square, odd.div_ceil(2)));
-    while t != 1 {
-        let mut least = 0;
-        let mut probe = t;
-        while probe != 1 {
-            probe = multiply(probe, probe, field);
-            least += 1;
-        }
-        let factor = power(generator, 1 << (order - least - 1));
-        order = least;
-        generator = multiply(factor, factor, field);
-        t = multiply(t, generator, field);
-        r = multiply(r, factor, field);
-    }
-    Some(r)
+    let non_residue = (2..p).find(|&candidate| power(candidate, (p - 1) / 2) == p - 1)?;
+    // its square is the one that is asked for, but for a factor whose order is a power of two
+    let nearly = power(square, odd.div_ceil(2));
+    let generator = power(non_residue, odd);
+    let mut roots = (0..1 << (twos - 1)).map(|exponent| multiply(nearly, power(generator, exponent), field));
+    roots.find(|&root| multiply(root, root, field) == square)
 }
 
 operators! { Image:

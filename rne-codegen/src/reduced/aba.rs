@@ -16,16 +16,13 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::reduced::backward::{Wrench, antisymmetric_of};
 
 use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{Gathering, Inward, Turned};
+use crate::reduced::inward::{Gathering, Inward, Symmetric, Turned, full};
 use crate::reduced::rnea_derivatives::{Station, matter, stations};
 
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol, Vector, square};
 
 type Square<'s> = [[Symbol<'s>; 3]; 3];
-
-/// A symmetric matrix: xx, yy, zz, xy, xz, yz.
-type Symmetric<'s> = [Symbol<'s>; 6];
 
 /// What is behind a joint, as its motion resists it.
 #[derive(Clone, Copy)]
@@ -45,10 +42,6 @@ struct Pivot<'s> {
     drift: [Vector<'s>; 2],
     inverse: Symbol<'s>,
     rest: Symbol<'s>,
-}
-
-fn full([xx, yy, zz, xy, xz, yz]: Symmetric<'_>) -> Square<'_> {
-    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
 }
 
 fn of<'s>(matrix: &Square<'s>, v: Vector<'s>) -> Vector<'s> {

@@ -11,6 +11,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::plan::{JointPlan, Moment, Side};
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
+use crate::reduced::inward::full;
 use crate::reduced::joint_frames::Row;
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::regrouping::is_parallel;
@@ -220,15 +221,15 @@ fn turned_second_moment<'s>(
     turn: SymbolicTurn<'s>,
 ) -> [[Symbol<'s>; 3]; 3] {
     let SymbolicTurn { s: sine, c: cosine } = turn;
-    let s = matter.s;
+    let [xx, yy, zz, xy, xz, yz] = matter.second_moments();
     let number = |x| builder.number(x);
-    let (difference, twice) = (s[0][0] - s[1][1], s[0][1] + s[0][1]);
+    let (difference, twice) = (xx - yy, xy + xy);
     let (both, square) = (cosine * sine, cosine * cosine);
     let u = square.times(difference) - both.times(twice);
-    let xy = both.times(difference) + (square.times(twice) - number(s[0][1]));
-    let xz = cosine.times(s[0][2]) - sine.times(s[1][2]);
-    let yz = sine.times(s[0][2]) + cosine.times(s[1][2]);
-    [[u + number(s[1][1]), xy, xz], [xy, number(s[0][0]) - u, yz], [xz, yz, number(s[2][2])]]
+    let turned_xy = both.times(difference) + (square.times(twice) - number(xy));
+    let turned_xz = cosine.times(xz) - sine.times(yz);
+    let turned_yz = sine.times(xz) + cosine.times(yz);
+    full([u + number(yy), number(xx) - u, number(zz), turned_xy, turned_xz, turned_yz])
 }
 
 /// Adds what the link behind exerts.

@@ -15,7 +15,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::reduced::backward::Wrench;
 use crate::reduced::forward::Arm;
-use crate::reduced::inward::{Carried, Inward, Turned};
+use crate::reduced::inward::{Carried, Inward, Symmetric, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::regrouping::group_start;
 
@@ -31,16 +31,14 @@ use crate::ir::{Builder, Number, Symbol, Vector};
 pub(crate) struct Composite<'s> {
     mass: Number,
     h: Vector<'s>,
-    /// S11, S22, S33, S12, S13, S23
-    s: [Symbol<'s>; 6],
+    s: Symmetric<'s>,
     /// S11 + S22, which a turn about z leaves alone, where it has been turned so.
     around: Option<Symbol<'s>>,
 }
 
 impl<'s> Composite<'s> {
     pub(crate) fn of(builder: &'s Builder, matter: &PseudoInertia) -> Self {
-        let s = matter.s;
-        let s = [s[0][0], s[1][1], s[2][2], s[0][1], s[0][2], s[1][2]].map(|x| builder.number(x));
+        let s = matter.second_moments().map(|x| builder.number(x));
         Self { mass: matter.mass, h: builder.vector(matter.h), s, around: None }
     }
 

@@ -196,9 +196,6 @@ struct Revolving<'s, 'a> {
     rate_dot: Symbol<'s>,
 }
 
-/// ω, ω̇ and U in one frame.
-type Rates<'s> = (Vector<'s>, Vector<'s>, Gradient<'s>);
-
 fn revolute<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
@@ -238,18 +235,11 @@ fn revolute<'s>(
         _ => link.twist.back_about_x(point),
     };
     let shared = link.share(before, group);
-    let (own, unturned) = link.rates(before, &shared);
+    let [mut own, mut unturned] = link.rates(before, &shared);
     let d = if to_parent { Number::ZERO } else { d };
-    let (acceleration, acceleration_unturned) = link.acceleration(point, point_unturned, d, &own.2, &unturned.2);
-    let motion =
-        |(omega, omega_dot, gradient): Rates<'s>, acceleration| Motion { omega, omega_dot, acceleration, gradient };
-    Moved {
-        own: motion(own, acceleration),
-        unturned: motion(unturned, acceleration_unturned),
-        twist: link.twist,
-        group_turn: link.group_turn,
-        turn,
-    }
+    (own.acceleration, unturned.acceleration) =
+        link.acceleration(point, point_unturned, d, &own.gradient, &unturned.gradient);
+    Moved { own, unturned, twist: link.twist, group_turn: link.group_turn, turn }
 }
 
 impl<'s> Revolving<'s, '_> {
@@ -298,8 +288,8 @@ impl<'s> Revolving<'s, '_> {
         Vector([turn.c * x + s * u, c * u - turn.s * x, twist.c * z - twist.s * y])
     }
 
-    /// ω, ω̇ and U in the link's frame and in N.
-    fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> (Rates<'s>, Rates<'s>) {
+    /// ω, ω̇ and U in the link's frame and in N; accelerations are left as they were.
+    fn rates(&self, before: Motion<'s>, shared: &Group<'s>) -> [Motion<'s>; 2] {
         let (builder, joint, on) = (self.builder, self.joint, self.plan.switches);
         let omega_unturned = builder.name_vector(Quantity::OmegaUnturned, joint, shared.omega.plus_z(shared.rate));
         let omega_dot_unturned = spun(shared.omega, shared.rate, shared.rate_dot, shared.omega_dot);
@@ -341,7 +331,10 @@ impl<'s> Revolving<'s, '_> {
         };
         builder.name_matrix(Quantity::Gradient, joint, Matrix::from_rows(gradient.u));
         builder.name_matrix(Quantity::GradientUnturned, joint, Matrix::from_rows(gradient_unturned.u));
-        ((omega, omega_dot, gradient), (omega_unturned, omega_dot_unturned, gradient_unturned))
+        [
+            Motion { omega, omega_dot, gradient, ..before },
+            Motion { omega: omega_unturned, omega_dot: omega_dot_unturned, gradient: gradient_unturned, ..before },
+        ]
     }
 
     /// a in the link's frame and in N, with the part of the offset `d` that acts on the axis or in the link.

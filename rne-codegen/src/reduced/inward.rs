@@ -15,6 +15,14 @@ pub(crate) enum Gathering {
     Groups,
 }
 
+/// A symmetric matrix: xx, yy, zz, xy, xz, yz.
+pub(crate) type Symmetric<'s> = [Symbol<'s>; 6];
+
+/// All elements of a symmetric matrix, by rows.
+pub(crate) fn full([xx, yy, zz, xy, xz, yz]: Symmetric<'_>) -> [[Symbol<'_>; 3]; 3] {
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
 /// A turn about an axis of the frames on both sides of it.
 #[derive(Clone, Copy)]
 pub(crate) enum Turned<'s> {
@@ -31,8 +39,8 @@ impl<'s> Turned<'s> {
         }
     }
 
-    /// R S Rᵀ of a symmetric matrix: xx, yy, zz, xy, xz, yz.
-    pub(crate) fn of_symmetric(self, [xx, yy, zz, xy, xz, yz]: [Symbol<'s>; 6]) -> [Symbol<'s>; 6] {
+    /// R S Rᵀ
+    pub(crate) fn of_symmetric(self, [xx, yy, zz, xy, xz, yz]: Symmetric<'s>) -> Symmetric<'s> {
         let SymbolicTurn { s: sine, c: cosine } = match self {
             Self::AboutZ(turn) => turn,
             Self::AboutX(turn) => {

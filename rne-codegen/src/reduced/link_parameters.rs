@@ -58,6 +58,12 @@ impl PseudoInertia {
         }
     }
 
+    /// S11, S22, S33, S12, S13, S23
+    pub(crate) fn second_moments(&self) -> [Number; 6] {
+        let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = self.s;
+        [xx, yy, zz, xy, xz, yz]
+    }
+
     /// The same matter in axes turned by a rotation: every point r becomes R r.
     pub(crate) fn turned(&self, rotation: &Square) -> Self {
         let half = square(|i, j| sum((0..3).map(|k| rotation[i][k] * self.s[k][j])));
