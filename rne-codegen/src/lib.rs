@@ -35,7 +35,11 @@ pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use ir::name::{By, Name};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
-pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
+pub use program::{
+    Constant, Expression, Finding, Found, Operations, Operator, Output, Program, Proof, Sign, Statement, Turn,
+};
+pub use reduced::algorithm::Way;
+pub use reduced::crba::Gathering;
 
 use crate::ir::{Builder, Policy, Reading};
 

@@ -10,7 +10,8 @@ use crate::ir::ledger::{Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Quantity, Step};
 use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
-use crate::program::{Constant, Exactly, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
+use crate::program::{Constant, Exactly, Expression, Finding, Found, Operator, Output, Program, Sign, Statement, Turn};
+use crate::reduced::algorithm::Way;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
@@ -54,6 +55,7 @@ pub(crate) fn lower(
         outputs,
         findings: schedule.findings(),
         ledger: written.trace.ledger,
+        algorithm: Way::default(),
         choices: Vec::new(),
         proof: None,
     };
@@ -419,30 +421,27 @@ impl<'w> Schedule<'w> {
             Op::Sum(a, b) => {
                 let (a_sign, a_value) = self.operand(Some(id), a.magnitude());
                 let (b_sign, b_value) = self.operand(Some(id), b.magnitude());
-                let (a_value, b_value) = (Box::new(a_value), Box::new(b_value));
+                let sum = |a, b| Expression::binary(Operator::Sum, a, b);
+                let difference = |a, b| Expression::binary(Operator::Difference, a, b);
                 match (a_sign != a.is_negative(), b_sign != b.is_negative()) {
-                    (false, false) => (false, Expression::Sum(a_value, b_value)),
-                    (false, true) => (false, Expression::Difference(a_value, b_value)),
-                    (true, false) => (false, Expression::Difference(b_value, a_value)),
-                    (true, true) => (true, Expression::Sum(a_value, b_value)),
+                    (false, false) => (false, sum(a_value, b_value)),
+                    (false, true) => (false, difference(a_value, b_value)),
+                    (true, false) => (false, difference(b_value, a_value)),
+                    (true, true) => (true, sum(a_value, b_value)),
                 }
             }
-            Op::Product(a, b) => {
+            op @ (Op::Product(a, b) | Op::Quotient(a, b)) => {
+                let operator = if matches!(op, Op::Product(..)) { Operator::Product } else { Operator::Quotient };
                 let (a_sign, a_value) = self.operand(Some(id), a);
                 let (b_sign, b_value) = self.operand(Some(id), b);
-                (a_sign != b_sign, Expression::Product(Box::new(a_value), Box::new(b_value)))
-            }
-            Op::Quotient(a, b) => {
-                let (a_sign, a_value) = self.operand(Some(id), a);
-                let (b_sign, b_value) = self.operand(Some(id), b);
-                (a_sign != b_sign, Expression::Quotient(Box::new(a_value), Box::new(b_value)))
+                (a_sign != b_sign, Expression::binary(operator, a_value, b_value))
             }
             Op::BySign([x, a, b]) => {
-                let [x, a, b] = [x, a, b].map(|term| {
+                let operands = [x, a, b].map(|term| {
                     let (sign, value) = self.operand(Some(id), term.magnitude());
-                    Box::new(signed(sign != term.is_negative(), value))
+                    signed(sign != term.is_negative(), value)
                 });
-                (false, Expression::BySign(x, a, b))
+                (false, Expression::BySign(Box::new(operands)))
             }
             // leaves always have a name, but for the zero that no operation keeps
             Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Expression::Zero),
@@ -470,24 +469,27 @@ fn negated(expression: &Expression) -> Option<Expression> {
     match expression {
         Expression::Zero => Some(Expression::Zero),
         Expression::Negative(a) => Some((**a).clone()),
-        Expression::Difference(a, b) => Some(Expression::Difference(b.clone(), a.clone())),
-        Expression::Sum(a, b) => {
+        Expression::Binary(Operator::Difference, a, b) => {
+            Some(Expression::Binary(Operator::Difference, b.clone(), a.clone()))
+        }
+        Expression::Binary(Operator::Sum, a, b) => {
             let (first, second) = match (negated(a), negated(b)) {
                 (Some(a), _) => (a, b),
                 (None, Some(b)) => (b, a),
                 (None, None) => return None,
             };
-            Some(Expression::Difference(Box::new(first), second.clone()))
+            Some(Expression::Binary(Operator::Difference, Box::new(first), second.clone()))
         }
-        Expression::Product(a, b) => match (negated(a), negated(b)) {
-            (Some(a), _) => Some(Expression::Product(Box::new(a), b.clone())),
-            (None, Some(b)) => Some(Expression::Product(a.clone(), Box::new(b))),
-            (None, None) => None,
+        Expression::Binary(operator, a, b) => match (negated(a), negated(b)) {
+            (Some(a), _) => Some(Expression::Binary(*operator, Box::new(a), b.clone())),
+            (None, Some(b)) if *operator == Operator::Product => {
+                Some(Expression::Binary(*operator, a.clone(), Box::new(b)))
+            }
+            _ => None,
         },
-        Expression::Quotient(a, b) => negated(a).map(|a| Expression::Quotient(Box::new(a), b.clone())),
-        Expression::BySign(x, positive, negative) => {
-            let (positive, negative) = (negated(positive)?, negated(negative)?);
-            Some(Expression::BySign(x.clone(), Box::new(positive), Box::new(negative)))
+        Expression::BySign(operands) => {
+            let [x, positive, negative] = &**operands;
+            Some(Expression::BySign(Box::new([x.clone(), negated(positive)?, negated(negative)?])))
         }
         Expression::Variable(_) => None,
     }

@@ -1,9 +1,11 @@
 //! Renderers of programs: tokens for the macro, text for people.
 
+mod annotated;
 mod c;
 mod evidence;
 mod expression;
 mod formula;
+mod heading;
 mod inert;
 mod listing;
 mod signature;
@@ -11,13 +13,17 @@ mod syntax;
 mod table;
 mod text;
 mod tokens;
+mod wrap;
 
+pub use annotated::{Annotated, Part};
 pub use c::{BadPrefix, CCode, ConstantTooLarge, Prefix, c_code};
 pub use evidence::evidence;
+pub use formula::Formula;
+pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
-pub use listing::{Listing, listing};
+pub use listing::{Folds, Line, Listing, Section, Selection, listing};
 pub use syntax::Precision;
-pub use table::{angle, convention, dh_table};
+pub use table::{angle, operations_table};
 pub use text::rust_file;
 pub use tokens::Body;
 

@@ -128,7 +128,7 @@ impl Choice {
         let heading = Heading { robot, function, form };
         let program = proved(&heading, written, &names, frame.table.reading, arranged, &reference(robot, function)?)?;
         let choices = way.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
-        Ok(Program { choices, ..program })
+        Ok(Program { algorithm: way, choices, ..program })
     }
 
     /// By ever fewer choices until the program can be proved: without those of frames, without any, without regrouping,

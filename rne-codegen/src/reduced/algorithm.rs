@@ -15,9 +15,10 @@ use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol};
 
 /// How a function is written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Way {
     /// The recursion, out and back, and what follows from its torques.
+    #[default]
     Recursion,
     /// Composite bodies.
     Composite(Gathering),

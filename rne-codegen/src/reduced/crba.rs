@@ -26,8 +26,10 @@ use crate::ir::{Builder, Number, Symbol, Vector};
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Gathering {
+pub enum Gathering {
+    /// Joint by joint.
     Joints,
+    /// Per group of parallel axes.
     Groups,
 }
 

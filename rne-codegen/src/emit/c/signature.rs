@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{File, WIDTH, filled};
+use super::File;
 use crate::emit::signature::{ArgumentArray, arguments};
+use crate::emit::wrap::{TIED, WIDTH, fill};
 use crate::function::{Layout, Record};
 use crate::program::Program;
 
@@ -35,7 +36,11 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     let start = format!("{returned} {}_{}(", file.prefix, program.function);
     let line = format!("{start}{})", parameters.join(", "));
     // one column is for the semicolon
-    if line.chars().count() < WIDTH { line } else { filled(&format!("{start}\n    "), &parameters, ")", 4) }
+    if line.len() < WIDTH {
+        return line;
+    }
+    let parameters: Vec<String> = parameters.iter().map(|parameter| parameter.replace(' ', TIED)).collect();
+    start + "\n" + &fill(&(parameters.join(", ") + ")"), WIDTH, "    ", "    ")
 }
 
 /// A parameter through which a result is written: a record by its address, arrays as what they are.
