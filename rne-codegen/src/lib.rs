@@ -18,6 +18,7 @@ mod interpret;
 mod ir;
 mod latency;
 mod lower;
+mod named;
 pub mod plan;
 mod program;
 mod prove;
@@ -29,12 +30,12 @@ use rne_model::Robot;
 
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
-    UnknownName,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use ir::name::{By, Name};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
+pub use named::UnknownName;
 pub use program::{
     Constant, Expression, Finding, Found, Operations, Operator, Output, Program, Proof, Sign, Statement, Turn,
 };

@@ -102,7 +102,7 @@ impl Listing<'_> {
     /// Whether nothing stands there.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.sections.iter().all(|section| section.lines.is_empty())
+        self.sections.is_empty()
     }
 
     /// The listing in a language: blank lines between the sections.
@@ -190,7 +190,8 @@ pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> List
     // only what returns torques keeps to joints and steps
     let keeps_to_steps = program.form == Form::SevenSteps
         && (program.function.returns_torques() || program.function == Function::JointWrenches);
-    let sections = if keeps_to_steps { by_steps(robot, program, what) } else { in_order(robot, program, what) };
+    let mut sections = if keeps_to_steps { by_steps(robot, program, what) } else { in_order(robot, program, what) };
+    sections.retain(|section| !section.lines.is_empty());
     Listing { sections }
 }
 

@@ -34,3 +34,18 @@ pub(crate) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
     let arrays = signature::arguments(program).into_iter().map(|array| array.name);
     arrays.chain(["zero"]).chain(c::locals(program))
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Form, Function, compile};
+
+    #[test]
+    fn variables_of_the_emitters_are_taken() {
+        let robot = rne_model::check("planar2", include_str!("../../../robots/planar2.yaml")).unwrap().robot;
+        let program = compile(&robot, Function::InverseDynamics, Form::SevenSteps).unwrap();
+        let locals: Vec<_> = super::locals(&program).collect();
+        for local in ["q", "qd", "qdd", "zero", "unused", "tau"] {
+            assert!(locals.contains(&local), "{locals:?}");
+        }
+    }
+}

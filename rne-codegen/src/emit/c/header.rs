@@ -120,5 +120,5 @@ fn counts(programs: &[Program]) -> String {
 
 /// Cells below each other, as lines of a comment.
 pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> String {
-    table::columns(lines).iter().map(|line| format!("//   {line}\n")).collect()
+    format!("//   {}\n", table::columns(lines).join("\n//   "))
 }

@@ -113,8 +113,9 @@ impl fmt::Display for ConstantTooLarge {
 
 impl std::error::Error for ConstantTooLarge {}
 
-/// Words in a comment, each line behind `start`.
+/// Words in a comment, each line behind `start`; without words an empty one.
 fn comment(start: &str, text: &str) -> String {
-    let start = format!("{start} ");
-    fill(&c_comment(text), WIDTH, &start, &start) + "\n"
+    let blank = format!("{start} ");
+    let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };
+    lines + "\n"
 }
