@@ -132,8 +132,7 @@ impl Kind {
 
 struct Node {
     kind: Kind,
-    /// The statement that computes it, if one does.
-    statement: Option<usize>,
+    /// The name under which a statement computes it, if one does.
     name: Option<Name>,
     uses: usize,
     /// Computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
@@ -144,7 +143,6 @@ struct Node {
 struct Graph {
     nodes: Vec<Node>,
     known: BTreeMap<Name, Term>,
-    statements: usize,
 }
 
 impl Graph {
@@ -174,14 +172,12 @@ impl Graph {
             // another name of what has one, or its negative
             _ => term = Term { sign: Sign::Plus, node: self.push(Kind::Sum(vec![term])) },
         }
-        let node = &mut self.nodes[term.node];
-        (node.statement, node.name) = (Some(self.statements), Some(statement.name));
-        self.statements += 1;
+        self.nodes[term.node].name = Some(statement.name);
         self.known.insert(statement.name, term);
     }
 
     fn push(&mut self, kind: Kind) -> usize {
-        self.nodes.push(Node { kind, statement: None, name: None, uses: 0, is_computed: true });
+        self.nodes.push(Node { kind, name: None, uses: 0, is_computed: true });
         self.nodes.len() - 1
     }
 
@@ -325,14 +321,12 @@ impl Graph {
 
     /// The program that the graph has become.
     fn program(&self, program: &Program, outputs: &[Term]) -> Program {
-        let nodes = self.nodes.iter().enumerate();
-        let computed: BTreeMap<_, _> = nodes.filter_map(|(index, node)| Some((node.statement?, index))).collect();
-        let mut statements = Vec::new();
-        for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
-            if let Some(node) = computed.get(&index).copied().filter(|&node| self.is_named(node)) {
-                statements.push(Statement { place: *place, name: *name, value: self.value(node) });
-            }
-        }
+        let computed = |Statement { place, name, .. }: &Statement| {
+            let node = self.known.get(name)?.node;
+            let is_computed = self.nodes[node].is_computed;
+            is_computed.then(|| Statement { place: *place, name: *name, value: self.value(node) })
+        };
+        let statements = program.statements.iter().filter_map(computed).collect();
         let outputs = program.outputs.iter().zip(outputs);
         let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
         program.computed_by(statements, outputs)
@@ -346,11 +340,6 @@ impl Graph {
         };
         let product = self.nodes[node].kind.product();
         product.is_some_and(|factors| self.nodes[node].uses == 1 || !factors.iter().any(is_nameless))
-    }
-
-    /// Whether a statement computes the node.
-    fn is_named(&self, node: usize) -> bool {
-        self.nodes[node].is_computed && self.nodes[node].name.is_some()
     }
 
     /// A term where it is used: the name of what a statement computes, else its value.

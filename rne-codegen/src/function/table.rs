@@ -258,7 +258,7 @@ pub(crate) const TABLE: &[Entry] = &[
     Entry {
         summary: "The centre of mass of all links in the world, base included.",
         details: "centre: Σ m c / Σ m, m. Rotors are not included. An arm without mass gives numbers that are not \
-        finite.",
+            finite.",
         arguments: &[Positions],
         shape: TRIPLE,
         output: "centre",
@@ -281,9 +281,8 @@ pub(crate) const TABLE: &[Entry] = &[
     },
     Entry {
         summary: "The Jacobian of the centre of mass in world axes: its velocity per joint velocity.",
-        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass \
-        gives numbers that \
-            are not finite.",
+        details: "jacobian: its product with q̇ is the velocity of the centre of mass, m/s. An arm without mass gives \
+            numbers that are not finite.",
         arguments: &[Positions],
         shape: Shape::Array(Fixed(3), &VECTOR),
         output: "jacobian",
