@@ -228,26 +228,22 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         let turns = program.turns.iter().map(Line::Turn);
         sections.push(Section { of: None, lines: constants.chain(angles).chain(turns).collect() });
     }
-    let mut last_title = None;
+    let mut last_opening = None;
     for statement in &program.statements {
         let Place { joint, step, by, quantity } = shown_place(program, statement);
         if !what.includes(joint, step) {
             continue;
         }
-        let title = match (by, step) {
-            _ if program.form == Form::Rewritten => String::new(),
-            (Some(by), _) => by_title(program, joint, step, by),
-            (None, Step::Beyond) => beyond_title(program, quantity, joint),
-            (None, _) => step_title(program, joint, step),
+        let opening = match (by, step) {
+            _ if program.form == Form::Rewritten => Vec::new(),
+            (Some(by), _) => vec![Line::Heading(by_title(program, joint, step, by))],
+            (None, Step::Beyond) => vec![Line::Heading(beyond_title(program, quantity, joint))],
+            (None, _) => heading(robot, program, joint, step),
         };
-        if last_title.as_ref() != Some(&title) {
-            let (of, lines) = match (by, step) {
-                _ if program.form == Form::Rewritten => (None, Vec::new()),
-                (None, step) if step != Step::Beyond => (Some((joint, step, by)), heading(robot, program, joint, step)),
-                _ => (Some((joint, step, by)), vec![Line::Heading(title.clone())]),
-            };
-            sections.push(Section { of, lines });
-            last_title = Some(title);
+        if last_opening.as_ref() != Some(&opening) {
+            let of = (program.form != Form::Rewritten).then_some((joint, step, by));
+            sections.push(Section { of, lines: opening.clone() });
+            last_opening = Some(opening);
         }
         if let Some(section) = sections.last_mut() {
             section.lines.push(Line::Statement(statement));

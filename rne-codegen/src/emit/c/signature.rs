@@ -92,29 +92,21 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
 
 /// Where the numbers of a result are written, in their order.
 pub(super) fn places(program: &Program) -> Vec<String> {
-    let (layout, name) = (program.function.layout(program.dof), program.function.entry().output);
     let mut places = Vec::new();
-    match &layout {
-        // by its address
-        Layout::Record(record, parts) => {
-            for (field, part) in record.fields().iter().zip(parts) {
-                elements(part, &format!("{name}->{field}"), &mut places);
-            }
-        }
-        layout => elements(layout, name, &mut places),
-    }
+    // a record is written by its address
+    elements(&program.function.layout(program.dof), program.function.entry().output, "->", &mut places);
     places
 }
 
-fn elements(layout: &Layout, name: &str, places: &mut Vec<String>) {
+fn elements(layout: &Layout, name: &str, dot: &str, places: &mut Vec<String>) {
     match layout {
         Layout::Number => places.push(name.to_owned()),
         Layout::Array(length, of) => {
-            (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), places));
+            (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), ".", places));
         }
         Layout::Record(record, parts) => {
             let fields = record.fields().into_iter().zip(parts);
-            fields.for_each(|(field, part)| elements(part, &format!("{name}.{field}"), places));
+            fields.for_each(|(field, part)| elements(part, &format!("{name}{dot}{field}"), ".", places));
         }
     }
 }
