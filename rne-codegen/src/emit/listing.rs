@@ -160,6 +160,13 @@ impl Line<'_> {
     }
 }
 
+/// The listing in Rust.
+impl fmt::Display for Listing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text(Syntax::Rust))
+    }
+}
+
 /// The line inside a function of Rust, as text.
 impl fmt::Display for Line<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

@@ -166,7 +166,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     }
     let statements = listing(robot, program, Selection::default());
     if !statements.is_empty() {
-        let _ = write!(text, "\n{}", statements.text(Syntax::Rust));
+        let _ = write!(text, "\n{statements}");
     }
     text.push('\n');
     if let Some(returned) = returned(program) {
