@@ -7,7 +7,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use rne_codegen::emit::{self, Listing, listing};
+use rne_codegen::emit::{self, Selection, listing};
 use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
 use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
 use rne_model::{JointKind, Robot};
@@ -77,11 +77,9 @@ fn block(name: &str) -> String {
 fn code(steps: usize) -> String {
     let robot = robot(&root().join("robots/puma560.yaml"));
     let program = inverse_dynamics(&robot);
-    let steps = Step::ALL
-        .iter()
-        .take(steps)
-        .map(|&step| listing(&robot, &program, Listing { joint: Some(3), step: Some(step), ..Listing::default() }));
-    let code: Vec<String> = steps.filter(|text| !text.trim().is_empty()).collect();
+    let what = |&step| Selection { joint: Some(3), step: Some(step), ..Selection::default() };
+    let steps = Step::ALL[..steps].iter().map(|step| listing(&robot, &program, what(step)));
+    let code: Vec<String> = steps.filter(|listing| !listing.is_empty()).map(|listing| listing.to_string()).collect();
     let code = code.join("\n");
     let emitted = emit::rust_file(&robot, &[program]);
     assert!(emitted.contains(&code), "the heading of the block says where it is from");

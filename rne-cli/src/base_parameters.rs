@@ -36,7 +36,7 @@ pub(crate) fn text(robot: &Robot) -> String {
     for (title, parameters) in [("no effect", &base.without_effect), ("by itself", &alone)] {
         if !parameters.is_empty() {
             let indent = "             ";
-            let line = wrap(&format!("{title}    {}", names(parameters)), WIDTH, indent);
+            let line = wrap(&format!("{title} {}", names(parameters)), WIDTH, indent);
             let list = line.strip_prefix(title).unwrap_or(&line).trim_start();
             let _ = writeln!(text, "{QUIET}{title}{QUIET:#}    {list}\n");
         }
@@ -90,8 +90,8 @@ fn combination(base: &BaseParameter) -> String {
     text
 }
 
-/// A blank at which no line breaks, until it is written.
-const TIED: &str = "\u{1}";
+/// A blank at which no line breaks.
+const TIED: &str = "\u{A0}";
 
 /// A positive number in few digits.
 fn short(value: f64) -> String {

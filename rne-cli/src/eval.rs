@@ -1,6 +1,5 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
-use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -10,6 +9,7 @@ use rne_model::Robot;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::layout::wrap;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
@@ -99,26 +99,9 @@ Tables are rounded for reading; --json has every digit, in the shape that the Ru
 
 /// The functions with exactly these arguments, on lines that begin with the options or below them.
 fn functions_of(options: &str, arguments: &[Argument]) -> String {
-    const INDENT: usize = 20;
-    const WIDTH: usize = 108;
-    let mut text = format!("  {options:<18}");
-    let mut column = INDENT;
     let functions = Function::ALL.iter().filter(|function| function.arguments() == arguments);
-    for (index, function) in functions.enumerate() {
-        if index > 0 {
-            text.push(',');
-            if column + 2 + function.name().len() > WIDTH {
-                let _ = write!(text, "\n{:INDENT$}", "");
-                column = INDENT;
-            } else {
-                text.push(' ');
-                column += 2;
-            }
-        }
-        text.push_str(function.name());
-        column += function.name().len();
-    }
-    text
+    let names: Vec<&str> = functions.map(|function| function.name()).collect();
+    format!("  {options:<18}{}", wrap(&names.join(", "), 89, "").replace('\n', &format!("\n{:20}", "")))
 }
 
 /// The answer as JSON has it.

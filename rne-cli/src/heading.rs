@@ -3,28 +3,19 @@
 use std::fmt::Write as _;
 
 use rne_codegen::{Program, emit};
-use rne_model::{Robot, Transform};
+use rne_model::Robot;
 
 use crate::terminal::{QUIET, TITLE};
 
 /// Title, convention, gravity, and the Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
-    let mut text = String::new();
-    let _ = writeln!(text, "{TITLE}{}{TITLE:#}", emit::title(robot));
-    let _ = writeln!(text, "{}", emit::convention(robot));
-    let [x, y, z] = robot.gravity;
-    let _ = writeln!(text, "acceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²");
-    for (what, place) in
-        [("base, from the world to frame 0", &robot.base), ("tool, behind the last frame", &robot.tool)]
-    {
-        if *place != Transform::IDENTITY {
-            let [x, y, z] = place.xyz;
-            let [roll, pitch, yaw] = place.rpy.map(|angle| emit::angle(&angle));
-            let _ = writeln!(text, "{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad");
-        }
+    let emit::Heading { title, frames, ends, table, .. } = emit::Heading::of(robot);
+    let mut text = format!("{TITLE}{title}{TITLE:#}\n{frames}\n");
+    for end in ends {
+        let _ = writeln!(text, "{end}");
     }
     text.push('\n');
-    for (index, line) in emit::dh_table(robot).lines().enumerate() {
+    for (index, line) in table.lines().enumerate() {
         let _ = match index {
             0 => writeln!(text, "  {QUIET}{line}   (rad, m, kg){QUIET:#}"),
             _ => writeln!(text, "  {line}"),

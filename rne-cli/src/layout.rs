@@ -2,6 +2,9 @@
 
 use std::fmt::Write as _;
 
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+use unicode_width::UnicodeWidthStr;
+
 /// On which side of its column a cell stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Align {
@@ -44,25 +47,14 @@ pub(crate) fn right(text: &str, to: usize) -> String {
 
 /// Columns that a text takes: the dots of ω̇ and c̈ stand above their letters.
 pub(crate) fn width(text: &str) -> usize {
-    text.chars().filter(|c| !('\u{300}'..='\u{36F}').contains(c)).count()
+    UnicodeWidthStr::width(text)
 }
 
 /// Words put into lines of a width; lines after the first start with `indent`.
 pub(crate) fn wrap(text: &str, to: usize, indent: &str) -> String {
-    let mut lines = String::new();
-    let mut at = 0;
-    for word in text.split_whitespace() {
-        if at > 0 && at + 1 + width(word) > to {
-            let _ = write!(lines, "\n{indent}");
-            at = width(indent);
-        } else if at > 0 {
-            lines.push(' ');
-            at += 1;
-        }
-        lines.push_str(word);
-        at += width(word);
-    }
-    lines
+    let options = Options::new(to).subsequent_indent(indent).break_words(false);
+    let options = options.word_separator(WordSeparator::AsciiSpace).word_splitter(WordSplitter::NoHyphenation);
+    textwrap::fill(text, options.wrap_algorithm(WrapAlgorithm::FirstFit))
 }
 
 #[cfg(test)]

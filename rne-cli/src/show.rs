@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use rne_codegen::emit::{self, Listing};
+use rne_codegen::emit::{self, Selection};
 use rne_codegen::plan::Trick;
 use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
 use rne_model::Robot;
@@ -153,10 +153,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let _ = writeln!(text, "{QUIET}{line}{QUIET:#}");
         }
     }
-    let what = Listing { joint: arguments.joint, step: arguments.step, explain: true, ..Listing::default() };
+    let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };
     text.push('\n');
     let listing = emit::listing(&robot, &program, what);
-    if listing.trim().is_empty() {
+    if listing.is_empty() {
         let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
     }
     text.push_str(&highlight::listing(&listing));

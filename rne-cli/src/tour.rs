@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use rne::{DynArm, InverseDynamics as _};
-use rne_codegen::emit::{self, Listing};
+use rne_codegen::emit::{self, Selection};
 use rne_codegen::{self as codegen, Form, Function, Program, Step};
 use rne_model::{Robot, check};
 
@@ -121,7 +121,7 @@ fn joints(text: &mut String, robot: &Robot, program: &Program) {
 fn code(text: &mut String, robot: &Robot, program: &Program, joint: usize, steps: &[Step]) {
     let listings: Vec<String> = steps
         .iter()
-        .map(|&step| Listing { joint: Some(joint), step: Some(step), explain: true, reasons: Some(2) })
+        .map(|&step| Selection { joint: Some(joint), step: Some(step), explain: true, reasons: Some(2) })
         .map(|what| highlight::listing(&emit::listing(robot, program, what)))
         .collect();
     text.push_str(&listings.join("\n"));

@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use crate::ir::name::Name;
 use crate::latency;
-use crate::program::{Expression, Output, Program, Sign, Statement, Turn};
+use crate::program::{Expression, Operator, Output, Program, Sign, Statement, Turn};
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///
@@ -51,24 +51,45 @@ pub fn soonest(program: &Program) -> Program {
 /// Instructions of one evaluation, without sines and cosines, where every product that stands right of + or - is fused.
 #[must_use]
 pub fn instructions(program: &Program) -> usize {
-    let statements = program.statements.iter().map(|statement| &statement.value);
-    statements.chain(program.outputs.iter().map(|output| &output.value)).map(expression_instructions).sum()
+    let parts = program.values().flat_map(Expression::parts);
+    let instructions = parts.map(|part| match part {
+        // a minus goes into the instruction that uses it, but for an output
+        Expression::Variable(_) | Expression::Zero | Expression::Negative(_) => 0,
+        // its product is counted with it
+        Expression::Binary(..) => usize::from(Contraction::of(part).is_none()),
+        Expression::BySign(_) => 2,
+    });
+    instructions.sum()
 }
 
-fn expression_instructions(expression: &Expression) -> usize {
-    use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
-    match expression {
-        Variable(_) | Zero => 0,
-        // goes into the instruction that uses it, but for an output
-        Negative(a) => expression_instructions(a),
-        Sum(a, b) | Difference(a, b) => {
-            let inner = |a: &Expression| expression_instructions(a);
-            let is_product = |a: &Expression| matches!(a, Product(..));
-            let saved = usize::from(is_product(a) || is_product(b));
-            1 + inner(a) + inner(b) - saved
-        }
-        Product(a, b) | Quotient(a, b) => 1 + expression_instructions(a) + expression_instructions(b),
-        BySign(x, a, b) => 2 + [x, a, b].into_iter().map(|operand| expression_instructions(operand)).sum::<usize>(),
+/// A sum or difference as x y + z, which may be one instruction.
+pub(crate) struct Contraction<'a> {
+    pub(crate) factors: [&'a Expression; 2],
+    pub(crate) addend: &'a Expression,
+    /// What a difference negates.
+    pub(crate) negated: Option<Negated>,
+}
+
+/// The part of a contraction that is negated.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Negated {
+    Factor,
+    Addend,
+}
+
+impl<'a> Contraction<'a> {
+    /// Of a product and what it is added to; of two products the right one is fused.
+    pub(crate) fn of(expression: &'a Expression) -> Option<Self> {
+        let Expression::Binary(operator @ (Operator::Sum | Operator::Difference), a, b) = expression else {
+            return None;
+        };
+        let (addend, product, negated) = match (&**a, &**b) {
+            (a, b @ Expression::Binary(Operator::Product, ..)) => (a, b, Negated::Factor),
+            (a, b) => (b, a, Negated::Addend),
+        };
+        let Expression::Binary(Operator::Product, x, y) = product else { return None };
+        let negated = (*operator == Operator::Difference).then_some(negated);
+        Some(Self { factors: [x, y], addend, negated })
     }
 }
 
@@ -82,16 +103,36 @@ struct Term {
 enum Kind {
     /// What the statements are made of: arguments, constants, sines and cosines.
     Leaf(Expression),
-    Product([usize; 2]),
-    Quotient([usize; 2]),
+    /// A product or a quotient, whose signs are carried outwards.
+    Scaled(Operator, [usize; 2]),
     BySign([Term; 3]),
     Sum(Vec<Term>),
 }
 
+impl Kind {
+    fn product(&self) -> Option<&[usize; 2]> {
+        if let Self::Scaled(Operator::Product, factors) = self { Some(factors) } else { None }
+    }
+
+    fn terms(&self) -> Option<&Vec<Term>> {
+        if let Self::Sum(terms) = self { Some(terms) } else { None }
+    }
+
+    /// The nodes that it uses.
+    fn operands(&self) -> Vec<usize> {
+        let nodes = |terms: &[Term]| terms.iter().map(|term| term.node).collect();
+        match self {
+            Self::Leaf(_) => Vec::new(),
+            Self::Scaled(_, operands) => operands.to_vec(),
+            Self::BySign(operands) => nodes(operands),
+            Self::Sum(terms) => nodes(terms),
+        }
+    }
+}
+
 struct Node {
     kind: Kind,
-    /// The statement that computes it, if one does.
-    statement: Option<usize>,
+    /// The name under which a statement computes it, if one does.
     name: Option<Name>,
     uses: usize,
     /// Computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
@@ -102,7 +143,6 @@ struct Node {
 struct Graph {
     nodes: Vec<Node>,
     known: BTreeMap<Name, Term>,
-    statements: usize,
 }
 
 impl Graph {
@@ -128,78 +168,59 @@ impl Graph {
                 }
                 term.sign = Sign::Plus;
             }
-            Kind::Sum(_) | Kind::Product(_) if node.name.is_none() && term.sign == Sign::Plus => {}
+            Kind::Sum(_) | Kind::Scaled(Operator::Product, _) if node.name.is_none() && term.sign == Sign::Plus => {}
             // another name of what has one, or its negative
             _ => term = Term { sign: Sign::Plus, node: self.push(Kind::Sum(vec![term])) },
         }
-        let node = &mut self.nodes[term.node];
-        (node.statement, node.name) = (Some(self.statements), Some(statement.name));
-        self.statements += 1;
+        self.nodes[term.node].name = Some(statement.name);
         self.known.insert(statement.name, term);
     }
 
     fn push(&mut self, kind: Kind) -> usize {
-        self.nodes.push(Node { kind, statement: None, name: None, uses: 0, is_computed: true });
+        self.nodes.push(Node { kind, name: None, uses: 0, is_computed: true });
         self.nodes.len() - 1
     }
 
     fn term(&mut self, expression: &Expression) -> Term {
-        use Sign::{Minus, Plus};
-        match expression {
+        let (sign, kind) = match expression {
             Expression::Variable(name) => {
                 if let Some(&term) = self.known.get(name) {
                     return term;
                 }
-                let term = Term { sign: Plus, node: self.push(Kind::Leaf(expression.clone())) };
-                self.known.insert(*name, term);
-                term
+                (Sign::Plus, Kind::Leaf(expression.clone()))
             }
-            Expression::Zero => Term { sign: Plus, node: self.push(Kind::Leaf(Expression::Zero)) },
-            Expression::Negative(a) => self.term(a).opposite(),
-            Expression::Sum(a, b) => {
-                let terms = vec![self.term(a), self.term(b)];
-                Term { sign: Plus, node: self.push(Kind::Sum(terms)) }
-            }
-            Expression::Difference(a, b) => {
-                let terms = vec![self.term(a), self.term(b).opposite()];
-                Term { sign: Plus, node: self.push(Kind::Sum(terms)) }
-            }
-            Expression::Product(a, b) => {
+            Expression::Zero => (Sign::Plus, Kind::Leaf(Expression::Zero)),
+            Expression::Negative(a) => return self.term(a).opposite(),
+            Expression::Binary(operator, a, b) => {
                 let (a, b) = (self.term(a), self.term(b));
-                let sign = if a.sign == b.sign { Plus } else { Minus };
-                Term { sign, node: self.push(Kind::Product([a.node, b.node])) }
+                match operator {
+                    Operator::Sum => (Sign::Plus, Kind::Sum(vec![a, b])),
+                    Operator::Difference => (Sign::Plus, Kind::Sum(vec![a, b.opposite()])),
+                    Operator::Product | Operator::Quotient => {
+                        let sign = if a.sign == b.sign { Sign::Plus } else { Sign::Minus };
+                        (sign, Kind::Scaled(*operator, [a.node, b.node]))
+                    }
+                }
             }
-            Expression::Quotient(a, b) => {
-                let (a, b) = (self.term(a), self.term(b));
-                let sign = if a.sign == b.sign { Plus } else { Minus };
-                Term { sign, node: self.push(Kind::Quotient([a.node, b.node])) }
+            Expression::BySign(operands) => {
+                (Sign::Plus, Kind::BySign(operands.each_ref().map(|operand| self.term(operand))))
             }
-            Expression::BySign(x, a, b) => {
-                let operands = [x, a, b].map(|operand| self.term(operand));
-                Term { sign: Plus, node: self.push(Kind::BySign(operands)) }
-            }
+        };
+        let term = Term { sign, node: self.push(kind) };
+        if let Expression::Variable(name) = expression {
+            self.known.insert(*name, term);
         }
+        term
     }
 
     fn count_uses(&mut self, outputs: &[Term]) {
-        let mut uses = vec![0; self.nodes.len()];
-        for node in &self.nodes {
-            match &node.kind {
-                Kind::Leaf(_) => {}
-                Kind::Product(factors) | Kind::Quotient(factors) => {
-                    for &factor in factors {
-                        uses[factor] += 1;
-                    }
-                }
-                Kind::BySign(operands) => operands.iter().for_each(|operand| uses[operand.node] += 1),
-                Kind::Sum(terms) => terms.iter().for_each(|term| uses[term.node] += 1),
+        for index in 0..self.nodes.len() {
+            for operand in self.nodes[index].kind.operands() {
+                self.nodes[operand].uses += 1;
             }
         }
         for output in outputs {
-            uses[output.node] += 1;
-        }
-        for (node, uses) in self.nodes.iter_mut().zip(uses) {
-            node.uses = uses;
+            self.nodes[output.node].uses += 1;
         }
     }
 
@@ -230,11 +251,7 @@ impl Graph {
     fn choose_products(&mut self) -> usize {
         // uses as terms of sums; a product with other uses has to be computed
         let mut in_sums = vec![0; self.nodes.len()];
-        let sums: Vec<_> = self
-            .nodes
-            .iter()
-            .filter_map(|node| if let Kind::Sum(terms) = &node.kind { Some(terms) } else { None })
-            .collect();
+        let sums: Vec<_> = self.nodes.iter().filter_map(|node| node.kind.terms()).collect();
         for term in sums.iter().copied().flatten() {
             in_sums[term.node] += 1;
         }
@@ -286,14 +303,12 @@ impl Graph {
         // nodes stand behind what they use
         let mut known: Vec<usize> = Vec::with_capacity(self.nodes.len());
         for node in &mut self.nodes {
+            let last = |operands: Vec<usize>| operands.into_iter().map(|operand| known[operand]).max().unwrap_or(0);
             let at = match &mut node.kind {
                 Kind::Leaf(Expression::Variable(name)) if turns.contains(name) => latency::TURN,
                 Kind::Leaf(_) => 0,
-                Kind::Product([a, b]) => known[*a].max(known[*b]) + latency::PRODUCT,
-                Kind::Quotient([a, b]) => known[*a].max(known[*b]) + latency::QUOTIENT,
-                Kind::BySign(operands) => {
-                    operands.iter().map(|operand| known[operand.node]).max().unwrap_or(0) + latency::SUM
-                }
+                Kind::Scaled(operator, _) => latency::cycles(*operator) + last(node.kind.operands()),
+                Kind::BySign(_) => latency::SUM + last(node.kind.operands()),
                 Kind::Sum(terms) => {
                     terms.sort_by_key(|term| known[term.node]);
                     let times = terms.iter().map(|term| known[term.node]);
@@ -306,14 +321,12 @@ impl Graph {
 
     /// The program that the graph has become.
     fn program(&self, program: &Program, outputs: &[Term]) -> Program {
-        let nodes = self.nodes.iter().enumerate();
-        let computed: BTreeMap<_, _> = nodes.filter_map(|(index, node)| Some((node.statement?, index))).collect();
-        let mut statements = Vec::new();
-        for (index, Statement { place, name, .. }) in program.statements.iter().enumerate() {
-            if let Some(node) = computed.get(&index).copied().filter(|&node| self.is_named(node)) {
-                statements.push(Statement { place: *place, name: *name, value: self.value(node) });
-            }
-        }
+        let computed = |Statement { place, name, .. }: &Statement| {
+            let node = self.known.get(name)?.node;
+            let is_computed = self.nodes[node].is_computed;
+            is_computed.then(|| Statement { place: *place, name: *name, value: self.value(node) })
+        };
+        let statements = program.statements.iter().filter_map(computed).collect();
         let outputs = program.outputs.iter().zip(outputs);
         let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
         program.computed_by(statements, outputs)
@@ -325,15 +338,8 @@ impl Graph {
             let factor = &self.nodes[factor];
             factor.name.is_none() && !matches!(factor.kind, Kind::Leaf(_))
         };
-        match &self.nodes[node].kind {
-            Kind::Product(factors) => self.nodes[node].uses == 1 || !factors.iter().any(is_nameless),
-            Kind::Leaf(_) | Kind::Sum(_) | Kind::Quotient(_) | Kind::BySign(_) => false,
-        }
-    }
-
-    /// Whether a statement computes the node.
-    fn is_named(&self, node: usize) -> bool {
-        self.nodes[node].is_computed && self.nodes[node].name.is_some()
+        let product = self.nodes[node].kind.product();
+        product.is_some_and(|factors| self.nodes[node].uses == 1 || !factors.iter().any(is_nameless))
     }
 
     /// A term where it is used: the name of what a statement computes, else its value.
@@ -349,18 +355,11 @@ impl Graph {
     fn value(&self, node: usize) -> Expression {
         match &self.nodes[node].kind {
             Kind::Leaf(expression) => expression.clone(),
-            Kind::Product(factors) => {
-                let [a, b] = factors.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
-                Expression::Product(a, b)
+            Kind::Scaled(operator, operands) => {
+                let [a, b] = operands.map(|node| self.operand(Term { sign: Sign::Plus, node }));
+                Expression::binary(*operator, a, b)
             }
-            Kind::Quotient(operands) => {
-                let [a, b] = operands.map(|node| Box::new(self.operand(Term { sign: Sign::Plus, node })));
-                Expression::Quotient(a, b)
-            }
-            Kind::BySign(operands) => {
-                let [x, a, b] = operands.map(|operand| Box::new(self.operand(operand)));
-                Expression::BySign(x, a, b)
-            }
+            Kind::BySign(operands) => Expression::BySign(Box::new(operands.map(|operand| self.operand(operand)))),
             Kind::Sum(terms) => self.sum(terms),
         }
     }
@@ -368,21 +367,16 @@ impl Graph {
     /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has
     /// none.
     fn sum(&self, terms: &[Term]) -> Expression {
-        use Expression::{Difference, Negative, Sum};
         let plain = |term: Term| self.operand(Term { sign: Sign::Plus, ..term });
         let parts = terms.iter().map(|&term| (term.sign, plain(term)));
-        let sum = parts.reduce(|(sign, sum), (sign_of_term, term)| {
-            let (sum, term) = (Box::new(sum), Box::new(term));
-            match (sign, sign_of_term) {
-                (Sign::Plus, Sign::Plus) => (Sign::Plus, Sum(sum, term)),
-                (Sign::Plus, Sign::Minus) => (Sign::Plus, Difference(sum, term)),
-                (Sign::Minus, Sign::Plus) => (Sign::Plus, Difference(term, sum)),
-                (Sign::Minus, Sign::Minus) => (Sign::Minus, Sum(sum, term)),
-            }
+        let sum = parts.reduce(|(sign, sum), (sign_of_term, term)| match (sign, sign_of_term) {
+            (Sign::Plus, Sign::Minus) => (Sign::Plus, Expression::binary(Operator::Difference, sum, term)),
+            (Sign::Minus, Sign::Plus) => (Sign::Plus, Expression::binary(Operator::Difference, term, sum)),
+            (sign, _) => (sign, Expression::binary(Operator::Sum, sum, term)),
         });
         match sum {
             Some((Sign::Plus, sum)) => sum,
-            Some((Sign::Minus, sum)) => Negative(Box::new(sum)),
+            Some((Sign::Minus, sum)) => Expression::Negative(Box::new(sum)),
             None => Expression::Zero,
         }
     }

@@ -5,7 +5,7 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::ir::name::Name;
 use crate::ir::quantity::{Component, Quantity};
-use crate::program::{Expression, Program, Statement};
+use crate::program::{Expression, Operator, Program, Statement};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]
@@ -51,11 +51,8 @@ enum Instruction {
     Constant(Option<Name>, f64),
     SineCosine(usize),
     Negative(usize),
-    Sum(usize, usize),
-    Difference(usize, usize),
-    Product(usize, usize),
-    Quotient(usize, usize),
-    BySign(usize, usize, usize),
+    Binary(Operator, usize, usize),
+    BySign([usize; 3]),
 }
 
 /// What a number of the interpreter can do.
@@ -140,14 +137,12 @@ impl Interpreter {
         let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
         for &instruction in &self.code {
             let value = match instruction {
-                // sines and cosines that are arguments are those of the positions
-                Instruction::Argument(name) if name.quantity == Quantity::Sine => {
-                    sin_cos(arguments.get(Name::scalar(Quantity::Position, name.joint))?).0
-                }
-                Instruction::Argument(name) if name.quantity == Quantity::Cosine => {
-                    sin_cos(arguments.get(Name::scalar(Quantity::Position, name.joint))?).1
-                }
-                Instruction::Argument(name) => arguments.get(name)?,
+                Instruction::Argument(name) => match name.quantity {
+                    // sines and cosines that are arguments are those of the positions
+                    Quantity::Sine => sin_cos(arguments.position(name.joint)?).0,
+                    Quantity::Cosine => sin_cos(arguments.position(name.joint)?).1,
+                    _ => arguments.get(name)?,
+                },
                 Instruction::Constant(name, value) => constant(name, value)?,
                 Instruction::SineCosine(angle) => {
                     let (sine, cosine) = sin_cos(slots[angle]);
@@ -155,11 +150,11 @@ impl Interpreter {
                     cosine
                 }
                 Instruction::Negative(a) => -slots[a],
-                Instruction::Sum(a, b) => slots[a] + slots[b],
-                Instruction::Difference(a, b) => slots[a] - slots[b],
-                Instruction::Product(a, b) => slots[a] * slots[b],
-                Instruction::Quotient(a, b) => slots[a] / slots[b],
-                Instruction::BySign(x, a, b) => slots[x].by_sign(slots[a], slots[b]),
+                Instruction::Binary(Operator::Sum, a, b) => slots[a] + slots[b],
+                Instruction::Binary(Operator::Difference, a, b) => slots[a] - slots[b],
+                Instruction::Binary(Operator::Product, a, b) => slots[a] * slots[b],
+                Instruction::Binary(Operator::Quotient, a, b) => slots[a] / slots[b],
+                Instruction::BySign([x, a, b]) => slots[x].by_sign(slots[a], slots[b]),
             };
             slots.push(value);
         }
@@ -168,25 +163,30 @@ impl Interpreter {
 }
 
 impl<T: Copy> Arguments<'_, T> {
+    fn position(&self, joint: usize) -> Option<T> {
+        self.q.get(joint.checked_sub(1)?).copied()
+    }
+
     fn get(&self, name: Name) -> Option<T> {
-        match (name.quantity, name.component) {
-            (Quantity::JointForce, Component::Vector(axis)) => Some(self.force[axis as usize]),
-            (Quantity::JointMoment, Component::Vector(axis)) => Some(self.moment[axis as usize]),
-            (Quantity::Omega, Component::Vector(axis)) => Some(self.base[0][axis as usize]),
-            (Quantity::OmegaDot, Component::Vector(axis)) => Some(self.base[1][axis as usize]),
-            (Quantity::Acceleration, Component::Vector(axis)) => Some(self.base[2][axis as usize]),
-            (Quantity::Gravity, Component::Vector(axis)) => Some(self.base[3][axis as usize]),
-            (quantity, _) => {
-                let array = match quantity {
-                    Quantity::Position => self.q,
-                    Quantity::Rate => self.qd,
-                    Quantity::AppliedTorque => self.tau,
-                    Quantity::Parameter => self.parameters,
-                    _ => self.qdd,
-                };
-                array.get(name.joint.checked_sub(1)?).copied()
-            }
-        }
+        let Component::Vector(axis) = name.component else {
+            let array = match name.quantity {
+                Quantity::Position => self.q,
+                Quantity::Rate => self.qd,
+                Quantity::AppliedTorque => self.tau,
+                Quantity::Parameter => self.parameters,
+                _ => self.qdd,
+            };
+            return array.get(name.joint.checked_sub(1)?).copied();
+        };
+        let vector = match name.quantity {
+            Quantity::JointForce => self.force,
+            Quantity::JointMoment => self.moment,
+            Quantity::Omega => self.base[0],
+            Quantity::OmegaDot => self.base[1],
+            Quantity::Acceleration => self.base[2],
+            _ => self.base[3],
+        };
+        Some(vector[axis as usize])
     }
 }
 
@@ -220,12 +220,11 @@ impl Builder {
             Expression::Variable(name) => return self.known[&name.to_string()],
             Expression::Zero => Instruction::Constant(None, 0.0),
             Expression::Negative(a) => Instruction::Negative(self.expression(a)),
-            Expression::Sum(a, b) => Instruction::Sum(self.expression(a), self.expression(b)),
-            Expression::Difference(a, b) => Instruction::Difference(self.expression(a), self.expression(b)),
-            Expression::Product(a, b) => Instruction::Product(self.expression(a), self.expression(b)),
-            Expression::Quotient(a, b) => Instruction::Quotient(self.expression(a), self.expression(b)),
-            Expression::BySign(x, a, b) => {
-                Instruction::BySign(self.expression(x), self.expression(a), self.expression(b))
+            Expression::Binary(operator, a, b) => {
+                Instruction::Binary(*operator, self.expression(a), self.expression(b))
+            }
+            Expression::BySign(operands) => {
+                Instruction::BySign(operands.each_ref().map(|operand| self.expression(operand)))
             }
         };
         self.push(instruction)

@@ -6,8 +6,9 @@
 
 use std::collections::BTreeMap;
 
+use crate::fma::Contraction;
 use crate::ir::name::Name;
-use crate::program::{Expression, Program};
+use crate::program::{Expression, Operator, Program};
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
 /// these years.
@@ -17,7 +18,16 @@ pub(crate) const PRODUCT: usize = 4;
 pub(crate) const SUM: usize = 3;
 
 /// Cycles of a division.
-pub(crate) const QUOTIENT: usize = 14;
+const QUOTIENT: usize = 14;
+
+/// Cycles of an operation.
+pub(crate) const fn cycles(operator: Operator) -> usize {
+    match operator {
+        Operator::Sum | Operator::Difference => SUM,
+        Operator::Product => PRODUCT,
+        Operator::Quotient => QUOTIENT,
+    }
+}
 
 /// Cycles after which sines and cosines are there.
 pub(crate) const TURN: usize = 50;
@@ -64,68 +74,52 @@ impl Latency {
         self.rest.get(&name).copied().unwrap_or(0)
     }
 
-    /// Whether x y is better fused with what it is added to; `rest` follows the sum.
-    pub(crate) fn is_fused(&self, addend: &Expression, x: &Expression, y: &Expression, rest: usize) -> bool {
-        let Ways { fused, apart } = self.ways(addend, x, y);
+    /// Whether the product of a contraction is better fused with what it is added to; `rest` follows the sum.
+    pub(crate) fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
+        let Ways { fused, apart } = self.ways(contraction);
         fused <= apart || apart + rest + SPARE < self.total
     }
 
-    fn ways(&self, addend: &Expression, x: &Expression, y: &Expression) -> Ways {
+    fn ways(&self, Contraction { factors: [x, y], addend, .. }: &Contraction<'_>) -> Ways {
         let (addend, factors) = (self.at(addend), self.at(x).max(self.at(y)));
         Ways { fused: addend.max(factors) + PRODUCT, apart: addend.max(factors + PRODUCT) + SUM }
     }
 
     fn at(&self, expression: &Expression) -> usize {
-        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
         match expression {
-            Variable(name) => self.known.get(name).copied().unwrap_or(0),
-            Zero => 0,
-            Negative(a) => self.at(a),
-            Product(a, b) => self.at(a).max(self.at(b)) + PRODUCT,
-            Quotient(a, b) => self.at(a).max(self.at(b)) + QUOTIENT,
-            BySign(x, a, b) => self.at(x).max(self.at(a)).max(self.at(b)) + SUM,
-            Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
-                (a, Product(x, y)) | (Product(x, y), a) => {
-                    let Ways { fused, apart } = self.ways(a, x, y);
+            Expression::Variable(name) => self.known.get(name).copied().unwrap_or(0),
+            Expression::Zero => 0,
+            Expression::Negative(a) => self.at(a),
+            Expression::Binary(operator, a, b) => match Contraction::of(expression) {
+                Some(contraction) => {
+                    let Ways { fused, apart } = self.ways(&contraction);
                     fused.min(apart)
                 }
-                (a, b) => self.at(a).max(self.at(b)) + SUM,
+                None => self.at(a).max(self.at(b)) + cycles(*operator),
             },
+            Expression::BySign(operands) => operands.iter().map(|operand| self.at(operand)).max().unwrap_or(0) + SUM,
         }
     }
 
     /// Notes for what an expression uses that it and `rest` follow.
     fn follow(&mut self, expression: &Expression, rest: usize) {
-        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
         match expression {
-            Variable(name) => {
+            Expression::Variable(name) => {
                 let known = self.rest.entry(*name).or_default();
                 *known = rest.max(*known);
             }
-            Zero => {}
-            Negative(a) => self.follow(a, rest),
-            Product(a, b) => {
-                self.follow(a, rest + PRODUCT);
-                self.follow(b, rest + PRODUCT);
-            }
-            Quotient(a, b) => {
-                self.follow(a, rest + QUOTIENT);
-                self.follow(b, rest + QUOTIENT);
-            }
-            BySign(x, a, b) => [x, a, b].into_iter().for_each(|operand| self.follow(operand, rest + SUM)),
-            Sum(a, b) | Difference(a, b) => match (&**a, &**b) {
-                (a, Product(x, y)) | (Product(x, y), a) => {
-                    let Ways { fused, apart } = self.ways(a, x, y);
+            Expression::Zero => {}
+            Expression::Negative(a) => self.follow(a, rest),
+            Expression::Binary(operator, a, b) => match Contraction::of(expression) {
+                Some(contraction) => {
+                    let Ways { fused, apart } = self.ways(&contraction);
                     let (sum, product) = if fused <= apart { (PRODUCT, PRODUCT) } else { (SUM, SUM + PRODUCT) };
-                    self.follow(a, rest + sum);
-                    self.follow(x, rest + product);
-                    self.follow(y, rest + product);
+                    self.follow(contraction.addend, rest + sum);
+                    contraction.factors.into_iter().for_each(|factor| self.follow(factor, rest + product));
                 }
-                (a, b) => {
-                    self.follow(a, rest + SUM);
-                    self.follow(b, rest + SUM);
-                }
+                None => [a, b].into_iter().for_each(|operand| self.follow(operand, rest + cycles(*operator))),
             },
+            Expression::BySign(operands) => operands.iter().for_each(|operand| self.follow(operand, rest + SUM)),
         }
     }
 }

@@ -24,6 +24,7 @@ mod interpret;
 mod ir;
 mod latency;
 mod lower;
+mod named;
 mod pipeline;
 pub mod plan;
 mod program;
@@ -37,14 +38,18 @@ use rne_model::Robot;
 pub use error::{CompileError, Extreme, Suspect};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
-    UnknownName,
 };
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
 pub use ir::name::{By, Name};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
+pub use named::UnknownName;
 pub use pipeline::Target;
-pub use program::{Constant, Expression, Finding, Found, Operations, Output, Program, Proof, Sign, Statement, Turn};
+pub use program::{
+    Constant, Expression, Finding, Found, Operations, Operator, Output, Program, Proof, Sign, Statement, Turn,
+};
+pub use reduced::algorithm::Way;
+pub use reduced::inward::Gathering;
 
 use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
 use crate::plan::PlanSet;
@@ -126,7 +131,8 @@ impl<'r> Compiler<'r> {
                 .formulation(robot, function)
                 .and_then(|formulation| formulation.proved(function, self.target, &reference))
                 .map_err(|error| error.suspecting(robot, true))?;
-            return Ok(Program { choices: rewritten.choices(), is_rewritten: true, ..program });
+            let (algorithm, choices) = (rewritten.algorithm, rewritten.choices());
+            return Ok(Program { algorithm, choices, is_rewritten: true, ..program });
         }
         if !plan::is_planned(function) {
             return self.numbered(function, reference);
@@ -151,7 +157,7 @@ impl<'r> Compiler<'r> {
         let formulation = plan::formulation(self.robot, &plan, function, algorithm)?;
         let program = formulation.proved(function, self.target, reference)?;
         let choices = algorithm.words().map(str::to_owned).into_iter().chain(plan.choices()).collect();
-        Ok(Program { choices, ..program })
+        Ok(Program { algorithm, choices, ..program })
     }
 
     /// The plain formulas with every value computed once; as they are where that is cheaper, or cannot be proved.

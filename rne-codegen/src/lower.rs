@@ -10,7 +10,8 @@ use crate::ir::ledger::{Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Quantity, Step};
 use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
-use crate::program::{Constant, Exactly, Expression, Finding, Found, Output, Program, Sign, Statement, Turn};
+use crate::program::{Constant, Exactly, Expression, Finding, Found, Operator, Output, Program, Sign, Statement, Turn};
+use crate::reduced::algorithm::Way;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
@@ -54,6 +55,7 @@ pub(crate) fn lower(
         outputs,
         findings: schedule.findings(),
         ledger: written.trace.ledger,
+        algorithm: Way::default(),
         is_rewritten: false,
         choices: Vec::new(),
         proof: None,
@@ -408,21 +410,20 @@ impl<'w> Schedule<'w> {
         };
         match self.written.graph.op(id) {
             Op::Sum(a, b) => match (operand(a), operand(b)) {
-                ((false, a), (false, b)) => (false, Expression::Sum(a, b)),
-                ((false, a), (true, b)) | ((true, b), (false, a)) => (false, Expression::Difference(a, b)),
-                ((true, a), (true, b)) => (true, Expression::Sum(a, b)),
+                ((false, a), (false, b)) => (false, Expression::Binary(Operator::Sum, a, b)),
+                ((false, a), (true, b)) | ((true, b), (false, a)) => {
+                    (false, Expression::Binary(Operator::Difference, a, b))
+                }
+                ((true, a), (true, b)) => (true, Expression::Binary(Operator::Sum, a, b)),
             },
-            Op::Product(a, b) => {
+            op @ (Op::Product(a, b) | Op::Quotient(a, b)) => {
+                let operator = if matches!(op, Op::Product(..)) { Operator::Product } else { Operator::Quotient };
                 let ((a_negative, a), (b_negative, b)) = (operand(a), operand(b));
-                (a_negative != b_negative, Expression::Product(a, b))
-            }
-            Op::Quotient(a, b) => {
-                let ((a_negative, a), (b_negative, b)) = (operand(a), operand(b));
-                (a_negative != b_negative, Expression::Quotient(a, b))
+                (a_negative != b_negative, Expression::Binary(operator, a, b))
             }
             Op::BySign(operands) => {
-                let [x, a, b] = operands.map(operand).map(|(negative, value)| Box::new(signed(negative, *value)));
-                (false, Expression::BySign(x, a, b))
+                let operands = operands.map(operand).map(|(negative, value)| signed(negative, *value));
+                (false, Expression::BySign(Box::new(operands)))
             }
             // leaves always have a name, but for the zero that no operation keeps
             Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Expression::Zero),
@@ -454,17 +455,22 @@ fn negated(expression: &Expression) -> Option<Expression> {
     match expression {
         Expression::Zero => Some(Expression::Zero),
         Expression::Negative(a) => Some((**a).clone()),
-        Expression::Difference(a, b) => Some(Expression::Difference(b.clone(), a.clone())),
-        Expression::Sum(a, b) => match negative(a) {
-            Some(a) => Some(Expression::Difference(a, b.clone())),
-            None => negative(b).map(|b| Expression::Difference(b, a.clone())),
+        Expression::Binary(Operator::Difference, a, b) => {
+            Some(Expression::Binary(Operator::Difference, b.clone(), a.clone()))
+        }
+        Expression::Binary(Operator::Sum, a, b) => match negative(a) {
+            Some(a) => Some(Expression::Binary(Operator::Difference, a, b.clone())),
+            None => negative(b).map(|b| Expression::Binary(Operator::Difference, b, a.clone())),
         },
-        Expression::Product(a, b) => match negative(a) {
-            Some(a) => Some(Expression::Product(a, b.clone())),
-            None => negative(b).map(|b| Expression::Product(a.clone(), b)),
+        Expression::Binary(operator, a, b) => match negative(a) {
+            Some(a) => Some(Expression::Binary(*operator, a, b.clone())),
+            None if *operator == Operator::Product => negative(b).map(|b| Expression::Binary(*operator, a.clone(), b)),
+            None => None,
         },
-        Expression::Quotient(a, b) => negative(a).map(|a| Expression::Quotient(a, b.clone())),
-        Expression::BySign(x, a, b) => Some(Expression::BySign(x.clone(), negative(a)?, negative(b)?)),
+        Expression::BySign(operands) => {
+            let [x, a, b] = &**operands;
+            Some(Expression::BySign(Box::new([x.clone(), *negative(a)?, *negative(b)?])))
+        }
         Expression::Variable(_) => None,
     }
 }

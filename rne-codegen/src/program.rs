@@ -2,7 +2,7 @@
 //!
 //! One `Program`, many renderers: tokens, text, counts, an interpreter.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 
 use crate::CompileError;
 use crate::emit;
@@ -10,6 +10,7 @@ use crate::function::{Form, Function};
 use crate::ir::ledger::{Causes, Ledger, Place};
 use crate::ir::name::Name;
 use crate::ir::{Number, Turn as ConstantTurn};
+use crate::reduced::algorithm::Way;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +41,8 @@ pub struct Program {
     pub findings: Vec<Finding>,
     /// What became of every operation of the recursion.
     pub ledger: Ledger,
+    /// By which algorithm it is written.
+    pub algorithm: Way,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
     /// The choices of a program that is not the seven steps, one line each.
@@ -120,16 +123,23 @@ pub enum Expression {
     Zero,
     /// -a
     Negative(Box<Expression>),
-    /// a + b
-    Sum(Box<Expression>, Box<Expression>),
-    /// a - b
-    Difference(Box<Expression>, Box<Expression>),
-    /// a · b
-    Product(Box<Expression>, Box<Expression>),
-    /// a / b
-    Quotient(Box<Expression>, Box<Expression>),
+    /// Two operands with an operator between them.
+    Binary(Operator, Box<Expression>, Box<Expression>),
     /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
-    BySign(Box<Expression>, Box<Expression>, Box<Expression>),
+    BySign(Box<[Expression; 3]>),
+}
+
+/// An operator between two operands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// a + b
+    Sum,
+    /// a - b
+    Difference,
+    /// a · b
+    Product,
+    /// a / b
+    Quotient,
 }
 
 /// A returned value.
@@ -196,15 +206,11 @@ impl Program {
     /// [`CompileError::TwoOfOneName`], with the first such name.
     pub fn check_names(&self) -> Result<(), CompileError> {
         let mut taken: HashSet<String> = emit::locals(self).map(str::to_owned).collect();
-        let statements = |statements: &'_ [Statement]| statements.iter().map(|statement| statement.name).collect();
-        let names: [Vec<Name>; 5] = [
-            self.arguments.clone(),
-            self.constants.iter().map(|constant| constant.name).collect(),
-            statements(&self.angles),
-            self.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect(),
-            statements(&self.statements),
-        ];
-        match names.iter().flatten().map(Name::to_string).find(|text| !taken.insert(text.clone())) {
+        let turns = self.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
+        let constants = self.constants.iter().map(|constant| constant.name);
+        let statements = self.angles.iter().chain(&self.statements).map(|statement| statement.name);
+        let names = self.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
+        match names.map(|name| name.to_string()).find(|text| !taken.insert(text.clone())) {
             Some(name) => Err(CompileError::TwoOfOneName { function: self.function, name }),
             None => Ok(()),
         }
@@ -212,19 +218,7 @@ impl Program {
 
     /// The same program with other statements.
     pub(crate) fn computed_by(&self, statements: Vec<Statement>, outputs: Vec<Output>) -> Self {
-        Self {
-            robot: self.robot.clone(),
-            arguments: self.arguments.clone(),
-            constants: self.constants.clone(),
-            angles: self.angles.clone(),
-            turns: self.turns.clone(),
-            statements,
-            outputs,
-            findings: self.findings.clone(),
-            ledger: self.ledger.clone(),
-            choices: self.choices.clone(),
-            ..*self
-        }
+        Self { statements, outputs, ..self.clone() }
     }
 
     /// (products, sums) of the seven steps before folding, step 3 included.
@@ -233,16 +227,32 @@ impl Program {
         self.proof.map_or_else(|| self.ledger.before(), |proof| proof.before)
     }
 
+    /// The values of the statements, then those returned.
+    pub(crate) fn values(&self) -> impl Iterator<Item = &Expression> {
+        let statements = self.statements.iter().map(|statement| &statement.value);
+        statements.chain(self.outputs.iter().map(|output| &output.value))
+    }
+
+    /// The values of sums of angles, then the angles whose sines and cosines are evaluated.
+    pub(crate) fn angle_values(&self) -> impl Iterator<Item = &Expression> {
+        let angles = self.angles.iter().map(|statement| &statement.value);
+        angles.chain(self.turns.iter().map(|turn| &turn.angle))
+    }
+
     /// Whether a value is chosen by a sign somewhere.
     #[must_use]
     pub fn chooses_by_sign(&self) -> bool {
-        let statements = self.statements.iter().map(|statement| &statement.value);
-        statements.chain(self.outputs.iter().map(|output| &output.value)).any(Expression::chooses_by_sign)
+        self.values().any(|value| value.parts().any(|part| matches!(part, Expression::BySign(_))))
     }
 
-    /// Whether it is written by composite or articulated bodies, which its first choice says.
-    pub(crate) fn is_of_bodies(&self) -> bool {
-        self.choices.first().is_some_and(|way| way.contains(" bodies, "))
+    /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
+    pub(crate) fn returns_zero(&self) -> bool {
+        self.values().any(|value| value.parts().any(|part| *part == Expression::Zero))
+    }
+
+    /// Whether it is written by composite or articulated bodies.
+    pub(crate) const fn is_of_bodies(&self) -> bool {
+        matches!(self.algorithm, Way::Composite(_) | Way::Articulated(_))
     }
 
     /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then
@@ -260,148 +270,42 @@ impl Program {
         // all sines and cosines are one statement
         let statements = self.angles.len() + usize::from(!self.turns.is_empty()) + self.statements.len();
         let mut count = Operations { statements, sincos: self.turns.len(), ..Operations::default() };
-        for statement in self.angles.iter().chain(&self.statements) {
-            statement.value.count(&mut count);
-        }
-        for turn in &self.turns {
-            turn.angle.count(&mut count);
-        }
-        for output in &self.outputs {
-            output.value.count(&mut count);
+        for part in self.angle_values().chain(self.values()).flat_map(Expression::parts) {
+            match part {
+                Expression::Binary(Operator::Sum | Operator::Difference, ..) => count.add += 1,
+                Expression::Binary(Operator::Product, ..) => count.mul += 1,
+                Expression::Binary(Operator::Quotient, ..) => count.div += 1,
+                _ => {}
+            }
         }
         count
     }
 }
 
 impl Expression {
-    /// Adds the names that it uses.
-    pub fn names(&self, found: &mut BTreeSet<Name>) {
-        match self {
-            Self::Variable(name) => {
-                found.insert(*name);
+    /// Two operands with an operator between them.
+    #[must_use]
+    pub fn binary(operator: Operator, left: Self, right: Self) -> Self {
+        Self::Binary(operator, Box::new(left), Box::new(right))
+    }
+
+    /// The expression and all that stand inside it.
+    pub fn parts(&self) -> impl Iterator<Item = &Self> {
+        let mut open = vec![self];
+        std::iter::from_fn(move || {
+            let next = open.pop()?;
+            match next {
+                Self::Variable(_) | Self::Zero => {}
+                Self::Negative(a) => open.push(a),
+                Self::Binary(_, a, b) => open.extend([&**b, &**a]),
+                Self::BySign(operands) => open.extend(operands.iter().rev()),
             }
-            Self::Zero => {}
-            Self::Negative(a) => a.names(found),
-            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
-                a.names(found);
-                b.names(found);
-            }
-            Self::BySign(x, positive, negative) => [x, positive, negative].into_iter().for_each(|a| a.names(found)),
-        }
+            Some(next)
+        })
     }
 
-    fn chooses_by_sign(&self) -> bool {
-        match self {
-            Self::Variable(_) | Self::Zero => false,
-            Self::BySign(..) => true,
-            Self::Negative(a) => a.chooses_by_sign(),
-            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
-                a.chooses_by_sign() || b.chooses_by_sign()
-            }
-        }
-    }
-
-    /// Whether the constant 0 stands in it.
-    pub(crate) fn has_zero(&self) -> bool {
-        match self {
-            Self::Variable(_) => false,
-            Self::Zero => true,
-            Self::Negative(a) => a.has_zero(),
-            Self::Sum(a, b) | Self::Difference(a, b) | Self::Product(a, b) | Self::Quotient(a, b) => {
-                a.has_zero() || b.has_zero()
-            }
-            Self::BySign(x, positive, negative) => x.has_zero() || positive.has_zero() || negative.has_zero(),
-        }
-    }
-
-    fn count(&self, count: &mut Operations) {
-        match self {
-            Self::Variable(_) | Self::Zero => {}
-            Self::Negative(a) => a.count(count),
-            Self::Sum(a, b) | Self::Difference(a, b) => {
-                count.add += 1;
-                a.count(count);
-                b.count(count);
-            }
-            Self::Product(a, b) => {
-                count.mul += 1;
-                a.count(count);
-                b.count(count);
-            }
-            Self::Quotient(a, b) => {
-                count.div += 1;
-                a.count(count);
-                b.count(count);
-            }
-            Self::BySign(x, positive, negative) => [x, positive, negative].into_iter().for_each(|a| a.count(count)),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use rne_model::Robot;
-
-    use super::*;
-    use crate::ir::quantity::Quantity;
-    use crate::{Compiler, Interpreter};
-
-    fn rod() -> Program {
-        let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
-            {type: revolute, dh: {theta: 0.1, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0.1, 0]}}]}";
-        Compiler::new(&Robot::from_yaml(yaml).unwrap()).compile(Function::InverseDynamics, Form::SevenSteps).unwrap()
-    }
-
-    fn refused(program: &Program) -> String {
-        let error = program.check_names().unwrap_err();
-        let CompileError::TwoOfOneName { name, .. } = &error else { panic!("{error}") };
-        assert!(error.to_string().contains(&format!("two variables called `{name}`")), "{error}");
-        name.clone()
-    }
-
-    #[test]
-    fn two_variables_of_one_name_are_refused() {
-        let program = rod();
-        assert_eq!(program.check_names(), Ok(()));
-        for (from, to) in [(0, 1), (1, 0)] {
-            let mut same = program.clone();
-            same.statements[from].name = program.statements[to].name;
-            assert_eq!(refused(&same), program.statements[to].name.to_string());
-        }
-        for name in [program.constants[0].name, program.arguments[0], program.turns[0].sine.unwrap()] {
-            let mut same = program.clone();
-            same.statements[0].name = name;
-            assert_eq!(refused(&same), name.to_string());
-        }
-    }
-
-    #[test]
-    fn two_names_of_one_text_are_refused() {
-        let mut program = rod();
-        program.statements[0].name = Name::indexed(Quantity::LowerFactor, 1, 2);
-        program.statements[1].name = Name { part: 2, ..Name::scalar(Quantity::LowerFactor, 1) };
-        assert_eq!(refused(&program), "low1_2");
-    }
-
-    #[test]
-    fn the_interpreter_takes_the_last_of_two_as_a_language_does() {
-        let mut program = rod();
-        let value = program.outputs[0].value.clone();
-        let (first, second) =
-            (Name::indexed(Quantity::LowerFactor, 1, 2), Name { part: 2, ..Name::scalar(Quantity::LowerFactor, 1) });
-        let place = program.statements[0].place;
-        program.statements.push(Statement { place, name: first, value });
-        program.statements.push(Statement { place, name: second, value: Expression::Zero });
-        program.outputs[0].value = Expression::Variable(first);
-        let arguments = crate::Arguments::of_joints(&[0.3], &[0.2], &[0.1], 0.0);
-        assert_eq!(Interpreter::new(&program).run(&arguments, |x| x, f64::sin_cos), Some(vec![0.0]));
-    }
-
-    #[test]
-    fn variables_of_the_emitters_are_taken() {
-        let locals: Vec<_> = emit::locals(&rod()).collect();
-        for local in ["q", "qd", "qdd", "zero", "unused", "tau"] {
-            assert!(locals.contains(&local), "{locals:?}");
-        }
+    /// The names that it uses.
+    pub fn names(&self) -> impl Iterator<Item = Name> {
+        self.parts().filter_map(|part| if let Self::Variable(name) = part { Some(*name) } else { None })
     }
 }

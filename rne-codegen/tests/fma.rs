@@ -13,15 +13,12 @@ fn check_definitions(program: &Program) {
     known.extend(program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
     let mut used = BTreeSet::new();
     for statement in &program.statements {
-        let mut operands = BTreeSet::new();
-        statement.value.names(&mut operands);
+        let operands: BTreeSet<Name> = statement.value.names().collect();
         assert!(operands.is_subset(&known), "{} of {}", statement.name, program.robot);
         used.extend(operands);
         assert!(known.insert(statement.name), "{} of {} twice", statement.name, program.robot);
     }
-    for output in &program.outputs {
-        output.value.names(&mut used);
-    }
+    used.extend(program.outputs.iter().flat_map(|output| output.value.names()));
     let idle = program.statements.iter().find(|statement| !used.contains(&statement.name));
     assert_eq!(idle.map(|statement| statement.name), None, "of {}", program.robot);
 }

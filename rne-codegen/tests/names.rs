@@ -1,6 +1,11 @@
-//! The names of the numbers in generated code.
+//! The names of the numbers in generated code: what they look like, and that two variables of one name are refused,
+//! whoever made them.
 
-use rne_codegen::{Axis, Name, Quantity};
+use rne_codegen::{
+    Arguments, Axis, CompileError, Compiler, Expression, Form, Function, Interpreter, Name, Program, Quantity,
+    Statement,
+};
+use rne_model::Robot;
 
 #[test]
 fn names_are_the_interface() {
@@ -35,4 +40,55 @@ fn an_index_is_no_number_of_a_shared_term() {
     assert_eq!(Name::indexed(Quantity::GroupSine, 4, 2).to_string(), "s2_4");
     let parameter = Name { indices: [3, 10], ..Name::scalar(Quantity::RegressorElement, 2) };
     assert_eq!(parameter.to_string(), "y2_3_10");
+}
+
+fn rod() -> Program {
+    let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+        {type: revolute, dh: {theta: 0.1, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0.1, 0]}}]}";
+    Compiler::new(&Robot::from_yaml(yaml).unwrap()).compile(Function::InverseDynamics, Form::SevenSteps).unwrap()
+}
+
+fn refused(program: &Program) -> String {
+    let error = program.check_names().unwrap_err();
+    let CompileError::TwoOfOneName { name, .. } = &error else { panic!("{error}") };
+    assert!(error.to_string().contains(&format!("two variables called `{name}`")), "{error}");
+    name.clone()
+}
+
+#[test]
+fn two_variables_of_one_name_are_refused() {
+    let program = rod();
+    assert_eq!(program.check_names(), Ok(()));
+    for (from, to) in [(0, 1), (1, 0)] {
+        let mut same = program.clone();
+        same.statements[from].name = program.statements[to].name;
+        assert_eq!(refused(&same), program.statements[to].name.to_string());
+    }
+    for name in [program.constants[0].name, program.arguments[0], program.turns[0].sine.unwrap()] {
+        let mut same = program.clone();
+        same.statements[0].name = name;
+        assert_eq!(refused(&same), name.to_string());
+    }
+}
+
+#[test]
+fn two_names_of_one_text_are_refused() {
+    let mut program = rod();
+    program.statements[0].name = Name::indexed(Quantity::LowerFactor, 1, 2);
+    program.statements[1].name = Name { part: 2, ..Name::scalar(Quantity::LowerFactor, 1) };
+    assert_eq!(refused(&program), "low1_2");
+}
+
+#[test]
+fn the_interpreter_takes_the_last_of_two_as_a_language_does() {
+    let mut program = rod();
+    let value = program.outputs[0].value.clone();
+    let (first, second) =
+        (Name::indexed(Quantity::LowerFactor, 1, 2), Name { part: 2, ..Name::scalar(Quantity::LowerFactor, 1) });
+    let place = program.statements[0].place;
+    program.statements.push(Statement { place, name: first, value });
+    program.statements.push(Statement { place, name: second, value: Expression::Zero });
+    program.outputs[0].value = Expression::Variable(first);
+    let arguments = Arguments::of_joints(&[0.3], &[0.2], &[0.1], 0.0);
+    assert_eq!(Interpreter::new(&program).run(&arguments, |x| x, f64::sin_cos), Some(vec![0.0]));
 }

@@ -27,6 +27,25 @@ fn colours_where_they_are_forced() {
     assert!(String::from_utf8_lossy(&output.stdout).contains("\u{1B}[1m"));
 }
 
+/// The lines of a listing that begin so, without the sequence of their colour, and that sequence.
+fn coloured(arguments: &[&str], start: &str) -> Vec<String> {
+    let output = command(arguments).env("CLICOLOR_FORCE", "1").output().expect("rne starts");
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    let lines = text.lines().filter_map(|line| line.split_once(start)).map(|(colour, _)| colour.to_owned());
+    lines.collect()
+}
+
+#[test]
+fn colours_say_what_a_line_is() {
+    let (formula, found) = ("\u{1B}[36m", "\u{1B}[32m");
+    // step 2 of the reduced form has two formulas
+    let reduced = coloured(&["show", "robots/puma560.yaml", "--form", "reduced"], "    // U");
+    assert!(!reduced.is_empty() && reduced.iter().all(|colour| colour == formula), "{reduced:?}");
+    // the second line of a finding that begins with a number is no count of what folded
+    let broken = coloured(&["show", "robots/planar1.yaml"], "    //   0");
+    assert!(!broken.is_empty() && broken.iter().all(|colour| colour == found), "{broken:?}");
+}
+
 #[test]
 fn a_reader_that_goes_away() {
     let mut child = command(&["emit", "robots/wam7.yaml"])

@@ -1,12 +1,9 @@
 //! How an expression is written: where parentheses stand and where a long line breaks.
 
-use std::fmt::Write;
-
+use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
-use crate::program::Expression;
-
-/// Width of a line of emitted code, rustfmt's default.
-const WIDTH: usize = 100;
+use super::wrap::WIDTH;
+use crate::program::{Expression, Operator};
 
 /// Where an operand stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,72 +20,92 @@ pub(super) enum Position {
     Negated,
 }
 
+impl Operator {
+    /// As Rust and C write it.
+    pub(super) const fn sign(self) -> char {
+        match self {
+            Self::Sum => '+',
+            Self::Difference => '-',
+            Self::Product => '*',
+            Self::Quotient => '/',
+        }
+    }
+
+    /// Where its operands stand.
+    pub(super) const fn positions(self) -> [Position; 2] {
+        match self {
+            Self::Sum | Self::Difference => [Position::Summand, Position::RightSummand],
+            Self::Product | Self::Quotient => [Position::Factor, Position::RightFactor],
+        }
+    }
+}
+
 /// Whether an operand needs parentheses. A right operand keeps them even where mathematics would not: floating-point
 /// sums and products are computed in the order in which they are written.
 pub(super) fn needs_parentheses(syntax: Syntax, operand: &Expression, position: Position) -> bool {
-    use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
     match operand {
-        Variable(_) | Zero | BySign(..) => false,
-        Negative(_) | Sum(..) | Difference(..) => position != Position::Summand,
-        Product(..) | Quotient(..) => match position {
+        Expression::Variable(_) | Expression::Zero | Expression::BySign(_) => false,
+        Expression::Binary(Operator::Product | Operator::Quotient, ..) => match position {
             Position::Summand | Position::RightSummand => syntax.groups_products(),
             Position::Factor => false,
             Position::RightFactor | Position::Negated => true,
         },
+        Expression::Negative(_) | Expression::Binary(..) => position != Position::Summand,
     }
 }
 
+fn in_parentheses(text: Annotated) -> Annotated {
+    Annotated::default() + "(" + text + ")"
+}
+
 /// The expression on one line.
-pub(super) fn line(syntax: Syntax, expression: &Expression) -> String {
+pub(super) fn line(syntax: Syntax, expression: &Expression) -> Annotated {
     let operand = |operand: &Expression, position| {
         let text = line(syntax, operand);
-        if needs_parentheses(syntax, operand, position) { format!("({text})") } else { text }
+        if needs_parentheses(syntax, operand, position) { in_parentheses(text) } else { text }
     };
     match expression {
-        Expression::Variable(name) => name.to_string(),
-        Expression::Zero => syntax.zero().to_owned(),
-        Expression::Negative(a) => format!("-{}", operand(a, Position::Negated)),
-        Expression::Sum(a, b) => format!("{} + {}", operand(a, Position::Summand), operand(b, Position::RightSummand)),
-        Expression::Difference(a, b) => {
-            format!("{} - {}", operand(a, Position::Summand), operand(b, Position::RightSummand))
+        Expression::Variable(name) => (*name).into(),
+        Expression::Zero => Annotated::part(Part::Number, syntax.zero()),
+        Expression::Negative(a) => Annotated::default() + "-" + operand(a, Position::Negated),
+        Expression::Binary(operator, a, b) => {
+            let [left, right] = operator.positions();
+            operand(a, left) + format!(" {} ", operator.sign()) + operand(b, right)
         }
-        Expression::Product(a, b) => {
-            format!("{} * {}", operand(a, Position::Factor), operand(b, Position::RightFactor))
-        }
-        Expression::Quotient(a, b) => {
-            format!("{} / {}", operand(a, Position::Factor), operand(b, Position::RightFactor))
-        }
-        Expression::BySign(x, positive, negative) => {
-            let [x, positive, negative] = [x, positive, negative].map(|argument| line(syntax, argument));
-            format!("{}({x}, {positive}, {negative})", syntax.by_sign())
+        Expression::BySign(operands) => {
+            let arguments = Annotated::join(operands.iter().map(|argument| line(syntax, argument)), ", ");
+            Annotated::from(syntax.by_sign()) + in_parentheses(arguments)
         }
     }
 }
 
 /// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long, as rustfmt does.
-pub(super) fn statement(syntax: Syntax, indent: &str, start: &str, expression: &Expression) -> String {
-    let start = format!("{indent}{start} ");
-    let one_line = format!("{start}{};", line(syntax, expression));
-    if one_line.chars().count() <= WIDTH {
-        return one_line;
+pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: &Expression) -> Annotated {
+    let start = Annotated::default() + indent + start;
+    let one_line = line(syntax, expression);
+    // one column is for the blank before it, and one for the semicolon, wherever that stands
+    let used = width(&start) + 1;
+    if used + width(&one_line) < WIDTH {
+        return start + " " + one_line + ";";
     }
-    // one column is for the semicolon, wherever it stands
     let room = |used: usize| (WIDTH - 1).saturating_sub(used);
-    let used = start.chars().count();
     let beside = Room { width: room(used), indent: indent.len(), used };
     let below = indent.len() + 4;
     let below = Room { width: room(below), indent: below, used: below };
-    let next_line = |text: &str| format!("{}\n{indent}    {text};", start.trim_end());
-    let breaks = |text: &str| text.matches('\n').count();
+    let breaks = |text: &Annotated| text.as_str().matches('\n').count();
     match (broken(syntax, expression, beside), broken(syntax, expression, below)) {
         (Some(beside), Some(below)) if breaks(&below) > 0 && breaks(&beside) <= breaks(&below) + 1 => {
-            format!("{start}{beside};")
+            start + " " + beside + ";"
         }
-        (_, Some(below)) => next_line(&below),
-        (Some(beside), None) => format!("{start}{beside};"),
-        // no line is wide enough for its names
-        (None, None) => next_line(&line(syntax, expression)),
+        (Some(beside), None) => start + " " + beside + ";",
+        // no line is wide enough for the names of what has no room
+        (_, below) => start + "\n" + indent + "    " + below.unwrap_or(one_line) + ";",
     }
+}
+
+/// Columns that code takes: it is ASCII.
+fn width(code: &Annotated) -> usize {
+    code.as_str().len()
 }
 
 /// The room for an expression.
@@ -125,18 +142,20 @@ impl Room {
 
 /// An expression over several lines, if need be: the operands of its outermost operator each on a line of its own, and
 /// so on inside those that are still too long. `None` where there is no room for it.
-fn broken(syntax: Syntax, expression: &Expression, room: Room) -> Option<String> {
+fn broken(syntax: Syntax, expression: &Expression, room: Room) -> Option<Annotated> {
     let one_line = line(syntax, expression);
-    if one_line.chars().count() <= room.width {
+    if width(&one_line) <= room.width {
         return Some(one_line);
     }
     match expression {
-        Expression::Variable(_) | Expression::Zero | Expression::BySign(..) => Some(one_line),
-        Expression::Negative(a) => Some(format!("-{}", operand(syntax, a, Position::Negated, room.behind(1)?)?)),
-        Expression::Sum(..) | Expression::Difference(..) | Expression::Product(..) | Expression::Quotient(..) => {
-            let (first, others, sign) = chain(expression);
-            last_line_broken(syntax, first, &others, sign, room)
-                .or_else(|| all_broken(syntax, first, &others, sign, room))
+        Expression::Variable(_) | Expression::Zero | Expression::BySign(_) => Some(one_line),
+        Expression::Negative(a) => {
+            Some(Annotated::default() + "-" + operand(syntax, (a, Position::Negated), room.behind(1)?)?)
+        }
+        Expression::Binary(operator, ..) => {
+            let (first, others) = chain(expression, *operator);
+            last_line_broken(syntax, first, &others, operator.sign(), room)
+                .or_else(|| all_broken(syntax, first, &others, operator.sign(), room))
         }
     }
 }
@@ -144,30 +163,25 @@ fn broken(syntax: Syntax, expression: &Expression, room: Room) -> Option<String>
 type Operand<'a> = (&'a Expression, Position);
 
 /// The operands of an operator and of the same operator in its left operand, and so on.
-fn chain(expression: &Expression) -> (Operand<'_>, Vec<Operand<'_>>, char) {
-    use Expression::{Difference, Product, Quotient, Sum};
-    let (sign, left, right) = match expression {
-        Sum(..) => ('+', Position::Summand, Position::RightSummand),
-        Difference(..) => ('-', Position::Summand, Position::RightSummand),
-        Quotient(..) => ('/', Position::Factor, Position::RightFactor),
-        _ => ('*', Position::Factor, Position::RightFactor),
-    };
+fn chain(expression: &Expression, operator: Operator) -> (Operand<'_>, Vec<Operand<'_>>) {
+    let [left, right] = operator.positions();
     let mut others = Vec::new();
     let mut first = expression;
-    while let (Sum(a, b), '+') | (Difference(a, b), '-') | (Product(a, b), '*') | (Quotient(a, b), '/') = (first, sign)
+    while let Expression::Binary(same, a, b) = first
+        && *same == operator
     {
         others.push((&**b, right));
         first = a;
     }
     others.reverse();
-    ((first, left), others, sign)
+    ((first, left), others)
 }
 
-fn operand(syntax: Syntax, expression: &Expression, position: Position, room: Room) -> Option<String> {
+fn operand(syntax: Syntax, (expression, position): Operand<'_>, room: Room) -> Option<Annotated> {
     if !needs_parentheses(syntax, expression, position) {
         return broken(syntax, expression, room);
     }
-    Some(format!("({})", broken(syntax, expression, room.behind(1)?.before(1)?)?))
+    broken(syntax, expression, room.behind(1)?.before(1)?).map(in_parentheses)
 }
 
 /// All operands on one line, but for what the last one breaks: that is allowed where little stands before it.
@@ -177,45 +191,43 @@ fn last_line_broken(
     others: &[Operand<'_>],
     sign: char,
     room: Room,
-) -> Option<String> {
+) -> Option<Annotated> {
+    let sign = format!(" {sign} ");
     let (last, others) = others.split_last()?;
-    let mut text = operand(syntax, first.0, first.1, room)?;
-    for (expression, position) in others {
-        let _ = write!(text, " {sign} {}", operand(syntax, expression, *position, room.next_line()?.behind(2)?)?);
+    let mut text = operand(syntax, first, room)?;
+    for other in others {
+        text = text + sign.as_str() + operand(syntax, *other, room.next_line()?.behind(2)?)?;
     }
-    let _ = write!(text, " {sign} ");
-    if text.contains('\n') {
+    text = text + sign.as_str();
+    if text.as_str().contains('\n') {
         return None;
     }
-    let before = text.chars().count();
-    let last = operand(syntax, last.0, last.1, room.behind(before)?)?;
-    let first_line = last.lines().next().unwrap_or_default();
-    let fits = before + first_line.chars().count() <= room.width;
-    let is_neat = !last.contains('\n') || !(last.starts_with('(') || before > 4);
-    (fits && is_neat).then(|| text + &last)
+    let before = width(&text);
+    let last = operand(syntax, *last, room.behind(before)?)?;
+    let is_broken = last.as_str().contains('\n');
+    let first_line = last.as_str().lines().next().unwrap_or_default();
+    let fits = before + first_line.len() <= room.width;
+    let is_neat = !is_broken || !(last.as_str().starts_with('(') || before > 4);
+    (fits && is_neat).then(|| text + last)
 }
 
 /// Every operand on a line of its own.
-fn all_broken(syntax: Syntax, first: Operand<'_>, others: &[Operand<'_>], sign: char, room: Room) -> Option<String> {
-    let mut text = operand(syntax, first.0, first.1, room)?;
+fn all_broken(syntax: Syntax, first: Operand<'_>, others: &[Operand<'_>], sign: char, room: Room) -> Option<Annotated> {
+    let mut text = operand(syntax, first, room)?;
     let next = room.next_line()?;
-    for (expression, position) in others {
+    for other in others {
         // what is shorter than the indentation is no line
-        let used = if text.contains('\n') { 0 } else { room.used };
-        let last_line = text.lines().last().unwrap_or_default();
-        if last_line.chars().count() + used <= next.used {
-            let beside = room.behind(3 + last_line.trim_start().chars().count());
-            if let Some(beside) = beside.and_then(|room| operand(syntax, expression, *position, room)) {
-                let _ = write!(text, " {sign} {beside}");
+        let used = if text.as_str().contains('\n') { 0 } else { room.used };
+        let last_line = text.as_str().lines().last().unwrap_or_default();
+        if last_line.len() + used <= next.used {
+            let beside = room.behind(3 + last_line.trim_start().len());
+            if let Some(beside) = beside.and_then(|room| operand(syntax, *other, room)) {
+                text = text + format!(" {sign} ") + beside;
                 continue;
             }
         }
-        let _ = write!(
-            text,
-            "\n{}{sign} {}",
-            " ".repeat(next.indent),
-            operand(syntax, expression, *position, next.behind(2)?)?
-        );
+        let start = format!("\n{}{sign} ", " ".repeat(next.indent));
+        text = text + start + operand(syntax, *other, next.behind(2)?)?;
     }
     Some(text)
 }

@@ -1,65 +1,85 @@
-//! The formulas of the seven steps, for the comments of generated code.
+//! The formulas of the seven steps and of the reduced form, for the comments of generated code.
 
-use rne_model::JointKind;
+use rne_model::JointKind::{self, Prismatic, Revolute};
 
-use crate::ir::quantity::Step;
+use crate::ir::quantity::{Quantity, Step};
+
+/// A formula of a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Formula {
+    /// What it gives.
+    pub quantity: Quantity,
+    /// The formula, in the letters of the lecture.
+    pub text: String,
+}
+
+/// What formulas give, and how they are written; `{i}`, `{p}` and `{n}` are a joint, the one before and the next.
+type Templates = &'static [(Quantity, &'static str)];
 
 /// The formulas of a step for joint `joint`, in the letters of the lecture.
-pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String> {
-    let (i, p, n) = (joint, joint - 1, joint + 1);
-    let slides = kind == JointKind::Prismatic;
-    let own = |term: &str| if slides { format!(" + {term}") } else { String::new() };
-    match step {
-        Step::AngularVelocity if slides => vec![format!("ω{i} = R{i}ᵀ ω{p}")],
-        Step::AngularVelocity => vec![format!("ω{i} = R{i}ᵀ ω{p} + q̇{i} e")],
-        Step::AngularAcceleration if slides => vec![format!("ω̇{i} = R{i}ᵀ ω̇{p}")],
-        Step::AngularAcceleration => vec![format!("ω̇{i} = R{i}ᵀ ω̇{p} + q̈{i} e + q̇{i} ω{i} × e")],
-        Step::Velocity => {
-            vec![format!("ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i}{}", own(&format!("q̇{i} e")))]
+pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula> {
+    let templates: Templates = match (step, kind) {
+        (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} e")],
+        (Step::AngularVelocity, Prismatic) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p}")],
+        (Step::AngularAcceleration, Revolute) => &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p} + q̈{i} e + q̇{i} ω{i} × e")],
+        (Step::AngularAcceleration, Prismatic) => &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p}")],
+        (Step::Velocity, Revolute) => &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i}")],
+        (Step::Velocity, Prismatic) => {
+            &[(Quantity::Velocity, "ċ{i} = R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i} + q̇{i} e")]
         }
-        Step::Acceleration => vec![format!(
-            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i}){}",
-            own(&format!("q̈{i} e + 2 q̇{i} ω{i} × e"))
+        (Step::Acceleration, Revolute) => &[(
+            Quantity::Acceleration,
+            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})",
         )],
-        Step::Gravity => vec![format!("g{i} = R{i}ᵀ g{p}")],
-        Step::Wrenches => vec![
-            format!("n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
-            format!("f{p},{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),
-            format!("n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}"),
+        (Step::Acceleration, Prismatic) => &[(
+            Quantity::Acceleration,
+            "c̈{i} = R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i}) \
+             + q̈{i} e + 2 q̇{i} ω{i} × e",
+        )],
+        (Step::Gravity, _) => &[(Quantity::Gravity, "g{i} = R{i}ᵀ g{p}")],
+        (Step::Wrenches, _) => &[
+            (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
+            (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),
+            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}"),
         ],
-        Step::Torque if slides => vec![format!("τ{i} = e · f{p},{i}")],
-        Step::Torque => vec![format!("τ{i} = e · n{p},{i}")],
-        Step::Beyond => Vec::new(),
-    }
+        (Step::Torque, Revolute) => &[(Quantity::Torque, "τ{i} = e · n{p},{i}")],
+        (Step::Torque, Prismatic) => &[(Quantity::Torque, "τ{i} = e · f{p},{i}")],
+        (Step::Beyond, _) => &[],
+    };
+    of_joint(templates, joint)
 }
 
 /// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
 /// they are evaluated are choices of the plan.
-pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec<String> {
-    let (i, p, n) = (joint, joint.saturating_sub(1), joint + 1);
-    let slides = kind == JointKind::Prismatic;
-    match step {
-        Step::AngularVelocity if slides => vec![format!("ω{i} = R{i}ᵀ ω{p}")],
-        Step::AngularVelocity => vec![format!("ω{i} = R{i}ᵀ ω{p} + q̇{i} z")],
-        Step::AngularAcceleration => vec![
-            if slides {
-                format!("ω̇{i} = R{i}ᵀ ω̇{p}")
-            } else {
-                format!("ω̇{i} = R{i}ᵀ ω̇{p} + q̇{i} ω{i} × z + q̈{i} z")
-            },
-            format!("U{i} = [ω̇{i}]× + [ω{i}]×[ω{i}]×"),
-        ],
-        Step::Acceleration if slides => {
-            vec![format!("a{i} = R{i}ᵀ (a{p} + U{p} p{i}) + q{i} U{i} u + 2 q̇{i} ω{i} × u + q̈{i} u")]
+pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula> {
+    const GRADIENT: (Quantity, &str) = (Quantity::Gradient, "U{i} = [ω̇{i}]× + [ω{i}]×[ω{i}]×");
+    let templates: Templates = match (step, kind) {
+        (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} z")],
+        (Step::AngularVelocity, Prismatic) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p}")],
+        (Step::AngularAcceleration, Revolute) => {
+            &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p} + q̇{i} ω{i} × z + q̈{i} z"), GRADIENT]
         }
-        Step::Acceleration => vec![format!("a{i} = R{i}ᵀ (a{p} + U{p} p{i}), a0 = -g")],
-        Step::Wrenches => vec![
-            format!("f{i} = m a{i} + U{i} h + R{n} f{n}"),
-            format!("n{i} = antisym(U{i} S) + h × a{i} + R{n} n{n} + p{n} × R{n} f{n}"),
+        (Step::AngularAcceleration, Prismatic) => &[(Quantity::OmegaDot, "ω̇{i} = R{i}ᵀ ω̇{p}"), GRADIENT],
+        (Step::Acceleration, Revolute) => &[(Quantity::OriginAcceleration, "a{i} = R{i}ᵀ (a{p} + U{p} p{i}), a0 = -g")],
+        (Step::Acceleration, Prismatic) => &[(
+            Quantity::OriginAcceleration,
+            "a{i} = R{i}ᵀ (a{p} + U{p} p{i}) + q{i} U{i} u + 2 q̇{i} ω{i} × u + q̈{i} u",
+        )],
+        (Step::Wrenches, _) => &[
+            (Quantity::ReducedForce, "f{i} = m a{i} + U{i} h + R{n} f{n}"),
+            (Quantity::ReducedMoment, "n{i} = antisym(U{i} S) + h × a{i} + R{n} n{n} + p{n} × R{n} f{n}"),
         ],
-        Step::Torque if slides => vec![format!("τ{i} = u · f{i}")],
-        Step::Torque => vec![format!("τ{i} = z · n{i}")],
+        (Step::Torque, Revolute) => &[(Quantity::Torque, "τ{i} = z · n{i}")],
+        (Step::Torque, Prismatic) => &[(Quantity::Torque, "τ{i} = u · f{i}")],
         // gravity is in the acceleration of the base, the velocity is not needed
-        Step::Velocity | Step::Gravity | Step::Beyond => Vec::new(),
-    }
+        (Step::Velocity | Step::Gravity | Step::Beyond, _) => &[],
+    };
+    of_joint(templates, joint)
+}
+
+fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
+    let links = [("{i}", joint), ("{p}", joint.saturating_sub(1)), ("{n}", joint + 1)];
+    let text =
+        |template: &str| links.iter().fold(template.to_owned(), |text, (at, i)| text.replace(at, &i.to_string()));
+    templates.iter().map(|&(quantity, template)| Formula { quantity, text: text(template) }).collect()
 }

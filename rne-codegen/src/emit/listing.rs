@@ -1,27 +1,27 @@
-//! Annotated code for reading: each step's formula, its statements, what each component became, and what folded.
+//! The annotated code of a program as data: each step's formulas, its statements, what each component became, and what
+//! folded. Text, colour and whatever else shows it are renderers.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
+use std::fmt;
 
 use rne_model::{JointKind, Robot};
 
-use super::expression::statement as written;
-use super::formula::{formulas, reduced_formulas};
+use super::annotated::{Annotated, Part};
+use super::expression::{self, statement as written};
+use super::formula::{Formula, formulas, reduced_formulas};
 use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
+use super::wrap::{TIED, WIDTH, fill};
 use crate::function::{Form, Function};
-use crate::ir::ledger::{Cause, Causes, Fate, Ledger, Place};
+use crate::ir::ledger::{self, Cause, Causes, Fate, Ledger, Place};
 use crate::ir::name::{By, Name};
 use crate::ir::quantity::{Quantity, Step};
-use crate::program::{Expression, Finding, Found, Program, Sign, Statement, Turn};
-
-/// Width of a comment.
-const WIDTH: usize = 100;
+use crate::program::{Constant, Finding, Found, Program, Sign, Statement, Turn};
 
 /// Which part of a program to list, and how much to say.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Listing {
+pub struct Selection {
     /// One joint only, counted from 1.
     pub joint: Option<usize>,
     /// One step only.
@@ -32,102 +32,236 @@ pub struct Listing {
     pub reasons: Option<usize>,
 }
 
-/// The statements of a program as Rust text with a comment per joint and step.
-#[must_use]
-pub fn listing(robot: &Robot, program: &Program, what: Listing) -> String {
-    listing_in(Syntax::Rust, robot, program, what)
-}
-
-/// The statements of a program as text of a language.
-pub(super) fn listing_in(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> String {
-    // only what returns torques keeps to joints and steps
-    if program.form != Form::SevenSteps
-        || !(program.function.returns_torques() || program.function == Function::JointWrenches)
-    {
-        return in_order(syntax, robot, program, what);
-    }
-    let mut text = String::new();
-    for (joint, step) in sections(program.dof) {
-        if !what.includes(joint, step) {
-            continue;
-        }
-        let here = |place: &Place| place.joint == joint && place.step == step;
-        let statements: Vec<&Statement> =
-            program.statements.iter().filter(|statement| here(&statement.place)).collect();
-        let turns: Vec<&Turn> = program.turns.iter().filter(|turn| here(&turn.place)).collect();
-        if statements.is_empty() && turns.is_empty() && !what.explain {
-            continue;
-        }
-        heading(&mut text, robot, program, joint, step);
-        for turn in turns {
-            let _ = writeln!(text, "    // {}", turn_line(syntax, turn));
-        }
-        for statement in statements {
-            let _ = writeln!(text, "{}", statement_line(syntax, statement));
-        }
-        if what.explain {
-            explain(&mut text, robot, program, joint, step, what.reasons);
-        }
-        text.push('\n');
-    }
-    text.truncate(text.trim_end().len());
-    text.push('\n');
-    text
-}
-
-impl Listing {
+impl Selection {
     fn includes(&self, joint: usize, step: Step) -> bool {
         self.joint.is_none_or(|only| only == joint) && self.step.is_none_or(|only| only == step)
     }
+
+    fn is_everything(&self) -> bool {
+        self.explain && self.joint.is_none() && self.step.is_none()
+    }
+}
+
+/// A program, or a part of it, for reading.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Listing<'a> {
+    /// What stands together.
+    pub sections: Vec<Section<'a>>,
+}
+
+/// Lines that stand together: what one step has to say of one joint.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Section<'a> {
+    /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no step:
+    /// the constants and angles at the head of a function, what it returns, and a program without sections.
+    pub of: Option<(usize, Step, Option<By>)>,
+    /// Its lines, in order.
+    pub lines: Vec<Line<'a>>,
+}
+
+/// A line of a listing. Every [`Name`] in it has a quantity, a joint and an axis.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Line<'a> {
+    /// What the section is.
+    Heading(String),
+    /// A formula of its step.
+    Formula(Formula),
+    /// A number that stands in no table.
+    Constant(&'a Constant),
+    /// Which sine and cosine stand at the head of the function.
+    Turn(&'a Turn),
+    /// A statement.
+    Statement(&'a Statement),
+    /// What components became that are no statement.
+    Finding {
+        /// The components.
+        names: Vec<Name>,
+        /// What they became, with the sign or word between.
+        became: Annotated,
+    },
+    /// How many operations are left, and why the others are gone.
+    Folds(Folds),
+    /// What the function returns.
+    Returned(Annotated),
+}
+
+/// What folding made of the operations of a step.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Folds {
+    /// Products and sums of the formulas.
+    pub before: (usize, usize),
+    /// Those that are left.
+    pub left: (usize, usize),
+    /// How many are gone for which reason, the commonest first.
+    pub reasons: Vec<(usize, String)>,
+    /// How many are gone for other reasons.
+    pub others: usize,
+}
+
+impl Listing<'_> {
+    /// Whether nothing stands there.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.sections.is_empty()
+    }
+
+    /// The listing in a language: blank lines between the sections.
+    pub(super) fn text(&self, syntax: Syntax) -> String {
+        let section =
+            |section: &Section| -> String { section.lines.iter().map(|line| line.indented(syntax) + "\n").collect() };
+        self.sections.iter().map(section).collect::<Vec<_>>().join("\n")
+    }
+}
+
+impl Line<'_> {
+    /// The line as words and code of Rust, neither indented nor marked as a comment.
+    #[must_use]
+    pub fn annotated(&self) -> Annotated {
+        self.annotated_in(Syntax::Rust, "")
+    }
+
+    /// Whether it is a comment of the code.
+    #[must_use]
+    pub const fn is_comment(&self) -> bool {
+        !matches!(self, Self::Constant(_) | Self::Statement(_) | Self::Returned(_))
+    }
+
+    fn annotated_in(&self, syntax: Syntax, indent: &str) -> Annotated {
+        let names = |names: &[Name]| Annotated::join(names.iter().map(|&name| name.into()), ", ");
+        match self {
+            Self::Heading(words) => words.clone().into(),
+            Self::Formula(formula) => formula.text.clone().into(),
+            Self::Constant(Constant { name, value }) => {
+                let value = Annotated::part(Part::Number, format!("{value:?}"));
+                Annotated::default() + indent + declaration(syntax, *name) + " " + value + ";"
+            }
+            Self::Turn(Turn { sine, cosine, angle, .. }) => {
+                let what = match (sine, cosine) {
+                    (Some(_), Some(_)) => "sine and cosine",
+                    (Some(_), None) => "sine",
+                    _ => "cosine",
+                };
+                let turned: Vec<Name> = sine.iter().chain(cosine).copied().collect();
+                names(&turned) + ": " + what + " of " + expression::line(syntax, angle)
+            }
+            Self::Statement(Statement { name, value, .. }) => {
+                written(syntax, indent, declaration(syntax, *name), value)
+            }
+            Self::Finding { names: found, became } => names(found) + became.clone(),
+            Self::Folds(folds) => folds.to_string().into(),
+            Self::Returned(code) => Annotated::default() + indent + code.clone(),
+        }
+    }
+
+    /// The line inside a function.
+    pub(super) fn indented(&self, syntax: Syntax) -> String {
+        let text = self.annotated_in(syntax, "    ").to_string();
+        if self.is_comment() { fill(&text, WIDTH, "    // ", "    //   ") } else { text }
+    }
+}
+
+/// The listing in Rust.
+impl fmt::Display for Listing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text(Syntax::Rust))
+    }
+}
+
+/// The line inside a function of Rust, as text.
+impl fmt::Display for Line<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.indented(Syntax::Rust))
+    }
+}
+
+fn declaration(syntax: Syntax, name: Name) -> Annotated {
+    Annotated::part(Part::Keyword, syntax.declaration()) + " " + name + " ="
+}
+
+impl fmt::Display for Folds {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { before: (products, sums), left: (kept_products, kept_sums), reasons, others } = self;
+        write!(f, "{products} products and {sums} sums, {kept_products} and {kept_sums} left")?;
+        let mut gone: Vec<String> =
+            reasons.iter().map(|(count, reason)| format!("{count} ({reason})").replace(' ', TIED)).collect();
+        if *others > 0 {
+            gone.push(format!("{others} for other reasons"));
+        }
+        if gone.is_empty() { Ok(()) } else { write!(f, ". Gone: {}", gone.join(", ")) }
+    }
+}
+
+/// The statements of a program with what there is to say of each joint and step.
+#[must_use]
+pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Listing<'a> {
+    // only what returns torques keeps to joints and steps
+    let keeps_to_steps = program.form == Form::SevenSteps
+        && (program.function.returns_torques() || program.function == Function::JointWrenches);
+    let mut sections = if keeps_to_steps { by_steps(robot, program, what) } else { in_order(robot, program, what) };
+    sections.retain(|section| !section.lines.is_empty());
+    Listing { sections }
+}
+
+fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
+    // out with steps 1 to 5, back with 6 and 7
+    let outward = (1..=program.dof).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
+    let inward = (1..=program.dof).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
+    let mut sections = Vec::new();
+    for (joint, step) in outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step)) {
+        let here = |place: &Place| place.joint == joint && place.step == step;
+        let turns = program.turns.iter().filter(|turn| here(&turn.place)).map(Line::Turn);
+        let statements = program.statements.iter().filter(|statement| here(&statement.place)).map(Line::Statement);
+        let code: Vec<Line> = turns.chain(statements).collect();
+        if code.is_empty() && !what.explain {
+            continue;
+        }
+        let mut lines = heading(robot, program, joint, step);
+        lines.extend(code);
+        if what.explain {
+            lines.extend(findings(robot, program, joint, step));
+            lines.extend(folds(robot, &program.ledger, here, what.reasons).map(Line::Folds));
+        }
+        sections.push(Section { of: Some((joint, step, None)), lines });
+    }
+    sections
 }
 
 /// A program whose statements do not keep to joints and steps, in the order in which they are computed.
-fn in_order(syntax: Syntax, robot: &Robot, program: &Program, what: Listing) -> String {
-    let mut text = String::new();
-    if what.explain && what.joint.is_none() && what.step.is_none() {
-        // numbers that stand in no table
-        for constant in &program.constants {
-            let _ = writeln!(text, "    let {} = {:?};", constant.name, constant.value);
-        }
-        for statement in &program.angles {
-            let _ = writeln!(text, "{}", statement_line(syntax, statement));
-        }
-        for turn in &program.turns {
-            let _ = writeln!(text, "    // {}", turn_line(syntax, turn));
-        }
-        text.push('\n');
+fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
+    let mut sections = Vec::new();
+    if what.is_everything() {
+        let constants = program.constants.iter().map(Line::Constant);
+        let angles = program.angles.iter().map(Line::Statement);
+        let turns = program.turns.iter().map(Line::Turn);
+        sections.push(Section { of: None, lines: constants.chain(angles).chain(turns).collect() });
     }
-    let mut section = None;
+    let mut last_opening = None;
     for statement in &program.statements {
-        let place = shown_place(program, statement);
-        let Place { joint, step, by, .. } = place;
+        let Place { joint, step, by, quantity } = shown_place(program, statement);
         if !what.includes(joint, step) {
             continue;
         }
-        let title = match (by, step) {
-            (Some(by), _) => by_title(program, joint, step, by),
-            (None, Step::Beyond) => beyond_title(program, place.quantity, joint),
-            (None, _) => step_title(program, joint, step),
+        let opening = match (by, step) {
+            _ if program.is_rewritten => Vec::new(),
+            (Some(by), _) => vec![Line::Heading(by_title(program, joint, step, by))],
+            (None, Step::Beyond) => vec![Line::Heading(beyond_title(program, quantity, joint))],
+            (None, _) => heading(robot, program, joint, step),
         };
-        if !program.is_rewritten && section.as_ref() != Some(&title) {
-            if section.is_some() {
-                text.push('\n');
-            }
-            if by.is_some() || step == Step::Beyond {
-                let _ = writeln!(text, "    // {title}");
-            } else {
-                heading(&mut text, robot, program, joint, step);
-            }
-            section = Some(title);
+        if last_opening.as_ref() != Some(&opening) {
+            let of = (!program.is_rewritten).then_some((joint, step, by));
+            sections.push(Section { of, lines: opening.clone() });
+            last_opening = Some(opening);
         }
-        let _ = writeln!(text, "{}", statement_line(syntax, statement));
+        if let Some(section) = sections.last_mut() {
+            section.lines.push(Line::Statement(statement));
+        }
     }
-    let is_whole = what.explain && what.joint.is_none() && what.step.is_none();
     let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;
-    if let Some(returned) = returned(program).filter(|_| is_whole && has_shape) {
-        let _ = writeln!(text, "\n    // {}\n    {returned}", program.function.entry().listed);
+    if let Some(returned) = returned(program).filter(|_| what.is_everything() && has_shape) {
+        let heading = Line::Heading(program.function.entry().listed.to_owned());
+        sections.push(Section { of: None, lines: vec![heading, Line::Returned(returned)] });
     }
-    text
+    sections
 }
 
 /// The place under which a statement is listed: that of its name, where it has a step. A value that two formulas share
@@ -176,9 +310,8 @@ fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
     }
 }
 
-fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step) {
+fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
-    let _ = writeln!(text, "    // {}", step_title(program, joint, step));
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
@@ -186,9 +319,8 @@ fn heading(text: &mut String, robot: &Robot, program: &Program, joint: usize, st
         _ if program.is_of_bodies() => Vec::new(),
         _ => reduced_formulas(step, kind, joint),
     };
-    for formula in formulas {
-        let _ = writeln!(text, "    // {formula}");
-    }
+    let title = Line::Heading(step_title(program, joint, step));
+    std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()
 }
 
 /// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of
@@ -213,30 +345,8 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
     format!("{of}, step {}: {title}", step.number())
 }
 
-/// Which sine and cosine stand at the head of the function.
-fn turn_line(syntax: Syntax, turn: &Turn) -> String {
-    let names: Vec<(String, &str)> = [(turn.sine, "sine"), (turn.cosine, "cosine")]
-        .into_iter()
-        .filter_map(|(name, what)| Some((name?.to_string(), what)))
-        .collect();
-    let (names, what): (Vec<String>, Vec<&str>) = names.into_iter().unzip();
-    format!("{}: {} of {}", names.join(", "), what.join(" and "), super::expression::line(syntax, &turn.angle))
-}
-
-/// Joints and steps in the order of the recursion: out with steps 1 to 5, back with 6 and 7.
-fn sections(dof: usize) -> impl Iterator<Item = (usize, Step)> {
-    let outward = (1..=dof).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
-    let inward = (1..=dof).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
-    outward.chain(inward)
-}
-
-/// One statement, on a line or several.
-pub(super) fn statement_line(syntax: Syntax, statement: &Statement) -> String {
-    written(syntax, "    ", &format!("{} {} =", syntax.declaration(), statement.name), &statement.value)
-}
-
-fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, step: Step, most: Option<usize>) {
-    let mut groups: Vec<(String, Vec<String>)> = Vec::new();
+fn findings<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
+    let mut groups: Vec<(Annotated, Vec<Name>)> = Vec::new();
     for Finding { name, value } in &program.findings {
         let quantity = name.quantity;
         if name.joint != joint || quantity.step() != Some(step) || !quantity.is_of_the_lecture() {
@@ -244,42 +354,22 @@ fn explain(text: &mut String, robot: &Robot, program: &Program, joint: usize, st
         }
         let Some(became) = became(robot, *name, value) else { continue };
         match groups.iter_mut().find(|(other, _)| *other == became) {
-            Some((_, names)) => names.push(name.to_string()),
-            None => groups.push((became, vec![name.to_string()])),
+            Some((_, names)) => names.push(*name),
+            None => groups.push((became, vec![*name])),
         }
     }
-    for (became, names) in groups {
-        comment(text, &format!("{}{became}", names.join(", ")));
-    }
-    if let Some(line) = folded(robot, &program.ledger, |place| place.joint == joint && place.step == step, most) {
-        comment(text, &line);
-    }
+    groups.into_iter().map(|(became, names)| Line::Finding { names, became }).collect()
 }
 
-/// A blank at which no comment breaks.
-const TIED: &str = "\u{A0}";
-
-/// A comment, broken between words where it is too long; the lines after the first are indented.
-fn comment(text: &mut String, comment: &str) {
-    let mut line = "    //".to_owned();
-    for word in comment.split(' ') {
-        if line.chars().count() + 1 + word.chars().count() > WIDTH {
-            let _ = writeln!(text, "{}", line.replace(TIED, " "));
-            "    //  ".clone_into(&mut line);
-        }
-        line.push(' ');
-        line.push_str(word);
-    }
-    let _ = writeln!(text, "{}", line.replace(TIED, " "));
-}
-
-fn became(robot: &Robot, name: Name, found: &Found) -> Option<String> {
-    Some(match found {
+fn became(robot: &Robot, name: Name, found: &Found) -> Option<Annotated> {
+    let words = match found {
         // the statement says it
         Found::Computed => return None,
         Found::Same(..) if name.quantity == Quantity::Torque => return None,
-        Found::Same(other, Sign::Plus) => format!(" = {other}"),
-        Found::Same(other, Sign::Minus) => format!(" = -{other}"),
+        Found::Same(other, sign) => {
+            let sign = if *sign == Sign::Minus { "-" } else { "" };
+            return Some(Annotated::default() + " = " + sign + *other);
+        }
         Found::Constant(0.0, causes) => format!(" = 0: {}", why(robot, causes, 0)),
         Found::Constant(value, causes) if causes.iter().any(|cause| matches!(cause, Cause::GravityDirection(_))) => {
             format!(" = {value}: gravity in frame 0")
@@ -288,19 +378,17 @@ fn became(robot: &Robot, name: Name, found: &Found) -> Option<String> {
         Found::Inside => ": inside the statement that uses it".to_owned(),
         Found::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
         Found::Unused => ": not needed".to_owned(),
-    })
+    };
+    Some(words.into())
 }
 
 /// How many operations are left at the places that pass, and why the others are not there.
-fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: Option<usize>) -> Option<String> {
-    let (products, sums) = ledger.total(|line| here(&line.place));
-    if products + sums == 0 {
-        return None;
-    }
-    let (kept_products, kept_sums) = ledger.total(|line| here(&line.place) && line.fate == Fate::Kept);
+fn folds(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: Option<usize>) -> Option<Folds> {
+    let before = ledger.total(|line| here(&line.place));
+    let left = ledger.total(|line| here(&line.place) && line.fate == Fate::Kept);
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
-    for line in ledger.lines().filter(|line| here(&line.place)) {
-        let reason = match line.fate {
+    for ledger::Line { fate, count, .. } in ledger.lines().filter(|line| here(&line.place)) {
+        let reason = match fate {
             Fate::Kept => continue,
             Fate::Zero(cause) => one_cause(robot, cause, 0),
             Fate::One(cause) => one_cause(robot, cause, 1),
@@ -309,23 +397,14 @@ fn folded(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: O
             Fate::Shared => "computed before".to_owned(),
             Fate::Unused => "not needed".to_owned(),
         };
-        *reasons.entry(reason).or_default() += line.count;
+        *reasons.entry(reason).or_default() += count;
     }
-    let mut reasons: Vec<(String, usize)> = reasons.into_iter().collect();
-    reasons.sort_by(|a, b| b.1.cmp(&a.1).then_with(|| a.0.cmp(&b.0)));
+    let mut reasons: Vec<(usize, String)> = reasons.into_iter().map(|(reason, count)| (count, reason)).collect();
+    reasons.sort_by_key(|&(count, _)| std::cmp::Reverse(count));
     // naming the last one takes no more room than counting it
     let named = most.filter(|&most| most + 1 < reasons.len()).unwrap_or(reasons.len());
-    let others: usize = reasons.iter().skip(named).map(|(_, count)| count).sum();
-    let mut gone: Vec<String> =
-        reasons.iter().take(named).map(|(reason, count)| format!("{count} ({reason})").replace(' ', TIED)).collect();
-    if others > 0 {
-        gone.push(format!("{others} for other reasons"));
-    }
-    let mut text = format!("{products} products and {sums} sums, {kept_products} and {kept_sums} left");
-    if !gone.is_empty() {
-        let _ = write!(text, ". Gone: {}", gone.join(", "));
-    }
-    Some(text)
+    let others = reasons.split_off(named).into_iter().map(|(count, _)| count).sum();
+    (before != (0, 0)).then_some(Folds { before, left, reasons, others })
 }
 
 /// Causes in the words of the table; `magnitude` is what they made of a number, 0 or 1. Likes are told in one breath:
@@ -362,13 +441,5 @@ fn one_cause(robot: &Robot, cause: Cause, magnitude: u8) -> String {
         // a factor of -1 is folded like 1
         _ if magnitude == 1 && name.quantity != Quantity::TipRotation => format!("{name} is 1 or -1"),
         _ => Cause::Table(name).to_string(),
-    }
-}
-
-impl Program {
-    /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
-    pub(super) fn returns_zero(&self) -> bool {
-        let statements = self.statements.iter().map(|statement| &statement.value);
-        self.outputs.iter().map(|output| &output.value).chain(statements).any(Expression::has_zero)
     }
 }

@@ -1,9 +1,11 @@
 //! Renderers of programs: tokens for the macro, text for people.
 
+mod annotated;
 mod c;
 mod evidence;
 mod expression;
 mod formula;
+mod heading;
 mod inert;
 mod listing;
 mod signature;
@@ -11,13 +13,17 @@ mod syntax;
 mod table;
 mod text;
 mod tokens;
+mod wrap;
 
+pub use annotated::{Annotated, Part};
 pub use c::{BadPrefix, CCode, ConstantTooLarge, Prefix, c_code};
 pub use evidence::evidence;
+pub use formula::Formula;
+pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
-pub use listing::{Listing, listing};
+pub use listing::{Folds, Line, Listing, Section, Selection, listing};
 pub use syntax::Precision;
-pub use table::{angle, convention, dh_table};
+pub use table::{angle, operations_table};
 pub use text::rust_file;
 pub use tokens::Body;
 
@@ -27,4 +33,19 @@ use crate::program::Program;
 pub(crate) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
     let arrays = signature::arguments(program).into_iter().map(|array| array.name);
     arrays.chain(["zero"]).chain(c::locals(program))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Compiler, Form, Function};
+
+    #[test]
+    fn variables_of_the_emitters_are_taken() {
+        let robot = rne_model::check("planar2", include_str!("../../../robots/planar2.yaml")).unwrap().robot;
+        let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::SevenSteps).unwrap();
+        let locals: Vec<_> = super::locals(&program).collect();
+        for local in ["q", "qd", "qdd", "zero", "unused", "tau"] {
+            assert!(locals.contains(&local), "{locals:?}");
+        }
+    }
 }

@@ -48,11 +48,10 @@ pub(super) enum Syntax<'a> {
 
 impl Syntax<'_> {
     /// What stands before the name of a value.
-    pub(super) const fn declaration(self) -> &'static str {
+    pub(super) fn declaration(self) -> String {
         match self {
-            Self::Rust => "let",
-            Self::C { precision: Precision::Single, .. } => "const float",
-            Self::C { precision: Precision::Double, .. } => "const double",
+            Self::Rust => "let".to_owned(),
+            Self::C { precision, .. } => format!("const {}", precision.c_type()),
         }
     }
 

@@ -1,12 +1,12 @@
 //! The Denavit-Hartenberg table for people.
 
-use std::fmt::Write;
+use rne_model::{Angle, JointKind, QuarterTurns, Robot, one_line};
+use unicode_width::UnicodeWidthStr;
 
-use rne_model::{Angle, Convention, JointKind, QuarterTurns, Robot, one_line};
+use crate::program::Program;
 
 /// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
-#[must_use]
-pub fn dh_table(robot: &Robot) -> String {
+pub(super) fn dh_table(robot: &Robot) -> String {
     let titles = ["i", "joint", "type", "theta", "d", "a", "alpha", "mass"].map(str::to_owned);
     let mut lines = vec![titles];
     for (index, joint) in robot.joints.iter().enumerate() {
@@ -30,28 +30,34 @@ pub fn dh_table(robot: &Robot) -> String {
             number(row.link.mass),
         ]);
     }
-    let widths: Vec<usize> =
-        (0..8).map(|column| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0)).collect();
-    let mut text = String::new();
-    for line in &lines {
-        let mut row = String::new();
-        for (cell, width) in line.iter().zip(&widths) {
-            let padding = " ".repeat(width - cell.chars().count());
-            let _ = write!(row, "{cell}{padding}   ");
-        }
-        text.push_str(row.trim_end());
-        text.push('\n');
-    }
-    text
+    columns(&lines).join("\n") + "\n"
 }
 
-/// The convention of a robot's table in one line.
+/// Lines of cells, each column as wide as its widest cell, three blanks between them.
+pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> Vec<String> {
+    let widths: [usize; N] =
+        std::array::from_fn(|column| lines.iter().map(|line| line[column].width()).max().unwrap_or(0));
+    let padded = |(cell, width): (&String, usize)| format!("{cell}{}", " ".repeat(width - cell.width()));
+    let row = |line: &[String; N]| line.iter().zip(widths).map(padded).collect::<Vec<_>>().join("   ");
+    lines.iter().map(|line| row(line).trim_end().to_owned()).collect()
+}
+
+/// What folding made of a program: its function, products, sums, divisions, angles.
+pub(super) fn counts(program: &Program) -> [String; 5] {
+    let ((products, sums), after) = (program.before(), program.operations());
+    let [products, sums] =
+        [(products, after.mul), (sums, after.add)].map(|(before, after)| format!("{before} -> {after}"));
+    [program.function.to_string(), products, sums, after.div.to_string(), after.sincos.to_string()]
+}
+
+/// What folding made of each program, as a table of Markdown.
 #[must_use]
-pub fn convention(robot: &Robot) -> &'static str {
-    match robot.convention {
-        Convention::Standard => "standard (distal) Denavit-Hartenberg: Rz(theta) Tz(d) Tx(a) Rx(alpha)",
-        Convention::Modified => "modified (proximal) Denavit-Hartenberg: Rx(alpha) Tx(a) Rz(theta) Tz(d)",
-    }
+pub fn operations_table(programs: &[Program]) -> String {
+    let row = |[function, products, sums, _, angles]: [String; 5]| {
+        format!("| `{function}` | {products} | {sums} | {angles} |\n")
+    };
+    let rows = programs.iter().map(|program| row(counts(program)));
+    "| function | products | sums | angles |\n|---|---|---|---|\n".to_owned() + &rows.collect::<String>()
 }
 
 fn with_variable(joint: usize, constant: &str) -> String {

@@ -2,12 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use proc_macro2::{Ident, Literal, Span, TokenStream};
+use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
 use super::signature::{ArgumentArray, arguments};
 use super::syntax::Syntax;
+use crate::fma::{Contraction, Negated};
 use crate::function::Record;
 use crate::ir::name::Name;
 use crate::latency::{self, Latency};
@@ -75,14 +76,11 @@ impl<'a> Body<'a> {
     /// Its first part, for a loop of its own: the angles of [`Program::turns`] as an array, from the argument `q`.
     #[must_use]
     pub fn angles(&self) -> TokenStream {
-        let turns = self.program.turns.iter().map(|turn| &turn.angle);
-        let mut used = BTreeSet::new();
-        let angles = self.program.angles.iter().map(|statement| &statement.value);
-        angles.chain(turns.clone()).for_each(|expression| expression.names(&mut used));
+        let used: BTreeSet<Name> = self.program.angle_values().flat_map(Expression::names).collect();
         let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
-        let turns = turns.map(|angle| self.expression(angle, None));
+        let turns = self.program.turns.iter().map(|turn| self.expression(&turn.angle, None));
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
@@ -90,10 +88,7 @@ impl<'a> Body<'a> {
     /// angles.
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
-        let outputs = self.program.outputs.iter().map(|output| &output.value);
-        let mut used = BTreeSet::new();
-        let statements = self.program.statements.iter().map(|statement| &statement.value);
-        statements.chain(outputs).for_each(|expression| expression.names(&mut used));
+        let used: BTreeSet<Name> = self.program.values().flat_map(Expression::names).collect();
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let turns = if self.program.turns.is_empty() {
@@ -215,86 +210,54 @@ struct Writing<'a> {
 impl Writing<'_> {
     /// An expression that `rest` follows.
     fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
-        use Expression::{BySign, Difference, Negative, Product, Quotient, Sum, Variable, Zero};
-        let fused = self.fused(expression, rest);
+        let fused = Contraction::of(expression).filter(|contraction| self.is_fused(contraction, rest));
         let rest_of_operand = rest
             + match expression {
-                Sum(..) | Difference(..) if fused.is_none() => latency::SUM,
-                Negative(_) => 0,
-                Quotient(..) => latency::QUOTIENT,
+                Expression::Negative(_) => 0,
+                Expression::Binary(operator, ..) if fused.is_none() => latency::cycles(*operator),
                 _ => latency::PRODUCT,
             };
         let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
         let operand = |operand: &Expression, position| {
             let tokens = inner(operand);
-            let is_call = self.fused(operand, rest_of_operand).is_some();
+            let is_call = Contraction::of(operand).is_some_and(|operand| self.is_fused(&operand, rest_of_operand));
             if !is_call && needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
         };
         let minus = |expression: &Expression| {
             let tokens = operand(expression, Position::Negated);
             quote!(-#tokens)
         };
-        if let Some((x, y, addend, negative)) = fused {
-            let (scalar, y) = (self.scalar, inner(y));
-            let x = if negative == Some(Negated::Factor) { minus(x) } else { inner(x) };
-            let addend = if negative == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
+        let scalar = self.scalar;
+        if let Some(Contraction { factors: [x, y], addend, negated }) = fused {
+            let y = inner(y);
+            let x = if negated == Some(Negated::Factor) { minus(x) } else { inner(x) };
+            let addend = if negated == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
             return quote!(#scalar::mul_add(#x, #y, #addend));
         }
         match expression {
-            Variable(name) => quote!(#name),
-            Zero => quote!(zero),
-            Negative(a) => minus(a),
-            Sum(a, b) => {
-                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
-                quote!(#a + #b)
+            Expression::Variable(name) => quote!(#name),
+            Expression::Zero => quote!(zero),
+            Expression::Negative(a) => minus(a),
+            Expression::Binary(operator, a, b) => {
+                let [left, right] = operator.positions();
+                let (a, b, sign) = (operand(a, left), operand(b, right), Punct::new(operator.sign(), Spacing::Alone));
+                quote!(#a #sign #b)
             }
-            Difference(a, b) => {
-                let (a, b) = (operand(a, Position::Summand), operand(b, Position::RightSummand));
-                quote!(#a - #b)
-            }
-            Product(a, b) => {
-                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
-                quote!(#a * #b)
-            }
-            Quotient(a, b) => {
-                let (a, b) = (operand(a, Position::Factor), operand(b, Position::RightFactor));
-                quote!(#a / #b)
-            }
-            BySign(x, positive, negative) => {
-                let (scalar, x, positive, negative) = (self.scalar, inner(x), inner(positive), inner(negative));
-                quote!(#scalar::by_sign(#x, #positive, #negative))
+            Expression::BySign(operands) => {
+                let operands = operands.iter().map(inner);
+                quote!(#scalar::by_sign(#(#operands),*))
             }
         }
     }
 
-    /// The factors, the addend and what of them is negated, if the expression is a fused multiply-add.
-    fn fused<'e>(&self, expression: &'e Expression, rest: usize) -> Option<FusedParts<'e>> {
-        use Expression::{Difference, Product, Sum};
-        let (addend, product, negative) = match expression {
-            Sum(a, b) if matches!(**b, Product(..)) => (a, b, None),
-            Sum(a, b) => (b, a, None),
-            Difference(a, b) if matches!(**b, Product(..)) => (a, b, Some(Negated::Factor)),
-            Difference(a, b) => (b, a, Some(Negated::Addend)),
-            _ => return None,
-        };
-        let Product(x, y) = &**product else { return None };
-        let is_fused = match self.fusing {
+    /// Whether `mul_add` computes a product and a sum that `rest` follows.
+    fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
+        match &self.fusing {
             Fusing::None => false,
             Fusing::All => true,
-            Fusing::Soonest(latency) => latency.is_fused(addend, x, y, rest),
-        };
-        is_fused.then_some((x, y, addend, negative))
+            Fusing::Soonest(latency) => latency.is_fused(contraction, rest),
+        }
     }
-}
-
-/// Two factors, an addend, and what is negated.
-type FusedParts<'e> = (&'e Expression, &'e Expression, &'e Expression, Option<Negated>);
-
-/// What a difference negates.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Negated {
-    Factor,
-    Addend,
 }
 
 /// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source

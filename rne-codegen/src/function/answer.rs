@@ -30,6 +30,12 @@ pub struct AnswerTable {
     pub columns: Labels,
 }
 
+impl AnswerTable {
+    pub(super) const fn of(about: &'static str, rows: Labels, columns: Labels) -> Self {
+        Self { about, unit: None, rows, columns }
+    }
+}
+
 /// The names of rows or columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Labels {

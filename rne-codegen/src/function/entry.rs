@@ -1,6 +1,6 @@
 //! What the table has of each function.
 
-use super::table::{Capability, Function};
+use super::table::{Capability, Function, VECTOR};
 use super::{Answer, Argument, Shape};
 use crate::ir::quantity::Quantity;
 
@@ -8,8 +8,6 @@ use crate::ir::quantity::Quantity;
 pub(crate) struct Entry {
     /// The variant, which is at this place.
     pub(crate) function: Function,
-    /// The name of its trait method.
-    pub(crate) name: &'static str,
     /// The trait.
     pub(crate) capability: Capability,
     /// What it computes, for the first line of its documentation.
@@ -47,11 +45,10 @@ pub(crate) struct Own {
 
 impl Entry {
     /// What most functions have in common.
-    pub(super) const fn of(function: Function) -> Self {
+    pub(super) const fn of(function: Function, capability: Capability) -> Self {
         Self {
             function,
-            name: "",
-            capability: Capability::InverseDynamics,
+            capability,
             summary: "",
             details: "",
             arguments: &[],
@@ -65,5 +62,22 @@ impl Entry {
             is_irreducible: false,
             divides: None,
         }
+    }
+
+    /// What functions that return the torques of the joints have in common.
+    pub(super) const fn torques(function: Function, capability: Capability) -> Self {
+        Self { shape: VECTOR, output: "tau", returns_torques: true, ..Self::of(function, capability) }
+    }
+}
+
+impl Own {
+    /// A quantity under a heading of its own.
+    pub(super) const fn of(quantity: Quantity, heading: fn(usize) -> String) -> Self {
+        Self { quantity, heading, meaning: None }
+    }
+
+    /// The same, whose names stand for something else here.
+    pub(super) const fn meaning(quantity: Quantity, meaning: &'static str, heading: fn(usize) -> String) -> Self {
+        Self { quantity, heading, meaning: Some(meaning) }
     }
 }

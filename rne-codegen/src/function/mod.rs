@@ -1,17 +1,12 @@
 //! The functions of a robot that can be compiled, and the forms they can take.
 
 mod answer;
-mod capability;
 mod entry;
 mod layout;
 mod table;
-#[cfg(test)]
-mod tests;
-
-use std::fmt;
-use std::str::FromStr;
 
 use crate::ir::quantity::Quantity;
+use crate::named::named;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
 use entry::{Entry, Own};
@@ -40,18 +35,17 @@ pub enum Argument {
     Base,
 }
 
-impl Function {
-    /// All functions, in the order of the traits.
-    pub const ALL: [Self; TABLE.len()] = {
-        let mut all = [Self::InverseDynamics; TABLE.len()];
-        let mut index = 0;
-        while index < all.len() {
-            all[index] = TABLE[index].function;
-            index += 1;
-        }
-        all
-    };
+impl Capability {
+    /// The methods of its trait, which stand beside each other.
+    #[must_use]
+    pub fn functions(self) -> &'static [Function] {
+        static ALL: [Function; TABLE.len()] = Function::ALL;
+        let of_others = |function: &Function| function.capability() != self;
+        ALL.split(of_others).find(|functions| !functions.is_empty()).unwrap_or_default()
+    }
+}
 
+impl Function {
     /// Those of the trait `InverseDynamics`: torques of an arm whose base stands still.
     pub const TORQUES: [Self; 5] = [
         Self::InverseDynamics,
@@ -61,15 +55,9 @@ impl Function {
         Self::BiasTorques,
     ];
 
-    /// Its entry in the table.
+    /// Its entry in the table, which stands at its place.
     pub(crate) const fn entry(self) -> &'static Entry {
         &TABLE[self as usize]
-    }
-
-    /// The name of its trait method.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        self.entry().name
     }
 
     /// The trait that it is a method of.
@@ -144,93 +132,14 @@ impl Function {
     }
 }
 
-impl fmt::Display for Function {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
+named! {
+    /// How a function is computed.
+    #[derive(Default)]
+    Form, "form" {
+        /// The seven steps: every intermediate is the lecture's.
+        #[default]
+        SevenSteps = "seven_steps",
+        /// Fewest operations: only the torques keep a physical meaning.
+        Reduced = "reduced",
     }
 }
-
-impl From<Function> for &str {
-    fn from(function: Function) -> Self {
-        function.name()
-    }
-}
-
-impl TryFrom<String> for Function {
-    type Error = UnknownName;
-
-    fn try_from(text: String) -> Result<Self, UnknownName> {
-        text.parse()
-    }
-}
-
-impl FromStr for Function {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        Self::ALL.into_iter().find(|function| function.name() == text).ok_or_else(|| UnknownName {
-            found: text.to_owned(),
-            what: "function",
-            allowed: Self::ALL.iter().map(|function| function.name()).collect(),
-        })
-    }
-}
-
-/// How a function is computed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub enum Form {
-    /// The seven steps: every intermediate is the lecture's.
-    #[default]
-    SevenSteps,
-    /// Fewest operations: only the torques keep a physical meaning.
-    Reduced,
-}
-
-impl Form {
-    /// All forms.
-    pub const ALL: [Self; 2] = [Self::SevenSteps, Self::Reduced];
-
-    /// Its name in the attribute and on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::SevenSteps => "seven_steps",
-            Self::Reduced => "reduced",
-        }
-    }
-}
-
-impl fmt::Display for Form {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Form {
-    type Err = UnknownName;
-
-    fn from_str(text: &str) -> Result<Self, UnknownName> {
-        Self::ALL.into_iter().find(|form| form.name() == text).ok_or_else(|| UnknownName {
-            found: text.to_owned(),
-            what: "form",
-            allowed: Self::ALL.iter().map(|form| form.name()).collect(),
-        })
-    }
-}
-
-/// A name that is none of those allowed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownName {
-    found: String,
-    what: &'static str,
-    allowed: Vec<&'static str>,
-}
-
-impl fmt::Display for UnknownName {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let allowed: Vec<String> = self.allowed.iter().map(|name| format!("`{name}`")).collect();
-        write!(f, "`{}` is no {}; there are {}", self.found, self.what, allowed.join(", "))
-    }
-}
-
-impl std::error::Error for UnknownName {}

@@ -16,7 +16,7 @@ use crate::plan::rewriting::Rewriting;
 use crate::program::Exactly;
 use crate::prove;
 use crate::reduced::algorithm::Way;
-use crate::{CompileError, Compiler, Expression, Form, Function, Program};
+use crate::{CompileError, Compiler, Expression, Form, Function, Operator, Program};
 
 fn robot(name: &str) -> Robot {
     let folder = match name {
@@ -173,28 +173,17 @@ fn mistakes_in_a_graph_name_their_line() {
 /// Every place of a program where one sign or one constant is wrong.
 fn mutants(program: &Program) -> Vec<Program> {
     fn mutated(expression: &Expression, countdown: &mut usize) -> Expression {
-        use Expression::{Difference, Negative, Product, Sum};
-        let hit = |countdown: &mut usize| {
-            *countdown = countdown.wrapping_sub(1);
-            *countdown == usize::MAX
-        };
         match expression {
-            Sum(a, b) => {
-                let here = hit(countdown);
-                let (a, b) = (Box::new(mutated(a, countdown)), Box::new(mutated(b, countdown)));
-                if here { Difference(a, b) } else { Sum(a, b) }
+            Expression::Binary(operator, a, b) => {
+                *countdown = countdown.wrapping_sub(1);
+                let wrong = match operator {
+                    _ if *countdown != usize::MAX => *operator,
+                    Operator::Sum => Operator::Difference,
+                    _ => Operator::Sum,
+                };
+                Expression::binary(wrong, mutated(a, countdown), mutated(b, countdown))
             }
-            Difference(a, b) => {
-                let here = hit(countdown);
-                let (a, b) = (Box::new(mutated(a, countdown)), Box::new(mutated(b, countdown)));
-                if here { Sum(a, b) } else { Difference(a, b) }
-            }
-            Product(a, b) => {
-                let here = hit(countdown);
-                let (a, b) = (Box::new(mutated(a, countdown)), Box::new(mutated(b, countdown)));
-                if here { Sum(a, b) } else { Product(a, b) }
-            }
-            Negative(a) => Negative(Box::new(mutated(a, countdown))),
+            Expression::Negative(a) => Expression::Negative(Box::new(mutated(a, countdown))),
             leaf => leaf.clone(),
         }
     }

@@ -19,7 +19,7 @@ use crate::ir::{Builder, Number, Symbol};
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub(crate) enum Way {
+pub enum Way {
     /// The recursion, out and back, and what follows from its torques.
     #[default]
     Recursion,

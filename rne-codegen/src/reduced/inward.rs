@@ -10,8 +10,10 @@ use crate::reduced::regrouping::{group_start, is_parallel};
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Gathering {
+pub enum Gathering {
+    /// Joint by joint.
     Joints,
+    /// Per group of parallel axes.
     Groups,
 }
 

@@ -11,6 +11,7 @@ use rne_model::Robot;
 
 use super::inert::c_comment;
 use super::syntax::{Precision, Syntax};
+use super::wrap::{WIDTH, fill};
 use crate::function::Function;
 use crate::ir::name::Name;
 use crate::program::Program;
@@ -22,9 +23,6 @@ pub(super) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
     let inputs = signature::inputs(program).into_iter().map(|array| array.name);
     inputs.chain([program.function.entry().output, source::UNUSED])
 }
-
-/// Width of a line.
-const WIDTH: usize = 100;
 
 /// The code of one robot.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -115,44 +113,9 @@ impl fmt::Display for ConstantTooLarge {
 
 impl std::error::Error for ConstantTooLarge {}
 
-/// A blank at which no comment breaks.
-const TIED: &str = "\u{A0}";
-
-/// Words in lines of at most the [width](WIDTH), each behind `start`.
+/// Words in a comment, each line behind `start`; without words an empty one.
 fn comment(start: &str, text: &str) -> String {
-    let mut comment = String::new();
-    let mut line = start.to_owned();
-    for word in c_comment(text).split(' ') {
-        if line.len() > start.len() && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            comment.push_str(line.trim_end());
-            comment.push('\n');
-            start.clone_into(&mut line);
-        }
-        line.push(' ');
-        line.push_str(word);
-    }
-    (comment + line.trim_end() + "\n").replace(TIED, " ")
-}
-
-/// Items with commas between them, in lines of at most the [width](WIDTH): the first behind `start`, `end` behind the
-/// last, further lines indented.
-fn filled(start: &str, items: &[String], end: &str, indent: usize) -> String {
-    let mut text = start.to_owned();
-    let mut column = start.lines().last().unwrap_or_default().chars().count();
-    for (index, item) in items.iter().enumerate() {
-        let (gap, mark) = (usize::from(index > 0), if index + 1 < items.len() { "," } else { end });
-        let width = item.chars().count() + mark.chars().count();
-        if column > indent && column + gap + width > WIDTH {
-            text.push('\n');
-            text.push_str(&" ".repeat(indent));
-            column = indent;
-        } else if gap > 0 {
-            text.push(' ');
-            column += 1;
-        }
-        text.push_str(item);
-        text.push_str(mark);
-        column += width;
-    }
-    text
+    let blank = format!("{start} ");
+    let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };
+    lines + "\n"
 }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use super::{File, WIDTH, filled};
+use super::File;
 use crate::emit::signature::{ArgumentArray, arguments};
+use crate::emit::wrap::{TIED, WIDTH, fill};
 use crate::function::{Layout, Record};
 use crate::program::Program;
 
@@ -35,7 +36,11 @@ pub(super) fn head(file: &File, program: &Program) -> String {
     let start = format!("{returned} {}_{}(", file.prefix, program.function);
     let line = format!("{start}{})", parameters.join(", "));
     // one column is for the semicolon
-    if line.chars().count() < WIDTH { line } else { filled(&format!("{start}\n    "), &parameters, ")", 4) }
+    if line.len() < WIDTH {
+        return line;
+    }
+    let parameters: Vec<String> = parameters.iter().map(|parameter| parameter.replace(' ', TIED)).collect();
+    start + "\n" + &fill(&(parameters.join(", ") + ")"), WIDTH, "    ", "    ")
 }
 
 /// A parameter through which a result is written: a record by its address, arrays as what they are.
@@ -87,29 +92,21 @@ pub(super) fn records(file: &File) -> Vec<(Record, Vec<Layout>)> {
 
 /// Where the numbers of a result are written, in their order.
 pub(super) fn places(program: &Program) -> Vec<String> {
-    let (layout, name) = (program.function.layout(program.dof), program.function.entry().output);
     let mut places = Vec::new();
-    match &layout {
-        // by its address
-        Layout::Record(record, parts) => {
-            for (field, part) in record.fields().iter().zip(parts) {
-                elements(part, &format!("{name}->{field}"), &mut places);
-            }
-        }
-        layout => elements(layout, name, &mut places),
-    }
+    // a record is written by its address
+    elements(&program.function.layout(program.dof), program.function.entry().output, "->", &mut places);
     places
 }
 
-fn elements(layout: &Layout, name: &str, places: &mut Vec<String>) {
+fn elements(layout: &Layout, name: &str, dot: &str, places: &mut Vec<String>) {
     match layout {
         Layout::Number => places.push(name.to_owned()),
         Layout::Array(length, of) => {
-            (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), places));
+            (0..*length).for_each(|index| elements(of, &format!("{name}[{index}]"), ".", places));
         }
         Layout::Record(record, parts) => {
             let fields = record.fields().into_iter().zip(parts);
-            fields.for_each(|(field, part)| elements(part, &format!("{name}.{field}"), places));
+            fields.for_each(|(field, part)| elements(part, &format!("{name}{dot}{field}"), ".", places));
         }
     }
 }

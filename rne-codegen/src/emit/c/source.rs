@@ -6,7 +6,7 @@ use super::header::columns;
 use super::signature::{head, inputs, places};
 use super::{ConstantTooLarge, File};
 use crate::emit::expression::{line, statement};
-use crate::emit::listing::{Listing, listing_in, statement_line};
+use crate::emit::listing::{Line, Selection, listing};
 use crate::emit::signature::ArgumentArray;
 use crate::emit::syntax::Precision;
 use crate::emit::text::legend;
@@ -69,13 +69,13 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
     if !program.turns.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
-            let _ = writeln!(text, "{}", statement_line(syntax, statement));
+            let _ = writeln!(text, "{}", Line::Statement(statement).indented(syntax));
         }
         text.push_str(&turns(file, program));
     }
-    let statements = listing_in(syntax, file.robot, program, Listing::default());
-    if !statements.trim().is_empty() {
-        let _ = write!(text, "\n{statements}");
+    let statements = listing(file.robot, program, Selection::default());
+    if !statements.is_empty() {
+        let _ = write!(text, "\n{}", statements.text(syntax));
     }
     text.push('\n');
     text.push_str(&result(file, program));
@@ -124,10 +124,10 @@ fn turns(file: &File, program: &Program) -> String {
 fn result(file: &File, program: &Program) -> String {
     let syntax = file.syntax();
     let values = program.outputs.iter().map(|output| &output.value);
-    if program.function.layout(program.dof) == Layout::Number {
-        return values.take(1).map(|value| statement(syntax, "    ", "return", value) + "\n").collect();
-    }
-    let places = places(program);
-    let lines = places.iter().zip(values);
-    lines.map(|(place, value)| statement(syntax, "    ", &format!("{place} ="), value) + "\n").collect()
+    let starts = match program.function.layout(program.dof) {
+        Layout::Number => vec!["return".to_owned()],
+        _ => places(program).into_iter().map(|place| place + " =").collect(),
+    };
+    let lines = starts.into_iter().zip(values);
+    lines.map(|(start, value)| statement(syntax, "    ", start.into(), value).to_string() + "\n").collect()
 }

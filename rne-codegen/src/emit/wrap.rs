@@ -1,0 +1,23 @@
+//! Words in lines of a width.
+
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+
+/// Width of a line of emitted text.
+pub(super) const WIDTH: usize = 100;
+
+/// A blank at which no line breaks.
+pub(super) const TIED: &str = "\u{A0}";
+
+/// Words in lines of so many columns, the first behind `first`, those below it behind `others`. A word that is longer
+/// than a line stays whole.
+pub(super) fn fill(text: &str, width: usize, first: &str, others: &str) -> String {
+    let options = Options::new(width)
+        .initial_indent(first)
+        .subsequent_indent(others)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .wrap_algorithm(WrapAlgorithm::FirstFit);
+    let lines = textwrap::wrap(text, options);
+    lines.iter().map(|line| line.trim_end()).collect::<Vec<_>>().join("\n").replace(TIED, " ")
+}

@@ -1,0 +1,74 @@
+//! Enums whose variants have names in files, in attributes and on the command line.
+
+use std::fmt;
+
+/// An enum with all its variants in order, their names, and the variant of a name.
+macro_rules! named {
+    ($(#[$doc:meta])* $type:ident, $what:literal {
+        $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)?
+    }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
+        #[serde(into = "&str", try_from = "String")]
+        pub enum $type { $($(#[$variant_doc])* $variant),* }
+
+        impl $type {
+            /// All of them, in order.
+            pub const ALL: [Self; [$($name),*].len()] = [$(Self::$variant),*];
+
+            /// Its name, as it is written in code and on the command line.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$variant => $name),* }
+            }
+        }
+
+        impl std::fmt::Display for $type {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                f.write_str(self.name())
+            }
+        }
+
+        impl From<$type> for &str {
+            fn from(one: $type) -> Self {
+                one.name()
+            }
+        }
+
+        impl TryFrom<String> for $type {
+            type Error = $crate::UnknownName;
+
+            fn try_from(text: String) -> Result<Self, $crate::UnknownName> {
+                text.parse()
+            }
+        }
+
+        impl std::str::FromStr for $type {
+            type Err = $crate::UnknownName;
+
+            fn from_str(text: &str) -> Result<Self, $crate::UnknownName> {
+                Self::ALL.into_iter().find(|one| one.name() == text).ok_or_else(|| {
+                    $crate::UnknownName { found: text.to_owned(), what: $what, allowed: &[$($name),*] }
+                })
+            }
+        }
+    };
+}
+pub(crate) use named;
+
+/// A name that is none of those allowed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownName {
+    pub(crate) found: String,
+    pub(crate) what: &'static str,
+    pub(crate) allowed: &'static [&'static str],
+}
+
+impl fmt::Display for UnknownName {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let allowed: Vec<String> = self.allowed.iter().map(|name| format!("`{name}`")).collect();
+        write!(f, "`{}` is no {}; there are {}", self.found, self.what, allowed.join(", "))
+    }
+}
+
+impl std::error::Error for UnknownName {}

@@ -1,0 +1,50 @@
+//! The table of functions is complete and in order, and what names parse to.
+
+use rne_codegen::emit::{BadPrefix, Prefix};
+use rne_codegen::{Capability, Form, Function, Length, Shape};
+
+#[test]
+fn names_are_read_back_and_no_two_are_the_same() {
+    for function in Function::ALL {
+        assert_eq!(function.name().parse(), Ok(function));
+        assert!(!function.summary().is_empty() && !function.arguments().is_empty(), "{function}");
+    }
+    for form in Form::ALL {
+        assert_eq!(form.name().parse(), Ok(form));
+    }
+    for capability in Capability::ALL {
+        assert_eq!(format!("{capability:?}"), capability.name());
+    }
+    let message = "fast".parse::<Form>().expect_err("no form").to_string();
+    assert!(message.starts_with("`fast` is no form; there are `seven_steps`, "), "{message}");
+}
+
+#[test]
+fn the_functions_of_a_capability_stand_beside_each_other() {
+    let functions: Vec<Function> =
+        Capability::ALL.iter().flat_map(|capability| capability.functions()).copied().collect();
+    assert_eq!(functions, Function::ALL);
+    assert_eq!(Capability::InverseDynamics.functions(), Function::TORQUES);
+    for capability in Capability::ALL {
+        assert!(capability.functions().iter().all(|function| function.capability() == capability));
+    }
+}
+
+#[test]
+fn what_returns_torques_has_one_number_per_joint() {
+    for function in Function::ALL {
+        if function.returns_torques() || function.returns_accelerations() {
+            assert_eq!(*function.shape(), Shape::Array(Length::Joints, &Shape::Number), "{function}");
+        }
+    }
+}
+
+#[test]
+fn a_prefix_begins_an_identifier() {
+    for good in ["a", "puma560", "MyArm", "my_arm_2"] {
+        assert_eq!(good.parse::<Prefix>().map(|prefix| prefix.to_string()), Ok(good.to_owned()));
+    }
+    for bad in ["", "_arm", "my__arm", "arm_", "2arm", "my-arm", "my arm", "bras_é", "a;", "a\n"] {
+        assert_eq!(bad.parse::<Prefix>(), Err(BadPrefix), "{bad:?}");
+    }
+}
