@@ -5,7 +5,7 @@ mod common;
 use std::collections::BTreeSet;
 
 use common::{programs, reduced_programs, shipped};
-use rne_codegen::emit::{Line, Listing, Part, Selection, listing};
+use rne_codegen::emit::{Line, Listing, Part, Precision, Prefix, Selection, c_code, listing, rust_file};
 use rne_codegen::{Compiler, Form, Function, Name, Program, Quantity, Statement, Step};
 
 fn everything() -> Selection {
@@ -81,4 +81,18 @@ fn a_program_knows_its_algorithm() {
     let listing = listing(&robot, &mass_matrix, everything());
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
     assert!(lines.clone().all(|line| !matches!(line, Line::Formula(_))), "composite bodies have formulas of their own");
+}
+
+#[test]
+fn no_line_of_a_file_ends_with_a_blank() {
+    for robot in shipped() {
+        // one by one: motors that are not there leave a file without names
+        for program in programs(&robot).chunks(1) {
+            let c = c_code(&robot, program, Precision::Double, &Prefix::of(&robot)).expect("finite constants");
+            for text in [c.one_file(), rust_file(&robot, program)] {
+                let line = text.lines().find(|line| line.ends_with(' '));
+                assert_eq!(line, None, "{} of {}", program[0].function, robot.name);
+            }
+        }
+    }
 }

@@ -120,5 +120,9 @@ fn counts(programs: &[Program]) -> String {
 
 /// Cells below each other, as lines of a comment.
 pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> String {
-    format!("//   {}\n", table::columns(lines).join("\n//   "))
+    let mut text = String::new();
+    for line in table::columns(lines) {
+        let _ = writeln!(text, "//   {line}");
+    }
+    text
 }
