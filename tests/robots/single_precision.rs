@@ -12,7 +12,7 @@ use crate::states::{self, State};
 const TOLERANCE: f64 = 2e-5;
 
 /// Writes the page.
-const WRITE: &str = "RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test --release --test robots single_precision_is";
+const WRITE: &str = "RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test --test robots close_to_double";
 
 /// The page with the measured figures.
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");

@@ -8,8 +8,8 @@ fn main() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../robots");
     println!("cargo::rerun-if-changed={}", folder.display());
     let mut text = String::from(
-        "/// Calls a macro with what is given and, for every shipped robot in the order of their names, `[name, path of \
-         its file]`.\n#[macro_export]\nmacro_rules! for_each_robot {\n    ($call:ident! $($given:tt)*) => {\n        \
+        "/// Calls a macro with what is given and, for every shipped robot by the order of names, `[name, path of its \
+         file]`.\n#[macro_export]\nmacro_rules! for_each_robot {\n    ($call:ident! $($given:tt)*) => {\n        \
          $call! {\n            $($given)*\n",
     );
     for (name, file) in robots(&folder) {
