@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use rne_codegen::emit::{self, Selection, listing};
 use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
 use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
-use rne_model::{JointKind, Robot};
+use rne_model::{Convention, JointKind, Robot};
 
 /// The documents with blocks, and which blocks these are; measured ones do not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
@@ -19,7 +19,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
     ("docs/teaching.md", &["code"]),
-    ("robots/README.md", &["robots"]),
+    ("robots/README.md", &["sources", "robots"]),
 ];
 
 /// The documents that say where things stand: what they name must exist.
@@ -64,6 +64,7 @@ fn block(name: &str) -> String {
         "headline" => headline(),
         "twelve_lines" => code(2),
         "code" => code(5),
+        "sources" => sources(),
         "robots" => robots(),
         "functions" => functions(),
         "operations" => operations(),
@@ -166,6 +167,44 @@ fn reduced(robot: &Robot, plans: &PlanSet) -> Operations {
     program.unwrap_or_else(|error| panic!("{}: {error}", robot.name)).operations()
 }
 
+/// R or P for each joint, base to tip.
+fn kinds(robot: &Robot) -> String {
+    let letter = |kind| match kind {
+        JointKind::Revolute => 'R',
+        JointKind::Prismatic => 'P',
+    };
+    robot.rows().map(|row| letter(row.kind)).collect()
+}
+
+/// Where the numbers of every robot are from, and what is doubtful: the last sentence of `source`, and the first one
+/// after "Doubtful:" in the comment at the head of the file.
+fn sources() -> String {
+    let mut text =
+        String::from("| file | arm | joints | convention | source quality | doubtful |\n|---|---|---|---|---|---|\n");
+    for path in robot_files() {
+        let (robot, file) = (robot(&path), read(&path));
+        let source = robot.source.split_whitespace().collect::<Vec<_>>().join(" ");
+        let quality = source.rsplit_once("Source quality: ").map(|(_, quality)| quality.trim_end_matches('.'));
+        let quality = quality.unwrap_or_else(|| panic!("{}: `source` ends with `Source quality: …`", path.display()));
+        let head = file.lines().map_while(|line| line.strip_prefix('#')).flat_map(str::split_whitespace);
+        let head = head.collect::<Vec<_>>().join(" ") + " ";
+        let doubtful =
+            head.split_once("Doubtful: ").and_then(|(_, rest)| rest.split_once(". ")).map(|(first, _)| first);
+        let (name, title) = (&robot.name, robot.title.as_deref().unwrap_or(&robot.name));
+        let _ = writeln!(
+            text,
+            "| [{name}]({name}.yaml) | {title} | {} | {} | {quality} | {} |",
+            kinds(&robot),
+            match robot.convention {
+                Convention::Standard => "standard",
+                Convention::Modified => "modified",
+            },
+            doubtful.unwrap_or_default()
+        );
+    }
+    text
+}
+
 fn robots() -> String {
     let mut text = String::from(
         "| robot | joints | seven steps: products | sums | both | planned | reduced | angles |\n\
@@ -176,13 +215,7 @@ fn robots() -> String {
         let counts = inverse_dynamics(&robot).operations();
         let (plans, _) = plans(&path, &robot);
         let (planned, reduced) = (reduced(&robot, &plans.without(&[Trick::Rewriting])), reduced(&robot, &plans));
-        let joints: String = robot
-            .rows()
-            .map(|row| match row.kind {
-                JointKind::Revolute => 'R',
-                JointKind::Prismatic => 'P',
-            })
-            .collect();
+        let joints = kinds(&robot);
         let title = robot.title.as_deref().unwrap_or(&robot.name);
         let file = &robot.name;
         let _ = writeln!(
@@ -502,6 +535,22 @@ fn the_compiler_opens_no_file_and_prints_nothing() {
         for word in ["std::fs", "std::env", "println!", "eprint!", "dbg!"] {
             assert!(is_test || !code.contains(word), "{}: {word}", source.display());
         }
+    }
+}
+
+/// A new robot is in no list: what wants all of them reads the folder, or takes `shipped::for_each_robot`.
+#[test]
+fn no_source_lists_the_robots() {
+    let names: Vec<String> = robot_files().iter().map(|path| robot(path).name).collect();
+    let mut sources = Vec::new();
+    for ending in [".rs", ".toml", ".py", "run"] {
+        files_below(root(), ending, &mut sources);
+    }
+    for source in sources {
+        let text = read(&source);
+        let words: BTreeSet<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
+        let named = names.iter().filter(|name| words.contains(name.as_str())).count();
+        assert!(4 * named < 3 * names.len(), "{} names {named} of {} robots", source.display(), names.len());
     }
 }
 

@@ -2,7 +2,6 @@
 //! same parts.
 
 use std::fs;
-use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::LazyLock;
 
@@ -227,7 +226,8 @@ fn a_compiler_of_c_has_nothing_to_warn_of() {
         text.extend(file.lines().filter(|line| line.starts_with("//")).flat_map(|line| [line, "\n"]));
     }
     text.push_str(&c_of(&PLAIN.0));
-    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inert_texts.c");
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("inert_texts.c");
     fs::write(&file, text).expect("written");
     let flags = ["-std=c99", "-Wall", "-Wextra", "-Wcomment", "-Wtrigraphs", "-Werror", "-fsyntax-only"];
     let compiled = Command::new(&compiler).args(flags).arg(&file).output().expect("it starts");

@@ -73,12 +73,12 @@ mod tests {
     #[cfg(unix)]
     fn a_device_is_not_opened() {
         // a pipe without a writer would keep this test waiting for ever
-        let pipe = std::env::temp_dir().join(format!("rne-pipe-{}", std::process::id()));
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
         let made = std::process::Command::new("mkfifo").arg(&pipe).status().is_ok_and(|status| status.success());
         if made {
             let error = read_file(&pipe).unwrap_err();
             assert!(error.to_string().contains("a pipe"), "{error}");
-            fs::remove_file(&pipe).unwrap();
         }
         for device in ["/dev/zero", "/dev/null"] {
             let error = read_file(Path::new(device)).unwrap_err();

@@ -1,7 +1,6 @@
 //! The host's compiler of C.
 
 use std::fs::{self, File};
-use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 /// What is asked of the code: nothing that a compiler warns of.
@@ -43,9 +42,9 @@ impl Compiler {
     /// Compiles a program and runs it: `input` are words for its standard input, in its standard output there are
     /// others.
     pub(crate) fn run(&self, name: &str, optimisation: &str, source: &str, input: &[u64]) -> Vec<u64> {
-        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("c_code");
-        fs::create_dir_all(&folder).expect("a folder");
-        let path = |extension: &str| folder.join(format!("{name}.{extension}"));
+        // its own: tests of two programs run at a time, and name their robots alike
+        let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
+        let path = |extension: &str| folder.path().join(format!("{name}.{extension}"));
         let (code, program, words) = (path("c"), path("bin"), path("words"));
         fs::write(&code, source).expect("written");
         let input: Vec<String> = input.iter().map(|word| format!("{word:x}")).collect();

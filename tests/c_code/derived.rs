@@ -1,12 +1,16 @@
-//! Every shipped robot with everything derived, and its functions by their names.
+//! Shipped robots with everything derived, and their functions by their names.
 
 use rne::{
     Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
 };
-use rne_codegen::{Form, Function};
+use rne_codegen::Form;
+pub(crate) use rne_codegen::Function;
 
-use crate::states::Numbers;
+pub(crate) use crate::states::Numbers;
+
+/// A robot's name, and what is derived for it in each form.
+pub(crate) type Forms = (&'static str, Vec<(Form, Box<dyn Derived>)>);
 
 /// A derived robot.
 pub(crate) trait Derived: Send + Sync {
@@ -15,7 +19,7 @@ pub(crate) trait Derived: Send + Sync {
     fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64>;
 }
 
-trait Everything<const DOF: usize>:
+pub(crate) trait Everything<const DOF: usize>:
     InverseDynamics<DOF>
     + MassMatrix<DOF>
     + CoriolisMatrix<DOF>
@@ -39,7 +43,7 @@ fn pose<T: Scalar>(pose: &Pose<T>) -> Vec<T> {
     [flat(pose.rotation), pose.translation.to_vec()].concat()
 }
 
-fn numbers<const DOF: usize, T: Scalar>(
+pub(crate) fn numbers<const DOF: usize, T: Scalar>(
     robot: &impl Everything<DOF>,
     function: Function,
     given: &Numbers<T>,
@@ -85,75 +89,64 @@ fn numbers<const DOF: usize, T: Scalar>(
 }
 
 macro_rules! robot {
-    ($robot:ident $dof:literal $path:literal $form:literal) => {
-        #[derive(
-            rne::InverseDynamics,
-            rne::MassMatrix,
-            rne::CoriolisMatrix,
-            rne::ForwardDynamics,
-            rne::Kinematics,
-            rne::Energy,
-            rne::CentreOfMass,
-            rne::Regressor,
-            rne::InverseDynamicsDerivatives,
-            rne::JointWrenches,
-            rne::MovingBase,
-            rne::Actuation,
-        )]
-        #[robot(path = $path, form = $form)]
-        pub(super) struct $robot;
+    ($robot:ident $path:literal $form:literal) => {
+        pub(super) mod $robot {
+            use crate::derived::{Derived, Everything, Function, Numbers, numbers};
 
-        impl super::Everything<$dof> for $robot {}
+            #[derive(
+                rne::InverseDynamics,
+                rne::MassMatrix,
+                rne::CoriolisMatrix,
+                rne::ForwardDynamics,
+                rne::Kinematics,
+                rne::Energy,
+                rne::CentreOfMass,
+                rne::Regressor,
+                rne::InverseDynamicsDerivatives,
+                rne::JointWrenches,
+                rne::MovingBase,
+                rne::Actuation,
+            )]
+            #[robot(path = $path, form = $form)]
+            pub(crate) struct Robot;
 
-        impl super::Derived for $robot {
-            fn single(&self, function: super::Function, given: &super::Numbers<f32>) -> Vec<f32> {
-                super::numbers(self, function, given)
-            }
+            impl Everything<{ Robot::DOF }> for Robot {}
 
-            fn double(&self, function: super::Function, given: &super::Numbers<f64>) -> Vec<f64> {
-                super::numbers(self, function, given)
+            impl Derived for Robot {
+                fn single(&self, function: Function, given: &Numbers<f32>) -> Vec<f32> {
+                    numbers(self, function, given)
+                }
+
+                fn double(&self, function: Function, given: &Numbers<f64>) -> Vec<f64> {
+                    numbers(self, function, given)
+                }
             }
         }
     };
 }
+pub(crate) use robot;
 
+/// Modules of robots by forms, and all of them.
 macro_rules! robots {
-    ($($robot:ident $dof:literal $path:literal;)*) => {
+    ($([$robot:ident, $path:literal])*) => {
         mod seven_steps {
-            $(robot!($robot $dof $path "seven_steps");)*
+            $(crate::derived::robot!($robot $path "seven_steps");)*
         }
 
         mod reduced {
-            $(robot!($robot $dof $path "reduced");)*
+            $(crate::derived::robot!($robot $path "reduced");)*
         }
 
-        /// Names of robots, with their forms.
-        pub(crate) fn all() -> Vec<(&'static str, Vec<(Form, Box<dyn Derived>)>)> {
+        /// The robots with their forms.
+        fn robots() -> Vec<crate::derived::Forms> {
             vec![$((
-                seven_steps::$robot::NAME,
+                seven_steps::$robot::Robot::NAME,
                 vec![
-                    (Form::SevenSteps, Box::new(seven_steps::$robot) as Box<dyn Derived>),
-                    (Form::Reduced, Box::new(reduced::$robot)),
+                    (rne_codegen::Form::SevenSteps, Box::new(seven_steps::$robot::Robot)),
+                    (rne_codegen::Form::Reduced, Box::new(reduced::$robot::Robot)),
                 ],
             )),*]
         }
     };
 }
-
-robots! {
-    Panda 7 "../../robots/panda.yaml";
-    Wam7 7 "../../robots/wam7.yaml";
-    Iiwa14 7 "../../robots/iiwa14.yaml";
-    Puma560 6 "../../robots/puma560.yaml";
-    Puma560Mdh 6 "../../robots/puma560_mdh.yaml";
-    Stanford 6 "../../robots/stanford.yaml";
-    Ur5 6 "../../robots/ur5.yaml";
-    Ur5e 6 "../../robots/ur5e.yaml";
-    ScaraCobra600 4 "../../robots/scara_cobra600.yaml";
-    CylindricalRpp 3 "../../robots/cylindrical_rpp.yaml";
-    GantryPpp 3 "../../robots/gantry_ppp.yaml";
-    Planar3 3 "../../robots/planar3.yaml";
-    SphericalRrp 3 "../../robots/spherical_rrp.yaml";
-    Planar2 2 "../../robots/planar2.yaml";
-    Planar1 1 "../../robots/planar1.yaml";
-}
+pub(crate) use robots;

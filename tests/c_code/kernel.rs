@@ -9,9 +9,9 @@ use rne_codegen::emit::{self, Precision};
 use rne_codegen::{Form, Function};
 use rne_model::Robot;
 
+use crate::comparison::{ROOT, read};
 use crate::compiler::Compiler;
 use crate::driver::{INCLUDES, words};
-use crate::{ROOT, read};
 
 const ANGLES: usize = 100_000;
 

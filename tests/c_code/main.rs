@@ -1,7 +1,9 @@
-//! C code against derived Rust code, bit for bit: every shipped robot, both forms, both number types, all functions.
+//! C code against derived Rust code, bit for bit: both forms, both number types, all functions of robots of several
+//! kinds. `cargo xtask verify` takes every shipped robot: `every_robot.rs`.
 //!
-//! A zero's sign is free, as everywhere. What the compiler of C is told is what users of embedded systems tell it.
+//! What the compiler of C is told is what users of embedded systems tell it.
 
+mod comparison;
 mod compiler;
 mod derived;
 mod driver;
@@ -9,110 +11,15 @@ mod kernel;
 mod special;
 mod states;
 
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-
-use rne_codegen::emit::Precision;
-use rne_codegen::plan::{PlanFile, PlanSet};
-use rne_codegen::{Form, Function, Program};
-use rne_model::Robot;
-
-use crate::compiler::Compiler;
-use crate::derived::Derived;
-use crate::driver::{Driver, Unit};
-
-const ROOT: &str = env!("CARGO_MANIFEST_DIR");
-
-/// The functions of a robot in a form.
-fn programs(robot: &Robot, plans: &PlanSet, form: Form) -> Vec<Program> {
-    let compiler = rne_codegen::Compiler::new(robot).with_plans(plans);
-    let compiled = |function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}"));
-    Function::ALL.map(compiled).to_vec()
-}
-
-fn read(path: &str) -> String {
-    std::fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
-}
-
-/// Emits, compiles, runs and compares one robot; returns how many numbers were compared.
-fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], compiler: &Compiler) -> usize {
-    let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/{name}.yaml"))).unwrap_or_else(|why| panic!("{why}"));
-    let plan = read(&format!("{ROOT}/robots/{name}.plan.yaml"));
-    let plan = PlanFile::read(name, &plan, &robot).unwrap_or_else(|report| panic!("{report}"));
-    let plans = PlanSet::from(plan);
-    let code: Vec<(Form, Vec<Program>)> =
-        derived.iter().map(|(form, _)| (*form, programs(&robot, &plans, *form))).collect();
-
-    let units: Vec<Unit> = code
-        .iter()
-        .flat_map(|(form, programs)| {
-            Precision::ALL
-                .map(|precision| Unit::new(&robot, programs, precision, format!("{form}_{}", precision.c_type())))
-        })
-        .collect();
-    let states = special::states(&robot);
-    let mut found = Driver { name, units: &units, dof: robot.dof() }.run(compiler, &states).into_iter();
-    let mut compared = 0;
-    for state in &states {
-        for ((form, derived), (_, programs)) in derived.iter().zip(&code) {
-            for precision in Precision::ALL {
-                for function in programs.iter().map(|program| program.function) {
-                    let expected = match precision {
-                        Precision::Single => words(derived.single(function, &state.single()), |x| x.to_bits().into()),
-                        Precision::Double => words(derived.double(function, &state.double()), f64::to_bits),
-                    };
-                    let computed: Vec<u64> = found.by_ref().take(expected.len()).collect();
-                    assert_eq!(computed.len(), expected.len(), "{name}, {function}, {form}: too few numbers");
-                    for (index, (computed, expected)) in computed.iter().zip(&expected).enumerate() {
-                        assert!(
-                            is_same(precision, *computed, *expected),
-                            "{name}, {function}, {form}, {}, number {index}: {computed:x} in C, {expected:x} in Rust, \
-                             at {state:?}",
-                            precision.c_type()
-                        );
-                    }
-                    compared += expected.len();
-                }
-            }
-        }
-    }
-    assert_eq!(found.next(), None, "{name}: more numbers than asked for");
-    compared
-}
-
-fn words<T>(numbers: Vec<T>, bits: impl Fn(T) -> u64) -> Vec<u64> {
-    numbers.into_iter().map(bits).collect()
-}
-
-/// Whether two numbers have the same bits, but for the sign of a zero and what is no number.
-#[allow(clippy::cast_possible_truncation)] // the words of single precision have 32 bits
-fn is_same(precision: Precision, a: u64, b: u64) -> bool {
-    match precision {
-        Precision::Single => {
-            let [a, b] = [a, b].map(|word| f32::from_bits(word as u32));
-            a == b || (a.is_nan() && b.is_nan())
-        }
-        Precision::Double => {
-            let [a, b] = [a, b].map(f64::from_bits);
-            a == b || (a.is_nan() && b.is_nan())
-        }
-    }
+// standard and modified rows, both kinds of joints, a tool, motors
+derived::robots! {
+    [planar3, "../../robots/planar3.yaml"]
+    [puma560, "../../robots/puma560.yaml"]
+    [scara_cobra600, "../../robots/scara_cobra600.yaml"]
+    [stanford, "../../robots/stanford.yaml"]
 }
 
 #[test]
 fn c_code_is_derived_code_bit_for_bit() {
-    let Some(compiler) = Compiler::found() else { return };
-    let robots = derived::all();
-    let (next, compared) = (AtomicUsize::new(0), Mutex::new(0));
-    std::thread::scope(|scope| {
-        for _ in 0..std::thread::available_parallelism().map_or(1, usize::from).min(4) {
-            scope.spawn(|| {
-                while let Some((name, derived)) = robots.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let count = compare(name, derived, &compiler);
-                    *compared.lock().expect("no panic") += count;
-                }
-            });
-        }
-    });
-    println!("{} robots, {} numbers with the same bits", robots.len(), compared.into_inner().expect("no panic"));
+    comparison::compare_all(&robots());
 }

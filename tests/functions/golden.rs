@@ -16,7 +16,7 @@ pub(crate) static ROBOTS: LazyLock<Vec<String>> = LazyLock::new(|| {
     let names = names.filter_map(|name| name.strip_suffix(".yaml").map(str::to_owned));
     let mut names: Vec<String> = names.filter(|name| name.strip_suffix(".plan").is_none()).collect();
     names.sort_unstable();
-    assert!(names.len() >= 15, "{names:?}");
+    assert!(!names.is_empty());
     names
 });
 

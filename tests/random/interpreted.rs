@@ -122,8 +122,13 @@ fn intermediates_agree(yaml: &str, seed: u64) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+/// How many robots: with `RNE_EXHAUSTIVE` set, more.
+fn cases() -> u32 {
+    if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 1000 } else { 150 }
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn torques_of_random_robots_equal_the_runtime(dof in 1_usize..=12, seed in any::<u64>()) {

@@ -98,20 +98,21 @@ fn read(seed: u64, dof: usize) -> (Robot, DynArm) {
 #[test]
 fn reduced_forms_of_random_robots_are_the_runtime() {
     let mut rng = Rng::with_seed(60);
-    let mut planned = 0;
-    for seed in 1000..1060 {
+    let mut planned = 0_u64;
+    let robots = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 60 } else { 20 };
+    for seed in 1000..1000 + robots {
         let dof = rng.usize(1..=8);
         let (robot, arm) = read(seed, dof);
         for function in Function::TORQUES {
             let plain = agrees(&robot, &arm, &PlanSet::from(Plan::new(dof)), function, &mut rng);
-            assert!(plain.is_some(), "{}: no plans fits every robot", robot.name);
+            assert!(plain.is_some(), "{}: no choice fits every robot", robot.name);
             for rarity in [3, 8] {
                 let plans = PlanSet::from(random_plan(&mut rng, dof, rarity));
-                planned += usize::from(agrees(&robot, &arm, &plans, function, &mut rng).is_some());
+                planned += u64::from(agrees(&robot, &arm, &plans, function, &mut rng).is_some());
             }
         }
     }
-    assert!(planned > 100, "{planned} random plans fitted");
+    assert!(planned > 100 * robots / 60, "{planned} random plans fitted");
 }
 
 #[test]

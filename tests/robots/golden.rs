@@ -1,7 +1,7 @@
 //! Torques against independent values: Pinocchio's, at 16 states each, for generated code, interpreter and runtime.
 
 use rne::{InverseDynamics, Scalar, Wrench};
-use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program};
 use rne_model::Robot;
 use serde_json::Value;
 
@@ -23,6 +23,7 @@ impl Visitor for Golden {
         let states = golden["states"].as_array().expect("states");
         assert_eq!(states.len(), 16);
         let arm = R::arm();
+        let programs = Function::TORQUES.map(|function| compiled(R::NAME, function));
         let mut worst = 0.0_f64;
         for state in states {
             let array = |key: &str| -> [f64; DOF] { numbers(&state[key]).try_into().expect("one number per joint") };
@@ -38,7 +39,8 @@ impl Visitor for Golden {
                 (Function::GravityTorques, gravity),
                 (Function::BiasTorques, bias),
             ] {
-                let interpreted = interpret::<DOF>(R::NAME, function, &q, &qd, &qdd, &wrench);
+                let program = programs.iter().find(|program| program.function == function).expect("of torques");
+                let interpreted = interpret(program, &q, &qd, &qdd, &wrench);
                 let generated = call(robot, function, &q, &qd, &qdd, &wrench);
                 let runtime = call(&arm, function, &q, &qd, &qdd, &wrench);
                 for torques in [generated, interpreted, runtime] {
@@ -74,19 +76,21 @@ pub(crate) fn call<const DOF: usize>(
     }
 }
 
+fn compiled(name: &str, function: Function) -> Program {
+    let text = std::fs::read_to_string(format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR")));
+    let robot = Robot::from_yaml(&text.expect("a robot file")).unwrap_or_else(|report| panic!("{report}"));
+    Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite constants")
+}
+
 fn interpret<const DOF: usize>(
-    name: &str,
-    function: Function,
+    program: &Program,
     q: &[f64; DOF],
     qd: &[f64; DOF],
     qdd: &[f64; DOF],
     wrench: &Wrench<f64>,
 ) -> [f64; DOF] {
-    let text = std::fs::read_to_string(format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR")));
-    let robot = Robot::from_yaml(&text.expect("a robot file")).unwrap_or_else(|report| panic!("{report}"));
-    let program = Compiler::new(&robot).compile(function, Form::SevenSteps).expect("finite constants");
     let arguments = Arguments { force: wrench.force, moment: wrench.moment, ..Arguments::of_joints(q, qd, qdd, 0.0) };
-    let torques = Interpreter::new(&program).run(&arguments, f64::from_f64, Scalar::sin_cos);
+    let torques = Interpreter::new(program).run(&arguments, f64::from_f64, Scalar::sin_cos);
     torques.expect("arrays of the right length").try_into().expect("one torque per joint")
 }
 

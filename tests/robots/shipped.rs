@@ -21,77 +21,58 @@ pub(crate) trait Visitor {
     fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, robot: &R);
 }
 
-/// Calls a macro with a form and the list of all robots.
-macro_rules! in_form {
-    ($call:ident, $form:literal) => {
-        $call! {
-            $form
-            CylindricalRpp 3 "../../robots/cylindrical_rpp.yaml"
-            GantryPpp 3 "../../robots/gantry_ppp.yaml"
-            Iiwa14 7 "../../robots/iiwa14.yaml"
-            Panda 7 "../../robots/panda.yaml"
-            Planar1 1 "../../robots/planar1.yaml"
-            Planar2 2 "../../robots/planar2.yaml"
-            Planar3 3 "../../robots/planar3.yaml"
-            Puma560 6 "../../robots/puma560.yaml"
-            Puma560Mdh 6 "../../robots/puma560_mdh.yaml"
-            ScaraCobra600 4 "../../robots/scara_cobra600.yaml"
-            SphericalRrp 3 "../../robots/spherical_rrp.yaml"
-            Stanford 6 "../../robots/stanford.yaml"
-            Ur5 6 "../../robots/ur5.yaml"
-            Ur5e 6 "../../robots/ur5e.yaml"
-            Wam7 7 "../../robots/wam7.yaml"
-        }
-    };
-}
-
-macro_rules! shipped {
-    ($form:literal $($robot:ident $dof:literal $path:literal)*) => {
+/// The derived robots of a form.
+macro_rules! derived {
+    ($form:literal $([$robot:ident, $path:literal])*) => {
         use super::{Shipped, Visitor};
 
         $(
-            #[derive(rne::InverseDynamics)]
-            #[robot(path = $path, form = $form)]
-            pub(crate) struct $robot;
+            mod $robot {
+                #[derive(rne::InverseDynamics)]
+                #[robot(path = $path, form = $form)]
+                pub(crate) struct Robot;
 
-            impl Shipped<$dof> for $robot {
-                const NAME: &'static str = $robot::NAME;
-                const POSITION_LIMITS: [(f64, f64); $dof] = $robot::POSITION_LIMITS;
+                impl super::Shipped<{ Robot::DOF }> for Robot {
+                    const NAME: &'static str = Robot::NAME;
+                    const POSITION_LIMITS: [(f64, f64); Robot::DOF] = Robot::POSITION_LIMITS;
+                }
             }
         )*
 
         /// Shows every robot of this form to a visitor.
         pub(crate) fn visit_all(visitor: &mut impl Visitor) {
-            $(visitor.visit(&$robot);)*
+            $(visitor.visit(&$robot::Robot);)*
         }
-
-        /// The names of all of them.
-        #[allow(dead_code)] // asked for in one form
-        pub(crate) const NAMES: &[&str] = &[$($robot::NAME),*];
     };
 }
 
 /// The seven steps of every robot.
 pub(crate) mod seven_steps {
-    in_form!(shipped, "seven_steps");
+    shipped::for_each_robot!(derived! "seven_steps");
 }
 
 /// The reduced form of every robot, by its plan file.
 pub(crate) mod reduced {
-    in_form!(shipped, "reduced");
+    shipped::for_each_robot!(derived! "reduced");
 }
 
 #[test]
-fn all_shipped_robots_are_here() {
-    let mut derived: Vec<String> = seven_steps::NAMES.iter().map(|name| format!("{name}.yaml")).collect();
-    derived.sort();
+fn every_shipped_robot_is_here_with_its_plan() {
+    struct Names(Vec<String>);
+    impl Visitor for Names {
+        fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, _: &R) {
+            self.0.push(format!("{}.yaml", R::NAME));
+        }
+    }
+    let mut derived = Names(Vec::new());
+    seven_steps::visit_all(&mut derived);
     let folder = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/robots")).expect("the folder of robots");
     let names = folder.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned());
     let (mut plans, mut files): (Vec<String>, Vec<String>) =
         names.filter(|name| name.contains(".yaml")).partition(|name| name.contains(".plan."));
     files.sort();
-    assert_eq!(files, derived);
+    assert_eq!(files, derived.0, "each is named as its file");
     plans.sort();
-    let planned: Vec<String> = derived.iter().map(|name| name.replace(".yaml", ".plan.yaml")).collect();
+    let planned: Vec<String> = derived.0.iter().map(|name| name.replace(".yaml", ".plan.yaml")).collect();
     assert_eq!(plans, planned, "a plan for each");
 }

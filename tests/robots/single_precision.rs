@@ -11,6 +11,9 @@ use crate::states::{self, State};
 /// Largest error relative to the largest torque of the state.
 const TOLERANCE: f64 = 2e-5;
 
+/// Writes the page.
+const WRITE: &str = "RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test --test robots close_to_double";
+
 /// The page with the measured figures.
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
 
@@ -25,7 +28,7 @@ impl Visitor for SinglePrecision {
     fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, robot: &R) {
         let mut rng = Rng::with_seed(32);
         let mut worst = 0.0_f64;
-        for _ in 0..10_000 {
+        for _ in 0..states::count() {
             let State { q, qd, qdd, .. } = states::moderate::<DOF, R>(&mut rng);
             // the same state in both precisions
             let [q, qd, qdd] = [q, qd, qdd].map(|array| array.map(|value| value as f32));
@@ -48,7 +51,7 @@ impl Visitor for SinglePrecision {
 fn documented(page: &str, robot: &str) -> f64 {
     let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {robot} | ")));
     let figure = row.and_then(|rest| rest.trim_end_matches(" |").parse().ok());
-    figure.unwrap_or_else(|| panic!("{robot} is missing in {PAGE}: RNE_WRITE_DOCUMENTS=1 cargo test --test robots"))
+    figure.unwrap_or_else(|| panic!("{robot} is missing in {PAGE}: {WRITE}"))
 }
 
 #[test]
@@ -61,13 +64,16 @@ fn single_precision_is_close_to_double() {
     }
     println!("{table}");
     let page = std::fs::read_to_string(PAGE).expect("the page");
-    if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
+    // not those of a sample
+    if states::is_exhaustive() && std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
         let (head, _) = page.split_once("| robot |").expect("a table, the last thing on the page");
         std::fs::write(PAGE, format!("{head}{table}")).expect("a writable page");
         return;
     }
     for (robot, worst) in measured.worst {
         let ratio = worst / documented(&page, robot);
-        assert!((0.5..=2.0).contains(&ratio), "{robot}: {worst:.1e} is not what {PAGE} says");
+        // the worst of a sample may be anywhere below the worst of all states
+        let least = if states::is_exhaustive() { 0.5 } else { 0.0 };
+        assert!((least..=2.0).contains(&ratio), "{robot}: {worst:.1e} is not what {PAGE} says");
     }
 }

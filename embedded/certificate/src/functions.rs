@@ -1,10 +1,5 @@
 //! The names of the functions that are certified.
 
-use std::collections::BTreeSet;
-use std::fs;
-use std::path::Path;
-
-use anyhow::{Context, Result, ensure};
 use robots::puma560::{self, Arguments};
 use robots::{Numbers, Torques};
 
@@ -34,25 +29,6 @@ pub(crate) fn robots() -> Vec<Robot> {
     let mut names = Names(Vec::new());
     robots::each(&mut names);
     names.0
-}
-
-/// Fails if a robot is shipped that is not certified.
-pub(crate) fn are_all(folder: &Path) -> Result<()> {
-    let certified: BTreeSet<String> = robots().iter().map(|robot| robot.name.to_owned()).collect();
-    let mut shipped = BTreeSet::new();
-    for entry in fs::read_dir(folder).with_context(|| folder.display().to_string())? {
-        let file = entry?.path();
-        let is_yaml = file.extension().is_some_and(|extension| extension == "yaml");
-        // `puma560.plan.yaml` is no robot
-        let name = file.file_stem().map(Path::new).filter(|name| is_yaml && name.extension().is_none());
-        shipped.extend(name.map(|name| name.display().to_string()));
-    }
-    ensure!(
-        shipped == certified,
-        "robots/ and embedded/robots/src/torques.rs have different robots: {:?}",
-        shipped.symmetric_difference(&certified).collect::<Vec<_>>()
-    );
-    Ok(())
 }
 
 /// All functions of the PUMA 560 but `inverse_dynamics`, in both forms.

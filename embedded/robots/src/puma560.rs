@@ -60,8 +60,8 @@ macro_rules! methods {
 
             #[derive(
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
-                rne::Energy, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches, rne::MovingBase,
-                rne::Actuation,
+                rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
+                rne::MovingBase, rne::Actuation,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -94,6 +94,8 @@ methods! {
     Kinematics: jacobian_rate_times_velocity(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
     Energy: kinetic_energy(q: [f32; 6], qd: [f32; 6]) -> f32;
     Energy: potential_energy(q: [f32; 6]) -> f32;
+    CentreOfMass: centre_of_mass(q: [f32; 6]) -> [f32; 3];
+    CentreOfMass: centre_of_mass_jacobian(q: [f32; 6]) -> [[f32; 6]; 3];
     Regressor: regressor(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [[[f32; 10]; 6]; 6];
     InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
         -> TorqueDerivatives<6, f32>;

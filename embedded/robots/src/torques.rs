@@ -11,12 +11,12 @@ pub trait Visitor<T = f32> {
 
 /// A module per robot and form, and [`each`].
 macro_rules! robots {
-    ($($robot:ident[$dof:literal]: $path:literal;)*) => {
+    ($([$robot:ident, $path:literal])*) => {
         $(
-            #[doc = concat!("`", $path, "`")]
+            #[doc = concat!("`robots/", stringify!($robot), ".yaml`")]
             pub mod $robot {
-                robots!(seven_steps, "seven_steps", $dof, $path);
-                robots!(reduced, "reduced", $dof, $path);
+                form!(seven_steps, "seven_steps", $path);
+                form!(reduced, "reduced", $path);
             }
         )*
 
@@ -37,17 +37,24 @@ macro_rules! robots {
             )*
         }
     };
-    ($form:ident, $name:literal, $dof:literal, $path:literal) => {
+}
+
+/// The functions of a robot in a form.
+macro_rules! form {
+    ($form:ident, $name:literal, $path:literal) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
             #[derive(rne::InverseDynamics)]
             #[robot(path = $path, form = $name)]
             struct Robot;
 
+            /// One number per joint.
+            type Joints<T> = [T; Robot::DOF];
+
             /// Torques.
             #[inline(never)]
             #[must_use]
-            pub fn inverse_dynamics(q: &[f32; $dof], qd: &[f32; $dof], qdd: &[f32; $dof]) -> [f32; $dof] {
+            pub fn inverse_dynamics(q: &Joints<f32>, qd: &Joints<f32>, qdd: &Joints<f32>) -> Joints<f32> {
                 rne::InverseDynamics::inverse_dynamics(&Robot, q, qd, qdd)
             }
 
@@ -55,23 +62,25 @@ macro_rules! robots {
             #[cfg(feature = "double")]
             #[inline(never)]
             #[must_use]
-            pub fn double(q: &[f64; $dof], qd: &[f64; $dof], qdd: &[f64; $dof]) -> [f64; $dof] {
+            pub fn double(q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>) -> Joints<f64> {
                 rne::InverseDynamics::inverse_dynamics(&Robot, q, qd, qdd)
             }
 
             /// As functions that other languages can call.
             #[cfg(all(feature = "double", target_family = "wasm"))]
             pub mod foreign {
+                use super::Joints;
+
                 /// Torques.
                 pub extern "C" fn inverse_dynamics(
-                    q: &[f32; $dof], qd: &[f32; $dof], qdd: &[f32; $dof], tau: &mut [f32; $dof],
+                    q: &Joints<f32>, qd: &Joints<f32>, qdd: &Joints<f32>, tau: &mut Joints<f32>,
                 ) {
                     *tau = super::inverse_dynamics(q, qd, qdd);
                 }
 
                 /// The same in double precision.
                 pub extern "C" fn double(
-                    q: &[f64; $dof], qd: &[f64; $dof], qdd: &[f64; $dof], tau: &mut [f64; $dof],
+                    q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>, tau: &mut Joints<f64>,
                 ) {
                     *tau = super::double(q, qd, qdd);
                 }
@@ -80,20 +89,4 @@ macro_rules! robots {
     };
 }
 
-robots! {
-    cylindrical_rpp[3]: "../../../robots/cylindrical_rpp.yaml";
-    gantry_ppp[3]: "../../../robots/gantry_ppp.yaml";
-    iiwa14[7]: "../../../robots/iiwa14.yaml";
-    panda[7]: "../../../robots/panda.yaml";
-    planar1[1]: "../../../robots/planar1.yaml";
-    planar2[2]: "../../../robots/planar2.yaml";
-    planar3[3]: "../../../robots/planar3.yaml";
-    puma560[6]: "../../../robots/puma560.yaml";
-    puma560_mdh[6]: "../../../robots/puma560_mdh.yaml";
-    scara_cobra600[4]: "../../../robots/scara_cobra600.yaml";
-    spherical_rrp[3]: "../../../robots/spherical_rrp.yaml";
-    stanford[6]: "../../../robots/stanford.yaml";
-    ur5[6]: "../../../robots/ur5.yaml";
-    ur5e[6]: "../../../robots/ur5e.yaml";
-    wam7[7]: "../../../robots/wam7.yaml";
-}
+shipped::for_each_robot!(robots!);

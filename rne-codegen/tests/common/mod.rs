@@ -16,7 +16,7 @@ pub(crate) fn shipped() -> Vec<Robot> {
         .filter(|path| !path.to_string_lossy().ends_with(".plan.yaml"))
         .collect();
     paths.sort();
-    assert_eq!(paths.len(), 15, "the shipped robots");
+    assert!(!paths.is_empty(), "the shipped robots");
     let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
     paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}"))).collect()
 }

@@ -10,7 +10,7 @@
 
 use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
 use ::dynamics::{
-    Actuation, BatchInverseDynamics, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MovingBase, Regressor,
 };
 
@@ -40,6 +40,7 @@ where
     ForwardDynamics,
     Kinematics,
     Energy,
+    CentreOfMass,
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
@@ -75,6 +76,7 @@ pub struct Slides;
     ForwardDynamics,
     Kinematics,
     Energy,
+    CentreOfMass,
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,

@@ -4,8 +4,8 @@
 use std::marker::PhantomData;
 
 use rne::{
-    CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics,
-    MassMatrix, MovingBase, Regressor,
+    CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
+    Kinematics, MassMatrix, MovingBase, Regressor,
 };
 
 /// In double precision.
@@ -16,6 +16,7 @@ use rne::{
     ForwardDynamics,
     Kinematics,
     Energy,
+    CentreOfMass,
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
@@ -68,6 +69,8 @@ fn main() {
     assert!(heavy.gravity_torques(&q)[0].is_finite() && heavy.coriolis_matrix(&q, &qd)[0][1].is_finite());
     assert!(heavy.inverse_dynamics_derivatives(&q, &qd, &qdd).dq[0][0].is_finite());
     assert!(heavy.joint_wrenches(&q, &qd, &qdd)[0].force[2] > light.joint_wrenches(&q, &qd, &qdd)[0].force[2]);
+    let (centre, jacobian) = (heavy.centre_of_mass(&q), heavy.centre_of_mass_jacobian(&q));
+    assert!(centre.iter().chain(jacobian.as_flattened()).all(|x| x.is_finite()));
     assert!(heavy.regressor(&q, &qd, &qdd)[0][0][0].is_finite() && heavy.jacobian(&q)[0][0].is_finite());
     let base = rne::BaseMotion::fixed([0.0, 0.0, -9.81]);
     let moving = heavy.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &base);
