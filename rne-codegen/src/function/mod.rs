@@ -135,8 +135,8 @@ named! {
         SevenSteps = "seven_steps",
         /// Fewest operations: only the torques keep a physical meaning.
         Reduced = "reduced",
-        /// The reduced form after algebraic rewriting, which no longer resembles a recursion. `inverse_dynamics` alone is
-        /// rewritten, and only where a plan file holds the result.
+        /// The reduced form after algebraic rewriting, which no longer resembles a recursion. `inverse_dynamics` alone
+        /// is rewritten, and only where a plan file holds the result.
         Rewritten = "rewritten",
     }
 }
