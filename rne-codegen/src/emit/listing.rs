@@ -52,8 +52,8 @@ pub struct Listing<'a> {
 /// Lines that stand together: what one step has to say of one joint.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Section<'a> {
-    /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no step:
-    /// the constants and angles at the head of a function, what it returns, and a program without sections.
+    /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no
+    /// step: the constants and angles at the head of a function, what it returns, and a program without sections.
     pub of: Option<(usize, Step, Option<By>)>,
     /// Its lines, in order.
     pub lines: Vec<Line<'a>>,

@@ -50,8 +50,8 @@ pub struct BadPrefix;
 impl fmt::Display for BadPrefix {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(
-            "names of functions begin with it and an underscore: a letter from a to z or A to Z, then letters, digits and \
-             single underscores between them, such as `my_arm`",
+            "names of functions begin with it and an underscore: a letter from a to z or A to Z, then letters, digits \
+             and single underscores between them, such as `my_arm`",
         )
     }
 }
