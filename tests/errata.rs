@@ -21,7 +21,7 @@ use arms::{
     prismatic_revolute_state, revolute_prismatic, revolute_prismatic_state, six_joints, six_joints_loaded,
     six_joints_state, tensor, two_rods, two_rods_state,
 };
-use lecture::{Found, Slip, State, place, seven_steps, turn, turn_back};
+use lecture::{ResolvedAs, Slip, State, place, seven_steps, turn, turn_back};
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use rne::{BaseMotion, DynArm, LinkTrace, Wrench};
 use rne_model::Link;
@@ -39,7 +39,7 @@ fn trace(arm: &DynArm, state: &State) -> Vec<LinkTrace<f64>> {
 }
 
 /// The seven steps by the lecture.
-fn lecture(arm: &DynArm, state: &State, slip: Option<Slip>) -> Vec<Found> {
+fn lecture(arm: &DynArm, state: &State, slip: Option<Slip>) -> Vec<ResolvedAs> {
     seven_steps(arm.rows(), state, slip)
 }
 

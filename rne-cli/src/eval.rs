@@ -86,7 +86,7 @@ One number per joint, base to tip: rad for a revolute, m for a prismatic joint; 
 Every function takes exactly its arguments, and nothing is assumed to be zero:
 {of_positions}
 {of_rates}
-  --q --qd --qdd    inverse_dynamics, inverse_dynamics_sc (sines and cosines of --q), regressor,
+  --q --qd --qdd    inverse_dynamics, inverse_dynamics_from_sin_cos (sines and cosines of --q), regressor,
                     inverse_dynamics_derivatives, joint_wrenches;
                     with --wrench inverse_dynamics_with_wrench,
                     with the --base-… options inverse_dynamics_on_moving_base

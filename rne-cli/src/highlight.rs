@@ -17,7 +17,7 @@ pub(crate) fn listing(listing: &Listing) -> String {
             let style = match line {
                 Line::Heading(_) => TITLE,
                 Line::Formula(_) => FORMULA,
-                Line::Turn(_) | Line::Finding { .. } => FOUND,
+                Line::SineCosine(_) | Line::Resolution { .. } => FOUND,
                 Line::Folds(_) => QUIET,
                 Line::Constant(_) | Line::Statement(_) | Line::Returned(_) => {
                     let _ = writeln!(text, "{line}");

@@ -89,7 +89,7 @@ fn chapter(text: &mut String, number: usize, title: &str, about: &str) {
 /// The code of joint 1, where nearly everything folds, and of joint 2, where the lecture's formulas remain.
 fn joints(text: &mut String, robot: &Robot, program: &Program) {
     let left = |joint: usize| {
-        let (products, sums) = program.ledger.total(|line| line.place.joint == joint);
+        let (products, sums) = program.fold_report.total(|line| line.place.joint == joint);
         let kept = program.statements.iter().filter(|statement| statement.place.joint == joint).count();
         (products + sums, kept)
     };

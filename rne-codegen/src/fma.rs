@@ -9,7 +9,7 @@
 //! - A sum of products alone needs one of them to start from. That costs a product, once for all sums that it can
 //!   start.
 //!
-//! Many states one after the other are computed so ([`fused`]). A single call waits for its longest chain of
+//! Many states one after the other are computed so ([`contracted`]). A single call waits for its longest chain of
 //! operations: there the term that comes last should be added last ([`soonest`]).
 
 use std::cmp::Reverse;
@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use crate::ir::name::Name;
 use crate::latency;
-use crate::program::{Expression, Operator, Output, Program, Sign, Statement, Turn};
+use crate::program::{Expression, Operator, Output, Program, Sign, SineCosine, Statement};
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///
@@ -28,11 +28,11 @@ use crate::program::{Expression, Operator, Output, Program, Sign, Statement, Tur
 /// #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
 /// # let robot = rne_model::Robot::from_yaml(yaml).unwrap();
 /// # let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::SevenSteps).unwrap();
-/// let fused = fma::fused(&program);
+/// let fused = fma::contracted(&program);
 /// assert!(fma::instructions(&fused) <= fma::instructions(&program));
 /// ```
 #[must_use]
-pub fn fused(program: &Program) -> Program {
+pub fn contracted(program: &Program) -> Program {
     let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Too);
     let _ = graph.choose_products();
@@ -41,10 +41,10 @@ pub fn fused(program: &Program) -> Program {
 
 /// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
 #[must_use]
-pub fn soonest(program: &Program) -> Program {
+pub fn ordered_for_latency(program: &Program) -> Program {
     let (mut graph, outputs) = Graph::new(program);
     graph.flatten(Named::Not);
-    graph.sort_terms(&program.turns);
+    graph.sort_terms(&program.sines_and_cosines);
     graph.program(program, &outputs)
 }
 
@@ -298,7 +298,7 @@ impl Graph {
         steps
     }
 
-    fn sort_terms(&mut self, turns: &[Turn]) {
+    fn sort_terms(&mut self, turns: &[SineCosine]) {
         let turns: Vec<_> = turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect();
         // nodes stand behind what they use
         let mut known: Vec<usize> = Vec::with_capacity(self.nodes.len());

@@ -95,7 +95,7 @@ impl Interpreter {
         for statement in &program.angles {
             builder.statement(statement);
         }
-        for turn in &program.turns {
+        for turn in &program.sines_and_cosines {
             let angle = builder.expression(&turn.angle);
             let slot = builder.push(Instruction::SineCosine(angle));
             builder.slots += 1;

@@ -51,7 +51,7 @@ struct Ways {
 impl Latency {
     pub(crate) fn new(program: &Program) -> Self {
         let mut latency = Self { known: BTreeMap::new(), rest: BTreeMap::new(), total: 0 };
-        for name in program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten() {
+        for name in program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten() {
             latency.known.insert(name, TURN);
         }
         for statement in &program.statements {
@@ -76,11 +76,11 @@ impl Latency {
 
     /// Whether the product of a contraction is better fused with what it is added to; `rest` follows the sum.
     pub(crate) fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
-        let Ways { fused, apart } = self.ways(contraction);
+        let Ways { fused, apart } = self.algorithms(contraction);
         fused <= apart || apart + rest + SPARE < self.total
     }
 
-    fn ways(&self, Contraction { factors: [x, y], addend, .. }: &Contraction<'_>) -> Ways {
+    fn algorithms(&self, Contraction { factors: [x, y], addend, .. }: &Contraction<'_>) -> Ways {
         let (addend, factors) = (self.at(addend), self.at(x).max(self.at(y)));
         Ways { fused: addend.max(factors) + PRODUCT, apart: addend.max(factors + PRODUCT) + SUM }
     }
@@ -92,7 +92,7 @@ impl Latency {
             Expression::Negative(a) => self.at(a),
             Expression::Binary(operator, a, b) => match Contraction::of(expression) {
                 Some(contraction) => {
-                    let Ways { fused, apart } = self.ways(&contraction);
+                    let Ways { fused, apart } = self.algorithms(&contraction);
                     fused.min(apart)
                 }
                 None => self.at(a).max(self.at(b)) + cycles(*operator),
@@ -112,7 +112,7 @@ impl Latency {
             Expression::Negative(a) => self.follow(a, rest),
             Expression::Binary(operator, a, b) => match Contraction::of(expression) {
                 Some(contraction) => {
-                    let Ways { fused, apart } = self.ways(&contraction);
+                    let Ways { fused, apart } = self.algorithms(&contraction);
                     let (sum, product) = if fused <= apart { (PRODUCT, PRODUCT) } else { (SUM, SUM + PRODUCT) };
                     self.follow(contraction.addend, rest + sum);
                     contraction.factors.into_iter().for_each(|factor| self.follow(factor, rest + product));

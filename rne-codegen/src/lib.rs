@@ -40,16 +40,17 @@ pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
 };
 pub use interpret::{Arguments, Interpreter, Real};
-pub use ir::ledger::{Cause, Causes, Fate, Ledger, Line, Operation, Place};
-pub use ir::name::{By, Name};
+pub use ir::fold_report::{Cause, Causes, Fold, FoldReport, Line, Operation, Place};
+pub use ir::name::{Name, WithRespectTo};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
 pub use named::UnknownName;
 pub use pipeline::Target;
 pub use program::{
-    Constant, Expression, Finding, Found, Operations, Operator, Output, Program, Proof, Sign, Statement, Turn,
+    Constant, Expression, Operations, Operator, Output, Program, Proof, Resolution, ResolvedAs, Sign, SineCosine,
+    Statement,
 };
-pub use reduced::algorithm::Way;
-pub use reduced::inward::Gathering;
+pub use reduced::algorithm::Algorithm;
+pub use reduced::inward::BodiesPer;
 
 use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
 use crate::plan::PlanSet;

@@ -6,12 +6,14 @@ use rne_model::Robot;
 
 use crate::CompileError;
 use crate::function::{Form, Function};
-use crate::ir::ledger::{Operation, Place};
+use crate::ir::fold_report::{Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Quantity, Step};
-use crate::ir::{Number, Op, Ref, Traced, Turn as Angle};
-use crate::program::{Constant, Exactly, Expression, Finding, Found, Operator, Output, Program, Sign, Statement, Turn};
-use crate::reduced::algorithm::Way;
+use crate::ir::{ExactAngle, Number, Op, Ref, Traced};
+use crate::program::{
+    Constant, Exactly, Expression, Operator, Output, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement,
+};
+use crate::reduced::algorithm::Algorithm;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
@@ -33,11 +35,11 @@ pub(crate) fn lower(
     let outputs: Vec<(Name, Ref)> = names.iter().copied().zip(written.graph.outputs.iter().copied()).collect();
     let uses = count_uses(&written);
     drop_unused(&mut written, &uses);
-    let schedule = Schedule::new(&written, uses);
-    let constants = schedule.constants()?;
-    let exactly = constants.iter().map(|(constant, at)| (constant.name, schedule.exactly(constant, *at))).collect();
-    let mut statements = schedule.statements();
-    let outputs = schedule.outputs(&outputs, &mut statements);
+    let lowering = Lowering::new(&written, uses);
+    let constants = lowering.constants()?;
+    let exactly = constants.iter().map(|(constant, at)| (constant.name, lowering.exactly(constant, *at))).collect();
+    let mut statements = lowering.statements();
+    let outputs = lowering.outputs(&outputs, &mut statements);
     statements.sort_by_key(|&(position, _)| position);
     let statements = statements.into_iter().map(|(_, statement)| statement);
     let (angles, statements) = statements.partition(|statement| statement.name.quantity.is_of_an_angle());
@@ -47,15 +49,15 @@ pub(crate) fn lower(
         parameters: heading.robot.run_time.names.len(),
         function: heading.function,
         form: heading.form,
-        arguments: schedule.arguments(),
+        arguments: lowering.arguments(),
         constants: constants.into_iter().map(|(constant, _)| constant).collect(),
         angles,
-        turns: schedule.turns(),
+        sines_and_cosines: lowering.sines_and_cosines(),
         statements,
         outputs,
-        findings: schedule.findings(),
-        ledger: written.trace.ledger,
-        algorithm: Way::default(),
+        resolutions: lowering.resolutions(),
+        fold_report: written.trace.fold_report,
+        algorithm: Algorithm::default(),
         is_rewritten: false,
         choices: Vec::new(),
         proof: None,
@@ -96,7 +98,7 @@ fn drop_unused(written: &mut Traced, uses: &[usize]) {
         if uses[at.index()] == 0
             && let Some(birth) = &written.trace.births[at.index()]
         {
-            written.trace.ledger.drop_unused(birth.place, operation);
+            written.trace.fold_report.drop_unused(birth.place, operation);
         }
     }
 }
@@ -108,7 +110,7 @@ struct Given {
     negative: bool,
 }
 
-struct Schedule<'w> {
+struct Lowering<'w> {
     written: &'w Traced,
     uses: Vec<usize>,
     is_output: Vec<bool>,
@@ -117,7 +119,7 @@ struct Schedule<'w> {
     signs: HashMap<Name, bool>,
 }
 
-impl<'w> Schedule<'w> {
+impl<'w> Lowering<'w> {
     fn new(written: &'w Traced, uses: Vec<usize>) -> Self {
         let mut is_output = vec![false; uses.len()];
         for at in &written.graph.outputs {
@@ -125,10 +127,10 @@ impl<'w> Schedule<'w> {
         }
         let definitions = written.trace.definitions.iter();
         let signs = definitions.map(|definition| (definition.name, definition.at.is_negative())).collect();
-        let mut schedule = Self { written, names: vec![None; uses.len()], uses, is_output, signs };
-        schedule.take_given_names();
-        schedule.name_shared_terms();
-        schedule
+        let mut lowering = Self { written, names: vec![None; uses.len()], uses, is_output, signs };
+        lowering.take_given_names();
+        lowering.name_shared_terms();
+        lowering
     }
 
     /// A node takes the first name it was given; a letter of the lecture wins over an auxiliary name of the same step.
@@ -219,7 +221,7 @@ impl<'w> Schedule<'w> {
     }
 
     /// What a constant under its name is.
-    fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<Angle>) {
+    fn exactly(&self, constant: &Constant, at: Ref) -> (Number, Option<ExactAngle>) {
         let at = at.magnitude().signed(constant.value < 0.0);
         let is_angle = matches!(constant.name.quantity, Quantity::Theta | Quantity::GroupTheta);
         let turn = if is_angle { self.written.graph.turn(at) } else { None };
@@ -304,8 +306,8 @@ impl<'w> Schedule<'w> {
     }
 
     /// The sines and cosines, in the order in which they were asked for.
-    fn turns(&self) -> Vec<Turn> {
-        let mut turns: Vec<(Ref, Turn)> = Vec::new();
+    fn sines_and_cosines(&self) -> Vec<SineCosine> {
+        let mut turns: Vec<(Ref, SineCosine)> = Vec::new();
         for (id, node) in self.live_nodes() {
             let (Op::Sine(angle) | Op::Cosine(angle)) = node else { continue };
             let name = self.names[id.index()].map(|given| given.name);
@@ -313,7 +315,7 @@ impl<'w> Schedule<'w> {
             let index = known.unwrap_or_else(|| {
                 let joint = name.map_or(0, |name| name.joint);
                 let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine, by: None };
-                turns.push((angle, Turn { place, sine: None, cosine: None, angle: self.expression(angle) }));
+                turns.push((angle, SineCosine { place, sine: None, cosine: None, angle: self.expression(angle) }));
                 turns.len() - 1
             });
             let turn = &mut turns[index].1;
@@ -359,7 +361,7 @@ impl<'w> Schedule<'w> {
         returned
     }
 
-    fn findings(&self) -> Vec<Finding> {
+    fn resolutions(&self) -> Vec<Resolution> {
         let mut seen = BTreeSet::new();
         let definitions = self.written.trace.definitions.iter().filter(|definition| seen.insert(definition.name));
         definitions
@@ -368,16 +370,16 @@ impl<'w> Schedule<'w> {
                 let value = match self.written.graph.op(node) {
                     Op::Constant(_) => {
                         let magnitude = self.magnitude(node);
-                        Found::Constant(if negative { -magnitude } else { magnitude }, definition.causes.clone())
+                        ResolvedAs::Constant(if negative { -magnitude } else { magnitude }, definition.causes.clone())
                     }
-                    _ if !self.is_live(node) => Found::Unused,
+                    _ if !self.is_live(node) => ResolvedAs::Unused,
                     _ => match self.names[node.index()] {
-                        Some(given) if given.name == definition.name => Found::Computed,
-                        Some(given) => Found::Same(given.name, sign(given.negative != negative)),
-                        None => Found::Inside,
+                        Some(given) if given.name == definition.name => ResolvedAs::Computed,
+                        Some(given) => ResolvedAs::Same(given.name, sign(given.negative != negative)),
+                        None => ResolvedAs::Inside,
                     },
                 };
-                Finding { name: definition.name, value }
+                Resolution { name: definition.name, value }
             })
             .collect()
     }

@@ -8,7 +8,7 @@ use crate::formulate;
 use crate::function::{Form, Function};
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Cost, Policy, Reading, Traced};
+use crate::ir::{Builder, Cost, Embedding, Policy, Traced};
 use crate::lower::{Heading, lower};
 use crate::program::{Exactly, Program};
 use crate::prove::{self, Reference};
@@ -20,19 +20,19 @@ pub(crate) const LARGEST: usize = 500_000;
 /// What a program is arranged for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// The shortest wait for the result of one call ([`fma::soonest`]); the fewest instructions where a program is so
+    /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a program is so
     /// long that they matter more.
     #[default]
     Latency,
-    /// The fewest instructions of a machine with fused multiply-add ([`fma::fused`]), as batches want.
+    /// The fewest instructions of a machine with fused multiply-add ([`fma::contracted`]), as batches want.
     Throughput,
 }
 
 impl Target {
     fn arranged(self, program: &Program) -> Program {
         match self {
-            Self::Latency if !program.is_long() => fma::soonest(program),
-            Self::Latency | Self::Throughput => fma::fused(program),
+            Self::Latency if !program.is_long() => fma::ordered_for_latency(program),
+            Self::Latency | Self::Throughput => fma::contracted(program),
         }
     }
 }
@@ -46,7 +46,7 @@ pub(crate) struct Formulation {
 impl Formulation {
     /// The plain formulas of a function.
     pub(crate) fn plain(policy: Policy, robot: &Robot, function: Function) -> Self {
-        let builder = Builder::traced(policy, Reading::default(), function);
+        let builder = Builder::traced(policy, Embedding::default(), function);
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
         Self { names, traced: builder.finish(outputs) }
     }
@@ -59,8 +59,8 @@ impl Formulation {
     }
 
     /// How its constants are read in the fields of the proof.
-    pub(crate) fn reading(&self) -> Reading {
-        self.traced.graph.reading()
+    pub(crate) fn embedding(&self) -> Embedding {
+        self.traced.graph.embedding()
     }
 
     /// Its operations.
@@ -80,10 +80,10 @@ impl Formulation {
         target: Target,
         reference: &Reference<'_>,
     ) -> Result<Program, CompileError> {
-        let reading = self.reading();
+        let embedding = self.embedding();
         let (program, exactly) = self.lowered(reference.robot(), function)?;
         let mut program = target.arranged(&program);
-        program.proof = Some(prove::prove(reference, &program, &exactly, reading)?);
+        program.proof = Some(prove::prove(reference, &program, &exactly, embedding)?);
         Ok(program)
     }
 }

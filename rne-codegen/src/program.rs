@@ -7,10 +7,10 @@ use std::collections::{HashMap, HashSet};
 use crate::CompileError;
 use crate::emit;
 use crate::function::{Form, Function};
-use crate::ir::ledger::{Causes, Ledger, Place};
+use crate::ir::fold_report::{Causes, FoldReport, Place};
 use crate::ir::name::Name;
-use crate::ir::{Number, Turn as ConstantTurn};
-use crate::reduced::algorithm::Way;
+use crate::ir::{ExactAngle, Number};
+use crate::reduced::algorithm::Algorithm;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,17 +32,17 @@ pub struct Program {
     /// Angles that are sums, each using only what stands before it.
     pub angles: Vec<Statement>,
     /// The sines and cosines of all joint angles, evaluated at once.
-    pub turns: Vec<Turn>,
+    pub sines_and_cosines: Vec<SineCosine>,
     /// The statements, each using only what stands before it.
     pub statements: Vec<Statement>,
     /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
     pub outputs: Vec<Output>,
     /// What every quantity of the recursion became, in its order.
-    pub findings: Vec<Finding>,
+    pub resolutions: Vec<Resolution>,
     /// What became of every operation of the recursion.
-    pub ledger: Ledger,
+    pub fold_report: FoldReport,
     /// By which algorithm it is written.
-    pub algorithm: Way,
+    pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.
     pub is_rewritten: bool,
     /// The choices of a program that is not the seven steps, one line each.
@@ -70,7 +70,7 @@ pub struct Proof {
 }
 
 /// What a constant of a program is exactly, as a number and, if it is an angle, as a turn.
-pub(crate) type Exactly = HashMap<Name, (Number, Option<ConstantTurn>)>;
+pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
 #[derive(Clone, Debug, PartialEq)]
@@ -103,7 +103,7 @@ pub struct Statement {
 
 /// Sine and cosine of an angle; a name is `None` when it is not used.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Turn {
+pub struct SineCosine {
     /// Joint and quantity that it belongs to.
     pub place: Place,
     /// Name of the sine.
@@ -153,16 +153,16 @@ pub struct Output {
 
 /// What a component of a quantity became.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
+pub struct Resolution {
     /// The component.
     pub name: Name,
     /// What it became.
-    pub value: Found,
+    pub value: ResolvedAs,
 }
 
 /// What a component of a quantity became in the code.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Found {
+pub enum ResolvedAs {
     /// It is computed by the statement of its own name.
     Computed,
     /// It is another name, or its negative: an earlier statement or an argument.
@@ -206,7 +206,7 @@ impl Program {
     /// [`CompileError::TwoOfOneName`], with the first such name.
     pub fn check_names(&self) -> Result<(), CompileError> {
         let mut taken: HashSet<String> = emit::locals(self).map(str::to_owned).collect();
-        let turns = self.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
+        let turns = self.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         let constants = self.constants.iter().map(|constant| constant.name);
         let statements = self.angles.iter().chain(&self.statements).map(|statement| statement.name);
         let names = self.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
@@ -224,7 +224,7 @@ impl Program {
     /// (products, sums) of the seven steps before folding, step 3 included.
     #[must_use]
     pub fn before(&self) -> (usize, usize) {
-        self.proof.map_or_else(|| self.ledger.before(), |proof| proof.before)
+        self.proof.map_or_else(|| self.fold_report.before(), |proof| proof.before)
     }
 
     /// The values of the statements, then those returned.
@@ -236,7 +236,7 @@ impl Program {
     /// The values of sums of angles, then the angles whose sines and cosines are evaluated.
     pub(crate) fn angle_values(&self) -> impl Iterator<Item = &Expression> {
         let angles = self.angles.iter().map(|statement| &statement.value);
-        angles.chain(self.turns.iter().map(|turn| &turn.angle))
+        angles.chain(self.sines_and_cosines.iter().map(|turn| &turn.angle))
     }
 
     /// Whether a value is chosen by a sign somewhere.
@@ -252,7 +252,7 @@ impl Program {
 
     /// Whether it is written by composite or articulated bodies.
     pub(crate) const fn is_of_bodies(&self) -> bool {
-        matches!(self.algorithm, Way::Composite(_) | Way::Articulated(_))
+        matches!(self.algorithm, Algorithm::Crba(_) | Algorithm::Aba(_))
     }
 
     /// Whether the processor is longer busy reading the instructions than waiting for the longest chain of them: then
@@ -268,8 +268,8 @@ impl Program {
     #[must_use]
     pub fn operations(&self) -> Operations {
         // all sines and cosines are one statement
-        let statements = self.angles.len() + usize::from(!self.turns.is_empty()) + self.statements.len();
-        let mut count = Operations { statements, sincos: self.turns.len(), ..Operations::default() };
+        let statements = self.angles.len() + usize::from(!self.sines_and_cosines.is_empty()) + self.statements.len();
+        let mut count = Operations { statements, sincos: self.sines_and_cosines.len(), ..Operations::default() };
         for part in self.angle_values().chain(self.values()).flat_map(Expression::parts) {
             match part {
                 Expression::Binary(Operator::Sum | Operator::Difference, ..) => count.add += 1,

@@ -11,7 +11,7 @@ use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Graph, Image, Input, Op, Point, Policy, Reading, Ref, operators};
+use crate::ir::{Builder, Embedding, Graph, Input, Op, Policy, Ref, Residue, SamplePoint, operators};
 use crate::program::{Exactly, Program, Proof};
 use crate::{CompileError, Suspect};
 
@@ -83,10 +83,10 @@ pub(crate) fn prove(
     reference: &Reference<'_>,
     program: &Program,
     constants: &Exactly,
-    reading: Reading,
+    embedding: Embedding,
 ) -> Result<Proof, CompileError> {
     program.check_names()?;
-    identical(reference.robot, program, constants, reading)?;
+    identical(reference.robot, program, constants, embedding)?;
     let proof = rounding(reference, program);
     if proof.rounding <= largest_rounding(program.function) {
         Ok(proof)
@@ -105,12 +105,12 @@ pub(crate) fn identical(
     robot: &Robot,
     program: &Program,
     constants: &Exactly,
-    reading: Reading,
+    embedding: Embedding,
 ) -> Result<(), CompileError> {
-    let plain = Plain::new(robot, program.function, reading);
+    let plain = Plain::new(robot, program.function, embedding);
     let interpreter = Interpreter::new(program);
     for index in 1..=POINTS {
-        let point = Point::new(reading, index);
+        let point = SamplePoint::new(embedding, index);
         let expected = plain.outputs(&point);
         let found = values(robot, &interpreter, constants, &point);
         let differs = |index: &usize| found.as_ref().and_then(|found| found.get(*index)) != expected.get(*index);
@@ -125,61 +125,61 @@ pub(crate) fn identical(
 /// Whether the plain formulas of a function divide by what is zero in every state: no inverse of a mass matrix that is
 /// always singular is the same function as another.
 pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
-    let reading = Reading::default();
-    let plain = Plain::new(robot, function, reading);
-    let images = plain.images(&Point::new(reading, 1));
-    plain.0.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if images[b.index()].is_zero()))
+    let embedding = Embedding::default();
+    let plain = Plain::new(robot, function, embedding);
+    let residues = plain.residues(&SamplePoint::new(embedding, 1));
+    plain.0.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if residues[b.index()].is_zero()))
 }
 
 /// The plain formulas, as they are written.
 struct Plain(Graph);
 
 impl Plain {
-    fn new(robot: &Robot, function: Function, reading: Reading) -> Self {
-        let builder = Builder::untraced(Policy::Structure, reading, function);
+    fn new(robot: &Robot, function: Function, embedding: Embedding) -> Self {
+        let builder = Builder::untraced(Policy::Structure, embedding, function);
         let outputs = formulate::outputs(&builder, robot, function).into_iter().map(|(_, at)| at).collect();
         Self(builder.finish(outputs).graph)
     }
 
     /// By node.
-    fn images(&self, point: &Point) -> Vec<Image> {
-        let mut images: Vec<Image> = Vec::with_capacity(self.0.len());
+    fn residues(&self, point: &SamplePoint) -> Vec<Residue> {
+        let mut residues: Vec<Residue> = Vec::with_capacity(self.0.len());
         for (_, op) in self.0.nodes() {
-            images.push(self.0.image_at(op, &images, point));
+            residues.push(self.0.image_at(op, &residues, point));
         }
-        images
+        residues
     }
 
-    fn outputs(&self, point: &Point) -> Vec<Image> {
-        let images = self.images(point);
-        let image = |at: &Ref| {
-            let image = images[at.index()];
-            if at.is_negative() { -image } else { image }
+    fn outputs(&self, point: &SamplePoint) -> Vec<Residue> {
+        let residues = self.residues(point);
+        let residue = |at: &Ref| {
+            let residue = residues[at.index()];
+            if at.is_negative() { -residue } else { residue }
         };
-        self.0.outputs.iter().map(image).collect()
+        self.0.outputs.iter().map(residue).collect()
     }
 }
 
-fn signed((sine, cosine): (Image, Image), negative: bool) -> (Image, Image) {
+fn signed((sine, cosine): (Residue, Residue), negative: bool) -> (Residue, Residue) {
     (if negative { -sine } else { sine }, cosine)
 }
 
 /// The addition theorem.
-fn composed((s, c): (Image, Image), (sine, cosine): (Image, Image)) -> (Image, Image) {
+fn composed((s, c): (Residue, Residue), (sine, cosine): (Residue, Residue)) -> (Residue, Residue) {
     (s * cosine + c * sine, c * cosine - s * sine)
 }
 
 /// A number of a field that may be an angle: then it has a sine and a cosine.
 #[derive(Clone, Copy)]
 struct Value {
-    number: Image,
-    turn: (Image, Image),
+    number: Residue,
+    turn: (Residue, Residue),
 }
 
 impl Value {
     /// A number that is no angle: its sine would be wrong whatever it is.
-    const fn number(number: Image) -> Self {
-        Self { number, turn: (Image::ZERO, Image::ZERO) }
+    const fn number(number: Residue) -> Self {
+        Self { number, turn: (Residue::ZERO, Residue::ZERO) }
     }
 }
 
@@ -188,17 +188,17 @@ operators! { Value:
     -a => Self { number: -a.number, turn: signed(a.turn, true) };
     a - b => a + -b;
     a * b => Self::number(a.number * b.number);
-    a / b => Self::number(a.number * b.number.inverse().unwrap_or(Image::ZERO));
+    a / b => Self::number(a.number * b.number.inverse().unwrap_or(Residue::ZERO));
 }
 
 impl Real for Value {
     /// No rational function: an unknown, the same for the same operands.
     fn by_sign(self, positive: Self, negative: Self) -> Self {
-        Self::number(Image::by_sign([self, positive, negative].map(|value| value.number)))
+        Self::number(Residue::by_sign([self, positive, negative].map(|value| value.number)))
     }
 }
 
-fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
+fn argument(robot: &Robot, point: &SamplePoint, name: Name) -> Value {
     let kind = || robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.row.kind);
     if name.quantity == Quantity::Position && kind() == Some(JointKind::Revolute) {
         let index = name.joint - 1;
@@ -208,7 +208,7 @@ fn argument(robot: &Robot, point: &Point, name: Name) -> Value {
 }
 
 /// What a program returns at a point.
-fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Point) -> Option<Vec<Image>> {
+fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &SamplePoint) -> Option<Vec<Residue>> {
     let dof = robot.dof();
     let joints = |quantity| -> Vec<Value> {
         (1..=dof).map(|joint| argument(robot, point, Name::scalar(quantity, joint))).collect()
@@ -226,13 +226,13 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Poi
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
         parameters: &parameters,
-        ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Image::ZERO))
+        ..Arguments::of_joints(&q, &qd, &qdd, Value::number(Residue::ZERO))
     };
     let constant = |name: Option<Name>, _| {
-        let Some(name) = name else { return Some(Value::number(Image::ZERO)) };
+        let Some(name) = name else { return Some(Value::number(Residue::ZERO)) };
         let (number, turn) = constants.get(&name)?;
-        let turn = turn.map_or((Image::ZERO, Image::ZERO), |turn| (turn.sin.image, turn.cos.image));
-        Some(Value { number: number.image, turn })
+        let turn = turn.map_or((Residue::ZERO, Residue::ZERO), |turn| (turn.sin.residue, turn.cos.residue));
+        Some(Value { number: number.residue, turn })
     };
     let sin_cos = |angle: Value| (Value::number(angle.turn.0), Value::number(angle.turn.1));
     let outputs = program.run_named(&arguments, constant, sin_cos)?;
@@ -247,7 +247,7 @@ fn rounding(reference: &Reference<'_>, program: &Program) -> Proof {
         rounding: 0.0,
         single: 0.0,
         single_of_seven_steps: 0.0,
-        before: reference.faithful.ledger.before(),
+        before: reference.faithful.fold_report.before(),
     };
     for errors in errors(reference, program, STATES) {
         proof.rounding = larger(proof.rounding, errors.double);

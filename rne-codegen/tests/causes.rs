@@ -9,7 +9,7 @@ mod common;
 use std::collections::{BTreeMap, BTreeSet};
 
 use common::shipped;
-use rne_codegen::{Axis, Cause, Compiler, Component, Form, Found, Function, Name, Quantity};
+use rne_codegen::{Axis, Cause, Compiler, Component, Form, Function, Name, Quantity, ResolvedAs};
 use rne_model::{Angle, Entry, Formula, InertiaElement, JointKind, Robot};
 
 /// A number of the robot file that can be another one.
@@ -55,11 +55,11 @@ fn changed<'c>(robot: &Robot, changes: impl IntoIterator<Item = &'c Change>) -> 
 /// Whether each component is zero, with the causes.
 fn zeros(robot: &Robot, function: Function) -> BTreeMap<Name, Option<Vec<Cause>>> {
     let program = Compiler::new(robot).compile(function, Form::SevenSteps).expect("finite constants");
-    let of = |found: &Found| match found {
-        Found::Constant(value, causes) if *value == 0.0 => Some(causes.iter().collect()),
+    let of = |found: &ResolvedAs| match found {
+        ResolvedAs::Constant(value, causes) if *value == 0.0 => Some(causes.iter().collect()),
         _ => None,
     };
-    program.findings.iter().map(|finding| (finding.name, of(&finding.value))).collect()
+    program.resolutions.iter().map(|resolution| (resolution.name, of(&resolution.value))).collect()
 }
 
 /// The component of the table that a cause says is zero.

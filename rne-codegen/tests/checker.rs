@@ -8,7 +8,7 @@ const CHECKED: [&str; 7] = ["reduced", "plan", "lower", "fma", "latency", "emit"
 
 /// What the checker needs of the representation: to write the seven steps, and to take residues.
 const OF_THE_REPRESENTATION: [&str; 10] =
-    ["name", "quantity", "operators", "Builder", "Graph", "Image", "Input", "Op", "Point", "Policy"];
+    ["name", "quantity", "operators", "Builder", "Graph", "Residue", "Input", "Op", "SamplePoint", "Policy"];
 
 #[derive(Default)]
 struct Paths(Vec<Vec<String>>);
@@ -54,7 +54,7 @@ fn the_checker_imports_no_pass() {
         assert!(!CHECKED.contains(&module), "prove.rs uses {}", path.join("::"));
         if module == "ir" {
             let of = path[2].as_str();
-            let known = OF_THE_REPRESENTATION.contains(&of) || ["Reading", "Ref"].contains(&of);
+            let known = OF_THE_REPRESENTATION.contains(&of) || ["Embedding", "Ref"].contains(&of);
             assert!(known, "prove.rs uses {}: is it a pass?", path.join("::"));
         }
     }

@@ -136,7 +136,7 @@ fn operators_in_the_text_are_what_the_counts_say() {
 fn no_name_of_a_function_is_given_twice() {
     for (robot, programs) in emitted() {
         for program in programs {
-            let turns = program.turns.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
+            let turns = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
             let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
             let constants = program.constants.iter().map(|constant| constant.name);
             let names = program.arguments.iter().copied().chain(constants).chain(turns).chain(statements);

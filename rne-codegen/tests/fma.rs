@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 fn check_definitions(program: &Program) {
     let mut known: BTreeSet<Name> = program.arguments.iter().copied().collect();
     known.extend(program.constants.iter().map(|constant| constant.name));
-    known.extend(program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
+    known.extend(program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
     let mut used = BTreeSet::new();
     for statement in &program.statements {
         let operands: BTreeSet<Name> = statement.value.names().collect();
@@ -27,7 +27,7 @@ fn check_definitions(program: &Program) {
 fn every_program_takes_fewer_instructions_and_no_more_sums() {
     for (_, programs) in compiled() {
         for program in programs {
-            let fused = fma::fused(&program);
+            let fused = fma::contracted(&program);
             check_definitions(&fused);
             let (before, after) = (program.operations(), fused.operations());
             assert!(fma::instructions(&fused) <= fma::instructions(&program), "{}", program.robot);
@@ -43,12 +43,23 @@ fn every_program_takes_fewer_instructions_and_no_more_sums() {
 fn the_shortest_wait_has_the_same_operations_under_the_same_names() {
     for (_, programs) in compiled() {
         for program in programs.into_iter().filter(|program| program.form != Form::SevenSteps) {
-            let soonest = fma::soonest(&program);
-            check_definitions(&soonest);
-            assert_eq!(soonest.operations(), program.operations(), "{} of {}", program.function, program.robot);
+            let ordered_for_latency = fma::ordered_for_latency(&program);
+            check_definitions(&ordered_for_latency);
+            assert_eq!(
+                ordered_for_latency.operations(),
+                program.operations(),
+                "{} of {}",
+                program.function,
+                program.robot
+            );
             let names = |program: &Program| program.statements.iter().map(|s| s.name).collect::<Vec<_>>();
-            assert_eq!(names(&soonest), names(&program), "{} of {}", program.function, program.robot);
-            assert!(fma::soonest(&soonest) == soonest, "{} of {}", program.function, program.robot);
+            assert_eq!(names(&ordered_for_latency), names(&program), "{} of {}", program.function, program.robot);
+            assert!(
+                fma::ordered_for_latency(&ordered_for_latency) == ordered_for_latency,
+                "{} of {}",
+                program.function,
+                program.robot
+            );
         }
     }
 }

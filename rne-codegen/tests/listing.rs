@@ -72,12 +72,12 @@ fn a_step_has_a_heading_its_formulas_and_what_folded() {
 
 #[test]
 fn a_program_knows_its_algorithm() {
-    use rne_codegen::Way;
+    use rne_codegen::Algorithm;
 
     let (robot, program) = puma(Form::Reduced);
-    assert_eq!(program.algorithm, Way::Recursion);
+    assert_eq!(program.algorithm, Algorithm::Rnea);
     let mass_matrix = Compiler::new(&robot).compile(Function::MassMatrix, Form::Reduced).expect("finite constants");
-    assert!(matches!(mass_matrix.algorithm, Way::Composite(_)), "{:?}", mass_matrix.algorithm);
+    assert!(matches!(mass_matrix.algorithm, Algorithm::Crba(_)), "{:?}", mass_matrix.algorithm);
     let listing = listing(&robot, &mass_matrix, everything());
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
     assert!(lines.clone().all(|line| !matches!(line, Line::Formula(_))), "composite bodies have formulas of their own");

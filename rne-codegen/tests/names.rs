@@ -64,7 +64,7 @@ fn two_variables_of_one_name_are_refused() {
         same.statements[from].name = program.statements[to].name;
         assert_eq!(refused(&same), program.statements[to].name.to_string());
     }
-    for name in [program.constants[0].name, program.arguments[0], program.turns[0].sine.unwrap()] {
+    for name in [program.constants[0].name, program.arguments[0], program.sines_and_cosines[0].sine.unwrap()] {
         let mut same = program.clone();
         same.statements[0].name = name;
         assert_eq!(refused(&same), name.to_string());

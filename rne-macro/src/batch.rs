@@ -76,7 +76,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
             }
         };
     };
-    let [dof, angle_count] = [program.dof, program.turns.len()].map(Literal::usize_unsuffixed);
+    let [dof, angle_count] = [program.dof, program.sines_and_cosines.len()].map(Literal::usize_unsuffixed);
     let scalar = quote!(#krate::Scalar);
     let body = emit::Body::new(&program, &scalar);
     let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };

@@ -149,7 +149,7 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
-    fn inverse_dynamics_sc<T: Scalar>(
+    fn inverse_dynamics_from_sin_cos<T: Scalar>(
         &self,
         sin: &[T; DOF],
         cos: &[T; DOF],

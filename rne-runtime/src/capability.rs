@@ -31,7 +31,7 @@ pub trait InverseDynamics<const DOF: usize> {
     /// pass: `sin[i]` and `cos[i]` are those of `q[i]` of a revolute joint, without the constant part of its angle;
     /// those of a prismatic joint are not used, as `q[i]` of a revolute joint is not.
     #[must_use]
-    fn inverse_dynamics_sc<T: Scalar>(
+    fn inverse_dynamics_from_sin_cos<T: Scalar>(
         &self,
         sin: &[T; DOF],
         cos: &[T; DOF],

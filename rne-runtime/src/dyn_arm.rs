@@ -141,7 +141,7 @@ impl<S: Constant> DynArm<S> {
     ///
     /// # Errors
     /// When an argument does not have one element per joint.
-    pub fn inverse_dynamics_sc<T: Scalar>(
+    pub fn inverse_dynamics_from_sin_cos<T: Scalar>(
         &self,
         sin: &[T],
         cos: &[T],

@@ -58,8 +58,8 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
         Function::InverseDynamicsWithWrench => {
             robot.inverse_dynamics_with_wrench(q, qd, qdd, &Wrench { force, moment }).to_vec()
         }
-        Function::InverseDynamicsSc => {
-            robot.inverse_dynamics_sc(&array(&given.sine), &array(&given.cosine), q, qd, qdd).to_vec()
+        Function::InverseDynamicsFromSinCos => {
+            robot.inverse_dynamics_from_sin_cos(&array(&given.sine), &array(&given.cosine), q, qd, qdd).to_vec()
         }
         Function::GravityTorques => robot.gravity_torques(q).to_vec(),
         Function::BiasTorques => robot.bias_torques(q, qd).to_vec(),

@@ -124,7 +124,7 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivatives
                 | Function::JointWrenches => "q, qd, qdd",
                 Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
-                Function::InverseDynamicsSc => "sine, cosine, q, qd, qdd",
+                Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
                 Function::GravityTorques
                 | Function::MassMatrix
                 | Function::ForwardKinematics

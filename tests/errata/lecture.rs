@@ -69,7 +69,7 @@ pub(crate) struct State {
 
 /// What the seven steps find for link i, in frame i.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Found {
+pub(crate) struct ResolvedAs {
     /// ω_i
     pub(crate) omega: Vector3<f64>,
     /// ω̇_i
@@ -169,7 +169,7 @@ pub(crate) fn place(rows: &[Row], q: &[f64], slip: Option<Slip>) -> Vec<Placed> 
 }
 
 /// The seven steps for the standard table `rows`, correct when `slip` is `None`.
-pub(crate) fn seven_steps(rows: &[Row], state: &State, slip: Option<Slip>) -> Vec<Found> {
+pub(crate) fn seven_steps(rows: &[Row], state: &State, slip: Option<Slip>) -> Vec<ResolvedAs> {
     let links = place(rows, &state.q, slip);
     let mut found = forward(rows, &links, state, slip);
     backward(rows, &links, state, slip, &mut found);
@@ -177,11 +177,11 @@ pub(crate) fn seven_steps(rows: &[Row], state: &State, slip: Option<Slip>) -> Ve
 }
 
 /// Steps 1 to 5.
-fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) -> Vec<Found> {
+fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) -> Vec<ResolvedAs> {
     let e = axis(slip);
     let mut all = Vec::new();
     // Link 0 rests in frame 1.
-    let mut prev = Found { gravity: state.gravity.into(), ..Found::default() };
+    let mut prev = ResolvedAs { gravity: state.gravity.into(), ..ResolvedAs::default() };
     if slip == Some(Slip::E13GroundFrame) {
         prev.gravity = links[0].turn.transpose() * prev.gravity;
     }
@@ -200,7 +200,7 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) ->
             Revolute => qt * prev.omega + rate * e,
             Prismatic => qt * prev.omega,
         };
-        let mut this = Found { omega, ..Found::default() };
+        let mut this = ResolvedAs { omega, ..ResolvedAs::default() };
 
         // Step 2, R: ω̇_i = Q_{i-1}ᵀ ω̇_{i-1} + θ̈_i e_i + θ̇_i ω_i × e_i   P: the first term
         let right_side = match row.kind {
@@ -240,7 +240,7 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) ->
 }
 
 /// Steps 6 and 7.
-fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, found: &mut [Found]) {
+fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, found: &mut [ResolvedAs]) {
     let e = axis(slip);
     // f_{i,i+1} and n_{i,i+1}, in frame i+1
     let (mut force, mut moment) = state.wrench.vectors();

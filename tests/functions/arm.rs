@@ -313,9 +313,9 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
     let numbers = match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
-        Function::InverseDynamicsSc => {
+        Function::InverseDynamicsFromSinCos => {
             let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
-            arm.inverse_dynamics_sc(&sin, &cos, q, qd, qdd)
+            arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)
         }
         Function::GravityTorques => arm.gravity_torques(q),
         Function::BiasTorques => arm.bias_torques(q, qd),

@@ -17,7 +17,7 @@ use crate::golden::ROBOTS;
 const SAME_BITS: [Function; 13] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
-    Function::InverseDynamicsSc,
+    Function::InverseDynamicsFromSinCos,
     Function::GravityTorques,
     Function::BiasTorques,
     Function::MassMatrix,
@@ -52,7 +52,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     match function {
         Function::InverseDynamics
         | Function::InverseDynamicsWithWrench
-        | Function::InverseDynamicsSc
+        | Function::InverseDynamicsFromSinCos
         | Function::InverseDynamicsOnMovingBase
         | Function::GravityTorques
         | Function::BiasTorques

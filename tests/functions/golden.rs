@@ -40,7 +40,7 @@ fn functions_of_the_shipped_robots_are_the_independent_ones() {
             };
             for (what, function, key) in [
                 ("torques", Function::InverseDynamics, "tau"),
-                ("torques of sines", Function::InverseDynamicsSc, "tau"),
+                ("torques of sines", Function::InverseDynamicsFromSinCos, "tau"),
                 ("tip wrench", Function::InverseDynamicsWithWrench, "tau_wrench"),
                 ("gravity", Function::GravityTorques, "gravity"),
             ] {

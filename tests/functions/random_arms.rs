@@ -64,7 +64,7 @@ fn arm(seed: u64, form: Form) -> Arm {
 fn texts(program: &Program) -> Vec<String> {
     let constants = program.constants.iter().map(|constant| constant.name);
     let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
-    let turns = program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
+    let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
     let names = program.arguments.iter().copied().chain(constants).chain(statements).chain(turns);
     names.map(|name| name.to_string()).collect()
 }

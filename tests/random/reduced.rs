@@ -3,7 +3,7 @@
 
 use fastrand::Rng;
 use rne::{Arm, DynArm, InverseDynamics, Wrench};
-use rne_codegen::plan::{JointPlan, Moment, Plan, PlanSet, Scale, Side, Slide, Target};
+use rne_codegen::plan::{JointPlan, Moment, OriginShift, Plan, PlanSet, RegroupingTarget, Scale, Side};
 use rne_codegen::{CompileError, Compiler, Form, Function, Program};
 use rne_model::Robot;
 
@@ -41,7 +41,7 @@ fn random_plan(rng: &mut Rng, dof: usize, rarity: usize) -> Plan {
     }
     for joint in &mut plan.joints {
         let mut is_made = || rng.usize(..rarity) == 0;
-        let [gauge, slide, outward, inward, moment] = [(); 5].map(|()| is_made());
+        let [targets, origin_shift, outward, inward, moment] = [(); 5].map(|()| is_made());
         let on = &mut joint.switches;
         for switch in [
             &mut on.axis_column,
@@ -60,10 +60,10 @@ fn random_plan(rng: &mut Rng, dof: usize, rarity: usize) -> Plan {
             *switch = is_made();
         }
         let plain = JointPlan::default();
-        if gauge {
-            joint.gauge = [0, 1, 2].map(|target| one(rng, Target::CHOICES[target]));
+        if targets {
+            joint.targets = [0, 1, 2].map(|target| one(rng, RegroupingTarget::CHOICES[target]));
         }
-        joint.slide = if slide { one(rng, Slide::ALL) } else { plain.slide };
+        joint.origin_shift = if origin_shift { one(rng, OriginShift::ALL) } else { plain.origin_shift };
         joint.outward_offset = if outward { one(rng, Side::ALL) } else { plain.outward_offset };
         joint.inward_offset = if inward { Side::Parent } else { plain.inward_offset };
         joint.moment = if moment { one(rng, Moment::ALL) } else { plain.moment };

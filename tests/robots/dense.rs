@@ -32,9 +32,9 @@ fn torques_of_dense_arms_are_the_independent_ones() {
                     Function::InverseDynamicsWithWrench => {
                         (array("tau_wrench"), arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench))
                     }
-                    Function::InverseDynamicsSc => {
+                    Function::InverseDynamicsFromSinCos => {
                         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
-                        (array("tau"), arm.inverse_dynamics_sc(&sin, &cos, &q, &qd, &qdd))
+                        (array("tau"), arm.inverse_dynamics_from_sin_cos(&sin, &cos, &q, &qd, &qdd))
                     }
                     Function::GravityTorques => (array("grav"), arm.gravity_torques(&q)),
                     Function::BiasTorques => (array("nle"), arm.bias_torques(&q, &qd)),

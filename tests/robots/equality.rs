@@ -23,8 +23,8 @@ impl Visitor for Equality {
             let (sin, cos) = (turns.map(|turn| turn.0), turns.map(|turn| turn.1));
             let equal = [
                 (
-                    robot.inverse_dynamics_sc(&sin, &cos, &q, &qd, &qdd),
-                    arm.inverse_dynamics_sc(&sin, &cos, &q, &qd, &qdd),
+                    robot.inverse_dynamics_from_sin_cos(&sin, &cos, &q, &qd, &qdd),
+                    arm.inverse_dynamics_from_sin_cos(&sin, &cos, &q, &qd, &qdd),
                 ),
                 (robot.inverse_dynamics(&q, &qd, &qdd), arm.inverse_dynamics(&q, &qd, &qdd)),
                 (

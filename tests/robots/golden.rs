@@ -34,7 +34,7 @@ impl Visitor for Golden {
             let bias = std::array::from_fn(|joint| gravity[joint] + coriolis[joint]);
             for (function, expected) in [
                 (Function::InverseDynamics, array("tau")),
-                (Function::InverseDynamicsSc, array("tau")),
+                (Function::InverseDynamicsFromSinCos, array("tau")),
                 (Function::InverseDynamicsWithWrench, array("tau_wrench")),
                 (Function::GravityTorques, gravity),
                 (Function::BiasTorques, bias),
@@ -66,9 +66,9 @@ pub(crate) fn call<const DOF: usize>(
     match function {
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => robot.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
-        Function::InverseDynamicsSc => {
+        Function::InverseDynamicsFromSinCos => {
             let turns = q.map(Scalar::sin_cos);
-            robot.inverse_dynamics_sc(&turns.map(|turn| turn.0), &turns.map(|turn| turn.1), q, qd, qdd)
+            robot.inverse_dynamics_from_sin_cos(&turns.map(|turn| turn.0), &turns.map(|turn| turn.1), q, qd, qdd)
         }
         Function::GravityTorques => robot.gravity_torques(q),
         Function::BiasTorques => robot.bias_torques(q, qd),

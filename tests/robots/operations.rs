@@ -35,7 +35,7 @@ fn counts_are_those_of_a_faithful_unrolling() {
         println!("{robot:24} {}/{} = {}, independent {independent}", counted.mul, counted.add, counted.total());
         let difference = counted.total().abs_diff(independent);
         assert!(100 * difference <= 3 * independent, "{robot}: {} against {independent}", counted.total());
-        assert_eq!(program.ledger.after(), (counted.mul, counted.add), "{robot}: the ledger's balance");
+        assert_eq!(program.fold_report.after(), (counted.mul, counted.add), "{robot}: the ledger's balance");
     }
 }
 

@@ -30,7 +30,7 @@ impl Visitor for Golden {
             let (gravity, coriolis) = (array("gravity"), array("coriolis"));
             for (function, expected) in [
                 (Function::InverseDynamics, array("tau")),
-                (Function::InverseDynamicsSc, array("tau")),
+                (Function::InverseDynamicsFromSinCos, array("tau")),
                 (Function::InverseDynamicsWithWrench, array("tau_wrench")),
                 (Function::GravityTorques, gravity),
                 (Function::BiasTorques, std::array::from_fn(|joint| gravity[joint] + coriolis[joint])),

@@ -97,7 +97,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
     vec![
         ("inverse_dynamics", robot.inverse_dynamics(q, qd, qdd).to_vec()),
         ("inverse_dynamics_with_wrench", robot.inverse_dynamics_with_wrench(q, qd, qdd, &wrench).to_vec()),
-        ("inverse_dynamics_sc", robot.inverse_dynamics_sc(&sin, &cos, q, qd, qdd).to_vec()),
+        ("inverse_dynamics_from_sin_cos", robot.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd).to_vec()),
         ("gravity_torques", robot.gravity_torques(q).to_vec()),
         ("bias_torques", robot.bias_torques(q, qd).to_vec()),
         ("mass_matrix", robot.mass_matrix(q).concat()),

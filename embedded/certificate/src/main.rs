@@ -184,4 +184,4 @@ const C: &str = "\
 `rne emit --lang c`, `float`, compiled with `-Wall -Wextra -Wconversion -Werror -pedantic`. The sine and cosine are one
 function here, which is called for each angle: instructions are those of all calls, bytes those of one copy. The
 functions of the PUMA 560 in the table before are compared in the same way and agree in every bit, with their sines and
-cosines given (`inverse_dynamics_sc`) or not.";
+cosines given (`inverse_dynamics_from_sin_cos`) or not.";

@@ -106,7 +106,7 @@ fn all_functions_compile_and_compute_the_same() {
             &[full, &["--wrench", wrench]],
             "q, qd, qdd, &[3., -2., 1.], &[0.1, 0.2, 0.5]",
         ),
-        ("inverse_dynamics_sc", &[full], "&q.map(f64::sin), &q.map(f64::cos), q, qd, qdd"),
+        ("inverse_dynamics_from_sin_cos", &[full], "&q.map(f64::sin), &q.map(f64::cos), q, qd, qdd"),
         ("gravity_torques", &[positions], "q"),
         ("bias_torques", &[rates], "q, qd"),
         ("mass_matrix", &[positions], "q"),

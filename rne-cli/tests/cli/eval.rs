@@ -175,7 +175,7 @@ fn every_function_has_the_shape_of_its_trait() {
     let arm = Arm::<6>::from_file(format!("{ROOT}/{PUMA}")).expect("a robot");
     let full = "q qd qdd";
     same(&of_puma("inverse_dynamics", full, &[]), &json!(arm.inverse_dynamics(&Q, &QD, &QDD)));
-    same(&of_puma("inverse_dynamics_sc", full, &[]), &json!(arm.inverse_dynamics(&Q, &QD, &QDD)));
+    same(&of_puma("inverse_dynamics_from_sin_cos", full, &[]), &json!(arm.inverse_dynamics(&Q, &QD, &QDD)));
     let wrench = Wrench { force: [3.0, -2.0, 1.0], moment: [0.1, 0.2, 0.5] };
     let with_wrench = of_puma("inverse_dynamics_with_wrench", full, &["--wrench", "3,-2,1,0.1,0.2,0.5"]);
     same(&with_wrench, &json!(arm.inverse_dynamics_with_wrench(&Q, &QD, &QDD, &wrench)));

@@ -14,10 +14,10 @@ use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
 use crate::function::{Form, Function};
-use crate::ir::ledger::{self, Cause, Causes, Fate, Ledger, Place};
-use crate::ir::name::{By, Name};
+use crate::ir::fold_report::{self, Cause, Causes, Fold, FoldReport, Place};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Quantity, Step};
-use crate::program::{Constant, Finding, Found, Program, Sign, Statement, Turn};
+use crate::program::{Constant, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement};
 
 /// Which part of a program to list, and how much to say.
 #[derive(Clone, Copy, Debug, Default)]
@@ -54,7 +54,7 @@ pub struct Listing<'a> {
 pub struct Section<'a> {
     /// The joint and the step, and of which variable the statements are derivatives; `None` for what belongs to no
     /// step: the constants and angles at the head of a function, what it returns, and a program without sections.
-    pub of: Option<(usize, Step, Option<By>)>,
+    pub of: Option<(usize, Step, Option<WithRespectTo>)>,
     /// Its lines, in order.
     pub lines: Vec<Line<'a>>,
 }
@@ -69,11 +69,11 @@ pub enum Line<'a> {
     /// A number that stands in no table.
     Constant(&'a Constant),
     /// Which sine and cosine stand at the head of the function.
-    Turn(&'a Turn),
+    SineCosine(&'a SineCosine),
     /// A statement.
     Statement(&'a Statement),
     /// What components became that are no statement.
-    Finding {
+    Resolution {
         /// The components.
         names: Vec<Name>,
         /// What they became, with the sign or word between.
@@ -135,7 +135,7 @@ impl Line<'_> {
                 let value = Annotated::part(Part::Number, format!("{value:?}"));
                 Annotated::default() + indent + declaration(syntax, *name) + " " + value + ";"
             }
-            Self::Turn(Turn { sine, cosine, angle, .. }) => {
+            Self::SineCosine(SineCosine { sine, cosine, angle, .. }) => {
                 let what = match (sine, cosine) {
                     (Some(_), Some(_)) => "sine and cosine",
                     (Some(_), None) => "sine",
@@ -147,7 +147,7 @@ impl Line<'_> {
             Self::Statement(Statement { name, value, .. }) => {
                 written(syntax, indent, declaration(syntax, *name), value)
             }
-            Self::Finding { names: found, became } => names(found) + became.clone(),
+            Self::Resolution { names: found, became } => names(found) + became.clone(),
             Self::Folds(folds) => folds.to_string().into(),
             Self::Returned(code) => Annotated::default() + indent + code.clone(),
         }
@@ -209,7 +209,7 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     let mut sections = Vec::new();
     for (joint, step) in outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step)) {
         let here = |place: &Place| place.joint == joint && place.step == step;
-        let turns = program.turns.iter().filter(|turn| here(&turn.place)).map(Line::Turn);
+        let turns = program.sines_and_cosines.iter().filter(|turn| here(&turn.place)).map(Line::SineCosine);
         let statements = program.statements.iter().filter(|statement| here(&statement.place)).map(Line::Statement);
         let code: Vec<Line> = turns.chain(statements).collect();
         if code.is_empty() && !what.explain {
@@ -218,8 +218,8 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         let mut lines = heading(robot, program, joint, step);
         lines.extend(code);
         if what.explain {
-            lines.extend(findings(robot, program, joint, step));
-            lines.extend(folds(robot, &program.ledger, here, what.reasons).map(Line::Folds));
+            lines.extend(resolutions(robot, program, joint, step));
+            lines.extend(folds(robot, &program.fold_report, here, what.reasons).map(Line::Folds));
         }
         sections.push(Section { of: Some((joint, step, None)), lines });
     }
@@ -232,7 +232,7 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     if what.is_everything() {
         let constants = program.constants.iter().map(Line::Constant);
         let angles = program.angles.iter().map(Line::Statement);
-        let turns = program.turns.iter().map(Line::Turn);
+        let turns = program.sines_and_cosines.iter().map(Line::SineCosine);
         sections.push(Section { of: None, lines: constants.chain(angles).chain(turns).collect() });
     }
     let mut last_opening = None;
@@ -280,15 +280,15 @@ fn shown_place(program: &Program, statement: &Statement) -> Place {
 }
 
 /// The heading of derivatives, and of what one joint accelerates.
-fn by_title(program: &Program, joint: usize, step: Step, by: By) -> String {
+fn by_title(program: &Program, joint: usize, step: Step, by: WithRespectTo) -> String {
     let what = match step {
         Step::Beyond => format!("joint {joint}"),
         _ => step_title(program, joint, step),
     };
     match by {
-        By::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
-        By::Position(by) => format!("{what}, by q{by}"),
-        By::Rate(by) => format!("{what}, by q̇{by}"),
+        WithRespectTo::RateDot(by) => format!("{what}, for q̈{by} = 1 alone"),
+        WithRespectTo::Position(by) => format!("{what}, by q{by}"),
+        WithRespectTo::Rate(by) => format!("{what}, by q̇{by}"),
     }
 }
 
@@ -345,9 +345,9 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
     format!("{of}, step {}: {title}", step.number())
 }
 
-fn findings<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
+fn resolutions<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let mut groups: Vec<(Annotated, Vec<Name>)> = Vec::new();
-    for Finding { name, value } in &program.findings {
+    for Resolution { name, value } in &program.resolutions {
         let quantity = name.quantity;
         if name.joint != joint || quantity.step() != Some(step) || !quantity.is_of_the_lecture() {
             continue;
@@ -358,44 +358,46 @@ fn findings<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> V
             None => groups.push((became, vec![*name])),
         }
     }
-    groups.into_iter().map(|(became, names)| Line::Finding { names, became }).collect()
+    groups.into_iter().map(|(became, names)| Line::Resolution { names, became }).collect()
 }
 
-fn became(robot: &Robot, name: Name, found: &Found) -> Option<Annotated> {
+fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
     let words = match found {
         // the statement says it
-        Found::Computed => return None,
-        Found::Same(..) if name.quantity == Quantity::Torque => return None,
-        Found::Same(other, sign) => {
+        ResolvedAs::Computed => return None,
+        ResolvedAs::Same(..) if name.quantity == Quantity::Torque => return None,
+        ResolvedAs::Same(other, sign) => {
             let sign = if *sign == Sign::Minus { "-" } else { "" };
             return Some(Annotated::default() + " = " + sign + *other);
         }
-        Found::Constant(0.0, causes) => format!(" = 0: {}", why(robot, causes, 0)),
-        Found::Constant(value, causes) if causes.iter().any(|cause| matches!(cause, Cause::GravityDirection(_))) => {
+        ResolvedAs::Constant(0.0, causes) => format!(" = 0: {}", why(robot, causes, 0)),
+        ResolvedAs::Constant(value, causes)
+            if causes.iter().any(|cause| matches!(cause, Cause::GravityDirection(_))) =>
+        {
             format!(" = {value}: gravity in frame 0")
         }
-        Found::Constant(value, _) => format!(" = {value}, of constants"),
-        Found::Inside => ": inside the statement that uses it".to_owned(),
-        Found::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
-        Found::Unused => ": not needed".to_owned(),
+        ResolvedAs::Constant(value, _) => format!(" = {value}, of constants"),
+        ResolvedAs::Inside => ": inside the statement that uses it".to_owned(),
+        ResolvedAs::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
+        ResolvedAs::Unused => ": not needed".to_owned(),
     };
     Some(words.into())
 }
 
 /// How many operations are left at the places that pass, and why the others are not there.
-fn folds(robot: &Robot, ledger: &Ledger, here: impl Fn(&Place) -> bool, most: Option<usize>) -> Option<Folds> {
-    let before = ledger.total(|line| here(&line.place));
-    let left = ledger.total(|line| here(&line.place) && line.fate == Fate::Kept);
+fn folds(robot: &Robot, fold_report: &FoldReport, here: impl Fn(&Place) -> bool, most: Option<usize>) -> Option<Folds> {
+    let before = fold_report.total(|line| here(&line.place));
+    let left = fold_report.total(|line| here(&line.place) && line.fold == Fold::Kept);
     let mut reasons: BTreeMap<String, usize> = BTreeMap::new();
-    for ledger::Line { fate, count, .. } in ledger.lines().filter(|line| here(&line.place)) {
-        let reason = match fate {
-            Fate::Kept => continue,
-            Fate::Zero(cause) => one_cause(robot, cause, 0),
-            Fate::One(cause) => one_cause(robot, cause, 1),
-            Fate::Constant => "constants".to_owned(),
-            Fate::Cancelled => "x - x".to_owned(),
-            Fate::Shared => "computed before".to_owned(),
-            Fate::Unused => "not needed".to_owned(),
+    for fold_report::Line { fold, count, .. } in fold_report.lines().filter(|line| here(&line.place)) {
+        let reason = match fold {
+            Fold::Kept => continue,
+            Fold::Zero(cause) => one_cause(robot, cause, 0),
+            Fold::One(cause) => one_cause(robot, cause, 1),
+            Fold::Constant => "constants".to_owned(),
+            Fold::Cancelled => "x - x".to_owned(),
+            Fold::Shared => "computed before".to_owned(),
+            Fold::Unused => "not needed".to_owned(),
         };
         *reasons.entry(reason).or_default() += count;
     }

@@ -96,7 +96,7 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
     text.push_str("}\n```\n\n");
     text.push_str(
         "`core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take\n\
-         `inverse_dynamics_sc`, whose sines and cosines are arguments, and which never calls it.\n",
+         `inverse_dynamics_from_sin_cos`, whose sines and cosines are arguments, and which never calls it.\n",
     );
     text.lines().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect()
 }
@@ -117,7 +117,7 @@ pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     for program in programs {
         let constants = program.constants.iter().map(|constant| constant.name);
         let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
-        let turns = program.turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
+        let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         // functions that mean different things by a name have a line each
         names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
             let own = program.function.own(quantity).and_then(|own| own.meaning);
@@ -157,7 +157,7 @@ fn function(robot: &Robot, program: &Program) -> String {
     for constant in &program.constants {
         let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
     }
-    if !program.turns.is_empty() {
+    if !program.sines_and_cosines.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
             let _ = writeln!(text, "{}", Line::Statement(statement));
@@ -256,10 +256,10 @@ impl Piece {
 
 /// The one statement that evaluates all sines and cosines, broken as rustfmt does.
 fn turns(program: &Program) -> String {
-    let sines = names(program.turns.iter().map(|turn| turn.sine));
-    let cosines = names(program.turns.iter().map(|turn| turn.cosine));
-    let angles = Annotated::join(program.turns.iter().map(|turn| line(Syntax::Rust, &turn.angle)), ", ");
-    if program.turns.len() == 1 {
+    let sines = names(program.sines_and_cosines.iter().map(|turn| turn.sine));
+    let cosines = names(program.sines_and_cosines.iter().map(|turn| turn.cosine));
+    let angles = Annotated::join(program.sines_and_cosines.iter().map(|turn| line(Syntax::Rust, &turn.angle)), ", ");
+    if program.sines_and_cosines.len() == 1 {
         return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
     }
     let (left, right) = (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));

@@ -80,7 +80,7 @@ impl<'a> Body<'a> {
         let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
-        let turns = self.program.turns.iter().map(|turn| self.expression(&turn.angle, None));
+        let turns = self.program.sines_and_cosines.iter().map(|turn| self.expression(&turn.angle, None));
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
@@ -91,7 +91,7 @@ impl<'a> Body<'a> {
         let used: BTreeSet<Name> = self.program.values().flat_map(Expression::names).collect();
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
-        let turns = if self.program.turns.is_empty() {
+        let turns = if self.program.sines_and_cosines.is_empty() {
             quote!(let _ = (sin, cos);)
         } else {
             let [sines, cosines] = self.turn_names();
@@ -139,8 +139,8 @@ impl<'a> Body<'a> {
 
     /// The names of the sines and of the cosines, as patterns of arrays.
     fn turn_names(&self) -> [TokenStream; 2] {
-        let sines = self.program.turns.iter().map(|turn| name_or_underscore(turn.sine));
-        let cosines = self.program.turns.iter().map(|turn| name_or_underscore(turn.cosine));
+        let sines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.sine));
+        let cosines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.cosine));
         [quote!([#(#sines),*]), quote!([#(#cosines),*])]
     }
 
@@ -148,8 +148,8 @@ impl<'a> Body<'a> {
     fn turns(&self) -> TokenStream {
         let scalar = self.scalar;
         let [sines, cosines] = self.turn_names();
-        let angles = self.program.turns.iter().map(|turn| self.plain(&turn.angle));
-        match &self.program.turns[..] {
+        let angles = self.program.sines_and_cosines.iter().map(|turn| self.plain(&turn.angle));
+        match &self.program.sines_and_cosines[..] {
             [] => TokenStream::new(),
             [turn] => {
                 let (sine, cosine) = (name_or_underscore(turn.sine), name_or_underscore(turn.cosine));

@@ -6,7 +6,7 @@ use crate::formulate::arm::number;
 use crate::formulate::joint::JointState;
 use crate::ir::Builder;
 use crate::ir::Symbol;
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 

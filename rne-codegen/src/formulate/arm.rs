@@ -16,7 +16,7 @@ use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Ro
 
 use crate::function::Argument;
 use crate::ir::Builder;
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Matrix, Symbol, Vector};

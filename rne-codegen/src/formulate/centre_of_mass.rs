@@ -11,7 +11,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::Arm;
 use crate::formulate::kinematics::Frames;
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Symbol, Vector};

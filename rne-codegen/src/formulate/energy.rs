@@ -5,7 +5,7 @@
 use crate::formulate::arm::Arm;
 use crate::formulate::kinematics::Frames;
 use crate::formulate::seven_steps::Motion;
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Symbol, Vector};

@@ -4,8 +4,8 @@ use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
 use crate::formulate::seven_steps::{self, Motion, Wrench};
 use crate::ir::Symbol;
-use crate::ir::ledger::Cause;
-use crate::ir::name::By;
+use crate::ir::fold_report::Cause;
+use crate::ir::name::WithRespectTo;
 
 /// The upper half of M: row i holds its elements (i, i) to (i, n). Element (i, j) is torque i for q̈ = e_j, `taui_qddj`.
 ///
@@ -23,8 +23,8 @@ pub(crate) fn upper_half<'s>(arm: &Arm<'s>, states: &[JointState<'s>]) -> Vec<Ve
     for column in 0..dof {
         let mut moved = still.clone();
         moved[column].qdd = one;
-        let loads =
-            builder.by(Some(By::RateDot(column + 1)), || seven_steps::inverse_dynamics(arm, &moved, &base, &tip));
+        let loads = builder
+            .by(Some(WithRespectTo::RateDot(column + 1)), || seven_steps::inverse_dynamics(arm, &moved, &base, &tip));
         for (row, load) in rows.iter_mut().zip(&loads).take(column + 1) {
             row.push(load.torque);
         }

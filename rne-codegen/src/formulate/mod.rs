@@ -18,8 +18,8 @@ use crate::formulate::joint::JointState;
 use crate::formulate::kinematics::{Frame, Frames};
 use crate::formulate::seven_steps::{Load, Motion, Wrench};
 use crate::function::{Argument, Function};
-use crate::ir::ledger::Cause;
-use crate::ir::name::{By, Name};
+use crate::ir::fold_report::Cause;
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Component, Quantity};
 use crate::ir::{Builder, Ref, Symbol, Vector};
 
@@ -30,7 +30,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
     let outputs = match function {
         Function::InverseDynamics
         | Function::InverseDynamicsWithWrench
-        | Function::InverseDynamicsSc
+        | Function::InverseDynamicsFromSinCos
         | Function::GravityTorques
         | Function::BiasTorques
         | Function::InverseDynamicsOnMovingBase => derivation.torques(),
@@ -134,7 +134,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let upper = mass_matrix::upper_half(&self.arm, &self.states);
         square(self.states.len(), |row, column| {
             let (row, column) = (row.min(column), row.max(column));
-            let name = Name { by: Some(By::RateDot(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
+            let name = Name { by: Some(WithRespectTo::RateDot(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
             (name, upper[row][column - row])
         })
     }
@@ -144,7 +144,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
         let torques = self.tau();
         let dof = torques.len();
         let half = self.builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
-        let columns = self.builder.derivatives(&torques, (1..=dof).map(By::Rate));
+        let columns = self.builder.derivatives(&torques, (1..=dof).map(WithRespectTo::Rate));
         square(dof, |row, column| {
             let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
             let line = self.builder.joint(row + 1);
@@ -220,14 +220,14 @@ impl<'s, 'r> Derivation<'s, 'r> {
     fn derivatives(&self) -> Outputs<'s> {
         let torques = self.tau();
         let dof = torques.len();
-        let by = |kind: fn(usize) -> By| {
+        let by = |kind: fn(usize) -> WithRespectTo| {
             let columns = self.builder.derivatives(&torques, (1..=dof).map(kind));
             square(dof, |row, column| {
                 let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                 (name, columns[column][row])
             })
         };
-        [by(By::Position), by(By::Rate)].concat()
+        [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
     }
 
     fn joint_wrenches(&self) -> Outputs<'s> {

@@ -12,7 +12,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
 use crate::formulate::seven_steps::{Motion, Turning};
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Matrix, Symbol, Vector};

@@ -10,7 +10,7 @@
 
 use crate::formulate::arm::{Arm, Mount, identity};
 use crate::formulate::joint::{Joint, JointState};
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
 

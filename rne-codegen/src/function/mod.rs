@@ -50,7 +50,7 @@ impl Function {
     pub const TORQUES: [Self; 5] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWithWrench,
-        Self::InverseDynamicsSc,
+        Self::InverseDynamicsFromSinCos,
         Self::GravityTorques,
         Self::BiasTorques,
     ];

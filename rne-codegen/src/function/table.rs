@@ -17,7 +17,7 @@ named! {
         /// τ(q, q̇, q̈) when the last link exerts a wrench on its environment.
         InverseDynamicsWithWrench = "inverse_dynamics_with_wrench",
         /// τ(q, q̇, q̈) from the sines and cosines of the positions.
-        InverseDynamicsSc = "inverse_dynamics_sc",
+        InverseDynamicsFromSinCos = "inverse_dynamics_from_sin_cos",
         /// τ(q, 0, 0).
         GravityTorques = "gravity_torques",
         /// τ(q, q̇, 0).
@@ -122,7 +122,7 @@ pub(crate) const TABLE: &[Entry] = &[
         details: "sine[i], cosine[i]: those of q[i], without the constant part of the joint's angle. Those of a \
             prismatic joint are not used, as q[i] of a revolute joint is not.",
         arguments: &[Sines, Cosines, Positions, Rates, Accelerations],
-        ..Entry::torques(Function::InverseDynamicsSc, Capability::InverseDynamics)
+        ..Entry::torques(Function::InverseDynamicsFromSinCos, Capability::InverseDynamics)
     },
     Entry {
         summary: "Torques that hold the arm still against gravity, τ(q, 0, 0).",
@@ -164,7 +164,7 @@ pub(crate) const TABLE: &[Entry] = &[
     },
     Entry {
         summary: "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
-        details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
+        details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that neighbourhood nothing) gives \
             numbers that are not finite.",
         arguments: &[Positions, Rates, Torques],
         shape: VECTOR,
@@ -172,7 +172,7 @@ pub(crate) const TABLE: &[Entry] = &[
         answer: Answer::Accelerations,
         divides: Some(
             "the accelerations are not finite: the mass matrix is singular \
-             (a joint moves no mass), or the state is too large",
+             (a joint neighbourhood no mass), or the state is too large",
         ),
         ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
     },

@@ -1,6 +1,6 @@
 //! Sums, products and quotients on a graph, folded as far as its policy allows.
 
-use super::{Graph, Image, Op, Outcome, Policy, Ref, Side};
+use super::{Graph, Op, Outcome, Policy, Ref, Residue, Side};
 
 impl Graph {
     /// a + b
@@ -17,14 +17,14 @@ impl Graph {
         if a == -b {
             return (self.zero(), Outcome::Cancelled);
         }
-        let image = self.image(a) + self.image(b);
+        let residue = self.residue(a) + self.residue(b);
         if self.policy == Policy::Structure {
-            return self.sum_as_written(a, b, image);
+            return self.sum_as_written(a, b, residue);
         }
-        if image.is_zero() {
+        if residue.is_zero() {
             return (self.zero(), Outcome::Cancelled);
         }
-        if let Some(known) = self.numbered(image) {
+        if let Some(known) = self.numbered(residue) {
             return (known, Outcome::Shared);
         }
         // c₁ x + c₂ x = (c₁ + c₂) x
@@ -37,12 +37,12 @@ impl Graph {
         let (a, b) = if a.index() > b.index() { (b, a) } else { (a, b) };
         let negative = a.is_negative();
         let op = Op::Sum(a.signed(negative), b.signed(negative));
-        let (at, outcome) = self.intern(op, if negative { -image } else { image });
+        let (at, outcome) = self.intern(op, if negative { -residue } else { residue });
         (at.signed(negative), outcome)
     }
 
     /// A sum that keeps the order of its operands, for those who read it.
-    fn sum_as_written(&mut self, a: Ref, b: Ref, image: Image) -> (Ref, Outcome) {
+    fn sum_as_written(&mut self, a: Ref, b: Ref, residue: Residue) -> (Ref, Outcome) {
         // pull out the sign of the first operand: (-a) + b = -(a - b)
         let mut negative = a.is_negative();
         let (mut a, mut b) = (a.signed(negative), b.signed(negative));
@@ -51,7 +51,7 @@ impl Graph {
             (a, b) = (-b, -a);
             negative = !negative;
         }
-        let (at, outcome) = self.intern(Op::Sum(a, b), if negative { -image } else { image });
+        let (at, outcome) = self.intern(Op::Sum(a, b), if negative { -residue } else { residue });
         (at.signed(negative), outcome)
     }
 
@@ -89,8 +89,8 @@ impl Graph {
                 return (at.signed(negative), outcome);
             }
         }
-        let image = self.image(a) * self.image(b);
-        self.node(Op::Product(a, b), image, negative)
+        let residue = self.residue(a) * self.residue(b);
+        self.node(Op::Product(a, b), residue, negative)
     }
 
     /// a / b. Only what is exact whatever b is folds; what is divided by zero is left to the code, whose result is not
@@ -104,8 +104,8 @@ impl Graph {
         }
         let negative = a.is_negative() != b.is_negative();
         let (a, b) = (a.magnitude(), b.magnitude());
-        let image = self.image(a) * self.image(b).inverse().unwrap_or(Image::ZERO);
-        self.node(Op::Quotient(a, b), image, negative)
+        let residue = self.residue(a) * self.residue(b).inverse().unwrap_or(Residue::ZERO);
+        self.node(Op::Quotient(a, b), residue, negative)
     }
 
     /// `positive` where x > 0, `negative` where x < 0, else 0.
@@ -114,8 +114,8 @@ impl Graph {
             return (self.zero(), Outcome::Constants);
         }
         let operands = [x, positive, negative];
-        let image = Image::by_sign(operands.map(|at| self.image(at)));
-        self.node(Op::BySign(operands), image, false)
+        let residue = Residue::by_sign(operands.map(|at| self.residue(at)));
+        self.node(Op::BySign(operands), residue, false)
     }
 
     /// A term as a constant times something: the something, and the constant as a reference.
@@ -134,16 +134,16 @@ mod tests {
     use super::*;
     use crate::ir::name::Name;
     use crate::ir::quantity::Quantity;
-    use crate::ir::{Input, Number, Reading};
+    use crate::ir::{Embedding, Input, Number};
 
     fn inputs(policy: Policy) -> (Graph, Ref, Ref) {
-        let mut graph = Graph::new(policy, Reading::default());
+        let mut graph = Graph::new(policy, Embedding::default());
         let [a, b] = [0, 1].map(|joint| graph.input(Input::new(Name::scalar(Quantity::Rate, joint + 1))));
         (graph, a, b)
     }
 
     fn constant(graph: &mut Graph, value: f64) -> Ref {
-        graph.constant(graph.reading().decimal(value))
+        graph.constant(graph.embedding().decimal(value))
     }
 
     #[test]

@@ -5,10 +5,10 @@ use std::cell::{Cell, RefCell};
 use rne_model::{Angle, Joint};
 
 use super::trace::{Birth, Definition, Trace, Traced};
-use super::{CausesId, Graph, Input, Matrix, Number, Outcome, Policy, Reading, Ref, Symbol, Turn, Vector};
+use super::{CausesId, Embedding, ExactAngle, Graph, Input, Matrix, Number, Outcome, Policy, Ref, Symbol, Vector};
 use crate::function::Function;
-use crate::ir::ledger::{Cause, Operation, Place};
-use crate::ir::name::{By, Name};
+use crate::ir::fold_report::{Cause, Operation, Place};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
@@ -18,7 +18,7 @@ pub(crate) struct Builder {
     /// The function that is being written: what it does not take is zero.
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
-    by: Cell<Option<By>>,
+    by: Cell<Option<WithRespectTo>>,
     /// The one joint that accelerates, counted from 0, while a column of the mass matrix is written; nothing moves
     /// then.
     pub(crate) accelerating: Cell<Option<usize>>,
@@ -26,14 +26,14 @@ pub(crate) struct Builder {
 
 impl Builder {
     /// An empty graph with a trace.
-    pub(crate) fn traced(policy: Policy, reading: Reading, function: Function) -> Self {
-        Self { trace: Some(RefCell::default()), ..Self::untraced(policy, reading, function) }
+    pub(crate) fn traced(policy: Policy, embedding: Embedding, function: Function) -> Self {
+        Self { trace: Some(RefCell::default()), ..Self::untraced(policy, embedding, function) }
     }
 
     /// An empty graph that nobody reads.
-    pub(crate) fn untraced(policy: Policy, reading: Reading, function: Function) -> Self {
+    pub(crate) fn untraced(policy: Policy, embedding: Embedding, function: Function) -> Self {
         Self {
-            graph: RefCell::new(Graph::new(policy, reading)),
+            graph: RefCell::new(Graph::new(policy, embedding)),
             trace: None,
             function,
             by: Cell::new(None),
@@ -47,12 +47,12 @@ impl Builder {
     }
 
     /// Starts anew, for another reading of the numbers.
-    pub(crate) fn restart(&mut self, reading: Reading) {
-        self.graph.get_mut().clear(reading);
+    pub(crate) fn restart(&mut self, embedding: Embedding) {
+        self.graph.get_mut().clear(embedding);
     }
 
-    fn reading(&self) -> Reading {
-        self.graph.borrow().reading()
+    fn embedding(&self) -> Embedding {
+        self.graph.borrow().embedding()
     }
 
     /// A value without a cause as a symbol.
@@ -71,7 +71,7 @@ impl Builder {
     }
 
     /// A constant angle.
-    pub(crate) fn angle(&self, turn: Turn) -> Symbol<'_> {
+    pub(crate) fn angle(&self, turn: ExactAngle) -> Symbol<'_> {
         self.symbol(self.graph.borrow_mut().angle(turn))
     }
 
@@ -92,7 +92,7 @@ impl Builder {
 
     /// Sine and cosine of a constant angle.
     pub(crate) fn constant_turn(&self, angle: &Angle, cause: Cause) -> (Symbol<'_>, Symbol<'_>) {
-        let turn = self.reading().turn(angle);
+        let turn = self.embedding().turn(angle);
         // the runtime's sine and cosine, where numbers are rounded as there
         let [sine, cosine] = [(turn.sin, angle.sin), (turn.cos, angle.cos)].map(|(exact, value)| {
             let number = self.rounded(exact, value);
@@ -103,7 +103,7 @@ impl Builder {
 
     /// The inertia of a link about its centre of mass.
     pub(crate) fn inertia(&self, joint: &Joint) -> Matrix<'_> {
-        let exact = self.reading().inertia(joint);
+        let exact = self.embedding().inertia(joint);
         let rows = joint.row.link.inertia.rows();
         let element = |i: usize, j: usize| {
             let number = self.rounded(exact[i][j], rows[i][j]);
@@ -115,14 +115,14 @@ impl Builder {
     /// An exact number, or what the runtime has for it where bits matter.
     fn rounded(&self, exact: Number, value: f64) -> Number {
         match self.graph.borrow().policy() {
-            Policy::Structure => Number::rounded(value, exact.image),
+            Policy::Structure => Number::rounded(value, exact.residue),
             _ => exact,
         }
     }
 
     /// A number that stands for itself; `cause` tells why it is what it is.
     pub(crate) fn constant(&self, value: f64, cause: Cause) -> Symbol<'_> {
-        let number = self.reading().decimal(value);
+        let number = self.embedding().decimal(value);
         self.caused(self.graph.borrow_mut().constant(number), cause)
     }
 
@@ -225,7 +225,7 @@ impl Builder {
     }
 
     /// Writes what is the derivative by one variable: its quantities bear that in their names.
-    pub(crate) fn by<R>(&self, by: Option<By>, formulas: impl FnOnce() -> R) -> R {
+    pub(crate) fn by<R>(&self, by: Option<WithRespectTo>, formulas: impl FnOnce() -> R) -> R {
         let outer = self.by.replace(by);
         let value = formulas();
         self.by.set(outer);

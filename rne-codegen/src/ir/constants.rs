@@ -3,7 +3,7 @@
 use rne_model::Angle;
 
 use super::numbers::{Source, canonical};
-use super::{Graph, Number, Op, Policy, Ref, Turn};
+use super::{ExactAngle, Graph, Number, Op, Policy, Ref};
 
 impl Graph {
     /// What a reference to a constant is exactly.
@@ -32,7 +32,7 @@ impl Graph {
     }
 
     /// A constant that is an angle.
-    pub(crate) fn angle(&mut self, turn: Turn) -> Ref {
+    pub(crate) fn angle(&mut self, turn: ExactAngle) -> Ref {
         let at = self.constant(turn.angle());
         if let Op::Constant(place) = self.op(at) {
             self.turns.insert(place, if at.is_negative() { turn.back() } else { turn });
@@ -56,9 +56,9 @@ impl Graph {
     }
 
     /// What a constant is as an angle.
-    pub(crate) fn turn(&self, at: Ref) -> Option<Turn> {
+    pub(crate) fn turn(&self, at: Ref) -> Option<ExactAngle> {
         let Op::Constant(place) = self.op(at) else { return None };
-        let magnitude = || self.reading().turn(&Angle::new(self.numbers.get(place).0.to_f64()));
+        let magnitude = || self.embedding().turn(&Angle::new(self.numbers.get(place).0.to_f64()));
         let turn = self.turns.get(&place).copied().unwrap_or_else(magnitude);
         Some(if at.is_negative() { turn.back() } else { turn })
     }
@@ -66,29 +66,29 @@ impl Graph {
     /// A constant made from others.
     fn derived(&mut self, number: Number, source: Source) -> Ref {
         let number =
-            if self.policy == Policy::Structure { Number::rounded(number.to_f64(), number.image) } else { number };
+            if self.policy == Policy::Structure { Number::rounded(number.to_f64(), number.residue) } else { number };
         if self.policy != Policy::Structure
-            && let Some(known) = self.valued(number.image)
+            && let Some(known) = self.valued(number.residue)
         {
             return known;
         }
         let place = if self.policy == Policy::Structure {
             self.numbers.intern(number.abs(), source, |a, b| a == b)
         } else {
-            self.numbers.intern(number.abs(), source, |a, b| canonical(a.image).0 == canonical(b.image).0)
+            self.numbers.intern(number.abs(), source, |a, b| canonical(a.residue).0 == canonical(b.residue).0)
         };
         let negative = match self.policy {
             Policy::Structure => number.is_negative(),
             // what is there already may be the negative: the residue tells, as it does everywhere
-            _ => self.numbers.get(place).0.image != number.image,
+            _ => self.numbers.get(place).0.residue != number.residue,
         };
         self.constant_at(place).signed(negative)
     }
 
     /// The constant of that place.
     pub(crate) fn constant_at(&mut self, place: u32) -> Ref {
-        let image = self.numbers.get(place).0.image;
-        self.leaf(Op::Constant(place), image)
+        let residue = self.numbers.get(place).0.residue;
+        self.leaf(Op::Constant(place), residue)
     }
 
     /// The place of a constant, with the sign of the reference to it.
@@ -101,7 +101,7 @@ impl Graph {
         let (x, y) = (self.number(a)?, self.number(b)?);
         let source = Source::Sum(self.place(a)?, self.place(b)?);
         let sum = match self.policy {
-            Policy::Structure => Number::rounded(x.to_f64() + y.to_f64(), x.image + y.image),
+            Policy::Structure => Number::rounded(x.to_f64() + y.to_f64(), x.residue + y.residue),
             _ => x + y,
         };
         Some(self.derived(sum, source))
@@ -111,7 +111,7 @@ impl Graph {
         let (x, y) = (self.number(a)?, self.number(b)?);
         let source = Source::Product(self.place(a)?, self.place(b)?);
         let product = match self.policy {
-            Policy::Structure => Number::rounded(x.to_f64() * y.to_f64(), x.image * y.image),
+            Policy::Structure => Number::rounded(x.to_f64() * y.to_f64(), x.residue * y.residue),
             _ => x * y,
         };
         Some(self.derived(product, source))
@@ -132,6 +132,6 @@ impl Graph {
         if y.to_f64() == 0.0 {
             return None;
         }
-        Some(self.constant(Number::rounded(x.to_f64() / y.to_f64(), x.image * y.image.inverse()?)))
+        Some(self.constant(Number::rounded(x.to_f64() / y.to_f64(), x.residue * y.residue.inverse()?)))
     }
 }

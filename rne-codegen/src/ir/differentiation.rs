@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::{Birth, Builder, Definition, Input, Op, Ref, Symbol, mark_live};
-use crate::ir::ledger::{Cause, Place};
-use crate::ir::name::{By, Name};
+use crate::ir::fold_report::{Cause, Place};
+use crate::ir::name::{Name, WithRespectTo};
 
 /// What is differentiated: the graph as it was before.
 struct Formulas {
@@ -17,7 +17,11 @@ struct Formulas {
 impl Builder {
     /// The partial derivatives of some symbols by each variable, each product by the product rule and so on, in the
     /// places of what they are derivatives of and under its names.
-    pub(crate) fn derivatives<'s>(&'s self, of: &[Symbol<'s>], by: impl Iterator<Item = By>) -> Vec<Vec<Symbol<'s>>> {
+    pub(crate) fn derivatives<'s>(
+        &'s self,
+        of: &[Symbol<'s>],
+        by: impl Iterator<Item = WithRespectTo>,
+    ) -> Vec<Vec<Symbol<'s>>> {
         let (births, all) = self.told();
         let mut definitions: HashMap<usize, Vec<Definition>> = HashMap::new();
         for definition in all.into_iter().filter(|definition| definition.name.by.is_none()) {
@@ -35,7 +39,7 @@ impl Builder {
         by.map(|by| self.derivatives_of(&formulas, of, by)).collect()
     }
 
-    fn derivatives_of<'s>(&'s self, formulas: &Formulas, of: &[Symbol<'s>], by: By) -> Vec<Symbol<'s>> {
+    fn derivatives_of<'s>(&'s self, formulas: &Formulas, of: &[Symbol<'s>], by: WithRespectTo) -> Vec<Symbol<'s>> {
         let Formulas { ops, births, definitions, live } = formulas;
         let variable = Input::new(by.variable());
         let symbol = |at: Ref| self.symbol(at);

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use hashbrown::HashTable;
 
 use super::numbers::{Numbers, canonical, key};
-use super::{Image, Input, Node, Number, Op, Point, Reading, Ref, Turn};
+use super::{Embedding, ExactAngle, Input, Node, Number, Op, Ref, Residue, SamplePoint};
 
 /// What the constructors of a graph may fold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,33 +60,33 @@ pub(crate) struct Graph {
     pub(crate) outputs: Vec<Ref>,
     pub(super) policy: Policy,
     /// Where the residues are taken, and how constants are read there.
-    pub(crate) point: Point,
+    pub(crate) point: SamplePoint,
     /// What constants are that are angles, by their places.
-    pub(super) turns: HashMap<u32, Turn>,
+    pub(super) turns: HashMap<u32, ExactAngle>,
     /// Indices of nodes by operation and by value. Looked up, never iterated.
     structures: HashTable<u32>,
     values: HashTable<u32>,
 }
 
 impl Graph {
-    pub(crate) fn new(policy: Policy, reading: Reading) -> Self {
+    pub(crate) fn new(policy: Policy, embedding: Embedding) -> Self {
         let mut graph = Self {
             nodes: Vec::new(),
             numbers: Numbers::default(),
             outputs: Vec::new(),
             policy,
-            point: Point::new(reading, 0),
+            point: SamplePoint::new(embedding, 0),
             turns: HashMap::new(),
             structures: HashTable::new(),
             values: HashTable::new(),
         };
-        graph.clear(reading);
+        graph.clear(embedding);
         graph
     }
 
     /// Empties the graph and keeps its memory.
-    pub(crate) fn clear(&mut self, reading: Reading) {
-        self.point = Point::new(reading, 0);
+    pub(crate) fn clear(&mut self, embedding: Embedding) {
+        self.point = SamplePoint::new(embedding, 0);
         self.numbers.clear();
         self.turns.clear();
         self.clear_nodes();
@@ -108,8 +108,8 @@ impl Graph {
         self.policy
     }
 
-    pub(crate) fn reading(&self) -> Reading {
-        self.point.reading()
+    pub(crate) fn embedding(&self) -> Embedding {
+        self.point.embedding()
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -131,9 +131,9 @@ impl Graph {
     }
 
     /// The residue of a reference.
-    pub(crate) fn image(&self, at: Ref) -> Image {
-        let image = self.nodes[at.index()].image;
-        if at.is_negative() { -image } else { image }
+    pub(crate) fn residue(&self, at: Ref) -> Residue {
+        let residue = self.nodes[at.index()].residue;
+        if at.is_negative() { -residue } else { residue }
     }
 
     /// Whether it is the constant 0: the number, not what rounds to it.
@@ -169,91 +169,91 @@ impl Graph {
     }
 
     /// Residues of sine and cosine of an angle at a point.
-    fn turn_image(&self, angle: Ref, point: &Point) -> (Image, Image) {
+    fn turn_image(&self, angle: Ref, point: &SamplePoint) -> (Residue, Residue) {
         let (sine, cosine) = match self.op(angle) {
             Op::Input(input) => point.turn(input.index()),
-            Op::Constant(_) => {
-                self.turn(angle.magnitude()).map_or((Image::ZERO, Image::ONE), |turn| (turn.sin.image, turn.cos.image))
-            }
+            Op::Constant(_) => self
+                .turn(angle.magnitude())
+                .map_or((Residue::ZERO, Residue::ONE), |turn| (turn.sin.residue, turn.cos.residue)),
             Op::Sum(a, b) => {
                 let ((s, c), (sine, cosine)) = (self.turn_image(a, point), self.turn_image(b, point));
                 (s * cosine + c * sine, c * cosine - s * sine)
             }
-            _ => (Image::ZERO, Image::ZERO),
+            _ => (Residue::ZERO, Residue::ZERO),
         };
         (if angle.is_negative() { -sine } else { sine }, cosine)
     }
 
     /// The residue of a node at a point, when those before it are `images`.
-    pub(crate) fn image_at(&self, op: Op, images: &[Image], point: &Point) -> Image {
+    pub(crate) fn image_at(&self, op: Op, residues: &[Residue], point: &SamplePoint) -> Residue {
         let of = |at: Ref| {
-            let image = images[at.index()];
-            if at.is_negative() { -image } else { image }
+            let residue = residues[at.index()];
+            if at.is_negative() { -residue } else { residue }
         };
         match op {
-            Op::Constant(place) => self.numbers.get(place).0.image,
+            Op::Constant(place) => self.numbers.get(place).0.residue,
             Op::Input(input) => point.argument(input),
             Op::Sine(angle) => self.turn_image(angle, point).0,
             Op::Cosine(angle) => self.turn_image(angle, point).1,
             Op::Sum(a, b) => of(a) + of(b),
             Op::Product(a, b) => of(a) * of(b),
-            Op::Quotient(a, b) => of(a) * of(b).inverse().unwrap_or(Image::ZERO),
-            Op::BySign(operands) => Image::by_sign(operands.map(of)),
+            Op::Quotient(a, b) => of(a) * of(b).inverse().unwrap_or(Residue::ZERO),
+            Op::BySign(operands) => Residue::by_sign(operands.map(of)),
         }
     }
 
     /// What no operation computes: by value where values are looked up.
-    pub(super) fn leaf(&mut self, op: Op, image: Image) -> Ref {
+    pub(super) fn leaf(&mut self, op: Op, residue: Residue) -> Ref {
         if self.policy == Policy::Structure {
-            return self.intern(op, image).0;
+            return self.intern(op, residue).0;
         }
-        if let Some(known) = self.valued(image) {
+        if let Some(known) = self.valued(residue) {
             return known;
         }
-        let at = self.push(op, image);
+        let at = self.push(op, residue);
         self.remember_value(at);
         at
     }
 
     /// The node of that value, or the negative of one, where equal values are one node.
-    pub(super) fn numbered(&self, image: Image) -> Option<Ref> {
-        if self.policy == Policy::Numbered { self.valued(image) } else { None }
+    pub(super) fn numbered(&self, residue: Residue) -> Option<Ref> {
+        if self.policy == Policy::Numbered { self.valued(residue) } else { None }
     }
 
     /// The node of that value, or the negative of one, among those whose values are looked up.
-    pub(crate) fn valued(&self, image: Image) -> Option<Ref> {
-        let (magnitude, negative) = canonical(image);
-        let is_it = |&index: &u32| canonical(self.nodes[index as usize].image).0 == magnitude;
+    pub(crate) fn valued(&self, residue: Residue) -> Option<Ref> {
+        let (magnitude, negative) = canonical(residue);
+        let is_it = |&index: &u32| canonical(self.nodes[index as usize].residue).0 == magnitude;
         let index = *self.values.find(magnitude.key(), is_it)?;
         let at = Ref::new(index as usize);
-        Some(at.signed(negative != canonical(self.nodes[at.index()].image).1))
+        Some(at.signed(negative != canonical(self.nodes[at.index()].residue).1))
     }
 
     fn remember_value(&mut self, at: Ref) {
         let Self { nodes, values, .. } = self;
-        let hash = |index: u32| key(nodes[index as usize].image);
+        let hash = |index: u32| key(nodes[index as usize].residue);
         let index = u32::try_from(at.index()).unwrap_or(u32::MAX);
         values.insert_unique(hash(index), index, |&index| hash(index));
     }
 
-    fn push(&mut self, op: Op, image: Image) -> Ref {
-        self.nodes.push(Node { op, image });
+    fn push(&mut self, op: Op, residue: Residue) -> Ref {
+        self.nodes.push(Node { op, residue });
         Ref::new(self.nodes.len() - 1)
     }
 
     /// The node of an operation of two magnitudes, with its sign.
-    pub(super) fn node(&mut self, op: Op, image: Image, negative: bool) -> (Ref, Outcome) {
-        if let Some(known) = self.numbered(image) {
+    pub(super) fn node(&mut self, op: Op, residue: Residue, negative: bool) -> (Ref, Outcome) {
+        if let Some(known) = self.numbered(residue) {
             return (known.signed(negative), Outcome::Shared);
         }
-        let (at, outcome) = self.intern(op, image);
+        let (at, outcome) = self.intern(op, residue);
         (at.signed(negative), outcome)
     }
 
-    pub(super) fn intern(&mut self, op: Op, image: Image) -> (Ref, Outcome) {
+    pub(super) fn intern(&mut self, op: Op, residue: Residue) -> (Ref, Outcome) {
         if self.policy == Policy::Numbered {
             // nothing of that value was there
-            let at = self.push(op, image);
+            let at = self.push(op, residue);
             self.remember_value(at);
             return (at, Outcome::Computed);
         }
@@ -262,7 +262,7 @@ impl Graph {
         if let Some(&known) = self.structures.find(hash, is_it) {
             return (Ref::new(known as usize), Outcome::Shared);
         }
-        let at = self.push(op, image);
+        let at = self.push(op, residue);
         let index = u32::try_from(at.index()).unwrap_or(u32::MAX);
         let nodes = &self.nodes;
         self.structures.insert_unique(hash, index, |&index| nodes[index as usize].op.key());
@@ -270,13 +270,13 @@ impl Graph {
     }
 
     /// An operation of another graph, whose operands are `map` here. Constants have places of their own.
-    pub(crate) fn transcribed(&mut self, op: Op, image: Image, map: &[Ref]) -> Ref {
+    pub(crate) fn transcribed(&mut self, op: Op, residue: Residue, map: &[Ref]) -> Ref {
         let mapped = |at: Ref| at.mapped(map);
         match op {
             Op::Constant(place) => self.constant_at(place),
-            Op::Input(_) => self.leaf(op, image),
-            Op::Sine(angle) => self.leaf(Op::Sine(mapped(angle)), image),
-            Op::Cosine(angle) => self.leaf(Op::Cosine(mapped(angle)), image),
+            Op::Input(_) => self.leaf(op, residue),
+            Op::Sine(angle) => self.leaf(Op::Sine(mapped(angle)), residue),
+            Op::Cosine(angle) => self.leaf(Op::Cosine(mapped(angle)), residue),
             Op::Sum(a, b) => self.sum(mapped(a), mapped(b)).0,
             Op::Product(a, b) => self.product(mapped(a), mapped(b)).0,
             Op::Quotient(a, b) => self.quotient(mapped(a), mapped(b)).0,

@@ -20,12 +20,12 @@ pub struct Name {
     /// Numbers a term that is shared inside the quantity, from 1; 0 for the quantity itself.
     pub part: usize,
     /// Of which variable it is the derivative, if it is one: `w3_x_q2` is ∂ω₃ₓ/∂q₂.
-    pub by: Option<By>,
+    pub by: Option<WithRespectTo>,
 }
 
 /// The variable of a partial derivative; joints count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum By {
+pub enum WithRespectTo {
     /// A joint position.
     Position(usize),
     /// A joint rate.
@@ -34,7 +34,7 @@ pub enum By {
     RateDot(usize),
 }
 
-impl By {
+impl WithRespectTo {
     /// The name of the variable.
     #[must_use]
     pub const fn variable(self) -> Name {

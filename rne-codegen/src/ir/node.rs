@@ -2,7 +2,7 @@
 
 use std::ops::Neg;
 
-use super::{Image, Input};
+use super::{Input, Residue};
 
 /// A node or its negative: negation costs no operation, so it lives in the reference.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,8 +31,8 @@ impl Ref {
     }
 
     /// What stands for it among `images` of nodes in another graph.
-    pub(crate) fn mapped(self, images: &[Self]) -> Self {
-        images[self.index()].signed(self.is_negative())
+    pub(crate) fn mapped(self, residues: &[Self]) -> Self {
+        residues[self.index()].signed(self.is_negative())
     }
 }
 
@@ -119,5 +119,5 @@ impl Op {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub(crate) op: Op,
-    pub(crate) image: Image,
+    pub(crate) residue: Residue,
 }

@@ -4,37 +4,37 @@ use rne_model::{Angle, InertiaReference, Joint, QuarterTurns};
 
 use super::double::{Double, decimal_digits};
 use super::operators;
-use super::residue::Image;
+use super::residue::Residue;
 
 /// A constant. What it is equal to, its images decide; its value is for rounding once, at the end.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub(crate) struct Number {
     pub(crate) value: Double,
-    pub(crate) image: Image,
+    pub(crate) residue: Residue,
 }
 
 impl Number {
-    pub(crate) const ZERO: Self = Self { value: Double::new(0.0), image: Image::ZERO };
-    pub(crate) const ONE: Self = Self { value: Double::new(1.0), image: Image::ONE };
+    pub(crate) const ZERO: Self = Self { value: Double::new(0.0), residue: Residue::ZERO };
+    pub(crate) const ONE: Self = Self { value: Double::new(1.0), residue: Residue::ONE };
 
     /// A number that was rounded, with the residue of what it stands for.
-    pub(crate) fn rounded(value: f64, image: Image) -> Self {
+    pub(crate) fn rounded(value: f64, residue: Residue) -> Self {
         // -0 is 0
-        Self { value: Double::new(value + 0.0), image }
+        Self { value: Double::new(value + 0.0), residue }
     }
 
     /// A small integer.
     pub(crate) fn integer(value: u32) -> Self {
-        Self { value: Double::new(f64::from(value)), image: Image::integer(u64::from(value)) }
+        Self { value: Double::new(f64::from(value)), residue: Residue::integer(u64::from(value)) }
     }
 
     pub(crate) fn is_zero(self) -> bool {
-        self.image.is_zero()
+        self.residue.is_zero()
     }
 
     /// 1 or -1.
     pub(crate) fn is_unit(self) -> bool {
-        self.image == Image::ONE || self.image == -Image::ONE
+        self.residue == Residue::ONE || self.residue == -Residue::ONE
     }
 
     /// 1/x; `None` for zero.
@@ -42,7 +42,7 @@ impl Number {
         if self.is_unit() {
             return Some(self);
         }
-        Some(Self { value: Double::new(1.0) / self.value, image: self.image.inverse()? })
+        Some(Self { value: Double::new(1.0) / self.value, residue: self.residue.inverse()? })
     }
 
     /// √x; `None` when the value is negative or an image is no square.
@@ -50,7 +50,7 @@ impl Number {
         if self.is_zero() {
             return Some(self);
         }
-        let root = Self { value: self.value.sqrt(), image: self.image.sqrt()? };
+        let root = Self { value: self.value.sqrt(), residue: self.residue.sqrt()? };
         (self.value.high > 0.0).then_some(root)
     }
 
@@ -63,7 +63,7 @@ impl Number {
     /// lost to cancellation or out of range, the image does.
     pub(crate) fn is_negative(self) -> bool {
         let value = self.value.high;
-        if value == 0.0 || value.is_nan() { self.image.is_negative() } else { value < 0.0 }
+        if value == 0.0 || value.is_nan() { self.residue.is_negative() } else { value < 0.0 }
     }
 
     /// Whether value and image disagree about what is zero, where numbers are as large as `scale`: sums of that size
@@ -81,7 +81,7 @@ impl Number {
 
     /// Zero has no dust: what is zero in the fields is zero.
     fn settled(self) -> Self {
-        if self.image.is_zero() { Self::ZERO } else { self }
+        if self.residue.is_zero() { Self::ZERO } else { self }
     }
 }
 
@@ -89,26 +89,26 @@ operators! { Number:
     a + b => match (a.is_zero(), b.is_zero()) {
         (true, _) => b,
         (_, true) => a,
-        _ => Self { value: a.value + b.value, image: a.image + b.image }.settled(),
+        _ => Self { value: a.value + b.value, residue: a.residue + b.residue }.settled(),
     };
-    -a => Self { value: -a.value, image: -a.image };
+    -a => Self { value: -a.value, residue: -a.residue };
     a - b => a + -b;
-    a * b => match (a.image, b.image) {
-        (Image::ZERO, _) | (_, Image::ZERO) => Self::ZERO,
-        (Image::ONE, _) => b,
-        (_, Image::ONE) => a,
-        (x, y) => Self { value: a.value * b.value, image: x * y },
+    a * b => match (a.residue, b.residue) {
+        (Residue::ZERO, _) | (_, Residue::ZERO) => Self::ZERO,
+        (Residue::ONE, _) => b,
+        (_, Residue::ONE) => a,
+        (x, y) => Self { value: a.value * b.value, residue: x * y },
     };
 }
 
 /// A constant turn: sine and cosine of an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Turn {
+pub(crate) struct ExactAngle {
     pub(crate) sin: Number,
     pub(crate) cos: Number,
 }
 
-impl Turn {
+impl ExactAngle {
     pub(crate) const NONE: Self = Self { sin: Number::ZERO, cos: Number::ONE };
 
     /// The turn by the sum of both angles.
@@ -122,11 +122,11 @@ impl Turn {
 
     /// How many quarters, if it is a right angle.
     pub(crate) fn quarters(self) -> Option<QuarterTurns> {
-        let (sin, cos) = (self.sin.image, self.cos.image);
+        let (sin, cos) = (self.sin.residue, self.cos.residue);
         if sin.is_zero() {
-            return Some(if cos == Image::ONE { QuarterTurns::Zero } else { QuarterTurns::Two });
+            return Some(if cos == Residue::ONE { QuarterTurns::Zero } else { QuarterTurns::Two });
         }
-        cos.is_zero().then(|| if sin == Image::ONE { QuarterTurns::One } else { QuarterTurns::Three })
+        cos.is_zero().then(|| if sin == Residue::ONE { QuarterTurns::One } else { QuarterTurns::Three })
     }
 
     /// The angle, rad, between -π and π. Two turns may round to one angle, but their images tell them apart.
@@ -136,9 +136,9 @@ impl Turn {
         // one step of Newton: the sine of what is left
         let rest = self.sin.value * cos - self.cos.value * sin;
         // an angle has no image, so any will do that changes its sign with the turn
-        let two = Image::integer(2);
-        let image = if self.sin.is_zero() { two } else { self.sin.image * (self.cos.image + two) };
-        Number { value: Double::new((Double::new(radians) + rest).to_f64()), image }
+        let two = Residue::integer(2);
+        let residue = if self.sin.is_zero() { two } else { self.sin.residue * (self.cos.residue + two) };
+        Number { value: Double::new((Double::new(radians) + rest).to_f64()), residue }
     }
 }
 
@@ -152,28 +152,28 @@ impl Turn {
 /// A square root exists in a field for every second number only. So one decimal may be replaced, wherever it occurs, by
 /// a random image for which the roots that are wanted exist: what holds for an unknown holds for the number.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Reading {
+pub(crate) struct Embedding {
     pub(crate) seed: u64,
     /// The magnitude of the decimal that is read as an unknown.
     pub(crate) unknown: Option<f64>,
 }
 
-impl Reading {
+impl Embedding {
     /// A number of the file.
     pub(crate) fn decimal(&self, value: f64) -> Number {
         let magnitude = value.abs();
         if magnitude == 0.0 {
             return Number::ZERO;
         }
-        let image = if self.unknown == Some(magnitude) {
+        let residue = if self.unknown == Some(magnitude) {
             let seed = self.seed ^ magnitude.to_bits();
-            Image::residues(mixed(seed), mixed(!seed))
+            Residue::residues(mixed(seed), mixed(!seed))
         } else {
             let (digits, exponent) = decimal_digits(magnitude);
-            let factor = if exponent < 0 { Image::TENTH } else { Image::integer(10) };
-            (0..exponent.abs()).fold(Image::integer(digits), |image, _| image * factor)
+            let factor = if exponent < 0 { Residue::TENTH } else { Residue::integer(10) };
+            (0..exponent.abs()).fold(Residue::integer(digits), |residue, _| residue * factor)
         };
-        let number = Number { value: Double::decimal(magnitude), image };
+        let number = Number { value: Double::decimal(magnitude), residue };
         if value < 0.0 { -number } else { number }
     }
 
@@ -230,10 +230,10 @@ impl Reading {
     }
 
     /// A constant angle of the file.
-    pub(crate) fn turn(&self, angle: &Angle) -> Turn {
+    pub(crate) fn turn(&self, angle: &Angle) -> ExactAngle {
         if let Some(right) = angle.right {
             let (sin, cos) = right.sin_cos();
-            return Turn { sin: self.decimal(sin), cos: self.decimal(cos) };
+            return ExactAngle { sin: self.decimal(sin), cos: self.decimal(cos) };
         }
         let (sin, cos) = Double::new(angle.radians).sin_cos();
         let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
@@ -245,22 +245,22 @@ impl Reading {
         let point = self.point(0xA11E, mixed(bits(rest_sin)) ^ bits(rest_cos));
         let rest = if rest_sin.high < 0.0 { (-point.0, point.1) } else { point };
         let (s, c) = (0..quarters).fold(rest, |(s, c), _| (c, -s));
-        Turn { sin: Number { value: sin, image: s }, cos: Number { value: cos, image: c } }
+        ExactAngle { sin: Number { value: sin, residue: s }, cos: Number { value: cos, residue: c } }
     }
 
     /// A random point (sine, cosine) of the circle.
-    pub(crate) fn point(&self, kind: u64, index: u64) -> (Image, Image) {
+    pub(crate) fn point(&self, kind: u64, index: u64) -> (Residue, Residue) {
         let t = self.random(kind, index);
         let square = t * t;
         // 1 + t² is zero for two t in 2⁶¹
-        let scale = (Image::ONE + square).inverse().unwrap_or(Image::ONE);
-        ((t + t) * scale, (Image::ONE - square) * scale)
+        let scale = (Residue::ONE + square).inverse().unwrap_or(Residue::ONE);
+        ((t + t) * scale, (Residue::ONE - square) * scale)
     }
 
     /// A random image.
-    pub(crate) fn random(&self, kind: u64, index: u64) -> Image {
+    pub(crate) fn random(&self, kind: u64, index: u64) -> Residue {
         let seed = mixed(self.seed ^ mixed(kind ^ mixed(index)));
-        Image::residues(mixed(seed ^ 1), mixed(seed ^ 2))
+        Residue::residues(mixed(seed ^ 1), mixed(seed ^ 2))
     }
 }
 
@@ -285,8 +285,8 @@ mod tests {
 
     #[test]
     fn decimals_add_up_exactly() {
-        let reading = Reading::default();
-        let [a, b, c] = [0.1, 0.2, 0.3].map(|x| reading.decimal(x));
+        let embedding = Embedding::default();
+        let [a, b, c] = [0.1, 0.2, 0.3].map(|x| embedding.decimal(x));
         assert!((a + b - c).is_zero(), "in f64 it is 5.6e-17");
         assert_eq!((a + b - c).to_f64(), 0.0);
         assert_eq!((a * b).to_f64(), 0.02);
@@ -294,9 +294,9 @@ mod tests {
 
     #[test]
     fn turns_are_points_of_the_circle() {
-        let reading = Reading::default();
+        let embedding = Embedding::default();
         for radians in [0.0, 0.9, PI, 2.0, -1.0] {
-            let turn = reading.turn(&Angle::new(radians));
+            let turn = embedding.turn(&Angle::new(radians));
             assert!((turn.sin * turn.sin + turn.cos * turn.cos - Number::ONE).is_zero(), "{radians}");
             assert!((turn.sin.to_f64() - radians.sin()).abs() < 1e-15, "{radians}");
             assert_eq!(turn.then(turn.back()).quarters(), Some(QuarterTurns::Zero));
@@ -305,20 +305,20 @@ mod tests {
 
     #[test]
     fn angles_are_one_where_their_sines_and_cosines_are() {
-        let reading = Reading::default();
+        let embedding = Embedding::default();
         let is_one = |a: f64, b: f64| {
-            let [a, b] = [a, b].map(|radians| reading.turn(&Angle::new(radians)));
-            let magnitude = |x: Number| x.image.max(-x.image);
-            let mut images = [a, b].map(|turn| [turn.sin, turn.cos].map(magnitude));
-            for pair in &mut images {
+            let [a, b] = [a, b].map(|radians| embedding.turn(&Angle::new(radians)));
+            let magnitude = |x: Number| x.residue.max(-x.residue);
+            let mut residues = [a, b].map(|turn| [turn.sin, turn.cos].map(magnitude));
+            for pair in &mut residues {
                 pair.sort_unstable();
             }
             let mut values = [a, b].map(|turn| [turn.sin, turn.cos].map(|x| x.to_f64().abs().to_bits()));
             for pair in &mut values {
                 pair.sort_unstable();
             }
-            assert_eq!(images[0] == images[1], values[0] == values[1], "{a:?} and {b:?}");
-            images[0] == images[1]
+            assert_eq!(residues[0] == residues[1], values[0] == values[1], "{a:?} and {b:?}");
+            residues[0] == residues[1]
         };
         assert!(is_one(0.9, -0.9) && is_one(1.57, -1.57) && is_one(FRAC_PI_4, 3.0 * FRAC_PI_4));
         assert!(is_one(0.3, PI - 0.3) && is_one(0.3, FRAC_PI_2 + 0.3), "their last bits agree");
@@ -336,10 +336,10 @@ mod tests {
 
     #[test]
     fn an_angle_and_its_complement_keep_their_signs() {
-        let reading = Reading::default();
-        let turn = |radians: f64| reading.turn(&Angle::new(radians));
+        let embedding = Embedding::default();
+        let turn = |radians: f64| embedding.turn(&Angle::new(radians));
         let (a, back, supplement) = (turn(0.3), turn(-0.3), turn(PI - 0.3));
-        assert_eq!((back.sin.image, back.cos.image), (-a.sin.image, a.cos.image));
-        assert_eq!((supplement.sin.image, supplement.cos.image), (a.sin.image, -a.cos.image));
+        assert_eq!((back.sin.residue, back.cos.residue), (-a.sin.residue, a.cos.residue));
+        assert_eq!((supplement.sin.residue, supplement.cos.residue), (a.sin.residue, -a.cos.residue));
     }
 }

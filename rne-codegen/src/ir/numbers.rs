@@ -2,7 +2,7 @@
 
 use hashbrown::HashTable;
 
-use super::{Image, Number, Ref};
+use super::{Number, Ref, Residue};
 
 /// How a constant came about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,23 +42,23 @@ impl Numbers {
     pub(crate) fn intern(&mut self, number: Number, source: Source, same: impl Fn(Number, Number) -> bool) -> u32 {
         let Self { list, known } = self;
         let is_it = |&place: &u32| same(list[place as usize].0, number);
-        if let Some(&place) = known.find(key(number.image), is_it) {
+        if let Some(&place) = known.find(key(number.residue), is_it) {
             return place;
         }
         let place = u32::try_from(list.len()).unwrap_or(u32::MAX);
         list.push((number, source));
-        known.insert_unique(key(number.image), place, |&place| key(list[place as usize].0.image));
+        known.insert_unique(key(number.residue), place, |&place| key(list[place as usize].0.residue));
         place
     }
 }
 
 /// A residue without its sign, and whether it was the negative one.
-pub(crate) fn canonical(image: Image) -> (Image, bool) {
-    let negative = image.is_negative();
-    (if negative { -image } else { image }, negative)
+pub(crate) fn canonical(residue: Residue) -> (Residue, bool) {
+    let negative = residue.is_negative();
+    (if negative { -residue } else { residue }, negative)
 }
 
 /// A key of a residue that its negative has as well.
-pub(crate) fn key(image: Image) -> u64 {
-    canonical(image).0.key()
+pub(crate) fn key(residue: Residue) -> u64 {
+    canonical(residue).0.key()
 }

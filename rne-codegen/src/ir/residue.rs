@@ -12,9 +12,9 @@ const BELOW: [u64; 2] = [1, 31];
 /// Sums, products and quotients of numbers have the sums, products and quotients of their images, without rounding. Two
 /// different rational functions agree at a random point of a field with a probability below 10⁻¹⁵, in both below 10⁻³⁰.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub(crate) struct Image([u64; 2]);
+pub(crate) struct Residue([u64; 2]);
 
-impl Image {
+impl Residue {
     pub(crate) const ZERO: Self = Self([0, 0]);
     pub(crate) const ONE: Self = Self([1, 1]);
     /// 1/10
@@ -61,7 +61,7 @@ impl Image {
         }
         let mixed = [x, positive, negative]
             .into_iter()
-            .flat_map(|image| image.0)
+            .flat_map(|residue| residue.0)
             .fold(0x5167_u64, |mixed, residue| (mixed.rotate_left(23) ^ residue).wrapping_mul(0x9E37_79B9_7F4A_7C15));
         Self::residues(mixed ^ (mixed >> 29), mixed.wrapping_mul(0xBF58_476D_1CE4_E5B9) >> 3)
     }
@@ -129,7 +129,7 @@ fn root(square: u64, field: usize) -> Option<u64> {
     roots.find(|&root| multiply(root, root, field) == square)
 }
 
-operators! { Image:
+operators! { Residue:
     a + b => Self([add(a.0[0], b.0[0], 0), add(a.0[1], b.0[1], 1)]);
     -a => {
         let negative = |residue: u64, field: usize| if residue == 0 { 0 } else { prime(field) - residue };
@@ -143,7 +143,7 @@ operators! { Image:
 mod tests {
     use super::*;
 
-    const LARGE: Image = Image([prime(0) - 2, prime(1) - 2]);
+    const LARGE: Residue = Residue([prime(0) - 2, prime(1) - 2]);
 
     #[test]
     fn the_moduli_are_prime() {
@@ -165,19 +165,19 @@ mod tests {
 
     #[test]
     fn arithmetic_is_that_of_a_field() {
-        let three = Image::integer(3);
-        assert_eq!(LARGE + three, Image::ONE);
-        assert_eq!(LARGE * LARGE, Image::integer(4));
-        assert_eq!(three - LARGE, Image::integer(5));
-        assert_eq!(-Image::ZERO, Image::ZERO);
-        for image in [three, LARGE, Image::residues(1 << 60, 12_345)] {
-            assert_eq!(image * image.inverse().unwrap(), Image::ONE);
-            let square = image * image;
+        let three = Residue::integer(3);
+        assert_eq!(LARGE + three, Residue::ONE);
+        assert_eq!(LARGE * LARGE, Residue::integer(4));
+        assert_eq!(three - LARGE, Residue::integer(5));
+        assert_eq!(-Residue::ZERO, Residue::ZERO);
+        for residue in [three, LARGE, Residue::residues(1 << 60, 12_345)] {
+            assert_eq!(residue * residue.inverse().unwrap(), Residue::ONE);
+            let square = residue * residue;
             let root = square.sqrt().unwrap();
             assert_eq!(root * root, square);
-            assert_ne!(image.is_negative(), (-image).is_negative());
+            assert_ne!(residue.is_negative(), (-residue).is_negative());
         }
-        assert_eq!(Image::ZERO.inverse(), None);
-        assert_eq!(Image::TENTH * Image::integer(10), Image::ONE);
+        assert_eq!(Residue::ZERO.inverse(), None);
+        assert_eq!(Residue::TENTH * Residue::integer(10), Residue::ONE);
     }
 }

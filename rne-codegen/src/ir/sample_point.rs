@@ -1,31 +1,31 @@
 //! Random values for the arguments of a function: where two functions are compared.
 
-use super::{Image, Input, Reading};
+use super::{Embedding, Input, Residue};
 use crate::ir::quantity::Quantity;
 
 /// Random values for all arguments: what a function of the robot is compared at.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Point {
-    reading: Reading,
+pub(crate) struct SamplePoint {
+    embedding: Embedding,
     index: u64,
 }
 
-impl Point {
-    pub(crate) const fn new(reading: Reading, index: u64) -> Self {
-        Self { reading, index }
+impl SamplePoint {
+    pub(crate) const fn new(embedding: Embedding, index: u64) -> Self {
+        Self { embedding, index }
     }
 
-    fn random(&self, kind: u64, joint: usize) -> Image {
-        self.reading.random(kind ^ (self.index << 8), joint as u64)
+    fn random(&self, kind: u64, joint: usize) -> Residue {
+        self.embedding.random(kind ^ (self.index << 8), joint as u64)
     }
 
-    pub(crate) const fn reading(&self) -> Reading {
-        self.reading
+    pub(crate) const fn embedding(&self) -> Embedding {
+        self.embedding
     }
 
     /// An argument of any function. Positions of revolute joints are no numbers of the field by themselves, but random
     /// ones serve where only their sines and cosines matter.
-    pub(crate) fn argument(&self, input: Input) -> Image {
+    pub(crate) fn argument(&self, input: Input) -> Residue {
         let index = input.index();
         let axis = input.axis().map_or(0, |axis| axis as usize);
         match input.quantity() {
@@ -48,7 +48,7 @@ impl Point {
     }
 
     /// Sine and cosine of the position of a joint.
-    pub(crate) fn turn(&self, joint: usize) -> (Image, Image) {
-        self.reading.point(6 ^ (self.index << 8), joint as u64)
+    pub(crate) fn turn(&self, joint: usize) -> (Residue, Residue) {
+        self.embedding.point(6 ^ (self.index << 8), joint as u64)
     }
 }

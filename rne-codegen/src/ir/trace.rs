@@ -5,7 +5,7 @@ use std::collections::HashMap;
 
 use super::causes::{CausesId, KnownCauses};
 use super::{Graph, Outcome, Ref, Side, Symbol};
-use crate::ir::ledger::{Cause, Causes, Fate, Ledger, Operation, Place};
+use crate::ir::fold_report::{Cause, Causes, Fold, FoldReport, Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Component};
 
@@ -30,7 +30,7 @@ pub(crate) struct Birth {
 /// The trace of a graph.
 #[derive(Default)]
 pub(crate) struct Trace {
-    pub(crate) ledger: Ledger,
+    pub(crate) fold_report: FoldReport,
     pub(crate) definitions: Vec<Definition>,
     /// By node; `None` for what belongs to no step.
     pub(crate) births: Vec<Option<Birth>>,
@@ -128,15 +128,15 @@ impl Trace {
         // Constants of the table are formed outside any step: a runtime forms them once, too.
         let Some(place) = self.place else { return };
         let cause = self.causes.get(causes).main();
-        let fate = match outcome {
-            Outcome::Computed => Fate::Kept,
-            Outcome::Shared => Fate::Shared,
-            Outcome::Zero(_) => Fate::Zero(cause),
-            Outcome::One(_) => Fate::One(cause),
-            Outcome::Constants => Fate::Constant,
-            Outcome::Cancelled => Fate::Cancelled,
+        let fold = match outcome {
+            Outcome::Computed => Fold::Kept,
+            Outcome::Shared => Fold::Shared,
+            Outcome::Zero(_) => Fold::Zero(cause),
+            Outcome::One(_) => Fold::One(cause),
+            Outcome::Constants => Fold::Constant,
+            Outcome::Cancelled => Fold::Cancelled,
         };
-        self.ledger.enter(place, operation, fate);
+        self.fold_report.enter(place, operation, fold);
         self.record_birth(nodes);
     }
 }

@@ -1,7 +1,7 @@
 //! Value numbering: the live part of a graph written once more, with equal values as one node.
 
 use super::{Birth, Definition, Graph, Op, Policy, Ref, Trace, Traced, mark_live};
-use crate::ir::ledger::Place;
+use crate::ir::fold_report::Place;
 use crate::ir::quantity::{Component, Quantity, Step};
 
 /// Writes what is live of `from` into `to`, a numbered graph, in its order: of equal values the first one stays.
@@ -15,7 +15,7 @@ impl Traced {
     /// The same with its trace: a name stays with its value, wherever that is computed now.
     pub(crate) fn numbered(self) -> Self {
         let Self { graph, trace: told } = self;
-        let mut numbered = Graph::new(Policy::Numbered, graph.reading());
+        let mut numbered = Graph::new(Policy::Numbered, graph.embedding());
         let mut trace = Trace::default();
         let (mut live, mut map) = (Vec::new(), Vec::new());
         transcribe(&graph, &mut numbered, &mut live, &mut map, |index, map, before, to| {
@@ -31,7 +31,7 @@ impl Traced {
         let after = numbered.len();
         for definition in told.definitions {
             // zero and one are called what they are
-            let at = numbered.valued(graph.image(definition.at)).filter(|at| at.index() > 1);
+            let at = numbered.valued(graph.residue(definition.at)).filter(|at| at.index() > 1);
             if let Some(at) = at {
                 trace.definitions.push(Definition { at, after, ..definition });
             }
@@ -51,13 +51,13 @@ impl Traced {
         }
         let births = other.graph.nodes.iter().zip(&other.trace.births);
         for (node, birth) in births.filter(|(_, birth)| birth.is_some()) {
-            if let Some(at) = self.graph.valued(node.image) {
+            if let Some(at) = self.graph.valued(node.residue) {
                 self.trace.births[at.index()] = *birth;
             }
         }
         let after = self.graph.len();
         for definition in &other.trace.definitions {
-            if let Some(at) = self.graph.valued(other.graph.image(definition.at)).filter(|at| at.index() > 1) {
+            if let Some(at) = self.graph.valued(other.graph.residue(definition.at)).filter(|at| at.index() > 1) {
                 self.trace.definitions.push(Definition { at, after, ..definition.clone() });
             }
         }
@@ -74,14 +74,14 @@ fn transcribe(
     mut written: impl FnMut(usize, &[Ref], usize, &Graph),
 ) {
     mark_live(&from.nodes, &from.outputs, live);
-    to.clear(from.reading());
+    to.clear(from.embedding());
     map.clear();
     map.resize(from.len(), Ref::new(0));
     for (index, node) in from.nodes.iter().enumerate().filter(|(index, _)| live[*index]) {
         let before = to.len();
         map[index] = match node.op {
             Op::Constant(place) => to.constant_like(from, place),
-            op => to.transcribed(op, node.image, map),
+            op => to.transcribed(op, node.residue, map),
         };
         written(index, map, before, to);
     }

@@ -6,7 +6,7 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Deserializer, Serialize, de};
 
-use crate::reduced::joint_frames::Frames;
+use crate::reduced::joint_frames::FrameChoice;
 use crate::reduced::link_parameters::Entry;
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
@@ -42,10 +42,10 @@ pub struct Plan {
 pub struct JointPlan {
     /// Which three parameters the rods on this axis annul (section 4.5).
     #[serde(default, skip_serializing_if = "is_default")]
-    pub gauge: [Target; 3],
+    pub targets: [RegroupingTarget; 3],
     /// Where on its axis the frame's origin sits (section 5.4).
     #[serde(default, skip_serializing_if = "is_default")]
-    pub slide: Slide,
+    pub origin_shift: OriginShift,
     /// Where the offset along the axis acts on the way out (section 5.2).
     #[serde(default, skip_serializing_if = "is_default")]
     pub outward_offset: Side,
@@ -173,7 +173,7 @@ macro_rules! named {
 
 named! {
     /// A parameter that a rod annuls: one of the link's own, or one of the link before.
-    Target {
+    RegroupingTarget {
         /// The link's own: mass, h_z and S33 in this order.
         #[default] Own = "own",
         /// h_x of the link before.
@@ -195,7 +195,7 @@ named! {
     }
 }
 
-impl Target {
+impl RegroupingTarget {
     /// What each of the three rods of an axis may annul.
     pub const CHOICES: [&'static [Self]; 3] = [
         &[Self::Own, Self::Hx, Self::Hy],
@@ -221,7 +221,7 @@ impl Target {
 
 named! {
     /// A rule for where on its axis a frame's origin sits; never a number.
-    Slide {
+    OriginShift {
         /// Where the table has it.
         #[default] None = "none",
         /// -d: the offset moves on to the next joint.
@@ -392,10 +392,10 @@ impl Plan {
         lines.extend(of_the_arm.into_iter().filter(|(made, _)| *made).map(|(_, words)| words));
         for (index, joint) in self.joints.iter().enumerate() {
             let plain = JointPlan::default();
-            let [first, second, third] = joint.gauge;
+            let [first, second, third] = joint.targets;
             let mut words: Vec<String> = [
-                (joint.gauge != plain.gauge, format!("gauge ({first}, {second}, {third})")),
-                (joint.slide != plain.slide, format!("slide {}", joint.slide)),
+                (joint.targets != plain.targets, format!("gauge ({first}, {second}, {third})")),
+                (joint.origin_shift != plain.origin_shift, format!("slide {}", joint.origin_shift)),
                 (joint.outward_offset != plain.outward_offset, format!("outward offset at {}", joint.outward_offset)),
                 (joint.inward_offset != plain.inward_offset, format!("inward offset at {}", joint.inward_offset)),
                 (joint.moment != plain.moment, format!("moment {}", joint.moment)),
@@ -412,7 +412,7 @@ impl Plan {
         lines
     }
 
-    pub(crate) fn frames(&self) -> Frames {
-        Frames { turned_last: self.turned_last_frame, carried: self.carried_prismatics }
+    pub(crate) fn frames(&self) -> FrameChoice {
+        FrameChoice { turned_last: self.turned_last_frame, carried: self.carried_prismatics }
     }
 }

@@ -6,22 +6,22 @@ use crate::function::Function;
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
 use crate::plan::Plan;
-use crate::reduced::algorithm::{self, Way};
+use crate::reduced::algorithm::{self, Algorithm};
 use crate::reduced::forward::Arm;
-use crate::reduced::joint_frames::{Frames, Table};
+use crate::reduced::joint_frames::{FrameChoice, JointFrames};
 use crate::reduced::regrouping::{Offers, Parameters, parameters};
 
 /// A table and what it offers.
 #[derive(Clone, Debug)]
-pub(crate) struct Frame {
-    frames: Frames,
-    pub(crate) table: Table,
+pub(crate) struct FramedRobot {
+    frames: FrameChoice,
+    pub(crate) joint_frames: JointFrames,
     pub(crate) offers: Offers,
 }
 
 /// Counts plans of one robot, as many as a search wants.
 pub(crate) struct Evaluator {
-    frames: Vec<Frame>,
+    frames: Vec<FramedRobot>,
     builder: Builder,
     numbered: Graph,
     live: Vec<bool>,
@@ -29,27 +29,28 @@ pub(crate) struct Evaluator {
 }
 
 /// The tables of a robot under every choice of frames that applies to it.
-pub(crate) fn frames(robot: &Robot) -> Vec<Frame> {
-    let choices =
-        [false, true].into_iter().flat_map(|carried| [false, true].map(|turned_last| Frames { turned_last, carried }));
+pub(crate) fn frames(robot: &Robot) -> Vec<FramedRobot> {
+    let choices = [false, true]
+        .into_iter()
+        .flat_map(|carried| [false, true].map(|turned_last| FrameChoice { turned_last, carried }));
     choices
         .filter_map(|frames| {
-            let table = Table::new(robot, frames)?;
-            let offers = Offers::new(&table);
-            Some(Frame { frames, table, offers })
+            let joint_frames = JointFrames::new(robot, frames)?;
+            let offers = Offers::new(&joint_frames);
+            Some(FramedRobot { frames, joint_frames, offers })
         })
         .collect()
 }
 
 /// The table of a robot under the frames of one plan.
-pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<Frame> {
+pub(crate) fn frame(robot: &Robot, plan: &Plan) -> Option<FramedRobot> {
     let frames = plan.frames();
-    let table = Table::new(robot, frames)?;
-    let offers = Offers::new(&table);
-    Some(Frame { frames, table, offers })
+    let joint_frames = JointFrames::new(robot, frames)?;
+    let offers = Offers::new(&joint_frames);
+    Some(FramedRobot { frames, joint_frames, offers })
 }
 
-impl Frame {
+impl FramedRobot {
     pub(crate) fn is_of(&self, plan: &Plan) -> bool {
         self.frames == plan.frames()
     }
@@ -63,15 +64,16 @@ impl Frame {
     }
 
     pub(crate) fn parameters(&self, plan: &Plan) -> Option<Parameters> {
-        (plan.joints.len() == self.table.rows.len()).then(|| parameters(&self.table, &self.offers, plan))?
+        (plan.joints.len() == self.joint_frames.rows.len())
+            .then(|| parameters(&self.joint_frames, &self.offers, plan))?
     }
 
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
-    pub(crate) fn written(&self, plan: &Plan, function: Function, way: Way) -> Option<Formulation> {
+    pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
         let parameters = self.parameters(plan)?;
-        let builder = Builder::traced(Policy::Value, self.table.reading, function);
-        let arm = Arm { table: &self.table, plan, parameters: &parameters };
-        let (names, outputs) = algorithm::write(&builder, &arm, function, way)
+        let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
+        let arm = Arm { joint_frames: &self.joint_frames, plan, parameters: &parameters };
+        let (names, outputs) = algorithm::write(&builder, &arm, function, algorithm)
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
@@ -85,34 +87,36 @@ impl Frame {
 impl Evaluator {
     pub(crate) fn new(robot: &Robot, function: Function) -> Self {
         let frames = frames(robot);
-        let reading = frames.first().map(|frame| frame.table.reading).unwrap_or_default();
+        let embedding = frames.first().map(|frame| frame.joint_frames.embedding).unwrap_or_default();
         Self {
             frames,
-            builder: Builder::untraced(Policy::Value, reading, function),
-            numbered: Graph::new(Policy::Numbered, reading),
+            builder: Builder::untraced(Policy::Value, embedding, function),
+            numbered: Graph::new(Policy::Numbered, embedding),
             live: Vec::new(),
             map: Vec::new(),
         }
     }
 
-    pub(crate) fn frames(&self) -> &[Frame] {
+    pub(crate) fn frames(&self) -> &[FramedRobot] {
         &self.frames
     }
 
     /// What a plan costs; `None` when it does not apply to the robot.
     pub(crate) fn cost(&mut self, plan: &Plan) -> Option<Cost> {
-        self.cost_of(plan, Way::Recursion)
+        self.cost_of(plan, Algorithm::Rnea)
     }
 
     /// What a plan costs when the function is written in one of its ways.
-    pub(crate) fn cost_of(&mut self, plan: &Plan, way: Way) -> Option<Cost> {
+    pub(crate) fn cost_of(&mut self, plan: &Plan, algorithm: Algorithm) -> Option<Cost> {
         let Self { frames, builder, numbered, live, map } = self;
         let frame = frames.iter().find(|frame| frame.is_of(plan))?;
         let parameters = frame.parameters(plan)?;
-        builder.restart(frame.table.reading);
-        let arm = Arm { table: &frame.table, plan, parameters: &parameters };
-        let outputs: Vec<Ref> =
-            algorithm::write(builder, &arm, builder.function, way).into_iter().map(|(_, symbol)| symbol.at).collect();
+        builder.restart(frame.joint_frames.embedding);
+        let arm = Arm { joint_frames: &frame.joint_frames, plan, parameters: &parameters };
+        let outputs: Vec<Ref> = algorithm::write(builder, &arm, builder.function, algorithm)
+            .into_iter()
+            .map(|(_, symbol)| symbol.at)
+            .collect();
         let graph = builder.graph.get_mut();
         graph.outputs = outputs;
         number_values(graph, numbered, live, map);

@@ -7,9 +7,9 @@ use rne_model::Robot;
 use crate::function::Function;
 use crate::ir::Cost;
 use crate::plan::cost::Evaluator;
-use crate::plan::neighbourhood::Moves;
+use crate::plan::neighbourhood::Neighbourhood;
 use crate::plan::trick::Trick;
-use crate::plan::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
+use crate::plan::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 
 /// Plans counted by a build that finds no plan file.
 const DEFAULT_EVALUATIONS: usize = 240;
@@ -34,7 +34,7 @@ type Veto<'v> = Box<dyn Fn(&Plan) -> bool + 'v>;
 /// A search over the plans of one robot.
 pub(crate) struct Exploration<'v> {
     pub(crate) evaluator: Evaluator,
-    moves: Moves,
+    neighbourhood: Neighbourhood,
     without: Vec<Trick>,
     /// Refuses plans that would be the best but for something else that is wrong with them.
     veto: Option<Veto<'v>>,
@@ -51,11 +51,11 @@ pub(crate) struct Over;
 impl<'v> Exploration<'v> {
     pub(crate) fn new(robot: &Robot, without: &[Trick]) -> Self {
         let evaluator = Evaluator::new(robot, Function::InverseDynamics);
-        let moves = Moves::new(evaluator.frames());
+        let neighbourhood = Neighbourhood::new(evaluator.frames());
         let plan = without.iter().fold(Plan::new(robot.dof()), |plan, trick| trick.left_out_of(&plan));
         let mut search = Self {
             evaluator,
-            moves,
+            neighbourhood,
             without: without.to_vec(),
             veto: None,
             known: HashMap::new(),
@@ -116,7 +116,7 @@ impl<'v> Exploration<'v> {
                     return;
                 }
                 let plan = self.best.1.clone();
-                let Some(other) = greedy_candidate(&self.moves, &plan, candidate, round) else { break };
+                let Some(other) = greedy_candidate(&self.neighbourhood, &plan, candidate, round) else { break };
                 if other != plan {
                     let _ = self.cost(&other);
                 }
@@ -142,7 +142,7 @@ impl<'v> Exploration<'v> {
             let mut found = None;
             'first: for (_, first) in weighed.iter().take_while(|(cost, _)| *cost <= limit) {
                 self.tick(clock, "descent")?;
-                for second in self.moves.neighbours(first) {
+                for second in self.neighbourhood.neighbours(first) {
                     if let Some(cost) = self.cost(&second)
                         && cost.weight() < weight
                     {
@@ -161,7 +161,7 @@ impl<'v> Exploration<'v> {
     /// All neighbours of a plan with what they weigh.
     fn weigh(&mut self, plan: &Plan, clock: Clock<'_>) -> Result<Vec<(usize, Plan)>, Over> {
         let mut weighed = Vec::new();
-        for (index, other) in self.moves.neighbours(plan).into_iter().enumerate() {
+        for (index, other) in self.neighbourhood.neighbours(plan).into_iter().enumerate() {
             if index % 64 == 0 {
                 self.tick(clock, "descent")?;
             }
@@ -189,7 +189,7 @@ impl<'v> Exploration<'v> {
                     return Ok(());
                 }
             }
-            let other = self.moves.random(&plan, &mut rng);
+            let other = self.neighbourhood.random(&plan, &mut rng);
             let Some(cost) = self.cost(&other) else { continue };
             let temperature = hottest * (1.0 - over).powf(1.5) + 0.05;
             #[allow(clippy::cast_precision_loss)] // small integers
@@ -218,8 +218,8 @@ impl<'v> Exploration<'v> {
         let plain = JointPlan::default();
         for index in 0..tidy.joints.len() {
             let changes: [fn(&mut JointPlan, &JointPlan); 5] = [
-                |joint, plain| joint.gauge = plain.gauge,
-                |joint, plain| joint.slide = plain.slide,
+                |joint, plain| joint.targets = plain.targets,
+                |joint, plain| joint.origin_shift = plain.origin_shift,
                 |joint, plain| joint.outward_offset = plain.outward_offset,
                 |joint, plain| joint.inward_offset = plain.inward_offset,
                 |joint, plain| joint.moment = plain.moment,
@@ -229,9 +229,9 @@ impl<'v> Exploration<'v> {
                 change(&mut other.joints[index], &plain);
                 keep(self, &mut tidy, other);
             }
-            for target in 0..plain.gauge.len() {
+            for target in 0..plain.targets.len() {
                 let mut other = tidy.clone();
-                other.joints[index].gauge[target] = plain.gauge[target];
+                other.joints[index].targets[target] = plain.targets[target];
                 keep(self, &mut tidy, other);
             }
             for switch in 0..Switches::NAMES.len() {
@@ -263,7 +263,7 @@ impl<'v> Exploration<'v> {
 const OF_THE_ARM: usize = 12;
 
 /// The candidates of a greedy search, in their order; `None` behind the last.
-fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
+fn greedy_candidate(neighbourhood: &Neighbourhood, plan: &Plan, candidate: usize, round: usize) -> Option<Plan> {
     let dof = plan.joints.len();
     let mut other = plan.clone();
     let all = |other: &mut Plan, change: &dyn Fn(&mut JointPlan)| {
@@ -281,9 +281,11 @@ fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) 
             joint.switches.group_wrench = true;
         }),
         5 | 6 => {
-            let rule = if candidate == 5 { Slide::GroupInward } else { Slide::GroupOutward };
-            for (index, joint) in other.joints.iter_mut().enumerate().filter(|(index, _)| moves.offers(*index, rule)) {
-                joint.slide = rule;
+            let rule = if candidate == 5 { OriginShift::GroupInward } else { OriginShift::GroupOutward };
+            for (index, joint) in
+                other.joints.iter_mut().enumerate().filter(|(index, _)| neighbourhood.offers(*index, rule))
+            {
+                joint.origin_shift = rule;
                 if index > 0 {
                     (joint.outward_offset, joint.inward_offset) = (Side::Parent, Side::Parent);
                 }
@@ -297,8 +299,8 @@ fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) 
         }),
         10 => {
             for (index, joint) in other.joints.iter_mut().enumerate() {
-                if moves.offers(index, Slide::MinusD) {
-                    joint.slide = Slide::MinusD;
+                if neighbourhood.offers(index, OriginShift::MinusD) {
+                    joint.origin_shift = OriginShift::MinusD;
                 }
             }
         }
@@ -312,11 +314,11 @@ fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) 
                 2 => joint.outward_offset = Side::Joint,
                 3 => joint.outward_offset = Side::Link,
                 4 => joint.inward_offset = if joint.inward_offset == Side::Link { Side::Parent } else { Side::Link },
-                5 => joint.slide = Slide::MinusD,
-                6 => joint.slide = Slide::AnnulS13,
-                7 => joint.slide = Slide::AnnulS23,
-                8 => joint.slide = Slide::GroupInward,
-                9 => joint.slide = Slide::None,
+                5 => joint.origin_shift = OriginShift::MinusD,
+                6 => joint.origin_shift = OriginShift::AnnulS13,
+                7 => joint.origin_shift = OriginShift::AnnulS23,
+                8 => joint.origin_shift = OriginShift::GroupInward,
+                9 => joint.origin_shift = OriginShift::None,
                 10 => other.length_scale = Scale::A(index + 1),
                 11 => other.length_scale = Scale::D(index + 1),
                 12 => other.force_scale = Scale::FirstMoment(index + 1, 0),
@@ -329,12 +331,12 @@ fn greedy_candidate(moves: &Moves, plan: &Plan, candidate: usize, round: usize) 
                 19 => joint.switches.omega_dot_unturned = !joint.switches.omega_dot_unturned,
                 20 => joint.switches.group_omega = !joint.switches.group_omega,
                 21 => joint.switches.group_wrench = !joint.switches.group_wrench,
-                22 if round > 0 => joint.slide = Slide::NextOffset,
-                23 if round > 0 => joint.gauge[2] = Target::Sxx,
-                24 if round > 0 => joint.gauge[2] = Target::Syy,
-                25 if round > 0 => joint.gauge[1] = Target::Hy,
-                26 if round > 0 => joint.gauge[1] = Target::Syz,
-                27 if round > 0 => joint.slide = Slide::AnnulParentH,
+                22 if round > 0 => joint.origin_shift = OriginShift::NextOffset,
+                23 if round > 0 => joint.targets[2] = RegroupingTarget::Sxx,
+                24 if round > 0 => joint.targets[2] = RegroupingTarget::Syy,
+                25 if round > 0 => joint.targets[1] = RegroupingTarget::Hy,
+                26 if round > 0 => joint.targets[1] = RegroupingTarget::Syz,
+                27 if round > 0 => joint.origin_shift = OriginShift::AnnulParentH,
                 _ => return None,
             }
         }

@@ -11,7 +11,7 @@ use super::choices::{Plan, parsed};
 use super::plan_set::PlanSet;
 use crate::ir::Cost;
 use crate::program::{Program, Proof};
-use crate::reduced::algorithm::Way;
+use crate::reduced::algorithm::Algorithm;
 use crate::{CompileError, Function};
 
 /// A plan file, as it stands on disk.
@@ -59,8 +59,8 @@ pub struct Rewritten {
     /// How precise it is.
     pub accuracy: Accuracy,
     /// How the function was written under the plan.
-    #[serde(default, skip_serializing_if = "Way::is_rnea")]
-    pub(crate) algorithm: Way,
+    #[serde(default, skip_serializing_if = "Algorithm::is_rnea")]
+    pub(crate) algorithm: Algorithm,
     /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<Plan>,

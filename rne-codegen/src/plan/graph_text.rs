@@ -110,7 +110,7 @@ impl Constants<'_> {
 /// # Errors
 /// What is wrong in which line of the text, counted from 1.
 pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
-    let builder = Builder::traced(Policy::Numbered, plain.reading(), function);
+    let builder = Builder::traced(Policy::Numbered, plain.embedding(), function);
     let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
     let mut reader = Reader { given, builder: &builder, known: leaves(plain, &builder) };
     let mut outputs = vec![None; plain.outputs.len()];
@@ -191,7 +191,7 @@ pub(crate) fn on_numbers_of(read: &Graph, plan: &Graph) -> Graph {
     for node in &read.nodes {
         let at = match node.op {
             Op::Constant(place) => constant_on(&mut graph, &read.numbers, &mut places, place),
-            op => graph.transcribed(op, node.image, &map),
+            op => graph.transcribed(op, node.residue, &map),
         };
         map.push(at);
     }

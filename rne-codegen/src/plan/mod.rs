@@ -15,7 +15,7 @@ mod tests;
 mod trick;
 
 pub use crate::ir::Cost;
-pub use choices::{JointPlan, Moment, Plan, Scale, Side, Slide, Switches, Target};
+pub use choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 pub use exploration::{Clock, Progress};
 pub use file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
 pub(crate) use plan_set::formulation;

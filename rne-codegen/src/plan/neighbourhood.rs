@@ -2,41 +2,42 @@
 
 use rne_model::JointKind::Revolute;
 
-use crate::plan::cost::Frame;
-use crate::plan::{Moment, Plan, Scale, Side, Slide, Switches, Target};
-use crate::reduced::joint_frames::Row;
+use crate::plan::cost::FramedRobot;
+use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
+use crate::reduced::joint_frames::JointFrame;
 use crate::reduced::regrouping::{group_end, is_parallel};
 
 /// The choices that a robot leaves open.
-pub(crate) struct Moves {
-    rows: Vec<Row>,
-    slides: Vec<Vec<Slide>>,
+pub(crate) struct Neighbourhood {
+    rows: Vec<JointFrame>,
+    origin_shifts: Vec<Vec<OriginShift>>,
     lengths: Vec<Scale>,
     gyrostat: bool,
     turned_last: bool,
     carried: bool,
 }
 
-impl Moves {
+impl Neighbourhood {
     /// From the frames of a robot, the plain ones first.
-    pub(crate) fn new(frames: &[Frame]) -> Self {
+    pub(crate) fn new(frames: &[FramedRobot]) -> Self {
         let plain = frames.first();
-        let rules = |offers: &[(Slide, crate::ir::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
-        let slides = plain.map_or_else(Vec::new, |frame| frame.offers.slides.iter().map(|s| rules(s)).collect());
-        let has = |test: fn(&Frame) -> bool| frames.iter().any(test);
+        let rules = |offers: &[(OriginShift, crate::ir::Number)]| offers.iter().map(|(rule, _)| *rule).collect();
+        let origin_shifts =
+            plain.map_or_else(Vec::new, |frame| frame.offers.origin_shifts.iter().map(|s| rules(s)).collect());
+        let has = |test: fn(&FramedRobot) -> bool| frames.iter().any(test);
         Self {
-            rows: plain.map_or_else(Vec::new, |frame| frame.table.rows.clone()),
-            slides,
+            rows: plain.map_or_else(Vec::new, |frame| frame.joint_frames.rows.clone()),
+            origin_shifts,
             lengths: plain.map_or_else(Vec::new, |frame| frame.offers.lengths.clone()),
             gyrostat: plain.is_some_and(|frame| frame.offers.gyrostat),
-            turned_last: has(Frame::turns_last),
-            carried: has(Frame::carries),
+            turned_last: has(FramedRobot::turns_last),
+            carried: has(FramedRobot::carries),
         }
     }
 
     /// Whether a rule for a slide gives something of its own at a joint.
-    pub(crate) fn offers(&self, index: usize, rule: Slide) -> bool {
-        self.slides.get(index).is_some_and(|rules| rules.contains(&rule))
+    pub(crate) fn offers(&self, index: usize, rule: OriginShift) -> bool {
+        self.origin_shifts.get(index).is_some_and(|rules| rules.contains(&rule))
     }
 
     /// Plans that differ in one choice, in all gauges of one joint, in all of frame N of one joint, or in what a group
@@ -93,8 +94,8 @@ impl Moves {
                 list.push(other);
             }
         };
-        for &slide in &self.slides[index] {
-            put(&|plan| plan.joints[index].slide = slide);
+        for &origin_shift in &self.origin_shifts[index] {
+            put(&|plan| plan.joints[index].origin_shift = origin_shift);
         }
         if row.kind != Revolute {
             return;
@@ -170,10 +171,10 @@ impl Moves {
                     }
                     if offsets > 0 {
                         for at in index..=end {
-                            let rule = if offsets == 1 { Slide::GroupInward } else { Slide::GroupOutward };
-                            let rule = if self.offers(at, rule) { rule } else { Slide::None };
+                            let rule = if offsets == 1 { OriginShift::GroupInward } else { OriginShift::GroupOutward };
+                            let rule = if self.offers(at, rule) { rule } else { OriginShift::None };
                             if at > 0 {
-                                other.joints[at].slide = rule;
+                                other.joints[at].origin_shift = rule;
                             }
                             if at > index {
                                 other.joints[at].outward_offset = Side::Parent;
@@ -197,11 +198,11 @@ impl Moves {
         if index == 0 || self.rows[index].kind != Revolute {
             return;
         }
-        for &first in Target::CHOICES[0] {
-            for &second in Target::CHOICES[1] {
-                for &third in Target::CHOICES[2] {
+        for &first in RegroupingTarget::CHOICES[0] {
+            for &second in RegroupingTarget::CHOICES[1] {
+                for &third in RegroupingTarget::CHOICES[2] {
                     let mut other = plan.clone();
-                    other.joints[index].gauge = [first, second, third];
+                    other.joints[index].targets = [first, second, third];
                     if other != *plan {
                         list.push(other);
                     }
@@ -232,14 +233,14 @@ impl Moves {
             4..6 if self.turned_last => plan.turned_last_frame = !plan.turned_last_frame,
             6..8 if self.carried => plan.carried_prismatics = !plan.carried_prismatics,
             8..34 if row.kind == Revolute && index > 0 => {
-                for (target, choices) in joint.gauge.iter_mut().zip(Target::CHOICES) {
-                    *target = if rng.bool() { Target::Own } else { choices[rng.usize(..choices.len())] };
+                for (target, choices) in joint.targets.iter_mut().zip(RegroupingTarget::CHOICES) {
+                    *target = if rng.bool() { RegroupingTarget::Own } else { choices[rng.usize(..choices.len())] };
                 }
                 if rng.u32(..3) == 0 {
-                    joint.gauge = [Target::Own; 3];
+                    joint.targets = [RegroupingTarget::Own; 3];
                 }
             }
-            34..46 => joint.slide = self.slides[index][rng.usize(..self.slides[index].len())],
+            34..46 => joint.origin_shift = self.origin_shifts[index][rng.usize(..self.origin_shifts[index].len())],
             46..50 => {
                 let length = *[Scale::One, Scale::Default]
                     .iter()

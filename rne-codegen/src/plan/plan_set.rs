@@ -14,7 +14,7 @@ use crate::plan::exploration::default_plan;
 use crate::plan::file::{PlanFile, Rewritten};
 use crate::plan::graph_text;
 use crate::plan::trick::Trick;
-use crate::reduced::algorithm::Way;
+use crate::reduced::algorithm::Algorithm;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
 #[derive(Clone, Debug, PartialEq)]
@@ -77,18 +77,19 @@ impl PlanSet {
 
     /// The algorithm by which a function takes the fewest operations, and the plan for it: that at hand, or that
     /// without the choices that it makes joint by joint for the recursion.
-    pub(crate) fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Way) {
-        let ways = Way::of_so_many(function, robot.dof());
-        let first = (self.plan.clone(), ways.first().copied().unwrap_or(Way::Recursion));
-        if ways.len() < 2 {
+    pub(crate) fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Algorithm) {
+        let algorithms = Algorithm::of_so_many(function, robot.dof());
+        let first = (self.plan.clone(), algorithms.first().copied().unwrap_or(Algorithm::Rnea));
+        if algorithms.len() < 2 {
             return first;
         }
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = Evaluator::new(robot, function);
         let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
-        let candidates = ways.iter().flat_map(|way| plans.iter().map(|plan| (plan.clone(), *way)));
-        let costs = candidates.filter_map(|(plan, way)| Some((evaluator.cost_of(&plan, way)?.weight(), plan, way)));
-        costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, way)| (plan, way))
+        let candidates = algorithms.iter().flat_map(|algorithm| plans.iter().map(|plan| (plan.clone(), *algorithm)));
+        let costs = candidates
+            .filter_map(|(plan, algorithm)| Some((evaluator.cost_of(&plan, algorithm)?.weight(), plan, algorithm)));
+        costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, algorithm)| (plan, algorithm))
     }
 }
 
@@ -116,7 +117,7 @@ pub(crate) fn formulation(
     robot: &Robot,
     plan: &Plan,
     function: Function,
-    algorithm: Way,
+    algorithm: Algorithm,
 ) -> Result<Formulation, CompileError> {
     let written = cost::frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
     written.ok_or_else(|| {
@@ -157,7 +158,7 @@ impl Rewritten {
 /// Whether the choices of a plan matter to a function.
 #[must_use]
 pub fn is_planned(function: Function) -> bool {
-    !Way::of(function).is_empty()
+    !Algorithm::of(function).is_empty()
 }
 
 /// What a plan costs for `inverse_dynamics`; `None` when it does not fit the robot.

@@ -107,7 +107,7 @@ impl<C: Fn(&Graph, &mut Vec<bool>) -> Cost> Rewriting<C> {
                 Op::Product(a, b) if index == target => {
                     rewritten_product(next, a.mapped(map), b.mapped(map), &mut self.rng)
                 }
-                op => Some(next.transcribed(op, node.image, map)),
+                op => Some(next.transcribed(op, node.residue, map)),
             };
             match rewritten {
                 Some(at) => self.map[index] = at,

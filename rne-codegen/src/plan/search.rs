@@ -15,7 +15,7 @@ use crate::plan::graph_text;
 use crate::plan::plan_set::{PlanSet, formulation, is_planned};
 use crate::plan::rewriting::Rewriting;
 use crate::prove::{self, Reference};
-use crate::reduced::algorithm::Way;
+use crate::reduced::algorithm::Algorithm;
 
 /// What a search is asked to do.
 #[derive(Clone, Debug, Default)]
@@ -41,7 +41,7 @@ pub fn search(
     clock: Clock<'_>,
 ) -> Result<PlanFile, CompileError> {
     let torques = Function::InverseDynamics;
-    let torques_by = |plan: &Plan| formulation(robot, plan, torques, Way::Recursion);
+    let torques_by = |plan: &Plan| formulation(robot, plan, torques, Algorithm::Rnea);
     let of_torques = reference(robot, torques)?;
     let mut plans = Exploration::new(robot, &[]);
     plans.refuse(|plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false));
@@ -113,9 +113,9 @@ const STATES: usize = 200;
 
 /// Whether a graph can be proved, and is not much less precise than the seven steps.
 fn is_sound(reference: &Reference<'_>, function: Function, graph: Formulation) -> Result<bool, CompileError> {
-    let (robot, reading) = (reference.robot(), graph.reading());
+    let (robot, embedding) = (reference.robot(), graph.embedding());
     let (program, exactly) = graph.lowered(robot, function)?;
-    let is_identical = prove::identical(robot, &program, &exactly, reading).is_ok();
+    let is_identical = prove::identical(robot, &program, &exactly, embedding).is_ok();
     Ok(is_identical && prove::loss_of_precision(reference, &program, STATES) <= PRECISION)
 }
 

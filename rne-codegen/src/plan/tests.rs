@@ -1,21 +1,21 @@
 //! Whatever a search may find is the function of the seven steps, and what is not is refused.
 
+mod algorithms;
 mod unusual;
-mod ways;
 
 use rne_model::{Robot, check_bytes};
 
 use super::*;
-use crate::fma::{fused, soonest};
-use crate::ir::{Graph, Reading, Traced};
+use crate::fma::{contracted, ordered_for_latency};
+use crate::ir::{Embedding, Graph, Traced};
 use crate::pipeline::{Formulation, reference};
 use crate::plan::cost::{Evaluator, frame};
 use crate::plan::exploration::{Exploration, default_plan};
-use crate::plan::neighbourhood::Moves;
+use crate::plan::neighbourhood::Neighbourhood;
 use crate::plan::rewriting::Rewriting;
 use crate::program::Exactly;
 use crate::prove;
-use crate::reduced::algorithm::Way;
+use crate::reduced::algorithm::Algorithm;
 use crate::{CompileError, Compiler, Expression, Form, Function, Operator, Program};
 
 fn robot(name: &str) -> Robot {
@@ -33,30 +33,32 @@ const SEVERAL: [&str; 8] =
     ["puma560", "stanford", "ur5", "scara_cobra600", "planar3", "panda", "cylindrical_rpp", "dense6_2p"];
 
 fn drawn(robot: &Robot, plan: &Plan, function: Function) -> Option<Formulation> {
-    frame(robot, plan)?.written(plan, function, Way::Recursion)
+    frame(robot, plan)?.written(plan, function, Algorithm::Rnea)
 }
 
 /// A program that has not been proved, with what its constants are exactly and how they are read.
-type Unproved = (Program, Exactly, Reading);
+type Unproved = (Program, Exactly, Embedding);
 
 fn lowered(robot: &Robot, function: Function, formulation: Formulation) -> Unproved {
-    let reading = formulation.reading();
+    let embedding = formulation.embedding();
     let (program, exactly) = formulation.lowered(robot, function).unwrap();
-    (program, exactly, reading)
+    (program, exactly, embedding)
 }
 
 fn unproved(robot: &Robot, plan: &Plan, function: Function) -> Option<Unproved> {
     Some(lowered(robot, function, drawn(robot, plan, function)?))
 }
 
-fn is_identical(robot: &Robot, (program, exactly, reading): &Unproved) -> bool {
-    prove::identical(robot, program, exactly, *reading).is_ok()
+fn is_identical(robot: &Robot, (program, exactly, embedding): &Unproved) -> bool {
+    prove::identical(robot, program, exactly, *embedding).is_ok()
 }
 
 /// Fails with these words, by which `cargo xtask mutate` knows that it was the proof that refused.
-fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, reading): &Unproved) {
-    for (arranged, what) in [(program, ""), (&soonest(program), " soonest"), (&fused(program), " fused")] {
-        if let Err(error) = prove::identical(robot, arranged, exactly, *reading) {
+fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, embedding): &Unproved) {
+    for (arranged, what) in
+        [(program, ""), (&ordered_for_latency(program), " soonest"), (&contracted(program), " fused")]
+    {
+        if let Err(error) = prove::identical(robot, arranged, exactly, *embedding) {
             panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
         }
     }
@@ -66,12 +68,12 @@ fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, reading): &U
 fn random_plans_are_the_seven_steps() {
     for name in SEVERAL {
         let robot = robot(name);
-        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
+        let neighbourhood = Neighbourhood::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
         let mut rng = fastrand::Rng::with_seed(7);
         let mut plan = Plan::new(robot.dof());
         let mut tried = 0;
         for round in 0..60 {
-            let other = moves.random(&plan, &mut rng);
+            let other = neighbourhood.random(&plan, &mut rng);
             let function = Function::TORQUES[round % Function::TORQUES.len()];
             let Some(program) = unproved(&robot, &other, function) else { continue };
             must_be_identical(&robot, &other, &program);
@@ -86,9 +88,9 @@ fn random_plans_are_the_seven_steps() {
 fn every_single_choice_is_the_seven_steps() {
     for name in ["ur5", "dense6_2p"] {
         let robot = robot(name);
-        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
+        let neighbourhood = Neighbourhood::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
         let plan = default_plan(&robot, &[]);
-        for other in moves.neighbours(&plan).iter().step_by(9) {
+        for other in neighbourhood.neighbours(&plan).iter().step_by(9) {
             if let Some(program) = unproved(&robot, other, Function::InverseDynamics) {
                 must_be_identical(&robot, other, &program);
             }
@@ -143,8 +145,8 @@ fn rewritten_graphs_survive_as_text() {
     let again = graph_text::written(&on, &given);
     assert_eq!(again.lines().count(), text.lines().count(), "a text goes on as it was");
     let rewritten = Formulation { names, traced: read.told_by(&plain) };
-    let (program, exactly, reading) = lowered(&robot, Function::InverseDynamics, rewritten);
-    prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, reading).unwrap();
+    let (program, exactly, embedding) = lowered(&robot, Function::InverseDynamics, rewritten);
+    prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding).unwrap();
     assert_eq!((program.operations().mul, program.operations().add), (cost.mul, cost.add));
 }
 
@@ -204,14 +206,14 @@ fn one_wrong_operation_anywhere_is_refused() {
     for name in ["planar3", "scara_cobra600", "stanford", "puma560"] {
         let robot = robot(name);
         let plan = default_plan(&robot, &[]);
-        let (program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
+        let (program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
         let mut refused = 0;
         for mutant in mutants(&program) {
             if mutant == program {
                 // an operation of an angle
                 continue;
             }
-            let verdict = prove::identical(&robot, &mutant, &exactly, reading);
+            let verdict = prove::identical(&robot, &mutant, &exactly, embedding);
             assert!(matches!(verdict, Err(CompileError::NotIdentical { .. })), "{name}");
             refused += 1;
         }
@@ -223,13 +225,13 @@ fn one_wrong_operation_anywhere_is_refused() {
 fn one_constant_off_by_the_last_digit_is_refused() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
-    assert!(prove::identical(&robot, &program, &exactly, reading).is_ok());
-    let tiny = crate::ir::Reading::default().decimal(1e-18);
+    let (program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
+    assert!(prove::identical(&robot, &program, &exactly, embedding).is_ok());
+    let tiny = crate::ir::Embedding::default().decimal(1e-18);
     for constant in &program.constants {
         let mut wrong = exactly.clone();
         wrong.get_mut(&constant.name).unwrap().0 = exactly[&constant.name].0 + tiny;
-        assert!(prove::identical(&robot, &program, &wrong, reading).is_err(), "{}", constant.name);
+        assert!(prove::identical(&robot, &program, &wrong, embedding).is_err(), "{}", constant.name);
     }
 }
 
@@ -237,11 +239,11 @@ fn one_constant_off_by_the_last_digit_is_refused() {
 fn a_wrong_literal_is_refused_by_rounding() {
     let robot = robot("puma560");
     let plan = default_plan(&robot, &[]);
-    let (mut program, exactly, reading) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
+    let (mut program, exactly, embedding) = unproved(&robot, &plan, Function::InverseDynamics).unwrap();
     // the proof does not see how a constant was rounded, the states in double precision do
     let largest = program.constants.iter_mut().max_by(|a, b| a.value.total_cmp(&b.value)).unwrap();
     largest.value *= 1.0 + 1e-9;
-    let verdict = prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, reading);
+    let verdict = prove::prove(&reference(&robot, Function::InverseDynamics).unwrap(), &program, &exactly, embedding);
     assert!(matches!(verdict, Err(CompileError::Imprecise { .. })), "{verdict:?}");
 }
 
@@ -298,9 +300,9 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         ("    joints:\n", "    turned_last_frame: up\n    joints:\n", "expected a boolean", "turned_last_frame: up"),
         (
             "    joints:\n",
-            "    joints:\n    - slide: up\n",
+            "    joints:\n    - origin_shift: up\n",
             "unknown variant `up`, expected one of `none`",
-            "slide: up",
+            "origin_shift: up",
         ),
         (
             "    joints:\n",
@@ -309,7 +311,7 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
             "light",
         ),
         ("    joints:\n", "    joints:\n    - inward_offset: joint\n", "acts in `link` or `parent`", "inward_offset"),
-        ("    joints:\n", "    joints:\n    - gauge: [own]\n", "expected an array of length 3", "gauge: [own]"),
+        ("    joints:\n", "    joints:\n    - targets: [own]\n", "expected an array of length 3", "targets: [own]"),
     ] {
         let wrong = text.replacen(from, to, 1);
         assert_ne!(wrong, text, "{from}");
@@ -352,9 +354,9 @@ fn long_arms_take_no_more_plans_and_no_ways_that_lose() {
         assert!(search.plans <= 240, "{} plans for {dof} joints", search.plans);
     }
     for function in Function::ALL {
-        assert_eq!(Way::of_so_many(function, 7), Way::of(function), "{function}");
-        let many = Way::of_so_many(function, 32);
-        assert_eq!(many.is_empty(), Way::of(function).is_empty(), "{function}");
-        assert!(!many.contains(&Way::Columns), "{function}");
+        assert_eq!(Algorithm::of_so_many(function, 7), Algorithm::of(function), "{function}");
+        let many = Algorithm::of_so_many(function, 32);
+        assert_eq!(many.is_empty(), Algorithm::of(function).is_empty(), "{function}");
+        assert!(!many.contains(&Algorithm::UnitColumns), "{function}");
     }
 }

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::plan::{Moment, Plan, Scale, Side, Slide, Target};
+use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Scale, Side};
 
 /// One idea; the section numbers are those of `docs/reduced-form.md`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -11,7 +11,7 @@ pub enum Trick {
     /// Matter on joint axes is given to the link before, so that it vanishes from the link.
     Regrouping,
     /// Other parameters vanish than the link's own.
-    Gauges,
+    RegroupingTargets,
     /// An axisymmetric last link is a spinning sphere without mass.
     Gyrostat,
     /// The last frame is turned so that a first moment vanishes.
@@ -25,7 +25,7 @@ pub enum Trick {
     /// Offsets along axes act where they are cheapest.
     Offsets,
     /// Origins slide along their axes.
-    Slides,
+    OriginShifts,
     /// Lengths and forces are measured in units of the arm.
     Scales,
     /// The moment of a link in the form that suits its tensor.
@@ -42,14 +42,14 @@ impl Trick {
     /// All of them.
     pub const ALL: [Self; 14] = [
         Self::Regrouping,
-        Self::Gauges,
+        Self::RegroupingTargets,
         Self::Gyrostat,
         Self::LastFrame,
         Self::CarriedPrismatics,
         Self::AxisColumns,
         Self::ParallelGroups,
         Self::Offsets,
-        Self::Slides,
+        Self::OriginShifts,
         Self::Scales,
         Self::MomentForms,
         Self::ScaledTwists,
@@ -62,14 +62,14 @@ impl Trick {
     pub const fn name(self) -> &'static str {
         match self {
             Self::Regrouping => "regrouping",
-            Self::Gauges => "gauges",
+            Self::RegroupingTargets => "regrouping-targets",
             Self::Gyrostat => "gyrostat",
             Self::LastFrame => "last-frame",
             Self::CarriedPrismatics => "carried-prismatics",
             Self::AxisColumns => "axis-columns",
             Self::ParallelGroups => "parallel-groups",
             Self::Offsets => "offsets",
-            Self::Slides => "slides",
+            Self::OriginShifts => "origin-shifts",
             Self::Scales => "scales",
             Self::MomentForms => "moment-forms",
             Self::ScaledTwists => "scaled-twists",
@@ -86,7 +86,7 @@ impl Trick {
                 "m, h_z, S33 of a link move to the link before: h += δm p + δh u, S += δm ppᵀ + δh (puᵀ + upᵀ) + δk \
                 uuᵀ (4.4)"
             }
-            Self::Gauges => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
+            Self::RegroupingTargets => "the three rods of an axis annul other entries, h or S of the link before (4.5)",
             Self::Gyrostat => "S11 = S22, h = 0: τ_n = c (ω̇'_z + q̈), the link before carries c·1 and the spin (5.6)",
             Self::LastFrame => "φ = atan2(h_y, h_x) turns the last frame, so that h_y = 0 (5.8)",
             Self::CarriedPrismatics => {
@@ -95,7 +95,7 @@ impl Trick {
             Self::AxisColumns => "U_i z = U_{i-1} z gives ω̇_x = ω_y ω_z - U23, ω̇_y = U13 - ω_x ω_z (5.3)",
             Self::ParallelGroups => "parallel axes share a frame N: Q = Σ q̇, Θ = Σ θ (5.5)",
             Self::Offsets => "d acts in the frame before, on the axis or in the link's frame (5.2)",
-            Self::Slides => "the origin of a frame may sit anywhere on its axis (5.4)",
+            Self::OriginShifts => "the origin of a frame may sit anywhere on its axis (5.4)",
             Self::Scales => "a' = λ a, f' = μ f: a length or a moment becomes 1 (3.5)",
             Self::MomentForms => "antisym(U S) = J ω̇ + ω × J ω, or with the diagonal split (3.3)",
             Self::ScaledTwists => "u = v_y + tan α v_z turns a vector with seven products (5.1)",
@@ -111,7 +111,7 @@ impl Trick {
         match self {
             Self::Regrouping => {
                 plan.regrouped = false;
-                return Self::Gauges.left_out_of(&plan);
+                return Self::RegroupingTargets.left_out_of(&plan);
             }
             Self::Gyrostat => plan.gyrostat = false,
             Self::LastFrame => plan.turned_last_frame = false,
@@ -122,7 +122,7 @@ impl Trick {
         for joint in &mut plan.joints {
             let on = &mut joint.switches;
             match self {
-                Self::Gauges => joint.gauge = [Target::Own; 3],
+                Self::RegroupingTargets => joint.targets = [RegroupingTarget::Own; 3],
                 Self::AxisColumns => on.axis_column = false,
                 Self::ParallelGroups => {
                     on.group_omega = false;
@@ -131,7 +131,7 @@ impl Trick {
                     on.group_wrench = false;
                 }
                 Self::Offsets => (joint.outward_offset, joint.inward_offset) = (Side::Link, Side::Link),
-                Self::Slides => joint.slide = Slide::None,
+                Self::OriginShifts => joint.origin_shift = OriginShift::None,
                 Self::MomentForms => joint.moment = Moment::Second,
                 Self::ScaledTwists => {
                     on.scaled_twist_outward = false;

@@ -16,7 +16,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 use crate::reduced::backward::{Wrench, antisymmetric_of};
 
 use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{Gathering, Inward, Symmetric, Turned, full};
+use crate::reduced::inward::{BodiesPer, Inward, Symmetric, Turned, full};
 use crate::reduced::rnea_derivatives::{Station, matter, stations};
 
 use crate::ir::quantity::Quantity;
@@ -158,11 +158,11 @@ fn rigid<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, station: &Statio
 }
 
 /// The accelerations of the joints.
-pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
+pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
     let dof = rows.len();
-    let stations = stations(builder, arm, gathering, Number::ONE);
-    let grouped = |index: usize| arm.is_grouped(gathering, index);
+    let stations = stations(builder, arm, bodies_per, Number::ONE);
+    let grouped = |index: usize| arm.is_grouped(bodies_per, index);
     let mut pivots = Vec::with_capacity(dof);
     // in the axes of link i or, behind a parallel axis, in N of its group
     let mut behind: Option<Articulated<'s>> = None;
@@ -205,19 +205,19 @@ pub(crate) fn forward_dynamics<'s>(builder: &'s Builder, arm: &Arm<'_>, gatherin
         });
     }
     pivots.reverse();
-    outward(builder, arm, gathering, &stations, &pivots)
+    outward(builder, arm, bodies_per, &stations, &pivots)
 }
 
 /// The way out: each joint's acceleration from that of the link before it.
 fn outward<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
-    gathering: Gathering,
+    bodies_per: BodiesPer,
     stations: &[Station<'s>],
     pivots: &[Pivot<'s>],
 ) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
-    let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.table.gravity.map(|g| -g)));
+    let (mut omega_dot, mut acceleration) = (builder.no_vector(), builder.vector(arm.joint_frames.gravity.map(|g| -g)));
     let mut unturned = (omega_dot, acceleration);
     let mut accelerations = Vec::with_capacity(rows.len());
     // to a point p of a link that turns with ω
@@ -230,7 +230,7 @@ fn outward<'s>(
         let (offset, twist) = (builder.vector(offset), builder.fixed_turn(row.alpha));
         let theta = builder.fixed_turn(row.theta);
         let before = match row.kind {
-            Revolute if arm.is_grouped(gathering, index) => {
+            Revolute if arm.is_grouped(bodies_per, index) => {
                 let turned = stations[index - 1].turn.about_z(offset);
                 at(unturned, turned + builder.along_z(d), station.before.omega)
             }

@@ -2,9 +2,9 @@
 
 use crate::reduced::aba;
 use crate::reduced::backward::torques;
-use crate::reduced::crba::{self, Gathering};
+use crate::reduced::crba::{self, BodiesPer};
 use crate::reduced::forward::{Arm, motions};
-use crate::reduced::joint_frames::Table;
+use crate::reduced::joint_frames::JointFrames;
 use crate::reduced::rnea_derivatives::sensitivity;
 
 use serde::{Deserialize, Serialize};
@@ -12,58 +12,58 @@ use serde::{Deserialize, Serialize};
 use crate::formulate::ldlt;
 use crate::formulate::square;
 use crate::function::Function;
-use crate::ir::name::{By, Name};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol};
 
 /// How a function is written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub enum Way {
+pub enum Algorithm {
     /// The recursion, out and back, and what follows from its torques.
     #[default]
-    Recursion,
+    Rnea,
     /// Composite bodies.
-    Composite(Gathering),
+    Crba(BodiesPer),
     /// The recursion, once per joint that accelerates.
-    Columns,
+    UnitColumns,
     /// Articulated bodies.
-    Articulated(Gathering),
+    Aba(BodiesPer),
 }
 
-impl Way {
+impl Algorithm {
     /// All of them, with their names in plan files.
     const NAMES: [(Self, &'static str); 6] = [
-        (Self::Recursion, "rnea"),
-        (Self::Composite(Gathering::Groups), "crba_by_groups"),
-        (Self::Composite(Gathering::Joints), "crba_by_joints"),
-        (Self::Columns, "unit_columns"),
-        (Self::Articulated(Gathering::Groups), "aba_by_groups"),
-        (Self::Articulated(Gathering::Joints), "aba_by_joints"),
+        (Self::Rnea, "rnea"),
+        (Self::Crba(BodiesPer::Group), "crba_by_groups"),
+        (Self::Crba(BodiesPer::Joint), "crba_by_joints"),
+        (Self::UnitColumns, "unit_columns"),
+        (Self::Aba(BodiesPer::Group), "aba_by_groups"),
+        (Self::Aba(BodiesPer::Joint), "aba_by_joints"),
     ];
 
     pub(crate) fn is_rnea(&self) -> bool {
-        *self == Self::Recursion
+        *self == Self::Rnea
     }
 
     /// The ways of a function; none for what has no reduced recursion.
     pub(crate) const fn of(function: Function) -> &'static [Self] {
-        const BY_GROUPS: Way = Way::Composite(Gathering::Groups);
-        const BY_JOINTS: Way = Way::Composite(Gathering::Joints);
+        const BY_GROUPS: Algorithm = Algorithm::Crba(BodiesPer::Group);
+        const BY_JOINTS: Algorithm = Algorithm::Crba(BodiesPer::Joint);
         match function {
             Function::InverseDynamics
             | Function::InverseDynamicsWithWrench
-            | Function::InverseDynamicsSc
-            | Function::BiasTorques => &[Way::Recursion],
-            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Way::Recursion],
-            Function::GravityTorques => &[Way::Recursion, BY_GROUPS, BY_JOINTS],
-            Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Way::Columns],
+            | Function::InverseDynamicsFromSinCos
+            | Function::BiasTorques => &[Algorithm::Rnea],
+            Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
+            Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
+            Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
             Function::ForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
-                Way::Columns,
-                Way::Articulated(Gathering::Groups),
-                Way::Articulated(Gathering::Joints),
+                Algorithm::UnitColumns,
+                Algorithm::Aba(BodiesPer::Group),
+                Algorithm::Aba(BodiesPer::Joint),
             ],
             _ => &[],
         }
@@ -73,39 +73,39 @@ impl Way {
     /// joint grow faster than composite bodies, and lose long before `MANY`.
     pub(crate) fn of_so_many(function: Function, joints: usize) -> Vec<Self> {
         const MANY: usize = 10;
-        let is_of_columns = |way: Self| {
-            way == Way::Columns
-                || way == Way::Recursion
+        let is_of_columns = |algorithm: Self| {
+            algorithm == Algorithm::UnitColumns
+                || algorithm == Algorithm::Rnea
                     && matches!(function, Function::CoriolisMatrix | Function::InverseDynamicsDerivatives)
         };
-        Self::of(function).iter().copied().filter(|way| joints < MANY || !is_of_columns(*way)).collect()
+        Self::of(function).iter().copied().filter(|algorithm| joints < MANY || !is_of_columns(*algorithm)).collect()
     }
 
     /// In words, for the choices of a program; nothing is said of the recursion.
     pub(crate) const fn words(self) -> Option<&'static str> {
         match self {
-            Self::Recursion => None,
-            Self::Composite(Gathering::Groups) => Some("composite bodies, gathered per group of parallel axes"),
-            Self::Composite(Gathering::Joints) => Some("composite bodies, gathered joint by joint"),
-            Self::Columns => Some("columns: one recursion per joint that accelerates"),
-            Self::Articulated(Gathering::Groups) => Some("articulated bodies, gathered per group of parallel axes"),
-            Self::Articulated(Gathering::Joints) => Some("articulated bodies, gathered joint by joint"),
+            Self::Rnea => None,
+            Self::Crba(BodiesPer::Group) => Some("composite bodies, gathered per group of parallel axes"),
+            Self::Crba(BodiesPer::Joint) => Some("composite bodies, gathered joint by joint"),
+            Self::UnitColumns => Some("columns: one recursion per joint that accelerates"),
+            Self::Aba(BodiesPer::Group) => Some("articulated bodies, gathered per group of parallel axes"),
+            Self::Aba(BodiesPer::Joint) => Some("articulated bodies, gathered joint by joint"),
         }
     }
 }
 
-impl From<Way> for String {
-    fn from(way: Way) -> Self {
-        Way::NAMES.into_iter().find(|(other, _)| *other == way).map_or("", |(_, name)| name).to_owned()
+impl From<Algorithm> for String {
+    fn from(algorithm: Algorithm) -> Self {
+        Algorithm::NAMES.into_iter().find(|(other, _)| *other == algorithm).map_or("", |(_, name)| name).to_owned()
     }
 }
 
-impl TryFrom<String> for Way {
+impl TryFrom<String> for Algorithm {
     type Error = String;
 
     fn try_from(text: String) -> Result<Self, String> {
         let known = Self::NAMES.into_iter().find(|(_, name)| *name == text);
-        known.map(|(way, _)| way).ok_or_else(|| {
+        known.map(|(algorithm, _)| algorithm).ok_or_else(|| {
             let names = Self::NAMES.map(|(_, name)| name).join("`, `");
             format!("`{}` is no algorithm; expected one of `{names}`", text.escape_debug())
         })
@@ -113,27 +113,32 @@ impl TryFrom<String> for Way {
 }
 
 /// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout.
-pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function, way: Way) -> Vec<(Name, Symbol<'s>)> {
+pub(crate) fn write<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    function: Function,
+    algorithm: Algorithm,
+) -> Vec<(Name, Symbol<'s>)> {
     let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
         values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
     };
-    match (function, way) {
-        (Function::GravityTorques, Way::Composite(gathering)) => {
-            by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, gathering))
+    match (function, algorithm) {
+        (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
+            by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
         }
         (Function::MassMatrix, _) => {
-            let upper = mass_matrix(builder, arm, way);
+            let upper = mass_matrix(builder, arm, algorithm);
             square(arm.rows().len(), |row, column| {
                 let (row, column) = (row.min(column), row.max(column));
-                let by = Some(By::RateDot(column + 1));
+                let by = Some(WithRespectTo::RateDot(column + 1));
                 (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, upper[row][column - row])
             })
         }
-        (Function::ForwardDynamics, Way::Articulated(gathering)) => {
-            by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, gathering))
+        (Function::ForwardDynamics, Algorithm::Aba(bodies_per)) => {
+            by_joint(Quantity::RateDot, aba::forward_dynamics(builder, arm, bodies_per))
         }
         (Function::ForwardDynamics, _) => {
-            let upper = mass_matrix(builder, arm, way);
+            let upper = mass_matrix(builder, arm, algorithm);
             let bias = recursion(builder, arm);
             let rest: Vec<_> = bias
                 .into_iter()
@@ -145,19 +150,19 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
                 .collect();
             by_joint(Quantity::RateDot, ldlt::solved(builder, &upper, &rest))
         }
-        (Function::InverseDynamicsDerivatives, Way::Composite(gathering)) => {
-            let found = sensitivity(builder, arm, gathering, Number::integer(2));
-            let by = |kind: fn(usize) -> By, matrix: &[Vec<Symbol<'s>>]| {
+        (Function::InverseDynamicsDerivatives, Algorithm::Crba(bodies_per)) => {
+            let found = sensitivity(builder, arm, bodies_per, Number::integer(2));
+            let by = |kind: fn(usize) -> WithRespectTo, matrix: &[Vec<Symbol<'s>>]| {
                 square(arm.rows().len(), |row, column| {
                     let name = Name { by: Some(kind(column + 1)), ..Name::scalar(Quantity::Torque, row + 1) };
                     builder.name(name, matrix[row][column]);
                     (name, matrix[row][column])
                 })
             };
-            [by(By::Position, &found.by_position), by(By::Rate, &found.by_rate)].concat()
+            [by(WithRespectTo::Position, &found.by_position), by(WithRespectTo::Rate, &found.by_rate)].concat()
         }
-        (Function::CoriolisMatrix, Way::Composite(gathering)) => {
-            let found = sensitivity(builder, arm, gathering, Number::ONE);
+        (Function::CoriolisMatrix, Algorithm::Crba(bodies_per)) => {
+            let found = sensitivity(builder, arm, bodies_per, Number::ONE);
             square(arm.rows().len(), |row, column| {
                 let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
                 builder.name(name, found.by_rate[row][column]);
@@ -166,19 +171,19 @@ pub(crate) fn write<'s>(builder: &'s Builder, arm: &Arm<'_>, function: Function,
         }
         (Function::InverseDynamicsDerivatives, _) => {
             let torques = recursion(builder, arm);
-            let by = |kind: fn(usize) -> By| {
+            let by = |kind: fn(usize) -> WithRespectTo| {
                 let columns = builder.derivatives(&torques, (1..=torques.len()).map(kind));
                 square(torques.len(), |row, column| {
                     let by = Some(kind(column + 1));
                     (Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, columns[column][row])
                 })
             };
-            [by(By::Position), by(By::Rate)].concat()
+            [by(WithRespectTo::Position), by(WithRespectTo::Rate)].concat()
         }
         (Function::CoriolisMatrix, _) => {
             let torques = recursion(builder, arm);
             let half = builder.number(Number::integer(2).inverse().unwrap_or_default());
-            let columns = builder.derivatives(&torques, (1..=torques.len()).map(By::Rate));
+            let columns = builder.derivatives(&torques, (1..=torques.len()).map(WithRespectTo::Rate));
             square(torques.len(), |row, column| {
                 builder.at(Quantity::CoriolisElement, row + 1);
                 let name = Name::indexed(Quantity::CoriolisElement, row + 1, column + 1);
@@ -197,13 +202,13 @@ fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {
 }
 
 /// The upper half of M.
-fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, way: Way) -> Vec<Vec<Symbol<'s>>> {
-    let Way::Columns = way else {
-        let gathering = if let Way::Composite(gathering) = way { gathering } else { Gathering::Joints };
-        return crba::mass_matrix(builder, arm, gathering);
+fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, algorithm: Algorithm) -> Vec<Vec<Symbol<'s>>> {
+    let Algorithm::UnitColumns = algorithm else {
+        let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Joint };
+        return crba::mass_matrix(builder, arm, bodies_per);
     };
-    let table = Table { gravity: [Number::ZERO; 3], ..arm.table.clone() };
-    let still = Arm { table: &table, plan: arm.plan, parameters: arm.parameters };
+    let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
+    let still = Arm { joint_frames: &joint_frames, plan: arm.plan, parameters: arm.parameters };
     let dof = arm.rows().len();
     let mut rows: Vec<Vec<_>> = vec![Vec::new(); dof];
     for column in 0..dof {

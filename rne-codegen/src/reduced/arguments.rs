@@ -1,10 +1,10 @@
 //! What the formulas of the reduced form start from: arguments in the frames of its rows, and turns.
 
 use crate::function::Argument;
-use crate::ir::name::{By, Name};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Number, Symbol, Turn, Vector, by_quarters};
-use crate::reduced::joint_frames::Row;
+use crate::ir::{Builder, ExactAngle, Number, Symbol, Vector, by_quarters};
+use crate::reduced::joint_frames::JointFrame;
 use rne_model::QuarterTurns;
 
 use crate::reduced::link_parameters::Triple;
@@ -17,9 +17,9 @@ fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> N
 /// The variable part of a turn by the summed angle of joints `first` to `last`: q of the first, more or less the
 /// others, and a constant. It is counted with the sign of the first joint; right angles are left to the sine and
 /// cosine.
-fn angle<'s>(builder: &'s Builder, rows: &[Row], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
+fn angle<'s>(builder: &'s Builder, rows: &[JointFrame], first: usize, last: usize) -> (Symbol<'s>, QuarterTurns) {
     let position = |at: usize| builder.argument(Name::scalar(Quantity::Position, at + 1));
-    let theta = |at: usize| rows[first..=at].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
+    let theta = |at: usize| rows[first..=at].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
     let reversed = rows[first].reversed;
     let mut sum = position(first);
     for (at, row) in rows.iter().enumerate().take(last + 1).skip(first + 1) {
@@ -48,31 +48,31 @@ impl Builder {
     }
 
     /// An argument of a joint, counted from 0, in the direction of its row.
-    fn of_joint(&self, quantity: Quantity, rows: &[Row], joint: usize) -> Symbol<'_> {
+    fn of_joint(&self, quantity: Quantity, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
         self.argument(Name::scalar(quantity, joint + 1)).signed(rows[joint].reversed)
     }
 
     /// q of a prismatic joint.
-    pub(crate) fn position(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+    pub(crate) fn position(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
         self.of_joint(Quantity::Position, rows, joint)
     }
 
     /// What `formulas` are when one joint accelerates with 1 and nothing moves.
     pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
         self.accelerating.set(Some(joint));
-        let value = self.by(Some(By::RateDot(joint + 1)), formulas);
+        let value = self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas);
         self.accelerating.set(None);
         value
     }
 
-    pub(crate) fn rate(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+    pub(crate) fn rate(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
         if !self.function.takes(Argument::Rates) || self.accelerating.get().is_some() {
             return self.zero();
         }
         self.of_joint(Quantity::Rate, rows, joint)
     }
 
-    pub(crate) fn rate_dot(&self, rows: &[Row], joint: usize) -> Symbol<'_> {
+    pub(crate) fn rate_dot(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
         match self.accelerating.get() {
             Some(accelerating) if accelerating == joint => self.one().signed(rows[joint].reversed),
             None if self.function.takes(Argument::Accelerations) => self.of_joint(Quantity::RateDot, rows, joint),
@@ -92,7 +92,7 @@ impl Builder {
     }
 
     /// The turn by the summed angle of joints `first` to `last`.
-    pub(crate) fn turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+    pub(crate) fn turn(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
         if self.function.takes(Argument::Sines) {
             return self.given_turn(rows, first, last);
         }
@@ -100,14 +100,19 @@ impl Builder {
         self.by(None, || self.turn_by_angle(rows, first, last))
     }
 
-    fn turn_by_angle(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
+    fn turn_by_angle(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
         let ((s, c), quarters) = self.turned(rows, first, last);
         let (s, c) = by_quarters((s.signed(rows[first].reversed), c), quarters);
         SymbolicTurn { s, c }
     }
 
     /// Sine and cosine of the variable part of a turn, and the right angles that are left.
-    pub(crate) fn turned(&self, rows: &[Row], first: usize, last: usize) -> ((Symbol<'_>, Symbol<'_>), QuarterTurns) {
+    pub(crate) fn turned(
+        &self,
+        rows: &[JointFrame],
+        first: usize,
+        last: usize,
+    ) -> ((Symbol<'_>, Symbol<'_>), QuarterTurns) {
         let (angle, quarters) = angle(self, rows, first, last);
         let (s, c) = self.sine_and_cosine(angle);
         let name = |group, single, x| self.name(group_name(group, single, first, last), x);
@@ -115,8 +120,8 @@ impl Builder {
     }
 
     /// The same from sines and cosines that are arguments, by the addition theorem.
-    fn given_turn(&self, rows: &[Row], first: usize, last: usize) -> SymbolicTurn<'_> {
-        let theta = rows[first..=last].iter().fold(Turn::NONE, |turn, row| turn.then(row.theta));
+    fn given_turn(&self, rows: &[JointFrame], first: usize, last: usize) -> SymbolicTurn<'_> {
+        let theta = rows[first..=last].iter().fold(ExactAngle::NONE, |turn, row| turn.then(row.theta));
         (first..=last).fold(self.fixed_turn(theta), |SymbolicTurn { s, c }, joint| {
             let sine = self.of_joint(Quantity::Sine, rows, joint);
             let cosine = self.argument(Name::scalar(Quantity::Cosine, joint + 1));
@@ -125,7 +130,7 @@ impl Builder {
     }
 
     /// A turn by a constant angle.
-    pub(crate) fn fixed_turn(&self, turn: Turn) -> SymbolicTurn<'_> {
+    pub(crate) fn fixed_turn(&self, turn: ExactAngle) -> SymbolicTurn<'_> {
         SymbolicTurn { s: self.number(turn.sin), c: self.number(turn.cos) }
     }
 }

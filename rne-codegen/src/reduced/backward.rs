@@ -12,7 +12,7 @@ use crate::plan::{JointPlan, Moment, Side};
 use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
 use crate::reduced::inward::full;
-use crate::reduced::joint_frames::Row;
+use crate::reduced::joint_frames::JointFrame;
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::regrouping::is_parallel;
 
@@ -77,7 +77,7 @@ pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s
             let own = tip.map_or(own, |tip| own.plus(tip));
             let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
             match rows[index].kind {
-                Prismatic => slide(builder, arm, index, link, own.plus(unturned)),
+                Prismatic => origin_shift(builder, arm, index, link, own.plus(unturned)),
                 Revolute => turn(builder, arm, index, link, own, unturned),
             }
         };
@@ -94,11 +94,12 @@ pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s
 /// What the last link exerts at the tip, about the origin of its frame and in its axes.
 fn tip_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Option<Wrench<'s>> {
     let (force, moment) = builder.wrench(arm.rows().len())?;
-    let tip = &arm.table.tip;
+    let tip = &arm.joint_frames.tip;
     let turned = |v: Vector<'s>| Vector([0, 1, 2].map(|row| builder.vector(tip.rotation[row]).dot(v)));
-    let slide = arm.parameters.slides.last().copied().unwrap_or_default();
+    let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
     let [x, y, z] = tip.translation;
-    let wrench = Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - slide]));
+    let wrench =
+        Wrench { force: turned(force), moment: turned(moment) }.about(builder.vector([x, y, z - origin_shift]));
     Some(Wrench { force: wrench.force.times(arm.parameters.mu), ..wrench })
 }
 
@@ -307,7 +308,7 @@ fn turn<'s>(
 }
 
 /// A prismatic joint.
-fn slide<'s>(
+fn origin_shift<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
     index: usize,
@@ -334,7 +335,7 @@ fn slide<'s>(
 }
 
 /// Rx(α) Rz(θ) v; for a twist that is no right angle seven products are enough (section 5.1).
-fn rotated_inward<'s>(row: &Row, link: &Moved<'s>, scaled: bool, v: Vector<'s>) -> Vector<'s> {
+fn rotated_inward<'s>(row: &JointFrame, link: &Moved<'s>, scaled: bool, v: Vector<'s>) -> Vector<'s> {
     let SymbolicTurn { s, c } = link.turn;
     let (true, Some(ScaledTwist { ratio, larger, on_sine })) = (scaled, ScaledTwist::new(row)) else {
         return link.twist.about_x(link.turn.about_z(v));

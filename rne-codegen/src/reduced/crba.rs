@@ -19,9 +19,9 @@ use crate::reduced::inward::{Carried, Inward, Symmetric, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::regrouping::group_start;
 
-pub(crate) use crate::reduced::inward::Gathering;
+pub(crate) use crate::reduced::inward::BodiesPer;
 
-use crate::ir::name::{By, Name};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::Axis::{self, X, Y, Z};
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol, Vector};
@@ -140,7 +140,7 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
     }
     for (column, Wrench { force, moment }) in &carried.columns {
         for (axis, (f, n)) in Axis::ALL.into_iter().zip(force.0.into_iter().zip(moment.0)) {
-            let by = Some(By::RateDot(column + 1));
+            let by = Some(WithRespectTo::RateDot(column + 1));
             builder.name(Name { by, ..Name::vector(Quantity::UnitForce, joint, axis) }, f);
             builder.name(Name { by, ..Name::vector(Quantity::UnitMoment, joint, axis) }, n);
         }
@@ -148,7 +148,7 @@ fn name<'s>(builder: &'s Builder, joint: usize, carried: &Carried<Composite<'s>,
 }
 
 /// The upper half of M: row i holds its elements (i, i) to (i, n).
-pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Vec<Symbol<'s>>> {
+pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Vec<Symbol<'s>>> {
     let rows = arm.rows();
     let dof = rows.len();
     let mut matrix: Vec<Vec<Symbol<'s>>> = vec![vec![builder.zero(); dof]; dof];
@@ -179,7 +179,7 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
         let (whole, mut columns) = match row.kind {
             Prismatic => (with(own), columns),
             Revolute => {
-                let turn = Turned::AboutZ(arm.turn_of_group(builder, gathering, index));
+                let turn = Turned::AboutZ(arm.turn_of_group(builder, bodies_per, index));
                 if unturned {
                     (with(own.turned(turn)), columns)
                 } else {
@@ -195,12 +195,12 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
         };
         matrix[index][index] = along(&column);
         columns.push((index, column));
-        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(gathering, index) };
+        carried = Carried { behind: Some(whole), columns, unturned: arm.is_grouped(bodies_per, index) };
         if row.kind == Revolute {
             name(builder, index + 1, &carried);
         }
         if index > 0 {
-            carried = arm.inward(builder, gathering, index, carried);
+            carried = arm.inward(builder, bodies_per, index, carried);
         }
     }
     (0..dof)
@@ -208,7 +208,7 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
             (row..dof)
                 .map(|column| {
                     let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
-                    let by = Some(By::RateDot(column + 1));
+                    let by = Some(WithRespectTo::RateDot(column + 1));
                     builder.name(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
                     element
                 })
@@ -218,22 +218,22 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Ga
 }
 
 /// Torques against gravity, by the first moments of the composite bodies alone: τ = (h × a)_z.
-pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering: Gathering) -> Vec<Symbol<'s>> {
+pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: BodiesPer) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
     let dof = rows.len();
     // acceleration of the base in the frame N of each joint, or of its group
     let mut fields: Vec<Vector<'s>> = Vec::with_capacity(dof);
-    let mut own = builder.vector(arm.table.gravity.map(|g| -g));
+    let mut own = builder.vector(arm.joint_frames.gravity.map(|g| -g));
     for (index, row) in rows.iter().enumerate() {
         builder.at(Quantity::OriginAcceleration, index + 1);
         let twist = builder.fixed_turn(row.alpha);
-        let grouped = arm.is_grouped(gathering, index);
+        let grouped = arm.is_grouped(bodies_per, index);
         let field = match fields.last() {
             Some(field) if grouped => *field,
             _ => twist.back_about_x(own),
         };
         own = match row.kind {
-            Revolute => arm.turn_of_group(builder, gathering, index).back_about_z(field),
+            Revolute => arm.turn_of_group(builder, bodies_per, index).back_about_z(field),
             Prismatic if row.carried => own,
             Prismatic => builder.fixed_turn(row.theta).back_about_z(field),
         };
@@ -254,12 +254,12 @@ pub(crate) fn gravity_torques<'s>(builder: &'s Builder, arm: &Arm<'_>, gathering
         let m = builder.number(mass);
         let torque = match row.kind {
             Revolute => {
-                let turn = arm.turn_of_group(builder, gathering, index);
+                let turn = arm.turn_of_group(builder, bodies_per, index);
                 h = if unturned { h + turn.about_z(own) } else { turn.about_z(h + own) };
                 let ([hx, hy, _], [ax, ay, _]) = (h.0, field.0);
                 let torque = hx * ay - hy * ax;
                 let along = builder.along_z(d);
-                unturned = arm.is_grouped(gathering, index);
+                unturned = arm.is_grouped(bodies_per, index);
                 if unturned {
                     let before = builder.turn(rows, group_start(rows, index), index - 1);
                     h = h + (before.about_z(builder.vector(offset)) + along) * m;

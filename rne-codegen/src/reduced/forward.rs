@@ -12,7 +12,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::plan::{JointPlan, Plan, Side};
 use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::joint_frames::{Row, Table};
+use crate::reduced::joint_frames::{JointFrame, JointFrames};
 use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
 
 use crate::ir::quantity::Quantity;
@@ -98,23 +98,23 @@ struct Group<'s> {
 
 /// The arm under a plan, as both ways see it.
 pub(crate) struct Arm<'a> {
-    pub(crate) table: &'a Table,
+    pub(crate) joint_frames: &'a JointFrames,
     pub(crate) plan: &'a Plan,
     pub(crate) parameters: &'a Parameters,
 }
 
 impl<'a> Arm<'a> {
-    pub(crate) fn rows(&self) -> &'a [Row] {
-        &self.table.rows
+    pub(crate) fn rows(&self) -> &'a [JointFrame] {
+        &self.joint_frames.rows
     }
 
     /// O_{i-1} to axis i in axes of link i-1, with the slide of frame i-1, and d with that of frame i; times `scale`.
     pub(crate) fn lengths(&self, index: usize, scale: Number) -> ([Number; 3], Number) {
         let row = &self.rows()[index];
         let [x, y, z] = row.offset;
-        let slides = &self.parameters.slides;
-        let before = index.checked_sub(1).map_or(Number::ZERO, |before| slides[before]);
-        let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
+        let origin_shifts = &self.parameters.origin_shifts;
+        let before = index.checked_sub(1).map_or(Number::ZERO, |before| origin_shifts[before]);
+        let d = if index == 0 { Number::ZERO } else { row.d + origin_shifts[index] };
         ([x, y, z - before].map(|length| length * scale), d * scale)
     }
 
@@ -125,7 +125,7 @@ impl<'a> Arm<'a> {
 }
 
 /// d along the axis, in axes of the link before.
-pub(crate) fn along_axis(row: &Row, d: Number) -> [Number; 3] {
+pub(crate) fn along_axis(row: &JointFrame, d: Number) -> [Number; 3] {
     [Number::ZERO, -(d * row.alpha.sin), d * row.alpha.cos]
 }
 
@@ -140,7 +140,7 @@ pub(crate) fn motions<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Moved<'s>>
     let at_rest = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: builder.vector(arm.table.gravity.map(|g| -(g * lambda))),
+        acceleration: builder.vector(arm.joint_frames.gravity.map(|g| -(g * lambda))),
         gradient: Gradient::new(zeros, zeros),
     };
     let mut before = at_rest;
@@ -183,7 +183,7 @@ fn joint_point<'s>(
 /// A revolute joint while the motion of its link is written.
 struct Revolving<'s, 'a> {
     builder: &'s Builder,
-    row: &'a Row,
+    row: &'a JointFrame,
     /// Counted from 1.
     joint: usize,
     plan: &'a JointPlan,
@@ -429,7 +429,7 @@ pub(crate) struct ScaledTwist {
 
 impl ScaledTwist {
     /// `None` for right angles.
-    pub(crate) fn new(row: &Row) -> Option<Self> {
+    pub(crate) fn new(row: &JointFrame) -> Option<Self> {
         let (s, c) = (row.alpha.sin, row.alpha.cos);
         if row.alpha.quarters().is_some() {
             return None;

@@ -10,11 +10,11 @@ use crate::reduced::regrouping::{group_start, is_parallel};
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Gathering {
+pub enum BodiesPer {
     /// Joint by joint.
-    Joints,
+    Joint,
     /// Per group of parallel axes.
-    Groups,
+    Group,
 }
 
 /// A symmetric matrix: xx, yy, zz, xy, xz, yz.
@@ -108,19 +108,19 @@ impl<'s> Inward<'s> for Wrench<'s> {
 
 impl Arm<'_> {
     /// Whether a joint shares the frame N of the one before it.
-    pub(crate) fn is_grouped(&self, gathering: Gathering, index: usize) -> bool {
-        gathering == Gathering::Groups && is_parallel(self.rows(), index)
+    pub(crate) fn is_grouped(&self, bodies_per: BodiesPer, index: usize) -> bool {
+        bodies_per == BodiesPer::Group && is_parallel(self.rows(), index)
     }
 
     /// From the axes of a revolute link to frame N of its group.
     pub(crate) fn turn_of_group<'s>(
         &self,
         builder: &'s Builder,
-        gathering: Gathering,
+        bodies_per: BodiesPer,
         index: usize,
     ) -> SymbolicTurn<'s> {
         let rows = self.rows();
-        builder.turn(rows, if self.is_grouped(gathering, index) { group_start(rows, index) } else { index }, index)
+        builder.turn(rows, if self.is_grouped(bodies_per, index) { group_start(rows, index) } else { index }, index)
     }
 
     /// From frame N of a joint, or the axes of a sliding link, to the axes of the link before and about its origin. The
@@ -128,7 +128,7 @@ impl Arm<'_> {
     pub(crate) fn inward<'s, T: Inward<'s>>(
         &self,
         builder: &'s Builder,
-        gathering: Gathering,
+        bodies_per: BodiesPer,
         index: usize,
         carried: T,
     ) -> T {
@@ -136,7 +136,7 @@ impl Arm<'_> {
         let (offset, d) = self.lengths(index, Number::ONE);
         let twist = Turned::AboutX(builder.fixed_turn(row.alpha));
         match row.kind {
-            Revolute if self.is_grouped(gathering, index) => {
+            Revolute if self.is_grouped(bodies_per, index) => {
                 let before = builder.turn(self.rows(), group_start(self.rows(), index), index - 1);
                 carried.moved(before.about_z(builder.vector(offset)) + builder.along_z(d))
             }

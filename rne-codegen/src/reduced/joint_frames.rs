@@ -7,23 +7,23 @@
 
 use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
 
-use crate::ir::{Number, Reading, Turn};
+use crate::ir::{Embedding, ExactAngle, Number};
 use crate::reduced::link_parameters::{
     IDENTITY, PseudoInertia, Square, Triple, about_x, about_z, apply, compose, transpose,
 };
 
 /// One joint and the link that it moves.
 #[derive(Clone, Debug)]
-pub(crate) struct Row {
+pub(crate) struct JointFrame {
     pub(crate) kind: JointKind,
     /// Whether q, q̇, q̈ and τ count the other way round.
     pub(crate) reversed: bool,
     /// Rx(α), the twist between the axes.
-    pub(crate) alpha: Turn,
+    pub(crate) alpha: ExactAngle,
     /// O_{i-1} to axis i, in axes of link i-1.
     pub(crate) offset: Triple,
     /// The constant part of the joint angle.
-    pub(crate) theta: Turn,
+    pub(crate) theta: ExactAngle,
     /// Along axis i, without the joint variable.
     pub(crate) d: Number,
     /// Along which a prismatic joint slides, in the axes of its link.
@@ -42,53 +42,53 @@ pub(crate) struct Tip {
 
 /// All rows of an arm.
 #[derive(Clone, Debug)]
-pub(crate) struct Table {
-    pub(crate) rows: Vec<Row>,
+pub(crate) struct JointFrames {
+    pub(crate) rows: Vec<JointFrame>,
     /// Acceleration of gravity in the axes of the base, which are those of joint 1 at rest.
     pub(crate) gravity: Triple,
     pub(crate) tip: Tip,
     /// How the numbers of the file were read.
-    pub(crate) reading: Reading,
+    pub(crate) embedding: Embedding,
     /// Sines and cosines of the constant angles of the file, none negative.
     pub(crate) known: Vec<Number>,
 }
 
 /// Choices that change the rows themselves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub(crate) struct Frames {
+pub(crate) struct FrameChoice {
     /// The last frame is turned about its axis so that h_y of the last link vanishes (section 5.8).
     pub(crate) turned_last: bool,
     /// Prismatic links keep the axes of the last revolute link (section 5.9).
     pub(crate) carried: bool,
 }
 
-impl Row {
+impl JointFrame {
     /// Rx(α) Rz(θ)
     pub(crate) fn rotation(&self) -> Square {
         compose(&about_x(self.alpha), &about_z(self.theta))
     }
 }
 
-impl Table {
+impl JointFrames {
     /// The rows of a robot; `None` when a choice of frames does not apply to it, or no reading of the numbers does:
     /// each must have a root for every one that is wanted, and value and image of every number must agree about what is
     /// zero.
-    pub(crate) fn new(robot: &Robot, frames: Frames) -> Option<Self> {
-        if frames == Frames::default() {
-            return Self::read(robot, frames, Reading::default());
+    pub(crate) fn new(robot: &Robot, frames: FrameChoice) -> Option<Self> {
+        if frames == FrameChoice::default() {
+            return Self::read(robot, frames, Embedding::default());
         }
         // roots: every fourth reading has a given one
         let last = robot.rows().last()?.link.com;
         let unknowns = [None].into_iter().chain([last[0], last[1]].map(|x| Some(x.abs())));
         let usable = unknowns.filter(|unknown| unknown.is_none_or(|x| (4.0 * x).fract() != 0.0));
         usable
-            .flat_map(|unknown| (0..48).map(move |seed| Reading { seed, unknown }))
-            .find_map(|reading| Self::read(robot, frames, reading).filter(Self::agrees))
+            .flat_map(|unknown| (0..48).map(move |seed| Embedding { seed, unknown }))
+            .find_map(|embedding| Self::read(robot, frames, embedding).filter(Self::agrees))
     }
 
     /// Whether nothing is zero in value alone.
     fn agrees(&self) -> bool {
-        let length = |row: &Row| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
+        let length = |row: &JointFrame| row.offset.map(|x| x.to_f64().abs()).iter().sum::<f64>() + row.d.to_f64().abs();
         let reach: f64 = self.rows.iter().map(length).sum();
         self.rows.iter().all(|row| {
             let PseudoInertia { mass, h, s } = row.matter;
@@ -106,33 +106,33 @@ impl Table {
         })
     }
 
-    fn read(robot: &Robot, frames: Frames, reading: Reading) -> Option<Self> {
-        let mut table = Self::as_written(robot, reading);
-        table.straighten();
-        table.normalise_first();
-        if frames.carried && !table.carry_prismatics() {
+    fn read(robot: &Robot, frames: FrameChoice, embedding: Embedding) -> Option<Self> {
+        let mut joint_frames = Self::as_written(robot, embedding);
+        joint_frames.straighten();
+        joint_frames.normalise_first();
+        if frames.carried && !joint_frames.carry_prismatics() {
             return None;
         }
         if !frames.turned_last {
-            table.normalise_last();
-        } else if !table.turn_last() {
+            joint_frames.normalise_last();
+        } else if !joint_frames.turn_last() {
             return None;
         }
-        Some(table)
+        Some(joint_frames)
     }
 
-    fn as_written(robot: &Robot, reading: Reading) -> Self {
-        let decimal = |x: f64| reading.decimal(x);
+    fn as_written(robot: &Robot, embedding: Embedding) -> Self {
+        let decimal = |x: f64| embedding.decimal(x);
         let half = decimal(0.5);
-        let mut tip = pose(&robot.tool, reading);
+        let mut tip = pose(&robot.tool, embedding);
         let mut rows = Vec::with_capacity(robot.dof());
         // a standard table: twist and length of row i-1 stand before joint i
-        let (mut alpha, mut a) = (Turn::NONE, Number::ZERO);
+        let (mut alpha, mut a) = (ExactAngle::NONE, Number::ZERO);
         for joint in &robot.joints {
             let row = &joint.row;
-            let (own_alpha, own_a) = (reading.turn(&row.dh.alpha), decimal(row.dh.a));
+            let (own_alpha, own_a) = (embedding.turn(&row.dh.alpha), decimal(row.dh.a));
             let com = row.link.com.map(decimal);
-            let body = PseudoInertia::of_body(decimal(row.link.mass), com, reading.inertia(joint), half);
+            let body = PseudoInertia::of_body(decimal(row.link.mass), com, embedding.inertia(joint), half);
             let matter = match robot.convention {
                 Convention::Modified => {
                     (alpha, a) = (own_alpha, own_a);
@@ -140,12 +140,12 @@ impl Table {
                 }
                 Convention::Standard => body.turned(&about_x(own_alpha)).moved([own_a, Number::ZERO, Number::ZERO]),
             };
-            rows.push(Row {
+            rows.push(JointFrame {
                 kind: row.kind,
                 reversed: false,
                 alpha,
                 offset: [a, Number::ZERO, Number::ZERO],
-                theta: reading.turn(&row.dh.theta),
+                theta: embedding.turn(&row.dh.theta),
                 d: decimal(row.dh.d),
                 axis: IDENTITY[2],
                 carried: false,
@@ -163,16 +163,16 @@ impl Table {
         }
         let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
         let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
-        Self { rows, gravity: robot.gravity.map(decimal), tip, reading, known }
+        Self { rows, gravity: robot.gravity.map(decimal), tip, embedding, known }
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.
     fn straighten(&mut self) {
-        let flip = about_x(Turn { sin: Number::ZERO, cos: -Number::ONE });
+        let flip = about_x(ExactAngle { sin: Number::ZERO, cos: -Number::ONE });
         let mut reversed = false;
         for (index, row) in self.rows.iter_mut().enumerate() {
             if index > 0 && row.alpha.quarters() == Some(QuarterTurns::Two) {
-                row.alpha = Turn::NONE;
+                row.alpha = ExactAngle::NONE;
                 reversed = !reversed;
             }
             if reversed {
@@ -191,7 +191,7 @@ impl Table {
     fn normalise_first(&mut self) {
         let Some(first) = self.rows.first_mut() else { return };
         self.gravity = apply(&transpose(&first.rotation()), self.gravity);
-        (first.alpha, first.theta) = (Turn::NONE, Turn::NONE);
+        (first.alpha, first.theta) = (ExactAngle::NONE, ExactAngle::NONE);
         (first.offset, first.d) = ([Number::ZERO; 3], Number::ZERO);
     }
 
@@ -200,7 +200,7 @@ impl Table {
         let Some(last) = self.rows.last_mut() else { return };
         if last.kind == JointKind::Revolute && last.theta.quarters() != Some(QuarterTurns::Zero) {
             let rotation = about_z(last.theta);
-            last.theta = Turn::NONE;
+            last.theta = ExactAngle::NONE;
             last.matter = last.matter.turned(&rotation);
             self.turn_tip(&rotation);
         }
@@ -213,7 +213,7 @@ impl Table {
 
     /// Turns the last frame by φ = atan2(h_y, h_x); false when there is nothing to gain or no root.
     fn turn_last(&mut self) -> bool {
-        let reading = self.reading;
+        let embedding = self.embedding;
         let Some(last) = self.rows.last_mut() else { return false };
         let [x, y, _] = last.matter.h;
         if last.kind != JointKind::Revolute {
@@ -223,7 +223,7 @@ impl Table {
             // the angle of the file serves
             return last.theta.quarters() != Some(QuarterTurns::Zero);
         }
-        let Some(phi) = direction(y, x, reading) else { return false };
+        let Some(phi) = direction(y, x, embedding) else { return false };
         let back = about_z(phi.back());
         last.theta = last.theta.then(phi);
         last.matter = last.matter.turned(&back);
@@ -236,9 +236,9 @@ impl Table {
     /// prismatic joint costs no rotation at all. False when there is no such link, or no root.
     fn carry_prismatics(&mut self) -> bool {
         let kinds: Vec<_> = self.rows.iter().map(|row| row.kind).collect();
-        let slides = |at: usize| kinds.get(at) == Some(&JointKind::Prismatic);
-        let mut carriers = (0..kinds.len()).filter(|&at| !slides(at) && slides(at + 1)).peekable();
-        let end = |first: usize| (first + 1..kinds.len()).find(|&at| !slides(at)).unwrap_or(kinds.len());
+        let origin_shifts = |at: usize| kinds.get(at) == Some(&JointKind::Prismatic);
+        let mut carriers = (0..kinds.len()).filter(|&at| !origin_shifts(at) && origin_shifts(at + 1)).peekable();
+        let end = |first: usize| (first + 1..kinds.len()).find(|&at| !origin_shifts(at)).unwrap_or(kinds.len());
         carriers.peek().is_some() && carriers.all(|first| self.carry_behind(first, end(first)))
     }
 
@@ -251,14 +251,15 @@ impl Table {
             axes = compose(&axes, &row.rotation());
             row.axis = apply(&axes, IDENTITY[2]);
             row.matter = row.matter.turned(&axes);
-            (row.alpha, row.theta, row.carried) = (Turn::NONE, Turn::NONE, true);
+            (row.alpha, row.theta, row.carried) = (ExactAngle::NONE, ExactAngle::NONE, true);
         }
         let Some(next) = self.rows.get_mut(end) else {
             self.turn_tip(&axes);
             return true;
         };
         next.offset = apply(&axes, next.offset);
-        let Some([before, twist, after]) = decomposed(&compose(&axes, &about_x(next.alpha)), self.reading, &self.known)
+        let Some([before, twist, after]) =
+            decomposed(&compose(&axes, &about_x(next.alpha)), self.embedding, &self.known)
         else {
             return false;
         };
@@ -279,60 +280,64 @@ impl Table {
 }
 
 /// R = Rz(φ1) Rx(α) Rz(φ2). The sine of α may be one of those `known`.
-fn decomposed(rotation: &Square, reading: Reading, known: &[Number]) -> Option<[Turn; 3]> {
+fn decomposed(rotation: &Square, embedding: Embedding, known: &[Number]) -> Option<[ExactAngle; 3]> {
     let [[xx, _, xz], [yx, _, yz], [zx, zy, zz]] = *rotation;
     if xz.is_zero() && yz.is_zero() {
         // the axes are parallel, so all turning is about one
-        return Some([Turn::NONE, Turn { sin: Number::ZERO, cos: zz }, Turn { sin: yx * zz, cos: xx }]);
+        return Some([
+            ExactAngle::NONE,
+            ExactAngle { sin: Number::ZERO, cos: zz },
+            ExactAngle { sin: yx * zz, cos: xx },
+        ]);
     }
     let square = xz * xz + yz * yz;
     // an angle of the file, or one that no angle of the file is
-    let known = known.iter().find(|known| known.image * known.image == square.image);
+    let known = known.iter().find(|known| known.residue * known.residue == square.residue);
     let sine = match known {
         Some(&known) => known,
-        None => hypotenuse(xz, yz, reading)?,
+        None => hypotenuse(xz, yz, embedding)?,
     };
     let scale = sine.inverse()?;
     Some([
-        Turn { sin: xz * scale, cos: -(yz * scale) },
-        Turn { sin: sine, cos: zz },
-        Turn { sin: zx * scale, cos: zy * scale },
+        ExactAngle { sin: xz * scale, cos: -(yz * scale) },
+        ExactAngle { sin: sine, cos: zz },
+        ExactAngle { sin: zx * scale, cos: zy * scale },
     ])
 }
 
 /// The turn whose tangent is y/x.
-fn direction(y: Number, x: Number, reading: Reading) -> Option<Turn> {
-    let scale = hypotenuse(x, y, reading)?.inverse()?;
-    Some(Turn { sin: y * scale, cos: x * scale })
+fn direction(y: Number, x: Number, embedding: Embedding) -> Option<ExactAngle> {
+    let scale = hypotenuse(x, y, embedding)?.inverse()?;
+    Some(ExactAngle { sin: y * scale, cos: x * scale })
 }
 
 /// √(x² + y²)
-fn hypotenuse(x: Number, y: Number, reading: Reading) -> Option<Number> {
+fn hypotenuse(x: Number, y: Number, embedding: Embedding) -> Option<Number> {
     // a rational number, of which the fields might take roots of different signs
     match (x.is_zero(), y.is_zero()) {
         (true, _) => Some(y.abs()),
         (_, true) => Some(x.abs()),
-        _ => root(x * x + y * y, reading),
+        _ => root(x * x + y * y, embedding),
     }
 }
 
 /// The positive root. That of the square of a short decimal is that decimal; any other is an unknown over the
 /// rationals, of which either root in the field serves.
-fn root(square: Number, reading: Reading) -> Option<Number> {
-    let decimal = reading.decimal(square.value.sqrt().to_f64());
-    if decimal.image * decimal.image == square.image {
+fn root(square: Number, embedding: Embedding) -> Option<Number> {
+    let decimal = embedding.decimal(square.value.sqrt().to_f64());
+    if decimal.residue * decimal.residue == square.residue {
         return Some(decimal);
     }
     square.sqrt()
 }
 
 /// R = Rz(yaw) Ry(pitch) Rx(roll)
-fn pose(transform: &Transform, reading: Reading) -> Tip {
-    let [roll, pitch, yaw] = transform.rpy.map(|angle| reading.turn(&angle));
+fn pose(transform: &Transform, embedding: Embedding) -> Tip {
+    let [roll, pitch, yaw] = transform.rpy.map(|angle| embedding.turn(&angle));
     let (zero, one) = (Number::ZERO, Number::ONE);
     let about_y = [[pitch.cos, zero, pitch.sin], [zero, one, zero], [-pitch.sin, zero, pitch.cos]];
     Tip {
         rotation: compose(&compose(&about_z(yaw), &about_y), &about_x(roll)),
-        translation: transform.xyz.map(|x| reading.decimal(x)),
+        translation: transform.xyz.map(|x| embedding.decimal(x)),
     }
 }

@@ -3,7 +3,7 @@
 
 use std::ops::Add;
 
-use crate::ir::{Number, Turn, square};
+use crate::ir::{ExactAngle, Number, square};
 
 /// Three numbers along x, y, z.
 pub(crate) type Triple = [Number; 3];
@@ -123,25 +123,25 @@ pub(crate) fn transpose(a: &Square) -> Square {
 }
 
 /// Rx(α)
-pub(crate) fn about_x(turn: Turn) -> Square {
-    let (zero, one, Turn { sin, cos }) = (Number::ZERO, Number::ONE, turn);
+pub(crate) fn about_x(turn: ExactAngle) -> Square {
+    let (zero, one, ExactAngle { sin, cos }) = (Number::ZERO, Number::ONE, turn);
     [[one, zero, zero], [zero, cos, -sin], [zero, sin, cos]]
 }
 
 /// Rz(θ)
-pub(crate) fn about_z(turn: Turn) -> Square {
-    let (zero, one, Turn { sin, cos }) = (Number::ZERO, Number::ONE, turn);
+pub(crate) fn about_z(turn: ExactAngle) -> Square {
+    let (zero, one, ExactAngle { sin, cos }) = (Number::ZERO, Number::ONE, turn);
     [[cos, -sin, zero], [sin, cos, zero], [zero, zero, one]]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::ir::Reading;
+    use crate::ir::Embedding;
     use rne_model::Angle;
 
     fn numbers<const N: usize>(values: [f64; N]) -> [Number; N] {
-        values.map(|value| Reading::default().decimal(value))
+        values.map(|value| Embedding::default().decimal(value))
     }
 
     fn body() -> PseudoInertia {
@@ -152,12 +152,12 @@ mod tests {
 
     #[test]
     fn frames_change_there_and_back() {
-        let turn = Reading::default().turn(&Angle::new(0.7));
+        let turn = Embedding::default().turn(&Angle::new(0.7));
         let rotation = compose(&about_x(turn), &about_z(turn));
         let there = body().turned(&rotation);
-        assert_eq!(images(&there.turned(&transpose(&rotation))), images(&body()));
+        assert_eq!(residues(&there.turned(&transpose(&rotation))), residues(&body()));
         let [x, y, z] = numbers([0.3, -0.7, 0.2]);
-        assert_eq!(images(&body().moved([x, y, z]).moved([-x, -y, -z])), images(&body()));
+        assert_eq!(residues(&body().moved([x, y, z]).moved([-x, -y, -z])), residues(&body()));
     }
 
     #[test]
@@ -166,10 +166,10 @@ mod tests {
         let [zero, one, two, three] = numbers([0.0, 1.0, 2.0, 3.0]);
         let rod = PseudoInertia::rod([two, zero, zero], [one, two, three], [zero, zero, one]);
         let point = PseudoInertia { mass: two, ..PseudoInertia::default() }.moved([one, two, three]);
-        assert_eq!(images(&rod), images(&point));
+        assert_eq!(residues(&rod), residues(&point));
     }
 
-    fn images(p: &PseudoInertia) -> Vec<crate::ir::Image> {
-        std::iter::once(p.mass).chain(p.h).chain(p.s.into_iter().flatten()).map(|x| x.image).collect()
+    fn residues(p: &PseudoInertia) -> Vec<crate::ir::Residue> {
+        std::iter::once(p.mass).chain(p.h).chain(p.s.into_iter().flatten()).map(|x| x.residue).collect()
     }
 }

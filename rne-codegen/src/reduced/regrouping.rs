@@ -4,8 +4,8 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::Number;
-use crate::plan::{Plan, Scale, Slide, Target};
-use crate::reduced::joint_frames::{Row, Table};
+use crate::plan::{OriginShift, Plan, RegroupingTarget, Scale};
+use crate::reduced::joint_frames::{JointFrame, JointFrames};
 use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 
 /// A pivot of the three equations for the rods of an axis must not be smaller.
@@ -22,7 +22,7 @@ const SCALES: std::ops::Range<f64> = 1e-3..1e3;
 pub(crate) struct Parameters {
     pub(crate) links: Vec<PseudoInertia>,
     /// How far the origin of each frame has been slid along its axis.
-    pub(crate) slides: Vec<Number>,
+    pub(crate) origin_shifts: Vec<Number>,
     /// I_zz of a last link that is a spinning sphere without mass.
     pub(crate) sphere: Option<Number>,
     /// λ: lengths of the outward pass are multiplied by it.
@@ -35,7 +35,7 @@ pub(crate) struct Parameters {
 #[derive(Clone, Debug)]
 pub(crate) struct Offers {
     /// Per joint, the rules that give different slides.
-    pub(crate) slides: Vec<Vec<(Slide, Number)>>,
+    pub(crate) origin_shifts: Vec<Vec<(OriginShift, Number)>>,
     /// Different lengths of the table.
     pub(crate) lengths: Vec<Scale>,
     /// Whether the last link is axisymmetric about its joint.
@@ -45,7 +45,7 @@ pub(crate) struct Offers {
 }
 
 /// Whether a row's axis is parallel to the one before, both revolute.
-pub(crate) fn is_parallel(rows: &[Row], index: usize) -> bool {
+pub(crate) fn is_parallel(rows: &[JointFrame], index: usize) -> bool {
     index > 0
         && rows[index].kind == Revolute
         && rows[index - 1].kind == Revolute
@@ -54,36 +54,37 @@ pub(crate) fn is_parallel(rows: &[Row], index: usize) -> bool {
 }
 
 /// The last row of the group of parallel axes that a row belongs to.
-pub(crate) fn group_end(rows: &[Row], index: usize) -> usize {
+pub(crate) fn group_end(rows: &[JointFrame], index: usize) -> usize {
     (index + 1..rows.len()).find(|&next| !is_parallel(rows, next)).unwrap_or(rows.len()) - 1
 }
 
 /// The first row of the group of parallel axes that a row belongs to.
-pub(crate) fn group_start(rows: &[Row], index: usize) -> usize {
+pub(crate) fn group_start(rows: &[JointFrame], index: usize) -> usize {
     (0..=index).rev().find(|&at| !is_parallel(rows, at)).unwrap_or(0)
 }
 
 impl Offers {
-    pub(crate) fn new(table: &Table) -> Self {
-        let rows = &table.rows;
+    pub(crate) fn new(joint_frames: &JointFrames) -> Self {
+        let rows = &joint_frames.rows;
         let reach: f64 = rows.iter().map(|row| length(row.offset) + row.d.to_f64().abs()).sum::<f64>();
         let reach = if reach > 0.0 { reach } else { 1.0 };
         let mass: f64 = rows.iter().map(|row| row.matter.mass.to_f64().abs()).sum();
         let rods = [mass, mass * reach, mass * reach * reach].map(|x| LARGEST_ROD * x);
-        let mut offers = Self { slides: Vec::new(), lengths: Vec::new(), gyrostat: has_sphere(table), rods };
+        let mut offers =
+            Self { origin_shifts: Vec::new(), lengths: Vec::new(), gyrostat: has_sphere(joint_frames), rods };
         let plain = Plan::new(rows.len());
-        let links = regrouped(table, &vec![Number::ZERO; rows.len()], &plain, &offers)
+        let links = regrouped(joint_frames, &vec![Number::ZERO; rows.len()], &plain, &offers)
             .map_or_else(Vec::new, |(links, _)| links);
         for (index, row) in rows.iter().enumerate() {
-            let mut slides: Vec<(Slide, Number)> = Vec::new();
-            for &rule in Slide::ALL {
-                let Some(value) = slide(rows, &links, index, rule) else { continue };
-                let is_new = slides.iter().all(|(_, other)| other.image != value.image);
+            let mut origin_shifts: Vec<(OriginShift, Number)> = Vec::new();
+            for &rule in OriginShift::ALL {
+                let Some(value) = origin_shift(rows, &links, index, rule) else { continue };
+                let is_new = origin_shifts.iter().all(|(_, other)| other.residue != value.residue);
                 if is_new && value.to_f64().abs() <= LONGEST_SLIDE * reach {
-                    slides.push((rule, value));
+                    origin_shifts.push((rule, value));
                 }
             }
-            offers.slides.push(slides);
+            offers.origin_shifts.push(origin_shifts);
             for (scale, value) in [(Scale::A(index + 1), row.offset[0]), (Scale::D(index + 1), row.d)] {
                 let known = offers.lengths.iter().filter_map(|&scale| length_of(rows, scale));
                 if !value.is_zero() && !value.is_unit() && !known.map(Number::abs).any(|x| x == value.abs()) {
@@ -94,32 +95,33 @@ impl Offers {
         offers
     }
 
-    fn slide(&self, index: usize, rule: Slide) -> Option<Number> {
-        self.slides.get(index)?.iter().find(|(other, _)| *other == rule).map(|(_, value)| *value)
+    fn origin_shift(&self, index: usize, rule: OriginShift) -> Option<Number> {
+        self.origin_shifts.get(index)?.iter().find(|(other, _)| *other == rule).map(|(_, value)| *value)
     }
 }
 
 /// The numbers of a table under a plan; `None` when a choice does not apply to it or leaves the bounds.
-pub(crate) fn parameters(table: &Table, offers: &Offers, plan: &Plan) -> Option<Parameters> {
-    let slides = plan.joints.iter().enumerate().map(|(index, joint)| offers.slide(index, joint.slide));
-    let slides: Vec<Number> = slides.collect::<Option<_>>()?;
-    let (links, sphere) = regrouped(table, &slides, plan, offers)?;
-    let (lambda, mu) = scales(table, &links, plan)?;
-    Some(Parameters { links, slides, sphere, lambda, mu })
+pub(crate) fn parameters(joint_frames: &JointFrames, offers: &Offers, plan: &Plan) -> Option<Parameters> {
+    let origin_shifts =
+        plan.joints.iter().enumerate().map(|(index, joint)| offers.origin_shift(index, joint.origin_shift));
+    let origin_shifts: Vec<Number> = origin_shifts.collect::<Option<_>>()?;
+    let (links, sphere) = regrouped(joint_frames, &origin_shifts, plan, offers)?;
+    let (lambda, mu) = scales(joint_frames, &links, plan)?;
+    Some(Parameters { links, origin_shifts, sphere, lambda, mu })
 }
 
 /// The links with matter moved along the arm, and the sphere that is left of the last.
 fn regrouped(
-    table: &Table,
-    slides: &[Number],
+    joint_frames: &JointFrames,
+    origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
 ) -> Option<(Vec<PseudoInertia>, Option<Number>)> {
-    let rows = &table.rows;
-    let slid = |(row, slide): (&Row, &Number)| {
-        if slide.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*slide]) }
+    let rows = &joint_frames.rows;
+    let slid = |(row, origin_shift): (&JointFrame, &Number)| {
+        if origin_shift.is_zero() { row.matter } else { row.matter.moved([Number::ZERO, Number::ZERO, -*origin_shift]) }
     };
-    let mut links: Vec<PseudoInertia> = rows.iter().zip(slides).map(slid).collect();
+    let mut links: Vec<PseudoInertia> = rows.iter().zip(origin_shifts).map(slid).collect();
     let mut sphere = None;
     let mut end = rows.len();
     if plan.gyrostat {
@@ -130,7 +132,7 @@ fn regrouped(
         end -= 1;
         let link = links[end];
         let c = link.s[0][0];
-        let (p, u) = line(rows, slides, end);
+        let (p, u) = line(rows, origin_shifts, end);
         links[end - 1] = links[end - 1]
             + PseudoInertia::rod([link.mass, link.h[2], link.s[2][2] - c], p, u)
             + PseudoInertia { s: IDENTITY.map(|row| row.map(|x| x * c)), ..PseudoInertia::default() };
@@ -150,7 +152,7 @@ fn regrouped(
                     links[index - 1] = links[index - 1] + moved;
                 }
             }
-            Revolute => share_rods(rows, slides, plan, offers, &mut links, index)?,
+            Revolute => share_rods(rows, origin_shifts, plan, offers, &mut links, index)?,
         }
     }
     if rows.first().is_some_and(|row| row.kind == Revolute) {
@@ -163,18 +165,18 @@ fn regrouped(
     Some((links, sphere))
 }
 
-/// Moves three rods of matter from revolute link `index` to the link before, so that the three targets vanish.
+/// Neighbourhood three rods of matter from revolute link `index` to the link before, so that the three targets vanish.
 fn share_rods(
-    rows: &[Row],
-    slides: &[Number],
+    rows: &[JointFrame],
+    origin_shifts: &[Number],
     plan: &Plan,
     offers: &Offers,
     links: &mut [PseudoInertia],
     index: usize,
 ) -> Option<()> {
     const OWN: [Entry; 3] = [Entry::Mass, Entry::H(2), Entry::S(2, 2)];
-    let (p, u) = line(rows, slides, index);
-    let targets = if index == 0 { [Target::Own; 3] } else { plan.joints[index].gauge };
+    let (p, u) = line(rows, origin_shifts, index);
+    let targets = if index == 0 { [RegroupingTarget::Own; 3] } else { plan.joints[index].targets };
     // three equations: the target vanishes
     let equation = |k: usize| {
         let ([x, y, z], constant) = match targets[k].entry() {
@@ -187,7 +189,7 @@ fn share_rods(
     };
     let rods = solved([0, 1, 2].map(equation))?;
     // what a link has of its own it can always give, in an arm without mass too
-    let is_plain = targets == [Target::Own; 3];
+    let is_plain = targets == [RegroupingTarget::Own; 3];
     if !is_plain && rods.iter().zip(offers.rods).any(|(rod, limit)| rod.to_f64().abs() > limit) {
         return None;
     }
@@ -226,27 +228,27 @@ fn solved(mut rows: [[Number; 4]; 3]) -> Option<Triple> {
 }
 
 /// The axis of a row in axes of the link before: the origin of its frame, and its direction.
-fn line(rows: &[Row], slides: &[Number], index: usize) -> (Triple, Triple) {
+fn line(rows: &[JointFrame], origin_shifts: &[Number], index: usize) -> (Triple, Triple) {
     let row = &rows[index];
     let u = [Number::ZERO, -row.alpha.sin, row.alpha.cos];
-    let before = index.checked_sub(1).map_or(Number::ZERO, |before| slides[before]);
-    let d = if index == 0 { Number::ZERO } else { row.d + slides[index] };
+    let before = index.checked_sub(1).map_or(Number::ZERO, |before| origin_shifts[before]);
+    let d = if index == 0 { Number::ZERO } else { row.d + origin_shifts[index] };
     let [x, y, z] = row.offset;
     ([x, y + d * u[1], z - before + d * u[2]], u)
 }
 
 /// Whether the last link is axisymmetric about a revolute joint.
-fn has_sphere(table: &Table) -> bool {
-    let (Some(row), true) = (table.rows.last(), table.rows.len() > 1) else { return false };
+fn has_sphere(joint_frames: &JointFrames) -> bool {
+    let (Some(row), true) = (joint_frames.rows.last(), joint_frames.rows.len() > 1) else { return false };
     let PseudoInertia { h, s, .. } = row.matter;
     let vanish = [s[0][0] - s[1][1], s[0][1], s[0][2], s[1][2], h[0], h[1]];
     row.kind == Revolute && vanish.iter().all(|x| x.is_zero())
 }
 
 /// What a rule gives, from the links of the plain gauge.
-fn slide(rows: &[Row], links: &[PseudoInertia], index: usize, rule: Slide) -> Option<Number> {
+fn origin_shift(rows: &[JointFrame], links: &[PseudoInertia], index: usize, rule: OriginShift) -> Option<Number> {
     let row = &rows[index];
-    if rule == Slide::None {
+    if rule == OriginShift::None {
         return Some(Number::ZERO);
     }
     if row.carried || index == 0 && row.kind == Prismatic {
@@ -256,30 +258,30 @@ fn slide(rows: &[Row], links: &[PseudoInertia], index: usize, rule: Slide) -> Op
     let link = links.get(index)?;
     let sum = |range: std::ops::RangeInclusive<usize>| range.fold(Number::ZERO, |sum, at| sum + rows[at].d);
     let is_group = row.kind == Revolute && group_end(rows, index) > index;
-    let slide = match rule {
-        Slide::None => Number::ZERO,
-        Slide::MinusD => -row.d,
+    let origin_shift = match rule {
+        OriginShift::None => Number::ZERO,
+        OriginShift::MinusD => -row.d,
         _ if row.kind == Prismatic => return None,
-        Slide::AnnulS13 => ratio(link.s[0][2], link.h[0])?,
-        Slide::AnnulS23 => ratio(link.s[1][2], link.h[1])?,
-        Slide::GroupInward if is_group => sum(index + 1..=group_end(rows, index)),
-        Slide::NextOffset if is_group => rows[index + 1].d,
-        Slide::NextLessOwn if is_group => rows[index + 1].d - row.d,
-        Slide::GroupOutward if is_parallel(rows, index) || is_group => -sum(group_start(rows, index)..=index),
-        Slide::AnnulParentH if index > 0 => {
+        OriginShift::AnnulS13 => ratio(link.s[0][2], link.h[0])?,
+        OriginShift::AnnulS23 => ratio(link.s[1][2], link.h[1])?,
+        OriginShift::GroupInward if is_group => sum(index + 1..=group_end(rows, index)),
+        OriginShift::NextOffset if is_group => rows[index + 1].d,
+        OriginShift::NextLessOwn if is_group => rows[index + 1].d - row.d,
+        OriginShift::GroupOutward if is_parallel(rows, index) || is_group => -sum(group_start(rows, index)..=index),
+        OriginShift::AnnulParentH if index > 0 => {
             let [x, y, _] = links[index - 1].h;
             ratio(-(y * row.offset[0]), x * row.alpha.sin)? - row.d
         }
         _ => return None,
     };
-    (index > 0 || rule != Slide::MinusD).then_some(slide)
+    (index > 0 || rule != OriginShift::MinusD).then_some(origin_shift)
 }
 
 fn length(v: Triple) -> f64 {
     v.iter().map(|x| x.to_f64() * x.to_f64()).sum::<f64>().sqrt()
 }
 
-fn length_of(rows: &[Row], scale: Scale) -> Option<Number> {
+fn length_of(rows: &[JointFrame], scale: Scale) -> Option<Number> {
     match scale {
         Scale::A(row) => Some(rows.get(row.checked_sub(1)?)?.offset[0]),
         Scale::D(row) => Some(rows.get(row.checked_sub(1)?)?.d),
@@ -288,14 +290,14 @@ fn length_of(rows: &[Row], scale: Scale) -> Option<Number> {
 }
 
 /// λ and μ; `None` outside their bounds.
-fn scales(table: &Table, links: &[PseudoInertia], plan: &Plan) -> Option<(Number, Number)> {
+fn scales(joint_frames: &JointFrames, links: &[PseudoInertia], plan: &Plan) -> Option<(Number, Number)> {
     let first_moment = |link: usize, axis: usize| Some(links.get(link.checked_sub(1)?)?.h.get(axis)?.abs());
     let lambda = match plan.length_scale {
         Scale::Default | Scale::One => Number::ONE,
         // |h| / λ = 1 in the moments
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?,
         Scale::Mass(_) => return None,
-        scale => length_of(&table.rows, scale)?.abs().inverse()?,
+        scale => length_of(&joint_frames.rows, scale)?.abs().inverse()?,
     };
     let mu = match plan.force_scale {
         Scale::Default => lambda.inverse()?,
@@ -304,7 +306,7 @@ fn scales(table: &Table, links: &[PseudoInertia], plan: &Plan) -> Option<(Number
         Scale::FirstMoment(link, axis) => first_moment(link, axis)?.inverse()?,
         // m μ / λ = 1
         Scale::Mass(link) => lambda * links.get(link.checked_sub(1)?)?.mass.abs().inverse()?,
-        scale => length_of(&table.rows, scale)?.abs(),
+        scale => length_of(&joint_frames.rows, scale)?.abs(),
     };
     let within = |scale: Number| SCALES.contains(&scale.to_f64());
     (within(lambda) && within(mu)).then_some((lambda, mu))

@@ -30,7 +30,7 @@ use crate::reduced::arguments::SymbolicTurn;
 use crate::reduced::backward::{Wrench, antisymmetric_of};
 use crate::reduced::crba::Composite;
 use crate::reduced::forward::{Arm, Gradient};
-use crate::reduced::inward::{Carried, Gathering, Inward, Turned};
+use crate::reduced::inward::{BodiesPer, Carried, Inward, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
 
 use crate::ir::quantity::Quantity;
@@ -189,10 +189,10 @@ impl<'s> Motion<'s> {
 pub(crate) fn sensitivity<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
-    gathering: Gathering,
+    bodies_per: BodiesPer,
     factor: Number,
 ) -> Sensitivity<'s> {
-    let stations = stations(builder, arm, gathering, factor);
+    let stations = stations(builder, arm, bodies_per, factor);
     let dof = stations.len();
     let rows = arm.rows();
     let zero = builder.zero();
@@ -217,9 +217,9 @@ pub(crate) fn sensitivity<'s>(
         for column in &columns {
             meet(builder, arm, index, station, column, &mut found);
         }
-        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(gathering, index) };
+        carried = Carried { behind: Some(behind), columns, unturned: arm.is_grouped(bodies_per, index) };
         if index > 0 {
-            carried = arm.inward(builder, gathering, index, carried);
+            carried = arm.inward(builder, bodies_per, index, carried);
         }
     }
     for matrix in [&mut found.by_position, &mut found.by_rate] {
@@ -252,7 +252,7 @@ pub(crate) fn matter(arm: &Arm<'_>, index: usize) -> PseudoInertia {
 pub(crate) fn stations<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
-    gathering: Gathering,
+    bodies_per: BodiesPer,
     factor: Number,
 ) -> Vec<Station<'s>> {
     let rows = arm.rows();
@@ -260,7 +260,7 @@ pub(crate) fn stations<'s>(
     let mut last = Motion {
         omega: zeros,
         omega_dot: zeros,
-        acceleration: builder.vector(arm.table.gravity.map(|g| -g)),
+        acceleration: builder.vector(arm.joint_frames.gravity.map(|g| -g)),
         twice_omega: zeros,
         twice_velocity: zeros,
     };
@@ -276,13 +276,13 @@ pub(crate) fn stations<'s>(
         let still = SymbolicTurn { s: zero, c: builder.number(Number::ONE) };
         match row.kind {
             Revolute => {
-                let grouped = arm.is_grouped(gathering, index);
+                let grouped = arm.is_grouped(bodies_per, index);
                 let before = match stations.last() {
                     Some(station) if grouped => last_unturned.at(station.turn.about_z(offset) + builder.along_z(d)),
                     _ if index == 0 => last.turned(|v| twist.back_about_x(v)),
                     _ => last.at(offset).turned(|v| twist.back_about_x(v)).at(builder.along_z(d)),
                 };
-                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(builder, gathering, index) };
+                let turn = if arm.is_spin(index) { still } else { arm.turn_of_group(builder, bodies_per, index) };
                 let ([wx, wy, _], [dx, dy, dz]) = (before.omega.0, before.omega_dot.0);
                 let omega = before.omega.plus_z(rate);
                 let unturned = Motion {

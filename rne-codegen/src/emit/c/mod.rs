@@ -81,7 +81,7 @@ impl<'a> File<'a> {
 
     /// Whether sines and cosines are needed.
     fn turns(&self) -> bool {
-        self.programs.iter().any(|program| !program.turns.is_empty())
+        self.programs.iter().any(|program| !program.sines_and_cosines.is_empty())
     }
 
     fn chooses_by_sign(&self) -> bool {

@@ -66,7 +66,7 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
         })?;
         let _ = writeln!(text, "    {} {} = {literal};", syntax.declaration(), constant.name);
     }
-    if !program.turns.is_empty() {
+    if !program.sines_and_cosines.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
             let _ = writeln!(text, "{}", Line::Statement(statement).indented(syntax));
@@ -107,10 +107,10 @@ pub(super) const UNUSED: &str = "unused";
 fn turns(file: &File, program: &Program) -> String {
     let (real, prefix) = (file.precision.c_type(), file.prefix);
     let (mut places, mut calls) = (String::new(), String::new());
-    if program.turns.iter().any(|turn| turn.sine.is_none() || turn.cosine.is_none()) {
+    if program.sines_and_cosines.iter().any(|turn| turn.sine.is_none() || turn.cosine.is_none()) {
         let _ = writeln!(places, "    {real} {UNUSED};");
     }
-    for turn in &program.turns {
+    for turn in &program.sines_and_cosines {
         for name in [turn.sine, turn.cosine].into_iter().flatten() {
             let _ = writeln!(places, "    {real} {name};");
         }

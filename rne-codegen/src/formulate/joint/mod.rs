@@ -10,7 +10,7 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::{Arm, Link, turned};
 use crate::formulate::seven_steps::Wrench;
-use crate::ir::ledger::Cause;
+use crate::ir::fold_report::Cause;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
 

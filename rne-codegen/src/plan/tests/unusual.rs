@@ -7,7 +7,7 @@ use crate::ir::Trace;
 
 /// Some rounds of random changes, every plan that applies proved for a function in turn.
 fn wander(robot: &Robot, rounds: usize, seed: u64) {
-    let moves = Moves::new(Evaluator::new(robot, Function::InverseDynamics).frames());
+    let neighbourhood = Neighbourhood::new(Evaluator::new(robot, Function::InverseDynamics).frames());
     let mut rng = fastrand::Rng::with_seed(seed);
     let mut plan = Plan::new(robot.dof());
     for function in Function::TORQUES {
@@ -21,7 +21,7 @@ fn wander(robot: &Robot, rounds: usize, seed: u64) {
         }
     }
     for round in 0..rounds {
-        let other = moves.random(&plan, &mut rng);
+        let other = neighbourhood.random(&plan, &mut rng);
         let function = Function::TORQUES[round % Function::TORQUES.len()];
         if let Some(program) = unproved(robot, &other, function) {
             must_be_identical(robot, &other, &program);
@@ -54,12 +54,12 @@ fn rewritten_graphs_are_the_seven_steps() {
             joint.switches.second_moment_unturned = true;
         }
         let Formulation { names, traced: plain } = drawn(&robot, &plan, function).unwrap();
-        let images = |graph: &Graph| graph.outputs.iter().map(|at| graph.image(*at)).collect::<Vec<_>>();
-        let expected = images(&plain.graph);
+        let residues = |graph: &Graph| graph.outputs.iter().map(|at| graph.residue(*at)).collect::<Vec<_>>();
+        let expected = residues(&plain.graph);
         let (graphs, seen, found) = (RefCell::new(Vec::new()), Cell::new(0_usize), Cell::new(false));
         let cost = |graph: &Graph, live: &mut Vec<bool>| {
             seen.set(seen.get() + 1);
-            let is_wrong = !found.get() && images(graph) != expected;
+            let is_wrong = !found.get() && residues(graph) != expected;
             found.set(found.get() || is_wrong);
             if is_wrong || seen.get() % 1000 == 0 {
                 graphs.borrow_mut().push(graph.clone());

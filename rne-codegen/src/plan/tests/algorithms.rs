@@ -1,4 +1,4 @@
-//! Every way in which a function can be written is that function, under any plan.
+//! Every algorithm that writes a function is that function, under any plan.
 
 use std::fmt::Write;
 
@@ -12,21 +12,22 @@ const FUNCTIONS: [Function; 5] = [
     Function::InverseDynamicsDerivatives,
 ];
 
-/// The program of a function in one of its ways; `None` where the plan does not apply.
-fn written(robot: &Robot, plan: &Plan, function: Function, way: Way) -> Option<Unproved> {
-    Some(lowered(robot, function, frame(robot, plan)?.written(plan, function, way)?))
+/// The program of a function by one of its algorithms; `None` where the plan does not apply.
+fn written(robot: &Robot, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Unproved> {
+    Some(lowered(robot, function, frame(robot, plan)?.written(plan, function, algorithm)?))
 }
 
 #[test]
-fn all_ways_are_the_seven_steps() {
+fn all_algorithms_are_the_seven_steps() {
     for name in SEVERAL.into_iter().chain(["spherical_rrp", "gantry_ppp", "puma560_mdh", "ur5e"]) {
         let robot = robot(name);
         let plan = default_plan(&robot, &[]);
         for function in FUNCTIONS {
-            for &way in Way::of(function) {
-                let program = written(&robot, &plan, function, way).unwrap_or_else(|| panic!("{name}: {way:?}"));
+            for &algorithm in Algorithm::of(function) {
+                let program =
+                    written(&robot, &plan, function, algorithm).unwrap_or_else(|| panic!("{name}: {algorithm:?}"));
                 if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
-                    panic!("the proof refuses {name}, {way:?}: {error}");
+                    panic!("the proof refuses {name}, {algorithm:?}: {error}");
                 }
             }
         }
@@ -34,21 +35,21 @@ fn all_ways_are_the_seven_steps() {
 }
 
 #[test]
-fn all_ways_under_random_plans_are_the_seven_steps() {
+fn all_algorithms_under_random_plans_are_the_seven_steps() {
     for name in ["puma560", "scara_cobra600", "stanford", "ur5", "dense6_2p"] {
         let robot = robot(name);
-        let moves = Moves::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
+        let neighbourhood = Neighbourhood::new(Evaluator::new(&robot, Function::InverseDynamics).frames());
         let mut rng = fastrand::Rng::with_seed(11);
         let mut plan = Plan::new(robot.dof());
         let mut tried = 0;
         for round in 0..40 {
-            let other = moves.random(&plan, &mut rng);
+            let other = neighbourhood.random(&plan, &mut rng);
             let function = FUNCTIONS[round % FUNCTIONS.len()];
-            let ways = Way::of(function);
-            let way = ways[(round / FUNCTIONS.len()) % ways.len()];
-            let Some(program) = written(&robot, &other, function, way) else { continue };
+            let algorithms = Algorithm::of(function);
+            let algorithm = algorithms[(round / FUNCTIONS.len()) % algorithms.len()];
+            let Some(program) = written(&robot, &other, function, algorithm) else { continue };
             if let Err(error) = prove::identical(&robot, &program.0, &program.1, program.2) {
-                panic!("the proof refuses {name}, {way:?}: {error}\n{:#?}", other.choices());
+                panic!("the proof refuses {name}, {algorithm:?}: {error}\n{:#?}", other.choices());
             }
             plan = other;
             tried += 1;
@@ -78,13 +79,13 @@ fn long_arms_are_articulated() {
         let robot = chain(joints);
         let plan = Plan::new(joints);
         let mut evaluator = Evaluator::new(&robot, Function::ForwardDynamics);
-        let costs: Vec<(usize, Way)> = Way::of(Function::ForwardDynamics)
+        let costs: Vec<(usize, Algorithm)> = Algorithm::of(Function::ForwardDynamics)
             .iter()
-            .map(|&way| (evaluator.cost_of(&plan, way).unwrap().total(), way))
+            .map(|&algorithm| (evaluator.cost_of(&plan, algorithm).unwrap().total(), algorithm))
             .collect();
         let best = costs.iter().min_by_key(|(total, _)| *total).unwrap();
         println!("{joints:2} joints: {:?}", costs.iter().map(|(total, _)| *total).collect::<Vec<_>>());
-        if matches!(best.1, Way::Articulated(_)) && first.is_none() {
+        if matches!(best.1, Algorithm::Aba(_)) && first.is_none() {
             first = Some(joints);
         }
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-use crate::ir::name::{By, Name};
+use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity, Step};
 
 /// Why a number is exactly zero or one. Later variants say more and win when two causes meet.
@@ -222,7 +222,7 @@ pub enum Operation {
 
 /// What became of operations that the unfolded recursion performs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Fate {
+pub enum Fold {
     /// It stands in the generated code.
     Kept,
     /// A factor or summand is zero, mainly because of this.
@@ -249,7 +249,7 @@ pub struct Place {
     /// The quantity that was being computed.
     pub quantity: Quantity,
     /// Of which variable it was the derivative.
-    pub by: Option<By>,
+    pub by: Option<WithRespectTo>,
 }
 
 /// How many operations at one place met one fate.
@@ -260,36 +260,36 @@ pub struct Line {
     /// Product or sum.
     pub operation: Operation,
     /// What became of them.
-    pub fate: Fate,
+    pub fold: Fold,
     /// How many.
     pub count: usize,
 }
 
 /// Every operation of the unfolded recursion, by place and fate.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Ledger {
-    lines: BTreeMap<(Place, Operation, Fate), usize>,
+pub struct FoldReport {
+    lines: BTreeMap<(Place, Operation, Fold), usize>,
 }
 
-impl Ledger {
-    pub(crate) fn enter(&mut self, place: Place, operation: Operation, fate: Fate) {
-        *self.lines.entry((place, operation, fate)).or_default() += 1;
+impl FoldReport {
+    pub(crate) fn enter(&mut self, place: Place, operation: Operation, fold: Fold) {
+        *self.lines.entry((place, operation, fold)).or_default() += 1;
     }
 
     /// An operation that was kept turns out to be unused.
     pub(crate) fn drop_unused(&mut self, place: Place, operation: Operation) {
-        if let Some(kept) = self.lines.get_mut(&(place, operation, Fate::Kept)) {
+        if let Some(kept) = self.lines.get_mut(&(place, operation, Fold::Kept)) {
             *kept -= 1;
             if *kept == 0 {
-                self.lines.remove(&(place, operation, Fate::Kept));
+                self.lines.remove(&(place, operation, Fold::Kept));
             }
-            self.enter(place, operation, Fate::Unused);
+            self.enter(place, operation, Fold::Unused);
         }
     }
 
     /// The lines, ordered by joint, step and quantity.
     pub fn lines(&self) -> impl Iterator<Item = Line> {
-        self.lines.iter().map(|(&(place, operation, fate), &count)| Line { place, operation, fate, count })
+        self.lines.iter().map(|(&(place, operation, fold), &count)| Line { place, operation, fold, count })
     }
 
     /// (products, sums) over the lines that pass `filter`.
@@ -309,6 +309,6 @@ impl Ledger {
     /// (products, sums) that are left.
     #[must_use]
     pub fn after(&self) -> (usize, usize) {
-        self.total(|line| line.fate == Fate::Kept)
+        self.total(|line| line.fold == Fold::Kept)
     }
 }
