@@ -1,7 +1,8 @@
 //! A rewritten graph as text: one operation per line, in order.
 //!
 //! ```text
-//! d1 = k4 / k7       a constant made from others, without its sign; k7 is a number of the reduced form under its plan
+//! k1 = 0.4318           a number of the graph before it was rewritten: the one that rounds to this
+//! d1 = 1 / k1           a constant made from others, without its sign
 //! t12 = t3 - t4         s2, c2 sine and cosine of joint 2, s2_4 of the summed angle of joints 2 to 4
 //! t13 = d1 * qd3
 //! out2 = -t13           the second number returned
@@ -79,29 +80,33 @@ struct Constants<'a> {
 }
 
 impl Constants<'_> {
+    fn define(&mut self, letter: char, place: u32, line: &str) -> String {
+        let name = format!("{letter}{}", self.names.len() + 1);
+        let _ = writeln!(self.text, "{name} = {line}");
+        self.names.insert(place, name.clone());
+        name
+    }
+
     fn name(&mut self, place: u32) -> String {
-        if let Some(index) = self.given.iter().position(|given| *given == place) {
-            return format!("k{index}");
-        }
         if let Some(name) = self.names.get(&place) {
             return name.clone();
         }
-        let source = self.numbers.get(place).1;
+        let (number, source) = self.numbers.get(place);
+        if self.given.contains(&place) {
+            return self.define('k', place, &format!("{:?}", number.to_f64()));
+        }
         let mut operand = |at: Ref| {
             let name = self.name(u32::try_from(at.index()).unwrap_or(u32::MAX));
             if at.is_negative() { format!("-{name}") } else { name }
         };
         let line = match source {
             // numbers that were not there at first have all been made
-            Source::Given => String::from("k0"),
+            Source::Given => String::from("1"),
             Source::Sum(a, b) => format!("{} + {}", operand(a), operand(b)),
             Source::Product(a, b) => format!("{} * {}", operand(a), operand(b)),
             Source::Inverse(of) => format!("1 / {}", operand(Ref::new(of as usize))),
         };
-        let name = format!("d{}", self.names.len() + 1);
-        let _ = writeln!(self.text, "{name} = {line}");
-        self.names.insert(place, name.clone());
-        name
+        self.define('d', place, &line)
     }
 }
 
@@ -124,7 +129,8 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
             return Err((at, format!("`{line}` is no line of a graph, such as `t1 = s2 * qd3`")));
         };
         let (name, value) = (name.trim(), value.trim());
-        let term = reader.operation(value).map_err(|message| (at, message))?;
+        let term = if name.starts_with('k') { reader.given(value) } else { reader.operation(value) };
+        let term = term.map_err(|message| (at, message))?;
         // a constant is kept without its sign
         let term = if name.starts_with('d') { builder.symbol(term.at.magnitude()) } else { term };
         if let Some(number) = name.strip_prefix("out").and_then(count) {
@@ -136,7 +142,7 @@ pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Trac
         } else if !is_name(name) {
             return Err((
                 at,
-                format!("`{name}` is no name of a graph: `d1` is a constant, `t1` a term, `out1` a result"),
+                format!("`{name}` is no name of a graph: `k1` and `d1` are constants, `t1` a term, `out1` a result"),
             ));
         } else if reader.known.insert(name.to_owned(), term).is_some() {
             return Err((at, format!("`{name}` stands there twice")));
@@ -179,7 +185,7 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
 
 /// Whether a line may define this name.
 fn is_name(name: &str) -> bool {
-    ["d", "t"].iter().any(|letter| name.strip_prefix(letter).and_then(count).is_some())
+    ["k", "d", "t"].iter().any(|letter| name.strip_prefix(letter).and_then(count).is_some())
 }
 
 /// A graph that was read, with the numbers of its plan in their places and its own behind them.
@@ -237,7 +243,7 @@ struct Reader<'s> {
 }
 
 impl<'s> Reader<'s> {
-    fn operation(&mut self, text: &str) -> Result<Symbol<'s>, String> {
+    fn operation(&self, text: &str) -> Result<Symbol<'s>, String> {
         let parts: Vec<&str> = text.split_whitespace().collect();
         match parts[..] {
             [one] => self.operand(one),
@@ -256,17 +262,19 @@ impl<'s> Reader<'s> {
         }
     }
 
-    fn operand(&mut self, text: &str) -> Result<Symbol<'s>, String> {
+    fn operand(&self, text: &str) -> Result<Symbol<'s>, String> {
         let (name, negative) = text.strip_prefix('-').map_or((text, false), |name| (name, true));
-        let term = match self.known.get(name) {
-            Some(&known) => known,
-            None => self.leaf(name).ok_or_else(|| format!("there is no `{name}` before this line"))?,
-        };
+        let term = self.known.get(name).ok_or_else(|| format!("there is no `{name}` before this line"))?;
         Ok(term.signed(negative))
     }
 
-    /// A number of the graph before.
-    fn leaf(&self, name: &str) -> Option<Symbol<'s>> {
-        Some(self.builder.number(*self.given.get(count(name.strip_prefix('k')?)?)?))
+    /// The number of the graph before that rounds to this. A change of the formulas may move a number by a rounding.
+    fn given(&self, text: &str) -> Result<Symbol<'s>, String> {
+        const ROUNDING: f64 = 1e-13;
+        let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+        let distance = |number: &Number| (number.to_f64() - value).abs();
+        let nearest = self.given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        let nearest = nearest.filter(|number| distance(number) <= ROUNDING * value.abs());
+        nearest.map(|&number| self.builder.number(number)).ok_or_else(|| format!("the plan gives no number {text}"))
     }
 }

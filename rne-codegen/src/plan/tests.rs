@@ -164,6 +164,8 @@ fn mistakes_in_a_graph_name_their_line() {
         ("out1 = qd1", 1, "`out2` is missing"),
         ("tau1 = qd1", 1, "`tau1` is no name of a graph"),
         ("t1 = k999 * qd1", 1, "there is no `k999`"),
+        ("k1 = 0.123456", 1, "the plan gives no number 0.123456"),
+        ("k1 = qd1", 1, "`qd1` is no number"),
     ] {
         let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
         let Err((at, message)) = read else { panic!("{text}") };
