@@ -177,7 +177,10 @@ fn angle_of<'s>(graph: &Graph, at: Ref, builder: &'s Builder) -> Symbol<'s> {
     let angle = match graph.op(at) {
         Op::Input(input) => builder.argument(input.name()),
         Op::Sum(a, b) => angle_of(graph, a, builder) + angle_of(graph, b, builder),
-        // angles are sums of positions and of constants
+        // angles are sums of positions and of constants, some of which are no numbers of the field
+        Op::Constant(place) if graph.factors().contains(&place) => {
+            builder.number(graph.number(at.magnitude()).unwrap_or_default())
+        }
         _ => graph.turn(at.magnitude()).map_or_else(|| builder.zero(), |turn| builder.angle(turn)),
     };
     angle.signed(at.is_negative())
