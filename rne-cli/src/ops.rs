@@ -162,7 +162,7 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
 pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
     use Align::{Left, Right};
     let divides = counted.iter().flat_map(|(_, counts)| counts).any(|count| count.after.div > 0);
-    let mut titles = vec!["", "form", "mul", "add", "total", "", "mul", "add", "total", "sincos", "statements"];
+    let mut titles = vec!["", "form", "mul", "add", "total", "", "mul", "add", "total", "sincos", "lines"];
     let mut alignment = vec![Left, Left, Right, Right, Right, Left, Right, Right, Right, Right, Right];
     let division = 9; // its column, behind the total
     if divides {

@@ -74,7 +74,7 @@ are built, against seven steps that are wrong then: `cargo build` is what fails 
             }
             Self::Prove => {
                 "\
-Only a refusal by the proof counts; a test that fails in another way does not. Where a rod, a slide, a unit of length or
+Only a refusal by the proof counts; a test that fails in another way does not. Where a rod, a shift, a unit of length or
 of force is chosen otherwise nothing is wrong: every choice of them is the same function; such a change is no mutant."
             }
             Self::Functions => "Compared with the runtime and with independent values, function by function.",

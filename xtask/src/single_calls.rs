@@ -95,8 +95,8 @@ wall_time          fastest       │ slowest       │ median        │ mean   
         let table = table(TREE);
         let lines: Vec<&str> = table.lines().collect();
         assert_eq!(lines.len(), 2 + 2 * 6 * 2);
-        assert_eq!(lines[2], "| puma560 | independent | f64 | - | 62.5 (62.2) | - | - | 1034 (1021) |");
-        assert_eq!(lines[5], "| puma560 | chained | f32 | - | - | - | 507 (506) | - |");
-        assert_eq!(lines[14], "| panda | independent | f64 | - | 115 (115) | - | - | - |");
+        assert_eq!(lines[2], "| puma560 | independent | f64 | - | 62.5 (62.2) | - | 1034 (1021) |");
+        assert_eq!(lines[5], "| puma560 | chained | f32 | - | - | 507 (506) | - |");
+        assert_eq!(lines[14], "| panda | independent | f64 | - | 115 (115) | - | - |");
     }
 }
