@@ -125,7 +125,7 @@ impl<'r> Compiler<'r> {
         let reference = reference(robot, function)?;
         // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() {
-            return self.numbered(function, reference);
+            return Ok(self.numbered(function, reference));
         }
         if let Some(rewritten) = self.plans.get().and_then(|plans| plans.rewritten.get(&function)) {
             let program = rewritten
@@ -136,7 +136,7 @@ impl<'r> Compiler<'r> {
             return Ok(Program { algorithm, choices, is_rewritten: true, ..program });
         }
         if !plan::is_planned(function) {
-            return self.numbered(function, reference);
+            return Ok(self.numbered(function, reference));
         }
         let plans = self.plans();
         match self.planned(plans, function, &reference) {
@@ -146,7 +146,7 @@ impl<'r> Compiler<'r> {
             Err(_) if plans.is_of_build() => {
                 let fewer = plans.with_ever_fewer_choices();
                 let program = fewer.iter().find_map(|plans| self.planned(plans, function, &reference).ok());
-                program.map_or_else(|| self.numbered(function, reference), Ok)
+                Ok(program.unwrap_or_else(|| self.numbered(function, reference)))
             }
             Err(error) => Err(error.suspecting(robot, true)),
         }
@@ -162,11 +162,11 @@ impl<'r> Compiler<'r> {
     }
 
     /// The plain formulas with every value computed once; as they are where that is cheaper, or cannot be proved.
-    fn numbered(&self, function: Function, reference: Reference<'_>) -> Result<Program, CompileError> {
+    fn numbered(&self, function: Function, reference: Reference<'_>) -> Program {
         match Formulation::numbered(self.robot, function).proved(function, self.target, &reference) {
             // a value that is found where it is not used otherwise costs what it takes there
-            Ok(numbered) if numbered.operations().total() <= reference.operations() => Ok(numbered),
-            _ => Ok(reference.into_program()),
+            Ok(numbered) if numbered.operations().total() <= reference.operations() => numbered,
+            _ => reference.into_program(),
         }
     }
 }

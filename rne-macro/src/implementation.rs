@@ -102,7 +102,7 @@ impl Target<'_> {
         let body = match program.form {
             Form::SevenSteps => body,
             _ if program.is_long() => body.all_fused(),
-            _ => body.fused(),
+            Form::Reduced => body.fused(),
         };
         let body = body.whole();
         let function = program.function;

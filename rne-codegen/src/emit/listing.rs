@@ -316,8 +316,8 @@ fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Ve
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
         Form::SevenSteps => formulas(step, kind, joint),
-        _ if program.is_of_bodies() => Vec::new(),
-        _ => reduced_formulas(step, kind, joint),
+        Form::Reduced if program.is_of_bodies() => Vec::new(),
+        Form::Reduced => reduced_formulas(step, kind, joint),
     };
     let title = Line::Heading(step_title(program, joint, step));
     std::iter::once(title).chain(formulas.into_iter().map(Line::Formula)).collect()

@@ -1,83 +1,43 @@
 //! The ideas that make the reduced form small, each with a name, so that a reader can leave one out.
 
-use std::fmt;
-use std::str::FromStr;
-
+use crate::named::named;
 use crate::plan::{Moment, OriginShift, Plan, RegroupingTarget, Scale, Side};
 
-/// One idea; the section numbers are those of `docs/reduced-form.md`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Trick {
-    /// Matter on joint axes is given to the link before, so that it vanishes from the link.
-    Regrouping,
-    /// Other parameters vanish than the link's own.
-    RegroupingTargets,
-    /// An axisymmetric last link is a spinning sphere without mass.
-    Gyrostat,
-    /// The last frame is turned so that a first moment vanishes.
-    LastFrame,
-    /// Prismatic links keep the axes of the revolute link before.
-    CarriedPrismatics,
-    /// The column U z is shared by the two links of an axis.
-    AxisColumns,
-    /// Parallel axes share a frame.
-    ParallelGroups,
-    /// Offsets along axes act where they are cheapest.
-    Offsets,
-    /// Origins slide along their axes.
-    OriginShifts,
-    /// Lengths and forces are measured in units of the arm.
-    Scales,
-    /// The moment of a link in the form that suits its tensor.
-    MomentForms,
-    /// Twists that are no right angles take seven products instead of eight.
-    ScaledTwists,
-    /// Parts of a link are evaluated in the frame that does not turn with it.
-    UnturnedFrames,
-    /// The finished graph is made smaller by exact algebra: no choice of a plan, but what comes after it.
-    Rewriting,
+named! {
+    /// One idea; the section numbers are those of `docs/reduced-form.md`.
+    Trick, "trick of the reduced form" {
+        /// Matter on joint axes is given to the link before, so that it vanishes from the link.
+        Regrouping = "regrouping",
+        /// Other parameters vanish than the link's own.
+        RegroupingTargets = "regrouping-targets",
+        /// An axisymmetric last link is a spinning sphere without mass.
+        Gyrostat = "gyrostat",
+        /// The last frame is turned so that a first moment vanishes.
+        LastFrame = "last-frame",
+        /// Prismatic links keep the axes of the revolute link before.
+        CarriedPrismatics = "carried-prismatics",
+        /// The column U z is shared by the two links of an axis.
+        AxisColumns = "axis-columns",
+        /// Parallel axes share a frame.
+        ParallelGroups = "parallel-groups",
+        /// Offsets along axes act where they are cheapest.
+        Offsets = "offsets",
+        /// Origins slide along their axes.
+        OriginShifts = "origin-shifts",
+        /// Lengths and forces are measured in units of the arm.
+        Scales = "scales",
+        /// The moment of a link in the form that suits its tensor.
+        MomentForms = "moment-forms",
+        /// Twists that are no right angles take seven products instead of eight.
+        ScaledTwists = "scaled-twists",
+        /// Parts of a link are evaluated in the frame that does not turn with it.
+        UnturnedFrames = "unturned-frames",
+        /// The finished graph is made smaller by exact algebra: no choice of a plan, but what comes after it.
+        Rewriting = "rewriting",
+    }
 }
 
 impl Trick {
-    /// All of them.
-    pub const ALL: [Self; 14] = [
-        Self::Regrouping,
-        Self::RegroupingTargets,
-        Self::Gyrostat,
-        Self::LastFrame,
-        Self::CarriedPrismatics,
-        Self::AxisColumns,
-        Self::ParallelGroups,
-        Self::Offsets,
-        Self::OriginShifts,
-        Self::Scales,
-        Self::MomentForms,
-        Self::ScaledTwists,
-        Self::UnturnedFrames,
-        Self::Rewriting,
-    ];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Regrouping => "regrouping",
-            Self::RegroupingTargets => "regrouping-targets",
-            Self::Gyrostat => "gyrostat",
-            Self::LastFrame => "last-frame",
-            Self::CarriedPrismatics => "carried-prismatics",
-            Self::AxisColumns => "axis-columns",
-            Self::ParallelGroups => "parallel-groups",
-            Self::Offsets => "offsets",
-            Self::OriginShifts => "origin-shifts",
-            Self::Scales => "scales",
-            Self::MomentForms => "moment-forms",
-            Self::ScaledTwists => "scaled-twists",
-            Self::UnturnedFrames => "unturned-frames",
-            Self::Rewriting => "rewriting",
-        }
-    }
-
     /// What it does, in one line, with its formula.
     #[must_use]
     pub const fn formula(self) -> &'static str {
@@ -154,22 +114,5 @@ impl Trick {
     #[must_use]
     pub fn is_in(self, plan: &Plan) -> bool {
         self.left_out_of(plan) != *plan
-    }
-}
-
-impl fmt::Display for Trick {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Trick {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        Self::ALL.into_iter().find(|trick| trick.name() == text).ok_or_else(|| {
-            let names: Vec<_> = Self::ALL.iter().map(|trick| format!("`{trick}`")).collect();
-            format!("`{text}` is no trick of the reduced form; there are {}", names.join(", "))
-        })
     }
 }

@@ -42,6 +42,7 @@ impl Algorithm {
         (Self::Aba(BodiesPer::Joint), "aba_by_joints"),
     ];
 
+    #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
     pub(crate) fn is_rnea(&self) -> bool {
         *self == Self::Rnea
     }
