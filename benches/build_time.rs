@@ -6,7 +6,6 @@
 use std::path::Path;
 
 use divan::Bencher;
-use rne_codegen::plan::PlanSet;
 use rne_codegen::{Compiler, Form, Function, emit};
 use rne_model::{Robot, check_bytes_with_run_time};
 
@@ -39,9 +38,9 @@ fn read_shared_expressions(bencher: Bencher) {
 fn expand_panda(bencher: Bencher, form: Form) {
     let robot = Robot::from_yaml(&panda()).unwrap_or_else(|report| panic!("{report}"));
     bencher.bench_local(|| {
-        let plans = PlanSet::default_of(&robot);
+        let compiler = Compiler::new(&robot);
         let programs = Function::TORQUES
-            .map(|function| Compiler::new(&robot).with_plans(&plans).compile(function, form).unwrap_or_else(|error| panic!("{error}")));
+            .map(|function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}")));
         emit::rust_file(&robot, &programs).len()
     });
 }

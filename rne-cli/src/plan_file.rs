@@ -96,19 +96,19 @@ pub(crate) struct Compiler<'a> {
     robot: &'a Robot,
     file: &'a Path,
     without: &'a [Trick],
-    compiler: OnceCell<codegen::Compiler<'a>>,
+    planned: OnceCell<codegen::Compiler<'a>>,
 }
 
 impl<'a> Compiler<'a> {
     pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
-        Self { robot, file, without: &[], compiler: OnceCell::new() }
+        Self { robot, file, without: &[], planned: OnceCell::new() }
     }
 
     /// For a robot that is part of this program, with the text of its plan.
     pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
         let name = plan_of(file).display().to_string();
         let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
-        Ok(Self { compiler: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
+        Ok(Self { planned: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
     }
 
     /// Without some tricks of the reduced form; the other choices of its plan stay.
@@ -122,7 +122,7 @@ impl<'a> Compiler<'a> {
     }
 
     fn planned(&self) -> Result<&codegen::Compiler<'a>, Failure> {
-        if let Some(compiler) = self.compiler.get() {
+        if let Some(compiler) = self.planned.get() {
             return Ok(compiler);
         }
         let compiler = codegen::Compiler::new(self.robot);
@@ -132,7 +132,7 @@ impl<'a> Compiler<'a> {
         };
         let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.without));
         let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
-        Ok(self.compiler.get_or_init(|| compiler))
+        Ok(self.planned.get_or_init(|| compiler))
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {

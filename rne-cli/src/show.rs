@@ -130,10 +130,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             .with_intermediates(&quantities)
             .compile(arguments.function, arguments.form)
             .map_err(|error| Failure::compile(&file, &error))?,
-        form if keep.is_empty() => {
+        form @ Form::Reduced if keep.is_empty() => {
             Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(arguments.function, form)?
         }
-        form => {
+        form @ Form::Reduced => {
             return Err(Failure::usage(format_args!(
                 "only the seven steps have {}; the form {form} keeps torques alone",
                 keep[0].words()

@@ -60,7 +60,8 @@ use crate::prove::Reference;
 ///
 /// ```
 /// use rne_codegen::{Compiler, Form, Function};
-/// # let yaml = "format: 1\nname: one\nsource: doc\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - type: revolute\n    dh: {theta: 0, d: 0, a: 1, alpha: 0}\n    link: {mass: 1, com: [-0.5, 0, 0], inertia: {xx: 0.1, yy: 0.1, zz: 0.1, xy: 0, xz: 0, yz: 0}}\n";
+/// # let yaml = "{format: 1, name: one, source: doc, convention: standard, gravity: [0, -9.81, 0], joints: [
+/// #     {type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1, com: [-0.5, 0, 0]}}]}";
 /// # let robot = rne_model::Robot::from_yaml(yaml).unwrap();
 /// let compiler = Compiler::new(&robot);
 /// let program = compiler.compile(Function::InverseDynamics, Form::Reduced)?;

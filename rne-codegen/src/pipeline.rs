@@ -20,8 +20,8 @@ pub(crate) const LARGEST: usize = 500_000;
 /// What a program is arranged for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Target {
-    /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a program is so
-    /// long that they matter more.
+    /// The shortest wait for the result of one call ([`fma::ordered_for_latency`]); the fewest instructions where a
+    /// program is so long that they matter more.
     #[default]
     Latency,
     /// The fewest instructions of a machine with fused multiply-add ([`fma::contracted`]), as batches want.

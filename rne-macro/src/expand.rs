@@ -172,8 +172,8 @@ pub(crate) fn compiler<'r>(
     }
 }
 
-/// The choices that a build makes by itself. The derives of one crate are expanded in one process, so they are made once
-/// per robot.
+/// The choices that a build makes by itself. The derives of one crate are expanded in one process, so they are made
+/// once per robot.
 fn default_plans(robot: &Robot) -> PlanSet {
     static KNOWN: Mutex<Vec<(Fingerprint, PlanSet)>> = Mutex::new(Vec::new());
     let print = plan::fingerprint(robot);

@@ -150,7 +150,7 @@ impl Arm {
         code.functions[index].get_or_init(|| {
             let program = match code.form {
                 Form::SevenSteps => Compiler::new(&self.robot).compile(function, code.form),
-                form => {
+                form @ Form::Reduced => {
                     let plans = code.plans.get_or_init(|| PlanSet::default_of(&self.robot));
                     Compiler::new(&self.robot).with_plans(plans).compile(function, form)
                 }

@@ -42,7 +42,7 @@ const SOME_IN_C: u64 = 6;
 const fn tolerance(form: Form) -> f64 {
     match form {
         Form::SevenSteps => 1e-12,
-        _ => 1e-11,
+        Form::Reduced => 1e-11,
     }
 }
 

@@ -113,7 +113,8 @@ fn write_source(workspace: &Path, folder: &Path, robot: functions::Robot) -> Res
     let plans = choice_of(&file, &robot)?;
     let all = if name == "puma560" { &Function::ALL[..] } else { &Function::ALL[..1] };
     let kind: Form = form.parse().map_err(|_| anyhow!("no form is called {form}"))?;
-    let programs: Result<Vec<_>, _> = all.iter().map(|&function| Compiler::new(&robot).with_plans(&plans).compile(function, kind)).collect();
+    let compiler = Compiler::new(&robot).with_plans(plans);
+    let programs: Result<Vec<_>, _> = all.iter().map(|&function| compiler.compile(function, kind)).collect();
     let prefix = format!("{name}_{form}");
     let code = c_code(&robot, &programs?, Precision::Single, &prefix.parse::<Prefix>()?)?;
     fs::write(folder.join(format!("{prefix}.h")), code.header())?;
@@ -252,7 +253,8 @@ mod tests {
         let text = fs::read_to_string(shipped.join("planar2.yaml")).expect("a shipped robot");
         let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
         let source = |plans: &PlanSet| {
-            let program = Compiler::new(&robot).with_plans(&plans).compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
+            let compiler = Compiler::new(&robot).with_plans(plans);
+            let program = compiler.compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
             let prefix = "planar2".parse().expect("a prefix");
             c_code(&robot, &[program], Precision::Single, &prefix).expect("C code").source("planar2.h")
         };

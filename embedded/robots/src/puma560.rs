@@ -81,8 +81,9 @@ macro_rules! methods {
 methods! {
     InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>)
         -> [f32; 6];
-    InverseDynamics: inverse_dynamics_from_sin_cos(sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
-        -> [f32; 6];
+    InverseDynamics: inverse_dynamics_from_sin_cos(
+        sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]
+    ) -> [f32; 6];
     InverseDynamics: gravity_torques(q: [f32; 6]) -> [f32; 6];
     InverseDynamics: bias_torques(q: [f32; 6], qd: [f32; 6]) -> [f32; 6];
     MassMatrix: mass_matrix(q: [f32; 6]) -> [[f32; 6]; 6];

@@ -164,7 +164,7 @@ pub(crate) const TABLE: &[Entry] = &[
     },
     Entry {
         summary: "Accelerations for positions `q`, velocities `qd` and torques `tau`, with a free tip.",
-        details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that neighbourhood nothing) gives \
+        details: "qdd: M(q)⁻¹ (τ - C(q, q̇) q̇ - g(q)). A singular mass matrix (a joint that moves nothing) gives \
             numbers that are not finite.",
         arguments: &[Positions, Rates, Torques],
         shape: VECTOR,
@@ -172,7 +172,7 @@ pub(crate) const TABLE: &[Entry] = &[
         answer: Answer::Accelerations,
         divides: Some(
             "the accelerations are not finite: the mass matrix is singular \
-             (a joint neighbourhood no mass), or the state is too large",
+             (a joint moves no mass), or the state is too large",
         ),
         ..Entry::of(Function::ForwardDynamics, Capability::ForwardDynamics)
     },

@@ -161,7 +161,9 @@ struct Row {
 
 /// The enumeration of the quantities and the table of what is known of each, from one row per quantity.
 macro_rules! quantities {
-    ($($quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $meaning:literal;)*) => {
+    ($(
+        $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $meaning:literal;
+    )*) => {
         /// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
         #[allow(rustdoc::broken_intra_doc_links)] // [ω]× is no link
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

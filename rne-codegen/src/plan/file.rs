@@ -215,8 +215,8 @@ impl PlanFile {
         [plan].into_iter().chain(rewritten).collect()
     }
 
-    /// Where in the text of a plan file the cause of an error is that the compiler found in one of the functions that it
-    /// describes.
+    /// Where in the text of a plan file the cause of an error is that the compiler found in one of the functions that
+    /// it describes.
     #[must_use]
     pub fn located(name: &str, text: &str, (function, plans): (Function, &PlanSet), error: &CompileError) -> Report {
         let (place, message) = match error {

@@ -27,8 +27,8 @@ pub struct SearchOptions {
 }
 
 /// Looks for a cheaper plan, from the one at hand onwards, and rewrites the graphs that the best plans give. What it
-/// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of which
-/// that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
+/// finds is not much less precise in single precision than the seven steps, and never worse than a plan at hand of
+/// which that is true. A rewritten graph is kept where it takes fewer operations than the one that the plan gives.
 ///
 /// `clock` is asked now and then how much of the time is over.
 ///
