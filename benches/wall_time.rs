@@ -15,10 +15,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use rne::{Arm, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, Scalar};
-use rne_benches::{
-    GRAVITY, PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps,
-    states, urdf,
-};
+use rne_benches::{GRAVITY, PandaReduced, PandaSevenSteps, Puma560Reduced, Puma560SevenSteps, states, urdf};
 
 fn main() {
     // 200 samples of 1000 calls; the machine's clock is too coarse for one call.

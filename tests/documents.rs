@@ -449,7 +449,7 @@ fn pages_name_sources_that_are_there() {
         for word in read(page).split('`').skip(1).step_by(2) {
             let is_path = word.chars().all(|c| c.is_ascii_alphanumeric() || "_/.-".contains(c));
             if is_path
-                && word.ends_with(".rs")
+                && Path::new(word).extension() == Some("rs".as_ref())
                 && !word.starts_with('.')
                 && page.file_name() != Some("CHANGELOG.md".as_ref())
             {
