@@ -70,7 +70,7 @@ impl fmt::Display for FunctionOrAll {
 /// Reads the name of a function, or `all`.
 pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> {
     let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
-    let all = PossibleValue::new("all").help("Every function of the robot");
+    let all = PossibleValue::new("all").help("Every function that there is");
     PossibleValuesParser::new(Function::ALL.map(value).into_iter().chain([all])).try_map(|name| match name.as_str() {
         "all" => Ok(FunctionOrAll::All),
         name => name.parse::<Function>().map(FunctionOrAll::One),

@@ -80,11 +80,17 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
     };
     let counts = plan_file::verify(&robot, &read)?;
-    let word = |(function, is_rewritten, total): &(Function, bool, usize)| {
-        format!("{function}{} {total}", if *is_rewritten { " rewritten" } else { "" })
+    let planned = counts.first().map_or(0, |(.., total)| *total);
+    let torques =
+        counts.iter().find(|(function, is_rewritten, _)| *is_rewritten && *function == Function::InverseDynamics);
+    let rewritten = torques.map_or_else(String::new, |(.., total)| format!(", rewritten {total}"));
+    let others = counts.len() - 1 - usize::from(torques.is_some());
+    let others = match others {
+        0 => String::new(),
+        1 => "; 1 other function rewritten".to_owned(),
+        others => format!("; {others} other functions rewritten"),
     };
-    let words: Vec<String> = counts.iter().map(word).collect();
-    let about = format!("plan of {}: {} operations, proved", robot.name, words.join(", "));
+    let about = format!("plan of {}: inverse_dynamics {planned} operations{rewritten}{others}; proved", robot.name);
     Ok(Good { about, lints: None })
 }
 

@@ -43,7 +43,8 @@ pub(crate) struct Arguments {
     /// What each trick of the reduced form saves in `inverse_dynamics`, with its formula
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Leave these tricks out of the reduced form; the other choices of its plan stay
+    /// Leave these tricks out of the reduced form; the other choices of its plan stay, but a graph that was rewritten with
+    /// them is left out too
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick())]
     without: Vec<Trick>,
 }
@@ -119,7 +120,7 @@ pub(crate) fn counts(
                     continue 'functions;
                 }
                 program => {
-                    let program = program.map_err(|error| Failure::compile(&file.display().to_string(), &error))?;
+                    let program = program.map_err(|error| compiler.failure(function, form, &error))?;
                     counts.push(Count { function, form, before: program.before(), after: program.operations() });
                 }
             }

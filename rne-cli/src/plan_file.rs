@@ -45,19 +45,25 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
-/// The plan that a fresh search starts from: one that fits, or none where it is stale or broken. What is no plan at all
-/// stays.
-pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<Option<PlanFile>, Failure> {
+/// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs cannot.
+/// Nothing of one that is stale or broken. What is no plan at all stays.
+pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
     let path = plan_of(robot_file);
     match output_file::existing(&path) {
-        Existing::Nothing => Ok(None),
+        Existing::Nothing => Ok((None, Vec::new())),
         Existing::Text(text) if text.contains("\nfingerprint: ") || text.trim().is_empty() => {
-            let plan = PlanFile::read(&path.display().to_string(), &text, robot).ok();
-            // a plan whose form cannot be proved is as good as none
-            Ok(plan.filter(|plan| {
-                let compiles = |(function, plans)| compiled(robot, function, plans).is_ok();
-                plan.described().into_iter().all(compiles)
-            }))
+            let Ok(mut plan) = PlanFile::read(&path.display().to_string(), &text, robot) else {
+                return Ok((None, Vec::new()));
+            };
+            let compiles = |(function, plans): &(Function, PlanSet)| compiled(robot, *function, plans.clone()).is_ok();
+            let mut described = plan.described().into_iter();
+            // a plan that cannot be proved is as good as none
+            if !described.next().is_some_and(|torques| compiles(&torques)) {
+                return Ok((None, plan.rewritten.into_keys().collect()));
+            }
+            let wrong: Vec<Function> = described.filter(|one| !compiles(one)).map(|(function, _)| function).collect();
+            plan.rewritten.retain(|function, _| !wrong.contains(function));
+            Ok((Some(plan), wrong))
         }
         _ => Err(Failure::usage(format_args!(
             "{} is no plan that rne has written, and stays as it is; move it out of the way",
@@ -79,6 +85,14 @@ fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program
     codegen::Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced)
 }
 
+/// Whether all programs that a plan file describes can be proved; an error is at its place in the plan file.
+pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Result<(), Failure> {
+    plan.described().into_iter().try_for_each(|(function, plans)| {
+        let program = compiled(robot, function, plans.clone());
+        program.map(drop).map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))
+    })
+}
+
 /// Compiles the programs that a plan file describes, and proves them; each function, whether it was
 /// rewritten, and its operations. What a build would refuse is an error at its place in the plan file.
 pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Function, bool, usize)>, Failure> {
@@ -97,11 +111,13 @@ pub(crate) struct Compiler<'a> {
     file: &'a Path,
     without: &'a [Trick],
     planned: OnceCell<codegen::Compiler<'a>>,
+    /// The plan file, for errors in it.
+    read: OnceCell<Read>,
 }
 
 impl<'a> Compiler<'a> {
     pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
-        Self { robot, file, without: &[], planned: OnceCell::new() }
+        Self { robot, file, without: &[], planned: OnceCell::new(), read: OnceCell::new() }
     }
 
     /// For a robot that is part of this program, with the text of its plan.
@@ -127,7 +143,7 @@ impl<'a> Compiler<'a> {
         }
         let compiler = codegen::Compiler::new(self.robot);
         let compiler = match read(self.file, self.robot)? {
-            Some(read) => compiler.with_plans(read.plan),
+            Some(read) => compiler.with_plans(self.read.get_or_init(|| read).plan.clone()),
             None => compiler,
         };
         let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.without));
@@ -136,7 +152,18 @@ impl<'a> Compiler<'a> {
     }
 
     pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
-        self.compiled(function, form)?.map_err(|error| Failure::compile(&self.file.display().to_string(), &error))
+        self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error))
+    }
+
+    /// An error of the compiler, at its place in the plan file where that is the cause.
+    pub(crate) fn failure(&self, function: Function, form: Form, error: &CompileError) -> Failure {
+        match (form, self.read.get(), self.planned.get()) {
+            (Form::Reduced, Some(read), Some(compiler)) if !matches!(error, CompileError::TooLarge { .. }) => {
+                let described = (function, compiler.plans());
+                Failure::from(&PlanFile::located(&read.name, &read.text, described, error))
+            }
+            _ => Failure::compile(&self.file.display().to_string(), error),
+        }
     }
 
     /// The program, or why there is none.

@@ -70,10 +70,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let robot = robot_file::robot(&arguments.file)?;
     let path = plan_of(&arguments.file);
-    let known = if arguments.fresh {
+    let (known, left_out) = if arguments.fresh {
         plan_file::to_replace(&arguments.file, &robot)?
     } else {
-        plan_file::read(&arguments.file, &robot)?.map(|read| read.plan)
+        let read = plan_file::read(&arguments.file, &robot)?;
+        if let Some(read) = &read {
+            plan_file::is_proved(&robot, read)?;
+        }
+        (read.map(|read| read.plan), Vec::new())
     };
     plan_file::is_writable(&path)?;
     // the first Ctrl-C ends the search, the second one the program, if a handler can be had at all
@@ -90,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if written == Written::Anew {
         touch(&arguments.file);
     }
-    Ok(Outcome::text(summary(&found, known.as_ref(), &path, written)))
+    Ok(Outcome::text(summary(&found, known.as_ref(), &left_out, &path, written)))
 }
 
 /// The functions whose graphs are to be rewritten.
@@ -150,14 +154,16 @@ fn watched(
     found
 }
 
-fn summary(found: &PlanFile, known: Option<&PlanFile>, path: &Path, written: Written) -> String {
+fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], path: &Path, written: Written) -> String {
     let mut text = String::new();
     let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
+    let names = found.rewritten.keys().map(|function| function.name().len());
+    let width = names.max().map_or("reduced".len(), |longest| longest.max("inverse_dynamics, planned".len()));
     let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {
         let _ = writeln!(
             text,
-            "{name:>9}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
-             largest torque{QUIET:#}",
+            "{name:<width$}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
+             largest number{QUIET:#}",
             count(operations),
             operations.sincos,
             accuracy.double,
@@ -165,10 +171,19 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, path: &Path, written: Wri
             accuracy.single_of_seven_steps,
         );
     };
-    line("reduced", &found.reduced.operations, &found.reduced.accuracy);
+    let planned = if found.rewritten.is_empty() { "reduced" } else { "inverse_dynamics, planned" };
+    line(planned, &found.reduced.operations, &found.reduced.accuracy);
     for (function, rewritten) in &found.rewritten {
-        let name = if *function == Function::InverseDynamics { "rewritten" } else { function.name() };
-        line(name, &rewritten.operations, &rewritten.accuracy);
+        line(function.name(), &rewritten.operations, &rewritten.accuracy);
+    }
+    let lost: Vec<&str> =
+        left_out.iter().filter(|function| !found.rewritten.contains_key(function)).map(|it| it.name()).collect();
+    if !lost.is_empty() {
+        let lost = lost.join(",");
+        let _ = writeln!(
+            text,
+            "{QUIET}left out, for it was not proved; `--rewrite --function {lost}` rewrites it anew{QUIET:#}"
+        );
     }
     let state = match (written, known) {
         (Written::Unchanged, _) => "is as good as it was",

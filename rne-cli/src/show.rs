@@ -11,7 +11,7 @@ use rne_model::Robot;
 
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
-use crate::terminal::QUIET;
+use crate::terminal::{QUIET, TYPED};
 use crate::{arguments, base_parameters, heading, highlight, robot_file};
 
 /// Show the generated code of a function, step by step, with what was folded and why
@@ -125,6 +125,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         keep.push(Kept::Velocity);
     }
     let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
+    if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "the seven steps use no tricks; `--without` goes with {TYPED}--form reduced{TYPED:#}"
+        )));
+    }
     let program = match arguments.form {
         Form::SevenSteps => codegen::Compiler::new(&robot)
             .with_intermediates(&quantities)
@@ -146,6 +151,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if program.outputs.len() > arguments.function.layout(robot.dof()).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
         let _ = writeln!(text, "{QUIET}kept for reading, and counted: {}{QUIET:#}", words.join(", "));
+    }
+    if program.form != arguments.form {
+        let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
+    }
+    if program.is_rewritten && (arguments.joint.is_some() || arguments.step.is_some()) {
+        let _ = writeln!(
+            text,
+            "{QUIET}a rewritten graph has no steps; {QUIET:#}{TYPED}--without rewriting{TYPED:#}{QUIET} shows the \
+             recursion behind it{QUIET:#}"
+        );
     }
     if let Some(proof) = &program.proof {
         text.push('\n');

@@ -167,7 +167,7 @@ fn next() -> String {
         ("show robots/puma560.yaml --joint 3", "any joint, every reason"),
         ("show robots/planar2.yaml", "a robot for the blackboard"),
         ("eval robots/planar1.yaml --q 0.6 --qd 1 --qdd 0 --trace", "its worksheet"),
-        ("ops robots/*.yaml", "what every robot costs"),
+        ("ops robots/ur5.yaml", "what every function costs"),
         ("emit robots/puma560.yaml", "a file that stands alone"),
         ("--help", "all commands"),
     ];

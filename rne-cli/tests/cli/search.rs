@@ -128,22 +128,41 @@ fn any_function_is_rewritten_where_it_pays() {
     let at = |text: &str| written.find(text).unwrap_or_else(|| panic!("no `{text}` in {written}"));
     assert!(written[at("  forward_dynamics:")..].contains("    algorithm: "), "{written}");
     let checked = fine(&["check", &robot.replace(".yaml", ".plan.yaml")]);
-    assert!(checked.contains("mass_matrix rewritten ") && checked.contains("proved"), "{checked}");
+    assert!(checked.contains("; 3 other functions rewritten; proved"), "{checked}");
     let shown = fine(&["show", &robot, "--function", "mass_matrix", "--form", "reduced"]);
     assert!(shown.contains("rewritten by algebra") && shown.contains("Proved identical"), "{shown}");
 
-    // one that is not rewritten, and one with a wrong number
-    let wrong = written.replacen("  mass_matrix:", "  joint_wrenches:", 1);
-    fs::write(&plan, wrong).expect("written");
-    let refused = |parts: &[&str]| {
+    // a trick that no graph uses leaves the graphs, one that all use does not
+    let operations = total("mass_matrix", &[]);
+    assert_eq!(total("mass_matrix", &["--without", "carried-prismatics"]), operations);
+    assert!(total("mass_matrix", &["--without", "regrouping"]) > operations);
+
+    // functions that have no graph, or not by this algorithm, or two
+    let refused = |wrong: &str, parts: &[&str]| {
+        fs::write(&plan, wrong).expect("written");
         let called = rne(&["check", &robot]);
         assert!(called.status == 1 && parts.iter().all(|part| called.out.contains(part)), "{called:?}");
     };
-    refused(&["`joint_wrenches` has no reduced form that could be rewritten"]);
+    let replaced = |from: &str, to: &str| written.replacen(from, to, 1);
+    refused(&replaced("  mass_matrix:", "  joint_wrenches:"), &["`joint_wrenches` has no reduced form"]);
+    refused(&replaced("  mass_matrix:", "  forward_dynamics:"), &["duplicate function `forward_dynamics`"]);
+    refused(&replaced("  mass_matrix:", "  jacobian:"), &["the choices of a plan do not touch `jacobian`"]);
     let (before, graph) = written.split_at(at("  mass_matrix:"));
+    let wrong = graph.replacen("    algorithm: ", "    algorithm: aba_by_joints # ", 1);
+    refused(&format!("{before}{wrong}"), &["`mass_matrix` is written by `crba_by_groups`", "algorithm: aba_by_joints"]);
+
+    // a graph with a wrong sign: no time is spent on a search from there, and a fresh one keeps the others
     let wrong = format!("{before}{}", graph.replacen("out1 = ", "out1 = -", 1).replacen("= --", "= ", 1));
-    fs::write(&plan, wrong).expect("written");
-    refused(&["graph: |", "this form of `mass_matrix` is not the seven steps"]);
+    let edited = "this form of `mass_matrix` is not the seven steps";
+    refused(&wrong, &["graph: |", edited]);
+    for call in [&["search", &robot, "--seconds", "1000"][..], &["ops", &robot]] {
+        fails(1, call, &["arm.plan.yaml:", "graph: |", edited, "--fresh"]);
+    }
+    assert_eq!(fs::read_to_string(&plan).expect("a plan"), wrong, "nothing is overwritten");
+    let fresh = fine(&["search", &robot, "--seconds", "0", "--fresh"]);
+    assert!(fresh.contains("`--rewrite --function mass_matrix`") && fresh.contains("forward_dynamics  "), "{fresh}");
+    let kept = fs::read_to_string(&plan).expect("a plan");
+    assert!(!kept.contains("  mass_matrix:") && kept.contains("  forward_dynamics:"), "{kept}");
 }
 
 #[test]

@@ -59,6 +59,11 @@ fn the_reduced_form_says_its_choices_and_its_proof() {
     assert!(joint.contains("Choices:\n") && joint.contains("// joint 3, "), "{joint}");
     assert!(!joint.contains("// joint 2, "), "only joint 3: {joint}");
     assert!(!joint.contains("rewritten"), "{joint}");
+    let joint = fine(&["show", robot, "--form", "reduced", "--joint", "3"]);
+    assert!(joint.contains("a rewritten graph has no steps; --without rewriting shows the recursion"), "{joint}");
+    let wrenches = fine(&["show", robot, "--form", "reduced", "--function", "joint_wrenches"]);
+    assert!(wrenches.contains("joint_wrenches has one form, the seven steps"), "{wrenches}");
+    fails(2, &["show", robot, "--without", "rewriting"], &["the seven steps use no tricks", "--form reduced"]);
     for arguments in [&["--keep", "velocity"][..], &["--step", "3"], &["--keep", "joint_force,omega"]] {
         let call: Vec<&str> = ["show", robot, "--form", "reduced"].iter().chain(arguments).copied().collect();
         fails(2, &call, &["only the seven steps have", "keeps torques alone"]);
@@ -88,7 +93,8 @@ fn other_functions_for_reading() {
     let with =
         |more: &[&'static str]| fine(&derivatives.iter().copied().chain(more.iter().copied()).collect::<Vec<_>>());
     for form in ["seven_steps", "reduced"] {
-        let text = with(&["--form", form, "--without", "rewriting", "--joint", "1", "--step", "7"]);
+        let plain: &[&str] = if form == "reduced" { &["--without", "rewriting"] } else { &[] };
+        let text = with(&[&["--form", form, "--joint", "1", "--step", "7"], plain].concat());
         assert!(text.contains("// joint 1, step 7: torque, by q̇1\n    let tau1_qd1 = "), "{text}");
         assert!(!text.contains("joint 2, ") && !text.contains("step 6"), "{text}");
     }

@@ -394,7 +394,7 @@ impl Plan {
             let plain = JointPlan::default();
             let [first, second, third] = joint.targets;
             let mut words: Vec<String> = [
-                (joint.targets != plain.targets, format!("gauge ({first}, {second}, {third})")),
+                (joint.targets != plain.targets, format!("targets ({first}, {second}, {third})")),
                 (joint.origin_shift != plain.origin_shift, format!("slide {}", joint.origin_shift)),
                 (joint.outward_offset != plain.outward_offset, format!("outward offset at {}", joint.outward_offset)),
                 (joint.inward_offset != plain.inward_offset, format!("inward offset at {}", joint.inward_offset)),

@@ -1,10 +1,13 @@
 //! Plan files: the choices for one robot, replayed by every build.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::ops::Range;
+use std::path::Path;
 use std::str::FromStr;
 
-use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot};
+use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot, robot_of};
+use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::choices::{Plan, parsed};
@@ -26,8 +29,33 @@ pub struct PlanFile {
     /// The reduced form.
     pub reduced: Reduced,
     /// The graphs that have been rewritten, each with the plan of the graph that it was made from.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "each_once")]
     pub rewritten: BTreeMap<Function, Rewritten>,
+}
+
+/// A mapping in which no key stands twice.
+fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<Function, Rewritten>, D::Error> {
+    struct EachOnce;
+
+    impl<'de> Visitor<'de> for EachOnce {
+        type Value = BTreeMap<Function, Rewritten>;
+
+        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+            f.write_str("a rewritten graph per function")
+        }
+
+        fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Self::Value, M::Error> {
+            let mut all = BTreeMap::new();
+            while let Some((function, rewritten)) = map.next_entry()? {
+                if all.insert(function, rewritten).is_some() {
+                    return Err(de::Error::custom(format_args!("duplicate function `{function}`")));
+                }
+            }
+            Ok(all)
+        }
+    }
+
+    deserializer.deserialize_map(EachOnce)
 }
 
 /// What decides whether the rest of a plan file is to be read at all.
@@ -133,6 +161,11 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
     numbers.extend(robot.gravity);
     numbers.extend(robot.tool.xyz);
     numbers.extend(robot.tool.rpy.map(|angle| angle.radians));
+    // kinematics depend on it; plans of arms without a base are older than this
+    let base: Vec<f64> = robot.base.xyz.into_iter().chain(robot.base.rpy.map(|angle| angle.radians)).collect();
+    if base.iter().any(|number| *number != 0.0) {
+        numbers.extend(base);
+    }
     for joint in &robot.joints {
         let (row, (inertia, _)) = (&joint.row, &joint.written_inertia);
         numbers.push(if row.kind == JointKind::Revolute { 1.0 } else { 2.0 });
@@ -160,11 +193,12 @@ impl PlanFile {
     /// What is wrong with it, with line and column.
     pub fn read(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-        let refused =
-            |keys: &[&str], message: String| Report::of_error(name, text, value_of(text, keys), message, Some(REFRESH));
+        let refused = |keys: &[&str], message: String| {
+            Report::of_error(name, text, value_of(text, keys), message, Some(&refresh(name)))
+        };
         if text.len() > MAX_BYTES {
             let message = format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a plan may have");
-            return Err(Report::of_error(name, "", 0..0, message, Some(REFRESH)));
+            return Err(Report::of_error(name, "", 0..0, message, Some(&refresh(name))));
         }
         if text.trim().is_empty() {
             return Err(refused(&[], "the plan file is empty".to_owned()));
@@ -199,9 +233,21 @@ impl PlanFile {
                 return Err(refused(&keys, message));
             }
         }
-        if let Some(&function) = file.rewritten.keys().find(|function| function.entry().is_irreducible) {
-            let message = format!("`{function}` has no reduced form that could be rewritten");
-            return Err(refused(&["rewritten", function.name()], message));
+        for (function, rewritten) in &file.rewritten {
+            let known = Algorithm::of(*function);
+            let (key, message) = match rewritten.plan {
+                _ if function.entry().is_irreducible => {
+                    ("operations", format!("`{function}` has no reduced form that could be rewritten"))
+                }
+                Some(_) if known.is_empty() => ("plan", format!("the choices of a plan do not touch `{function}`")),
+                Some(_) if !known.contains(&rewritten.algorithm) => {
+                    let names: Vec<String> = known.iter().map(|&one| format!("`{}`", String::from(one))).collect();
+                    ("algorithm", format!("`{function}` is written by {}", names.join(", ")))
+                }
+                _ => continue,
+            };
+            let keys = ["rewritten", function.name(), key];
+            return Err(refused(if key == "operations" { &keys[..2] } else { &keys }, message));
         }
         Ok(file)
     }
@@ -227,7 +273,7 @@ impl PlanFile {
             }
             _ => (value_of(text, &["rewritten", function.name()]), error.to_string()),
         };
-        Report::of_error(name, text, place, message, Some(REFRESH))
+        Report::of_error(name, text, place, message, Some(&refresh(name)))
     }
 
     /// Checks that a function that it describes takes as many operations as the file says.
@@ -265,14 +311,20 @@ impl PlanFile {
 
 /// What a plan file says of itself.
 const HEADING: &str = "\
-# Choices of the reduced form of ROBOT, found by `rne search`, replayed by every build. Names only, no numbers:
-# what they mean, `rne show ROBOT.yaml --form reduced` and docs/reduced-form.md say.
-# `fingerprint` is that of the numbers of the robot file. `accuracy` is the largest difference from the seven steps, in
-# parts of the largest torque: in double precision, in single precision, and of the seven steps in single precision.
+# Choices and rewritten graphs of the reduced form of ROBOT, found by `rne search`, replayed by every build: what they
+# mean, `rne show ROBOT.yaml --form reduced` and docs/reduced-form.md say. `fingerprint` is that of the robot's numbers,
+# `accuracy` the largest difference from the seven steps, in parts of the largest number returned: in double precision,
+# in single precision, and of the seven steps in single precision.
 ";
 
-const REFRESH: &str =
-    "`rne search ROBOT.yaml --fresh` writes the plan anew; without the file, a build chooses by itself";
+/// What helps with a plan file of that name.
+fn refresh(name: &str) -> String {
+    let robot = robot_of(Path::new(name)).map_or_else(|| "ROBOT.yaml".to_owned(), |path| path.display().to_string());
+    format!(
+        "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a build \
+         chooses by itself"
+    )
+}
 
 /// What the reader of YAML says, at its place.
 fn invalid(name: &str, text: &str, error: &serde_yaml::Error) -> Report {
@@ -291,7 +343,7 @@ fn invalid(name: &str, text: &str, error: &serde_yaml::Error) -> Report {
     let rest = text.get(at..).unwrap_or_default();
     let length = rest.find(|c: char| c.is_whitespace() || ",:]}".contains(c)).unwrap_or(rest.len());
     let message: String = message.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    Report::of_error(name, text, at..at + length, message, Some(REFRESH))
+    Report::of_error(name, text, at..at + length, message, Some(&refresh(name)))
 }
 
 /// The byte at a line and a column, both counted from 1.

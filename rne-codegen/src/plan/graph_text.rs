@@ -274,7 +274,8 @@ impl<'s> Reader<'s> {
     /// The number of the graph before that rounds to this. A change of the formulas may move a number by a rounding.
     fn given(&self, text: &str) -> Result<Symbol<'s>, String> {
         const ROUNDING: f64 = 1e-13;
-        let value: f64 = text.parse().map_err(|_| format!("`{text}` is no number"))?;
+        let value = text.parse::<f64>().ok().filter(|value| value.is_finite());
+        let value = value.ok_or_else(|| format!("`{text}` is no number"))?;
         let distance = |number: &Number| (number.to_f64() - value).abs();
         let nearest = self.given.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         let nearest = nearest.filter(|number| distance(number) <= ROUNDING * value.abs());

@@ -48,11 +48,16 @@ impl PlanSet {
         Self { maker: Maker::Build, ..Self::from(default_plan(robot, &[])) }
     }
 
-    /// The same without some tricks. A rewritten graph is that of a plan with all of its tricks, so it goes with any.
+    /// The same without some tricks. A rewritten graph is that of a plan with all of its tricks, so it goes with any of
+    /// them.
     #[must_use]
     pub fn without(&self, tricks: &[Trick]) -> Self {
         let plan = tricks.iter().fold(self.plan.clone(), |plan, trick| trick.left_out_of(&plan));
-        let rewritten = if tricks.is_empty() { self.rewritten.clone() } else { BTreeMap::new() };
+        let uses = |rewritten: &Rewritten, trick: &Trick| {
+            *trick == Trick::Rewriting || rewritten.plan.as_ref().is_some_and(|plan| trick.is_in(plan))
+        };
+        let mut rewritten = self.rewritten.clone();
+        rewritten.retain(|_, rewritten| !tricks.iter().any(|trick| uses(rewritten, trick)));
         Self { plan, rewritten, maker: self.maker }
     }
 
@@ -122,8 +127,8 @@ pub(crate) fn formulation(
     let written = cost::frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
     written.ok_or_else(|| {
         CompileError::Plan(format!(
-            "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search --fresh` \
-            writes it anew",
+            "the plan does not fit `{}`: one of its choices is not offered by this robot; `rne search ROBOT.yaml \
+             --fresh` finds another",
             robot.name
         ))
     })

@@ -43,6 +43,11 @@ pub fn search(
     let torques = Function::InverseDynamics;
     let torques_by = |plan: &Plan| formulation(robot, plan, torques, Algorithm::Rnea);
     let of_torques = reference(robot, torques)?;
+    // whether what is at hand can be taken is better known before a search than after it
+    for (&function, rewritten) in known.iter().flat_map(|known| &known.rewritten) {
+        let graph = rewritten.formulation(robot, function)?;
+        self::accuracy(&reference(robot, function)?, function, graph).map_err(|error| error.suspecting(robot, true))?;
+    }
     let mut plans = Exploration::new(robot, &[]);
     plans.refuse(|plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false));
     plans.greedy(usize::MAX);

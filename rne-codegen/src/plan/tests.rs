@@ -166,6 +166,8 @@ fn mistakes_in_a_graph_name_their_line() {
         ("t1 = k999 * qd1", 1, "there is no `k999`"),
         ("k1 = 0.123456", 1, "the plan gives no number 0.123456"),
         ("k1 = qd1", 1, "`qd1` is no number"),
+        ("k1 = inf", 1, "`inf` is no number"),
+        ("k1 = 1e999", 1, "`1e999` is no number"),
     ] {
         let read = graph_text::read(text, &plain.graph, Function::InverseDynamics);
         let Err((at, message)) = read else { panic!("{text}") };
@@ -275,6 +277,11 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
     assert_eq!(read, found);
     let again = search(&robot, Some(&read), &SearchOptions::default(), &mut |_| None).unwrap();
     assert!(again.reduced.operations.weight() <= found.reduced.operations.weight(), "never worse");
+
+    // kinematics depend on where the arm stands
+    let mut elsewhere = robot.clone();
+    elsewhere.base.xyz[2] = 0.4;
+    assert_ne!(fingerprint(&elsewhere), fingerprint(&robot));
 
     let mut other = robot.clone();
     other.joints[2].row.link.mass += 1.0;
