@@ -214,7 +214,8 @@ fn robots() -> String {
         let robot = robot(&path);
         let counts = inverse_dynamics(&robot).operations();
         let (plans, _) = plans(&path, &robot);
-        let (planned, reduced) = (reduced(&robot, &plans.without(&[Trick::Rewriting])), reduced(&robot, &plans));
+        let (planned, reduced) =
+            (reduced(&robot, &plans.without(&robot, &[Trick::Rewriting])), reduced(&robot, &plans));
         let joints = kinds(&robot);
         let title = robot.title.as_deref().unwrap_or(&robot.name);
         let file = &robot.name;
@@ -316,7 +317,7 @@ fn operations() -> String {
             if has_plan { "file" } else { "of the build" },
             products + sums,
             cell(seven_steps.operations()),
-            cell(reduced(&robot, &plans.without(&[Trick::Rewriting]))),
+            cell(reduced(&robot, &plans.without(&robot, &[Trick::Rewriting]))),
             cell(reduced(&robot, &plans)),
         );
     }

@@ -146,7 +146,7 @@ impl<'a> Compiler<'a> {
             Some(read) => compiler.with_plans(self.read.get_or_init(|| read).plan.clone()),
             None => compiler,
         };
-        let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.without));
+        let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.robot, self.without));
         let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
         Ok(self.planned.get_or_init(|| compiler))
     }

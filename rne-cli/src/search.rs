@@ -87,8 +87,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     });
     let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
-    let found = watched(&robot, known.as_ref(), &options, arguments.seconds)
+    let mut found = watched(&robot, known.as_ref(), &options, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
+    // another search may have written there meanwhile
+    if !arguments.fresh
+        && let Ok(Some(read)) = plan_file::read(&arguments.file, &robot)
+        && known.as_ref() != Some(&read.plan)
+    {
+        found.merge(read.plan);
+    }
     let written = output_file::replace(&path, &found.to_yaml())
         .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
     if written == Written::Anew {
@@ -107,16 +114,14 @@ fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
     if !arguments.rewrite {
         return Ok(Vec::new());
     }
+    let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
+    if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
+        return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
+    }
     if asked.contains(&FunctionOrAll::All) {
         return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
     }
-    let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
-    match functions.iter().find(|function| !function.can_be_rewritten()) {
-        Some(function) => {
-            Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")))
-        }
-        None => Ok(functions),
-    }
+    Ok(functions)
 }
 
 /// Searches with a progress bar on a terminal.

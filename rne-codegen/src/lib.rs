@@ -144,7 +144,8 @@ impl<'r> Compiler<'r> {
             Ok(program) => Ok(program),
             // fewer choices make no program shorter
             Err(error @ CompileError::TooLarge { .. }) => Err(error),
-            Err(_) if plans.is_of_build() => {
+            // a plan file answers for what it was made for; for other functions it is a suggestion
+            Err(error) if plans.is_of_build() || function != Function::InverseDynamics && error.is_refusal() => {
                 let fewer = plans.with_ever_fewer_choices();
                 let program = fewer.iter().find_map(|plans| self.planned(plans, function, &reference).ok());
                 Ok(program.unwrap_or_else(|| self.numbered(function, reference)))

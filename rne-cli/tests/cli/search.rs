@@ -177,7 +177,9 @@ fn arguments_of_a_search() {
     }
     fails(2, &["search", &robot, "--seed", "x"], &["--seed"]);
     fails(2, &["search", &robot, "--function", "mass_matrix"], &["--rewrite"]);
-    fails(2, &["search", &robot, "--rewrite", "--function", "joint_wrenches"], &["seven steps only"]);
+    for functions in ["joint_wrenches", "joint_wrenches,all"] {
+        fails(2, &["search", &robot, "--rewrite", "--function", functions], &["seven steps only"]);
+    }
     assert_eq!(rne(&["search"]).status, 2);
     fails(1, &["search", "nowhere.yaml"], &["no robot file nowhere.yaml"]);
     assert!(!fs::exists(&plan).expect("a folder"), "nothing was written");

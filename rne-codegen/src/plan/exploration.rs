@@ -211,7 +211,8 @@ impl<'v> Exploration<'v> {
                 *tidy = other;
             }
         };
-        for trick in Trick::ALL {
+        // regrouping is no choice of a plan file
+        for trick in Trick::ALL.into_iter().filter(|trick| *trick != Trick::Regrouping) {
             let other = trick.left_out_of(&tidy);
             keep(self, &mut tidy, other);
         }

@@ -14,6 +14,7 @@ use super::choices::{Plan, parsed};
 use super::plan_set::PlanSet;
 use crate::ir::Cost;
 use crate::program::{Program, Proof};
+use crate::prove;
 use crate::reduced::algorithm::Algorithm;
 use crate::{CompileError, Function};
 
@@ -239,6 +240,9 @@ impl PlanFile {
                 _ if function.entry().is_irreducible => {
                     ("operations", format!("`{function}` has no reduced form that could be rewritten"))
                 }
+                _ if function.divides().is_some() && prove::divides_by_zero(robot, *function) => {
+                    ("operations", format!("`{function}` divides by zero for every q: it has the seven steps only"))
+                }
                 Some(_) if known.is_empty() => ("plan", format!("the choices of a plan do not touch `{function}`")),
                 Some(_) if !known.contains(&rewritten.algorithm) => {
                     let names: Vec<String> = known.iter().map(|&one| format!("`{}`", String::from(one))).collect();
@@ -298,6 +302,19 @@ impl PlanFile {
             &["reduced", "operations"]
         };
         Err(Report::of_error(name, text, value_of(text, keys), message, Some("`rne search ROBOT.yaml` counts anew")))
+    }
+
+    /// Takes what is better in another file of the same robot, which has come about meanwhile.
+    pub fn merge(&mut self, other: Self) {
+        if other.reduced.operations.weight() < self.reduced.operations.weight() {
+            self.reduced = other.reduced;
+        }
+        for (function, rewritten) in other.rewritten {
+            let known = self.rewritten.get(&function);
+            if known.is_none_or(|known| rewritten.operations.weight() < known.operations.weight()) {
+                self.rewritten.insert(function, rewritten);
+            }
+        }
     }
 
     /// The text of the file.

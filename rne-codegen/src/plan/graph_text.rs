@@ -12,7 +12,9 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use crate::function::Function;
-use crate::ir::{Builder, Graph, Number, Numbers, Op, Policy, Ref, Source, Symbol, Traced, mark_live_outside_angles};
+use crate::ir::{
+    Builder, Graph, Number, Numbers, Op, Policy, Ref, Residue, Source, Symbol, Traced, mark_live_outside_angles,
+};
 use crate::plan::choices::count;
 
 /// A graph as text, when the numbers in the places `given` are those of its plan.
@@ -117,7 +119,9 @@ impl Constants<'_> {
 pub(crate) fn read(text: &str, plain: &Graph, function: Function) -> Result<Traced, (usize, String)> {
     let builder = Builder::traced(Policy::Numbered, plain.embedding(), function);
     let given = plain.factors().into_iter().map(|place| plain.numbers.get(place).0).collect();
-    let mut reader = Reader { given, builder: &builder, known: leaves(plain, &builder) };
+    let divisors =
+        plain.nodes().filter_map(|(_, op)| if let Op::Quotient(_, b) = op { Some(plain.residue(b)) } else { None });
+    let mut reader = Reader { given, divisors: divisors.collect(), builder: &builder, known: leaves(plain, &builder) };
     let mut outputs = vec![None; plain.outputs.len()];
     for (index, line) in text.lines().enumerate() {
         let at = index + 1;
@@ -241,6 +245,8 @@ fn constant_on(graph: &mut Graph, numbers: &Numbers, places: &mut HashMap<u32, R
 
 struct Reader<'s> {
     given: Vec<Number>,
+    /// What the graph before divides by. Nothing else may be divided by: it could be zero where that is not.
+    divisors: Vec<Residue>,
     builder: &'s Builder,
     known: HashMap<String, Symbol<'s>>,
 }
@@ -257,12 +263,18 @@ impl<'s> Reader<'s> {
                     "-" => Ok(a - b),
                     "*" => Ok(a * b),
                     "/" if self.builder.graph.borrow().is_constant(b.at) => Ok(a * b.inverse()),
-                    "/" => Ok(self.builder.quotient(a, b)),
+                    "/" if self.divides_by(b.at) => Ok(self.builder.quotient(a, b)),
+                    "/" => Err(format!("`{text}` divides by what the plan does not divide by")),
                     _ => Err(format!("`{sign}` is no operation of a graph")),
                 }
             }
             _ => Err(format!("`{text}` is no operation of a graph")),
         }
+    }
+
+    fn divides_by(&self, at: Ref) -> bool {
+        let graph = self.builder.graph.borrow();
+        [at, -at].into_iter().any(|at| self.divisors.contains(&graph.residue(at)))
     }
 
     fn operand(&self, text: &str) -> Result<Symbol<'s>, String> {

@@ -51,8 +51,9 @@ impl PlanSet {
     /// The same without some tricks. A rewritten graph is that of a plan with all of its tricks, so it goes with any of
     /// them.
     #[must_use]
-    pub fn without(&self, tricks: &[Trick]) -> Self {
-        let plan = tricks.iter().fold(self.plan.clone(), |plan, trick| trick.left_out_of(&plan));
+    pub fn without(&self, robot: &Robot, tricks: &[Trick]) -> Self {
+        let mut evaluator = Evaluator::new(robot, Function::InverseDynamics);
+        let plan = without(&mut evaluator, &self.plan, tricks).unwrap_or_else(|| Plan::new(robot.dof()));
         let uses = |rewritten: &Rewritten, trick: &Trick| {
             *trick == Trick::Rewriting || rewritten.plan.as_ref().is_some_and(|plan| trick.is_in(plan))
         };
@@ -160,6 +161,20 @@ impl Rewritten {
     }
 }
 
+/// A plan without some tricks, and without those that are not there without them: a unit that is a regrouped moment goes
+/// with the regrouping, an origin that sits where a prismatic link is carried goes with that.
+fn without(evaluator: &mut Evaluator, plan: &Plan, tricks: &[Trick]) -> Option<Plan> {
+    let rests = [Trick::Scales, Trick::OriginShifts, Trick::RegroupingTargets, Trick::LastFrame, Trick::Gyrostat];
+    let mut plan = tricks.iter().fold(plan.clone(), |plan, trick| trick.left_out_of(&plan));
+    for rest in rests {
+        if evaluator.cost(&plan).is_some() {
+            return Some(plan);
+        }
+        plan = rest.left_out_of(&plan);
+    }
+    evaluator.cost(&plan).is_some().then_some(plan)
+}
+
 /// Whether the choices of a plan matter to a function.
 #[must_use]
 pub fn is_planned(function: Function) -> bool {
@@ -180,14 +195,12 @@ pub fn savings(robot: &Robot, plans: &PlanSet) -> Vec<(Trick, isize)> {
     let mut evaluator = Evaluator::new(robot, Function::InverseDynamics);
     let Some(with) = evaluator.cost(plan) else { return Vec::new() };
     let more = |cost: &Cost| cost.total().cast_signed() - with.total().cast_signed();
-    let used = Trick::ALL.into_iter().filter(|trick| trick.is_in(plan));
+    let used: Vec<Trick> = Trick::ALL.into_iter().filter(|trick| trick.is_in(plan)).collect();
     let saving = |trick: Trick| {
-        let without = trick.left_out_of(plan);
-        // a unit that is a regrouped moment goes with the regrouping
-        let without = evaluator.cost(&without).or_else(|| evaluator.cost(&Trick::Scales.left_out_of(&without)))?;
-        Some((trick, more(&without)))
+        let without = without(&mut evaluator, plan, &[trick])?;
+        Some((trick, more(&evaluator.cost(&without)?)))
     };
-    let mut savings: Vec<_> = used.filter_map(saving).collect();
+    let mut savings: Vec<_> = used.into_iter().filter_map(saving).collect();
     let rewritten = plans.rewritten.get(&Function::InverseDynamics);
     savings.extend(rewritten.map(|rewritten| (Trick::Rewriting, -more(&rewritten.operations))));
     savings

@@ -44,9 +44,12 @@ pub fn search(
     let torques_by = |plan: &Plan| formulation(robot, plan, torques, Algorithm::Rnea);
     let of_torques = reference(robot, torques)?;
     // whether what is at hand can be taken is better known before a search than after it
+    let mut at_hand = BTreeMap::new();
     for (&function, rewritten) in known.iter().flat_map(|known| &known.rewritten) {
         let graph = rewritten.formulation(robot, function)?;
+        let operations = graph.cost();
         self::accuracy(&reference(robot, function)?, function, graph).map_err(|error| error.suspecting(robot, true))?;
+        at_hand.insert(function, Rewritten { operations, ..rewritten.clone() });
     }
     let mut plans = Exploration::new(robot, &[]);
     plans.refuse(|plan| !torques_by(plan).and_then(|graph| is_sound(&of_torques, torques, graph)).unwrap_or(false));
@@ -69,7 +72,10 @@ pub fn search(
     let mut rewritten = BTreeMap::new();
     for function in Function::ALL {
         let place = options.rewrite.iter().position(|&other| other == function);
-        let known = known.and_then(|known| known.rewritten.get(&function));
+        let known = at_hand.get(&function);
+        if function.divides().is_some() && prove::divides_by_zero(robot, function) {
+            continue;
+        }
         let reference = if place.is_some() || known.is_some() { reference(robot, function)? } else { continue };
         // one that has lost too much precision may be replaced by a dearer one
         let mut best = match known {
@@ -92,7 +98,15 @@ pub fn search(
             rewritten.insert(function, Rewritten { accuracy, ..best });
         }
     }
-    Ok(PlanFile::new(robot, reduced, rewritten))
+    let file = PlanFile::new(robot, reduced, rewritten);
+    // what is read again is what was proved
+    match PlanFile::read("the plan", &file.to_yaml(), robot) {
+        Ok(read) if read == file => Ok(file),
+        Ok(_) => {
+            Err(CompileError::Plan("the plan that was found cannot be written. Please report this robot".to_owned()))
+        }
+        Err(report) => Err(CompileError::Plan(report.to_string())),
+    }
 }
 
 /// What a function costs by the plan alone.

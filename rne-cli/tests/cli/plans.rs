@@ -1,0 +1,120 @@
+//! Plans of arms that random ones found: what a search writes is accepted, and what a file claims is not believed.
+
+use std::fs;
+
+use crate::call::{ROOT, fails, fine, folder, rne};
+
+/// A robot of the folder `plans` in a folder of its own, with its plan if it has one.
+fn arm(name: &str) -> (String, String) {
+    let folder = folder(&format!("plans_{name}"));
+    let path = |file: &str| folder.join(file).to_str().expect("UTF-8").to_owned();
+    let shipped = format!("{ROOT}/rne-cli/tests/cli/plans/{name}");
+    fs::copy(format!("{shipped}.yaml"), path("arm.yaml")).expect("a robot");
+    let _ = fs::remove_file(path("arm.plan.yaml"));
+    if fs::exists(format!("{shipped}.plan.yaml")).expect("a folder") {
+        fs::copy(format!("{shipped}.plan.yaml"), path("arm.plan.yaml")).expect("a plan");
+    }
+    (path("arm.yaml"), path("arm.plan.yaml"))
+}
+
+/// Links whose matter is all on an axis need no regrouping, so that a search could leave it out, which no file can say.
+#[test]
+fn what_a_search_writes_is_in_order() {
+    for name in ["massless_link", "point_masses", "count", "singular"] {
+        for seed in ["1", "3"] {
+            let (robot, plan) = arm(name);
+            fine(&["search", &robot, "--seconds", "0.3", "--seed", seed]);
+            assert!(fine(&["check", &plan]).contains("proved"), "{name}");
+            fine(&["search", &robot, "--seconds", "0.5", "--rewrite", "--function", "all", "--seed", seed]);
+            assert!(fine(&["check", &plan]).contains("proved"), "{name}");
+            fine(&["emit", &robot, "--form", "reduced", "--function", "all"]);
+        }
+    }
+}
+
+/// A mass matrix that is always singular has no inverse that another could be.
+#[test]
+fn nothing_is_rewritten_that_divides_by_zero() {
+    let (robot, plan) = arm("singular");
+    fine(&["search", &robot, "--seconds", "0.3", "--rewrite", "--function", "all"]);
+    let written = fs::read_to_string(&plan).expect("a plan");
+    assert!(!written.contains("forward_dynamics:"), "{written}");
+    let (_, functions) = written.split_once("\nrewritten:\n").expect("rewritten graphs");
+    let (function, _) = functions.split_once(':').expect("a function");
+    fs::write(&plan, written.replacen(&format!("{function}:"), "  forward_dynamics:", 1)).expect("written");
+    let called = rne(&["check", &robot]);
+    assert!(called.status == 1 && called.out.contains("`forward_dynamics` divides by zero"), "{called:?}");
+}
+
+/// A trick may be the ground on which another stands.
+#[test]
+fn a_trick_is_left_out_with_what_needs_it() {
+    for (name, tricks) in [
+        ("without_regrouping", "regrouping"),
+        ("without_regrouping", "regrouping,scales"),
+        ("without_carried_small", "carried-prismatics"),
+        ("without_carried", "carried-prismatics"),
+        ("without_targets", "regrouping-targets"),
+    ] {
+        let (robot, plan) = arm(name);
+        if fs::exists(&plan).expect("a folder") {
+            // of another version: what it chooses is found again
+            let _ = rne(&["search", &robot, "--seconds", "0.3", "--fresh"]);
+        }
+        assert!(fine(&["ops", &robot, "--without", tricks]).contains("reduced"), "{name}");
+        assert!(fine(&["ops", &robot, "--tricks"]).contains("regrouping "), "{name}");
+    }
+}
+
+/// A plan is made for the torques. What it does to another function is refused, and that function then takes fewer
+/// choices, as it does in a build without a plan.
+#[test]
+fn a_plan_takes_nothing_from_other_functions() {
+    let (robot, _) = arm("extreme");
+    let emit = ["emit", &robot, "--function", "forward_dynamics", "--form", "reduced"];
+    fine(&emit);
+    fine(&["search", &robot, "--seconds", "0"]);
+    fine(&emit);
+}
+
+/// Counts, quotients and a place: none of them is taken on trust.
+#[test]
+fn a_plan_is_not_believed() {
+    let folder = folder("plans_not_believed");
+    let path = |file: &str| folder.join(file).to_str().expect("UTF-8").to_owned();
+    let (robot, plan) = (path("arm.yaml"), path("arm.plan.yaml"));
+    fs::copy(format!("{ROOT}/robots/planar2.yaml"), &robot).expect("a copy");
+    let good = fs::read_to_string(format!("{ROOT}/robots/planar2.plan.yaml")).expect("a plan");
+
+    // a count that is too small, or too large for a sum
+    let (before, graph) = good.split_at(good.find("  gravity_torques:").expect("its graph"));
+    let line = graph.lines().find(|line| line.contains("mul: ")).expect("products");
+    for count in ["0", "18446744073709551615"] {
+        let wrong = format!("{before}{}", graph.replacen(line, &format!("      mul: {count}"), 1));
+        fs::write(&plan, &wrong).expect("written");
+        let called = rne(&["check", &plan]);
+        assert!(called.status == 1 && called.out.contains(&format!("the file says {count} products")), "{called:?}");
+        fine(&["search", &robot, "--seconds", "0"]);
+        assert!(fine(&["check", &plan]).contains("proved"), "it has been counted anew");
+    }
+
+    // (x q̇ + y q̇) / q̇ is x + y, but at rest
+    let (before, graph) = good.split_at(good.find("  bias_torques:").expect("its graph"));
+    let line = graph.lines().find(|line| line.contains("t1 = ")).expect("a term");
+    let value = line.trim().trim_start_matches("t1 = ");
+    let wrong = graph.replacen(line, &format!("      t91 = {value}\n      t92 = t91 * qd1\n      t1 = t92 / qd1"), 1);
+    fs::write(&plan, format!("{before}{wrong}")).expect("written");
+    let called = rne(&["check", &plan]);
+    assert!(called.status == 1, "{called:?}");
+    assert!(called.out.contains("`t92 / qd1` divides by what the plan does not divide by"), "{called:?}");
+
+    // what has come about while a search was running is kept
+    fs::write(&plan, &good).expect("written");
+    fine(&["search", &robot, "--seconds", "0.2"]);
+    assert!(fs::read_to_string(&plan).expect("a plan").contains("  gravity_torques:"));
+
+    // a base moves what kinematics return
+    let text = fs::read_to_string(&robot).expect("a robot");
+    fs::write(&robot, text.replacen("\njoints:", "\nbase: {xyz: [0, 0, 0.4]}\njoints:", 1)).expect("written");
+    fails(1, &["emit", &robot, "--form", "reduced"], &["the numbers of its robot file have changed"]);
+}
