@@ -143,8 +143,8 @@ fn headline() -> String {
          | operations: `reduced` | {} |\n\
          | operations: best peer | {} |\n\
          | operations: `seven_steps` | {} |\n\
-         | ns: `reduced`, `-C target-cpu=native` | {} |\n\
-         | ns: `reduced`, default target | {} |\n\
+         | ns: `reduced` before rewriting, `-C target-cpu=native` | {} |\n\
+         | ns: `reduced` before rewriting, default target | {} |\n\
          | ns: best peer, `-march=native` | {} |\n\
          | ns: Pinocchio's RNEA | {} |\n\
          | instructions on a Cortex-M4F, `f32`: `reduced` | {} |\n\

@@ -45,8 +45,8 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
-/// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs cannot.
-/// Nothing of one that is stale or broken. What is no plan at all stays.
+/// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs
+/// cannot. Nothing of one that is stale or broken. What is no plan at all stays.
 pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
     let path = plan_of(robot_file);
     match output_file::existing(&path) {

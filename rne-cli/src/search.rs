@@ -167,8 +167,8 @@ fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], pa
     let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {
         let _ = writeln!(
             text,
-            "{name:<width$}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) of the \
-             largest number{QUIET:#}",
+            "{name:<width$}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) \
+             of the largest number{QUIET:#}",
             count(operations),
             operations.sincos,
             accuracy.double,

@@ -338,8 +338,8 @@ const HEADING: &str = "\
 fn refresh(name: &str) -> String {
     let robot = robot_of(Path::new(name)).map_or_else(|| "ROBOT.yaml".to_owned(), |path| path.display().to_string());
     format!(
-        "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a build \
-         chooses by itself"
+        "`rne search {robot} --fresh` leaves out what is wrong in it and finds the rest anew; without the file, a \
+         build chooses by itself"
     )
 }
 

@@ -161,8 +161,8 @@ impl Rewritten {
     }
 }
 
-/// A plan without some tricks, and without those that are not there without them: a unit that is a regrouped moment goes
-/// with the regrouping, an origin that sits where a prismatic link is carried goes with that.
+/// A plan without some tricks, and without those that are not there without them: a unit that is a regrouped moment
+/// goes with the regrouping, an origin that sits where a prismatic link is carried goes with that.
 fn without(evaluator: &mut Evaluator, plan: &Plan, tricks: &[Trick]) -> Option<Plan> {
     let rests = [Trick::Scales, Trick::OriginShifts, Trick::RegroupingTargets, Trick::LastFrame, Trick::Gyrostat];
     let mut plan = tricks.iter().fold(plan.clone(), |plan, trick| trick.left_out_of(&plan));
