@@ -10,7 +10,7 @@
 //!   start.
 //!
 //! Many states one after the other are computed so ([`contracted`]). A single call waits for its longest chain of
-//! operations: there the term that comes last should be added last ([`soonest`]).
+//! operations: there the term that comes last should be added last ([`ordered_for_latency`]).
 
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};

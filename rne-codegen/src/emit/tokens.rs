@@ -73,7 +73,8 @@ impl<'a> Body<'a> {
         quote!(#arguments #constants #angles #turns #rest)
     }
 
-    /// Its first part, for a loop of its own: the angles of [`Program::turns`] as an array, from the argument `q`.
+    /// Its first part, for a loop of its own: the angles of [`Program::sines_and_cosines`] as an array, from the
+    /// argument `q`.
     #[must_use]
     pub fn angles(&self) -> TokenStream {
         let used: BTreeSet<Name> = self.program.angle_values().flat_map(Expression::names).collect();

@@ -56,7 +56,7 @@ fn is_identical(robot: &Robot, (program, exactly, embedding): &Unproved) -> bool
 /// Fails with these words, by which `cargo xtask mutate` knows that it was the proof that refused.
 fn must_be_identical(robot: &Robot, plan: &Plan, (program, exactly, embedding): &Unproved) {
     for (arranged, what) in
-        [(program, ""), (&ordered_for_latency(program), " soonest"), (&contracted(program), " fused")]
+        [(program, ""), (&ordered_for_latency(program), " ordered for latency"), (&contracted(program), " contracted")]
     {
         if let Err(error) = prove::identical(robot, arranged, exactly, *embedding) {
             panic!("the proof refuses {}{what}: {error}\n{:#?}", robot.name, plan.choices());
