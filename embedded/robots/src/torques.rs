@@ -73,15 +73,16 @@ macro_rules! form {
 
                 /// Torques.
                 pub extern "C" fn inverse_dynamics(
-                    q: &Joints<f32>, qd: &Joints<f32>, qdd: &Joints<f32>, tau: &mut Joints<f32>,
+                    q: &Joints<f32>,
+                    qd: &Joints<f32>,
+                    qdd: &Joints<f32>,
+                    tau: &mut Joints<f32>,
                 ) {
                     *tau = super::inverse_dynamics(q, qd, qdd);
                 }
 
                 /// The same in double precision.
-                pub extern "C" fn double(
-                    q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>, tau: &mut Joints<f64>,
-                ) {
+                pub extern "C" fn double(q: &Joints<f64>, qd: &Joints<f64>, qdd: &Joints<f64>, tau: &mut Joints<f64>) {
                     *tau = super::double(q, qd, qdd);
                 }
             }
