@@ -39,8 +39,13 @@ fn nothing_is_rewritten_that_divides_by_zero() {
     fine(&["search", &robot, "--seconds", "0.3", "--rewrite", "--function", "forward_dynamics"]);
     let written = fs::read_to_string(&plan).expect("a plan");
     assert!(!written.contains("forward_dynamics:"), "{written}");
-    let graph = "rewritten:\n  forward_dynamics:\n    operations: {mul: 0, add: 0, sincos: 0}\n    accuracy: {double: 0, \
-                 single: 0, single_of_seven_steps: 0}\n    graph: out1 = tau1\n";
+    let graph = "\
+rewritten:
+  forward_dynamics:
+    operations: {mul: 0, add: 0, sincos: 0}
+    accuracy: {double: 0, single: 0, single_of_seven_steps: 0}
+    graph: out1 = tau1
+";
     fs::write(&plan, written + graph).expect("written");
     let called = rne(&["check", &robot]);
     assert!(called.status == 1 && called.out.contains("`forward_dynamics` divides by zero"), "{called:?}");

@@ -12,8 +12,8 @@ fn arm(name: &str) -> (String, String) {
     (path("arm.yaml"), path("arm.plan.yaml"))
 }
 
-/// The plan that is shipped with that robot, which has rewritten graphs: how many a search finds in a time is no matter of
-/// a test.
+/// The plan that is shipped with that robot, which has rewritten graphs: how many a search finds in a time is no matter
+/// of a test.
 fn shipped_plan(plan: &str) {
     fs::copy(format!("{ROOT}/robots/scara_cobra600.plan.yaml"), plan).expect("a copy");
 }
