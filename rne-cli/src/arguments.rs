@@ -8,7 +8,7 @@ use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
 
 use crate::terminal::HELP_STYLES;
-use crate::{check, emit, eval, ops, search, show};
+use crate::{check, emit, eval, example, list, new, ops, search, show};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -26,8 +26,10 @@ Examples:
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself
   rne emit robots/puma560.yaml --lang c            the same in C99, without a library
+  rne new my_arm --dof 6                           a robot file of your own, to fill in
   rne search my_arm.yaml --seconds 60              look for a form with fewer operations
 
+FILE may be the name of a shipped robot, such as puma560; rne list has them.
 Exit status: 0 fine, 1 the input is at fault, 2 the command line is.
 Colours appear on terminals only; NO_COLOR turns them off. `rne COMMAND --help` says more.")]
 pub(crate) struct Arguments {
@@ -43,6 +45,9 @@ pub(crate) enum Command {
     Ops(ops::Arguments),
     Eval(eval::Arguments),
     Search(search::Arguments),
+    New(new::Arguments),
+    List(list::Arguments),
+    Example(example::Arguments),
 }
 
 /// Reads the name of a function; help and messages list them all.

@@ -95,7 +95,7 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
 }
 
 /// The robot in a few words: `puma560, RRRRRR, standard`.
-fn about(robot: &Robot) -> String {
+pub(crate) fn about(robot: &Robot) -> String {
     let joints: String = robot
         .rows()
         .map(|row| match row.kind {

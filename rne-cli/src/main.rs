@@ -7,10 +7,13 @@ mod base_parameters;
 mod check;
 mod emit;
 mod eval;
+mod example;
 mod functions;
 mod heading;
 mod highlight;
 mod layout;
+mod list;
+mod new;
 mod numbers;
 mod ops;
 mod outcome;
@@ -56,6 +59,9 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Emit(arguments)) => ("rne emit", emit::run(&arguments)),
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
+        Some(Command::List(_)) => ("rne list", list::run()),
+        Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
+        Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
     }
 }

@@ -12,6 +12,7 @@ use rne_model::{Robot, plan_of, read_file, robot_of};
 
 use crate::outcome::Failure;
 use crate::output_file::{self, Existing};
+use crate::robot_file::of_a_name;
 
 /// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
 pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
@@ -32,6 +33,12 @@ pub(crate) struct Read {
 pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Failure> {
     if robot_file == Path::new("-") {
         return Ok(None);
+    }
+    if let Some(shipped) = of_a_name(robot_file) {
+        let Some(text) = shipped.plan else { return Ok(None) };
+        let name = format!("the plan of {} (shipped)", shipped.name);
+        let plan = PlanFile::read(&name, text, robot).map_err(|report| Failure::from(&report))?;
+        return Ok(Some(Read { name, text: text.to_owned(), plan }));
     }
     let path = plan_of(robot_file);
     let name = path.display().to_string();

@@ -6,12 +6,27 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use rne_model::{Checked, Robot, check_bytes, read_file, read_limited, robot_of};
+use rne_robots::RobotFile;
 
 use crate::outcome::Failure;
 use crate::terminal::TYPED;
 
 /// So many files of a folder are named where one is missing.
 const NAMED: usize = 16;
+
+/// The shipped robot that a path stands for: a bare name, where there is no file of this name.
+pub(crate) fn of_a_name(path: &Path) -> Option<&'static RobotFile> {
+    let name = path.to_str()?;
+    rne_robots::find(name).filter(|_| !path.exists())
+}
+
+/// The shipped robot of a name.
+pub(crate) fn shipped(name: &str) -> Result<&'static RobotFile, Failure> {
+    rne_robots::find(name).ok_or_else(|| {
+        let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
+        Failure::input(format_args!("there is no shipped robot {name}; there are {}", names.join(", ")))
+    })
+}
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
@@ -21,6 +36,10 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
             path.display(),
             robot.display()
         )));
+    }
+    if let Some(robot) = of_a_name(path) {
+        let name = format!("{} (shipped)", robot.name);
+        return check_bytes(&name, robot.yaml.as_bytes()).map_err(|report| Failure::from(&report));
     }
     let (name, bytes) = if path == Path::new("-") {
         ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
@@ -55,7 +74,7 @@ fn missing(path: &Path) -> String {
         let shown = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");
         let _ = write!(text, "; {} has {shown}{more}", path.with_file_name("").display());
     } else {
-        let _ = write!(text, "; a robot file is YAML, such as {TYPED}robots/puma560.yaml{TYPED:#} of this project");
+        let _ = write!(text, "; {TYPED}rne list{TYPED:#} has the robots that are known by name");
     }
     text
 }

@@ -68,6 +68,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if arguments.file == Path::new("-") {
         return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
     }
+    if let Some(shipped) = robot_file::of_a_name(&arguments.file) {
+        let name = shipped.name;
+        return Err(Failure::usage(format_args!(
+            "a search writes its plan beside the robot file, so it needs a file: {TYPED}rne example {name} > \
+             {name}.yaml{TYPED:#}"
+        )));
+    }
     let robot = robot_file::robot(&arguments.file)?;
     let path = plan_of(&arguments.file);
     let (known, left_out) = if arguments.fresh {

@@ -13,20 +13,14 @@ use crate::numbers::{at_the_point, exact};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, QUIET, TITLE, TYPED};
-use crate::{heading, highlight, ops};
+use crate::{heading, highlight, ops, robot_file};
 
-/// The robot's file, as the commands name it.
-const FILE: &str = "robots/puma560.yaml";
-
-/// Its text.
-const YAML: &str = include_str!("../../robots/puma560.yaml");
-
-/// Its plan of the reduced form.
-const PLAN: &str = include_str!("../../robots/puma560.plan.yaml");
+/// The shipped robot of the tour.
+const NAME: &str = "puma560";
 
 /// The same robot, compiled into this program.
 #[derive(rne::InverseDynamics)]
-#[robot(path = "../../robots/puma560.yaml")]
+#[robot(builtin = "puma560")]
 struct Puma560;
 
 const Q: [f64; 6] = [0.3, -0.8, 0.5, 1.1, -0.4, 0.6];
@@ -37,16 +31,17 @@ const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
 const WIDTH: usize = 80;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
-    let robot = check(FILE, YAML).map_err(|report| Failure::from(&report))?.robot;
+    let file = robot_file::shipped(NAME)?;
+    let robot = check(NAME, file.yaml).map_err(|report| Failure::from(&report))?.robot;
     let program = codegen::Compiler::new(&robot)
         .compile(Function::InverseDynamics, Form::SevenSteps)
-        .map_err(|error| Failure::compile(FILE, &error))?;
+        .map_err(|error| Failure::compile(NAME, &error))?;
     let arm = DynArm::from_robot(&robot);
     let runtime = arm.inverse_dynamics(&Q, &QD, &QDD).map_err(Failure::input)?;
     let generated = Puma560.inverse_dynamics(&Q, &QD, &QDD);
 
     let mut text = opening();
-    chapter(&mut text, 1, "A robot is a table", &format!("This is {FILE}, read and checked."));
+    chapter(&mut text, 1, "A robot is a table", &format!("This is the shipped robot {NAME}, read and checked."));
     text.push_str(&heading::robot(&robot));
     joints(&mut text, &robot, &program);
     chapter(
@@ -56,9 +51,9 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
         "On the left the recursion as a loop over 3-vectors performs it; on the right the generated code. \
          The functions that leave velocities or accelerations out are compiled for themselves.",
     );
-    let file = Path::new(FILE);
-    let counts =
-        ops::counts(file, &Compiler::built_in(file, &robot, PLAN)?, &Function::TORQUES, true, &mut String::new())?;
+    let path = Path::new(NAME);
+    let compiler = Compiler::built_in(path, &robot, file.plan.unwrap_or_default())?;
+    let counts = ops::counts(path, &compiler, &Function::TORQUES, true, &mut String::new())?;
     text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
     chapter(
         &mut text,
@@ -164,16 +159,21 @@ fn torques(robot: &Robot, generated: &[f64], runtime: &[f64]) -> String {
 
 fn next() -> String {
     let lines = [
-        ("show robots/puma560.yaml --joint 3", "any joint, every reason"),
-        ("show robots/planar2.yaml", "a robot for the blackboard"),
-        ("eval robots/planar1.yaml --q 0.6 --qd 1 --qdd 0 --trace", "its worksheet"),
-        ("ops robots/ur5.yaml", "what every function costs"),
-        ("emit robots/puma560.yaml", "a file that stands alone"),
+        ("show puma560 --joint 3", "any joint, every reason"),
+        ("show planar2", "a robot for the blackboard"),
+        ("eval planar1 --q 0.6 --qd 1 --qdd 0 --trace", "its worksheet"),
+        ("ops ur5", "what every function costs"),
+        ("emit puma560", "a file that stands alone"),
+        ("list", "the robots that are known by name"),
         ("--help", "all commands"),
     ];
-    let lines = lines.map(|(command, what)| (format!("  cargo run -- {command}"), what));
-    let lines = lines.into_iter().chain([("  cargo test".to_owned(), "all tests")]);
-    let lines: Vec<(String, &str)> = lines.collect();
+    // in the repository, `cargo run` starts it; cargo tells what it runs which package that is
+    let from_cargo = std::env::var_os("CARGO_PKG_NAME").is_some();
+    let start = if from_cargo { "cargo run --" } else { "rne" };
+    let mut lines = lines.map(|(command, what)| (format!("  {start} {command}"), what)).to_vec();
+    if from_cargo {
+        lines.push(("  cargo test".to_owned(), "all tests"));
+    }
     let widest = lines.iter().map(|(command, _)| command.len()).max().unwrap_or(0);
     let mut text = format!("\n\n{TITLE}Next{TITLE:#}\n\n");
     for (command, what) in &lines {

@@ -26,6 +26,8 @@ pub(crate) enum Source {
     Path(LitStr),
     /// In this text.
     Yaml(LitStr),
+    /// Shipped under this name.
+    Builtin(LitStr),
 }
 
 /// A number of operations and where it stands.
@@ -54,7 +56,7 @@ impl Attribute {
                     }
                 }
                 Meta::Path(_) | Meta::NameValue(_) => {
-                    errors.at(&attribute.meta, "write this as `#[robot(path = \"…\")]` or `#[robot(yaml = \"…\")]`");
+                    errors.at(&attribute.meta, "write this as `#[robot(path = \"…\")]`, `#[robot(yaml = \"…\")]` or `#[robot(builtin = \"…\")]`");
                 }
             }
         }
@@ -63,7 +65,7 @@ impl Attribute {
             // Something else is wrong with the attribute, perhaps just this.
             (None, Some(_)) if errors.len() > before => {}
             (None, Some(place)) => {
-                errors.at(&place, "which robot? `path = \"…\"` or `yaml = \"…\"` is missing here");
+                errors.at(&place, "which robot? `path = \"…\"`, `yaml = \"…\"` or `builtin = \"…\"` is missing here");
             }
             (None, None) => errors.at(
                 &item.ident,
@@ -80,7 +82,7 @@ impl Attribute {
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `form`, `max_ops` and `crate`";
+const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops` and `crate`";
 
 #[derive(Default)]
 struct Entries {
@@ -114,7 +116,7 @@ impl Entries {
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
-        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "crate") {
+        if !matches!(name.as_str(), "path" | "yaml" | "builtin" | "form" | "max_ops" | "crate") {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
         if self.seen.contains(&name) {
@@ -125,6 +127,7 @@ impl Entries {
             let example = match name.as_str() {
                 "path" => "\"robots/arm.yaml\"",
                 "yaml" => "\"…\"",
+                "builtin" => "\"puma560\"",
                 "form" => "\"seven_steps\"",
                 "max_ops" => "500",
                 _ => "::rne",
@@ -133,15 +136,19 @@ impl Entries {
         }
         input.parse::<Token![=]>()?;
         match name.as_str() {
-            "path" | "yaml" => {
+            "path" | "yaml" | "builtin" => {
                 let text = string(input, &name)?;
                 if self.source.is_some() {
                     return Err(syn::Error::new(
                         key.span(),
-                        "`path` and `yaml` exclude each other: the robot is in a file or here",
+                        "`path`, `yaml` and `builtin` exclude each other: the robot is in a file, here, or shipped",
                     ));
                 }
-                self.source = Some(if name == "path" { Source::Path(text) } else { Source::Yaml(text) });
+                self.source = Some(match name.as_str() {
+                    "path" => Source::Path(text),
+                    "yaml" => Source::Yaml(text),
+                    _ => Source::Builtin(text),
+                });
             }
             "form" => {
                 let text = string(input, &name)?;

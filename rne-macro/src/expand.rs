@@ -49,7 +49,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         None => target.stub(capability, loaded.joints),
     };
     // a plan that is not used is not watched
-    let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file.absolute));
+    let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file));
     let watched = loaded.watched;
     let errors = errors.into_tokens();
     quote!(#errors #watched #plan #code)
@@ -102,10 +102,20 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
             Ok(file) => {
                 let plan = location::plan_beside(&file);
                 let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
-                (file.shown, file.bytes, watch(&file.absolute), plan)
+                {
+                    let watched = watch(&file);
+                    (file.shown, file.bytes, watched, plan)
+                }
             }
             Err(missing) => {
                 errors.at(path, missing);
+                return Loaded::default();
+            }
+        },
+        Source::Builtin(name) => match location::shipped(&name.value()) {
+            Ok((file, plan)) => (file.shown, file.bytes, TokenStream::new(), plan),
+            Err(unknown) => {
+                errors.at(name, unknown);
                 return Loaded::default();
             }
         },
@@ -138,9 +148,9 @@ fn guess_joints(report: &Report) -> usize {
 }
 
 /// Tells the compiler that the code depends on the file: it is compiled again when the file changes.
-fn watch(file: &Path) -> TokenStream {
+fn watch(file: &RobotFile) -> TokenStream {
     // A path that is not Unicode cannot be written in source code.
-    let Some(file) = file.to_str() else { return TokenStream::new() };
+    let Some(file) = file.absolute.as_deref().and_then(Path::to_str) else { return TokenStream::new() };
     quote!(
         const _: &[::core::primitive::u8] = ::core::include_bytes!(#file);
     )
@@ -202,7 +212,7 @@ fn programs(
 impl Source {
     fn span(&self) -> Span {
         match self {
-            Self::Path(literal) | Self::Yaml(literal) => literal.span(),
+            Self::Path(literal) | Self::Yaml(literal) | Self::Builtin(literal) => literal.span(),
         }
     }
 }

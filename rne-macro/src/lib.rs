@@ -73,6 +73,21 @@ use rne_codegen::Capability;
 /// assert!((tau - (2.5 * 0.8 * 0.8 * -0.7 / 3.0 + 2.5 * 9.81 * 0.4 * 0.6_f64.sin())).abs() < 1e-14);
 /// ```
 ///
+/// # `builtin = "…"`
+///
+/// A robot that `rne` ships, by its name; `rne list` prints them, and a wrong name is answered with all of them.
+///
+/// ```
+/// use rne::InverseDynamics;
+///
+/// #[derive(InverseDynamics)]
+/// #[robot(builtin = "puma560", form = "reduced")]
+/// struct Puma560;
+///
+/// let [.., wrist]: [f64; 6] = Puma560.inverse_dynamics(&[0.0; 6], &[0.0; 6], &[0.0, 0.0, 0.0, 0.0, 0.0, 1.0]);
+/// assert!(wrist > 0.0);
+/// ```
+///
 /// # `form = "seven_steps"`
 ///
 /// How the torques are computed.

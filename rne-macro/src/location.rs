@@ -10,8 +10,8 @@ use syn::LitStr;
 /// A robot file that has been read.
 #[derive(Debug)]
 pub(crate) struct RobotFile {
-    /// Where it is, from the root, for the compiler to watch.
-    pub(crate) absolute: PathBuf,
+    /// Where it is, from the root, for the compiler to watch; `None` of a shipped one, which is part of this macro.
+    pub(crate) absolute: Option<PathBuf>,
     /// What messages call it.
     pub(crate) shown: String,
     /// What is in it.
@@ -71,7 +71,7 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     for Place { file, .. } in &places {
         let shown = || short(file).map_or_else(|| written.clone(), |file| file.display().to_string());
         match read_file(file) {
-            Ok(bytes) => return Ok(RobotFile { absolute: working_directory.join(file), shown: shown(), bytes }),
+            Ok(bytes) => return Ok(RobotFile { absolute: Some(working_directory.join(file)), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(Missing::Unreadable { shown: shown(), error }),
         }
@@ -87,13 +87,29 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
 
 /// The plan file beside a robot file, if there is one.
 pub(crate) fn plan_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
-    let absolute = plan_of(&file.absolute);
+    let Some(absolute) = file.absolute.as_deref().map(plan_of) else { return Ok(None) };
     let shown = plan_of(Path::new(&file.shown)).display().to_string();
     match read_file(&absolute) {
-        Ok(bytes) => Ok(Some(RobotFile { absolute, shown, bytes })),
+        Ok(bytes) => Ok(Some(RobotFile { absolute: Some(absolute), shown, bytes })),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
         Err(error) => Err(Missing::Unreadable { shown, error }),
     }
+}
+
+/// A shipped robot and its plan; the words that name those that there are, when there is none of this name.
+pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), String> {
+    let Some(robot) = rne_robots::find(name) else {
+        let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
+        let near = names.iter().find(|known| known.starts_with(name) && !name.is_empty());
+        let meant = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+        return Err(format!("there is no shipped robot `{name}`{meant}\nthere are {}", names.join(", ")));
+    };
+    let file = |extension: &str, text: &str| RobotFile {
+        absolute: None,
+        shown: format!("{name}.{extension} (shipped)"),
+        bytes: text.as_bytes().to_vec(),
+    };
+    Ok((file("yaml", robot.yaml), robot.plan.map(|plan| file("plan.yaml", plan))))
 }
 
 /// The file in which the literal stands. The compiler knows it; some editors do not.

@@ -7,5 +7,6 @@ mod emit_c;
 mod eval;
 mod plans;
 mod search;
+mod shipped;
 mod show;
 mod terminal;
