@@ -36,7 +36,7 @@
 //! number of joints that is not known either.
 //!
 //! ```
-//! # #[cfg(feature = "std")] {
+//! # #[cfg(all(feature = "arm", feature = "std"))] {
 //! use rne::{Arm, InverseDynamics};
 //! # #[derive(InverseDynamics)]
 //! # #[robot(path = "../robots/puma560.yaml")]
@@ -76,15 +76,18 @@
 //!
 //! | feature | |
 //! |---|---|
+//! | `arm` (default) | the robot that is known at run time: [`Arm`], `DynArm`; it brings nalgebra |
+//! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own |
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
+//! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
 //! | `rayon` | batches on all cores |
 //! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler (a stable one says E0554) |
 //!
 //! # Without `std`
 //!
-//! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and `Arm::new` need neither `std`
-//! nor an allocator. The robot file is read on the machine that compiles.
+//! `rne = { version = "0.1", default-features = false }`: derived robots, the traits and, with the feature `arm`,
+//! `Arm::new` need neither `std` nor an allocator. The robot file is read on the machine that compiles.
 //!
 //! # Conventions
 //!
@@ -104,8 +107,27 @@
 #![cfg_attr(not(feature = "std"), no_std)]
 
 #[doc(inline)]
-pub use rne_macro::*;
+pub use rne_macro::{
+    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor,
+};
 #[doc(inline)]
 pub use rne_model as model;
 #[doc(inline)]
-pub use rne_runtime::*;
+pub use rne_runtime::{
+    Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
+    ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
+    MassMatrix, MovingBase, Operations, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+};
+#[cfg(feature = "arm")]
+#[doc(inline)]
+pub use rne_runtime::{Arm, LinkTrace, Trace};
+#[cfg(all(feature = "arm", feature = "std"))]
+#[doc(inline)]
+pub use rne_runtime::{
+    BaseParameter, BaseParameters, DynArm, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError, WrongJointCount,
+    WrongLength,
+};
+// Derived code names them.
+#[doc(hidden)]
+pub use rne_runtime::{RunTimeParameter, batch};

@@ -3,7 +3,7 @@
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 
 use crate::smooth_sign::SmoothSign;
-use crate::{BaseMotion, Pose, Scalar, TorqueDerivatives, Wrench};
+use crate::{BaseMotion, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -101,6 +101,18 @@ pub trait Kinematics<const DOF: usize> {
     fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF]) -> [T; 6];
 }
 
+/// The centre of mass of the links, all together, in the world; the robot's `base` places frame 0 there. Rotors are not
+/// included. An arm without mass gives numbers that are not finite.
+pub trait CentreOfMass<const DOF: usize> {
+    /// Σ m c / Σ m, m.
+    #[must_use]
+    fn centre_of_mass<T: Scalar>(&self, q: &[T; DOF]) -> [T; 3];
+
+    /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
+    #[must_use]
+    fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3];
+}
+
 /// Kinetic and potential energy of the links, J. Rotors are not included.
 pub trait Energy<const DOF: usize> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
@@ -122,6 +134,17 @@ pub trait Regressor<const DOF: usize> {
     /// x y dm.
     #[must_use]
     fn regressor<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [[[T; 10]; DOF]; DOF];
+}
+
+/// ∂τ/∂q and ∂τ/∂q̇ of one state. Row i is torque i, column j is joint j.
+///
+/// Units: of a torque (N m, or N for a prismatic joint) per rad or m, and per rad/s or m/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TorqueDerivatives<const DOF: usize, T> {
+    /// ∂τ_i/∂q_j.
+    pub dq: [[T; DOF]; DOF],
+    /// ∂τ_i/∂q̇_j.
+    pub dqd: [[T; DOF]; DOF],
 }
 
 /// How the torques change with the state.

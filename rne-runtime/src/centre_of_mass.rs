@@ -13,21 +13,9 @@ use rne_model::JointKind;
 use crate::kinematics::Placement;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
-use crate::{Arm, Constant, Scalar};
+use crate::{Arm, CentreOfMass, Constant, Scalar};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
-
-/// The centre of mass of the links, all together, in the world; the robot's `base` places frame 0 there. Rotors are not
-/// included. An arm without mass gives numbers that are not finite.
-pub trait CentreOfMass<const DOF: usize> {
-    /// Σ m c / Σ m, m.
-    #[must_use]
-    fn centre_of_mass<T: Scalar>(&self, q: &[T; DOF]) -> [T; 3];
-
-    /// Its Jacobian: J q̇ is the velocity of the centre of mass, m/s, in world axes.
-    #[must_use]
-    fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3];
-}
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     /// What part of the mass each link has.

@@ -4,20 +4,9 @@
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::{PerJoint, Square};
-use crate::{Arm, Constant, Dual, InverseDynamicsDerivatives, Scalar};
+use crate::{Arm, Constant, Dual, InverseDynamicsDerivatives, Scalar, TorqueDerivatives};
 #[cfg(feature = "std")]
 use crate::{DynArm, WrongLength};
-
-/// ∂τ/∂q and ∂τ/∂q̇ of one state. Row i is torque i, column j is joint j.
-///
-/// Units: of a torque (N m, or N for a prismatic joint) per rad or m, and per rad/s or m/s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TorqueDerivatives<const DOF: usize, T> {
-    /// ∂τ_i/∂q_j.
-    pub dq: [[T; DOF]; DOF],
-    /// ∂τ_i/∂q̇_j.
-    pub dqd: [[T; DOF]; DOF],
-}
 
 /// [`TorqueDerivatives`] of a [`DynArm`](crate::DynArm).
 #[cfg(feature = "std")]

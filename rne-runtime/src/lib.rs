@@ -4,64 +4,83 @@
 #![cfg_attr(all(feature = "core_float_math", not(feature = "std")), feature(core_float_math))]
 #![allow(clippy::doc_markdown)] // formulas: R_i, f_{i-1,i}
 
+#[cfg(feature = "arm")]
 mod actuation;
+#[cfg(feature = "arm")]
 mod arm;
 mod base_motion;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 mod base_parameters;
 pub mod batch;
 mod capability;
+#[cfg(feature = "arm")]
 mod centre_of_mass;
+#[cfg(feature = "arm")]
 mod coriolis_matrix;
+#[cfg(feature = "arm")]
 mod derivatives;
 mod dual;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 mod dyn_arm;
+#[cfg(feature = "arm")]
 mod energy;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 mod error;
+#[cfg(feature = "arm")]
 mod forward_dynamics;
+#[cfg(feature = "arm")]
 mod joint;
+#[cfg(feature = "arm")]
 mod joint_wrenches;
+#[cfg(feature = "arm")]
 mod kinematics;
+#[cfg(feature = "arm")]
 mod link_frame;
+#[cfg(feature = "arm")]
 mod link_state;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 mod load;
+#[cfg(feature = "arm")]
 mod mass_matrix;
+#[cfg(feature = "arm")]
 mod mechanism;
+#[cfg(feature = "arm")]
 mod mount;
 mod operations;
+#[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
+#[cfg(feature = "arm")]
 mod regressor;
 mod scalar;
+#[cfg(feature = "arm")]
 mod seven_steps;
 mod sin_cos;
 mod smooth_sign;
+#[cfg(feature = "arm")]
 mod trace;
 mod wrench;
 
+#[cfg(feature = "arm")]
 pub use arm::Arm;
 pub use base_motion::BaseMotion;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
-    Actuation, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MovingBase, Regressor,
+    Actuation, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor, TorqueDerivatives,
 };
-pub use centre_of_mass::CentreOfMass;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;
-pub use derivatives::TorqueDerivatives;
 pub use dual::Dual;
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 pub use dyn_arm::{DynArm, DynTrace};
-#[cfg(feature = "std")]
+#[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use operations::Operations;
 pub use pose::Pose;
 pub use scalar::{Constant, RunTimeParameter, Scalar};
+#[cfg(feature = "arm")]
 pub use trace::{LinkTrace, Trace};
 pub use wrench::Wrench;

@@ -1,7 +1,5 @@
 //! Where a frame stands, and how it is turned.
 
-use nalgebra::{IsometryMatrix3, Matrix3, Matrix4, Rotation3, SimdRealField, Translation3, Vector3};
-
 use crate::Scalar;
 
 /// The pose of a frame in another: `rotation` turns components in the axes of the frame into components in the axes of
@@ -18,53 +16,72 @@ impl<T: Scalar> Pose<T> {
     /// The frame itself: no rotation, no translation.
     #[must_use]
     pub fn identity() -> Self {
-        Self::from_matrix(Matrix3::identity(), Vector3::zeros())
-    }
-
-    /// From an nalgebra matrix and vector. `rotation` is taken as it stands: that it is orthonormal is the caller's
-    /// concern.
-    #[must_use]
-    pub fn from_matrix(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
-        Self { rotation: rotation.transpose().into(), translation: translation.into() }
-    }
-
-    /// The rotation as an nalgebra matrix.
-    #[must_use]
-    pub fn rotation_matrix(&self) -> Matrix3<T> {
-        Matrix3::from(self.rotation).transpose()
-    }
-
-    /// The translation as an nalgebra vector.
-    #[must_use]
-    pub fn translation_vector(&self) -> Vector3<T> {
-        self.translation.into()
-    }
-
-    /// The homogeneous transform: rotation and translation above a row (0, 0, 0, 1).
-    #[must_use]
-    pub fn to_homogeneous(&self) -> Matrix4<T> {
         let (zero, one) = (T::zero(), T::one());
-        let ([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]) = (self.rotation, self.translation);
-        #[rustfmt::skip]
+        Self { rotation: [[one, zero, zero], [zero, one, zero], [zero, zero, one]], translation: [zero; 3] }
+    }
+}
+
+/// From and to nalgebra.
+#[cfg(feature = "nalgebra")]
+mod conversion {
+    use nalgebra::{Matrix3, Matrix4, Vector3};
+
+    use super::Pose;
+    use crate::Scalar;
+
+    impl<T: Scalar> Pose<T> {
+        /// From an nalgebra matrix and vector. `rotation` is taken as it stands: that it is orthonormal is the caller's
+        /// concern.
+        #[must_use]
+        pub fn from_matrix(rotation: Matrix3<T>, translation: Vector3<T>) -> Self {
+            Self { rotation: rotation.transpose().into(), translation: translation.into() }
+        }
+
+        /// The rotation as an nalgebra matrix.
+        #[must_use]
+        pub fn rotation_matrix(&self) -> Matrix3<T> {
+            Matrix3::from(self.rotation).transpose()
+        }
+
+        /// The translation as an nalgebra vector.
+        #[must_use]
+        pub fn translation_vector(&self) -> Vector3<T> {
+            self.translation.into()
+        }
+
+        /// The homogeneous transform: rotation and translation above a row (0, 0, 0, 1).
+        #[must_use]
+        pub fn to_homogeneous(&self) -> Matrix4<T> {
+            let (zero, one) = (T::zero(), T::one());
+            let ([[a, b, c], [d, e, f], [g, h, i]], [x, y, z]) = (self.rotation, self.translation);
+            #[rustfmt::skip]
         let matrix = Matrix4::new(
             a,    b,    c,    x,
             d,    e,    f,    y,
             g,    h,    i,    z,
             zero, zero, zero, one,
         );
-        matrix
+            matrix
+        }
     }
-}
 
-impl<T: Scalar + SimdRealField<Element: SimdRealField>> From<Pose<T>> for IsometryMatrix3<T> {
-    fn from(pose: Pose<T>) -> Self {
-        let rotation = Rotation3::from_matrix_unchecked(pose.rotation_matrix());
-        Self::from_parts(Translation3::from(pose.translation_vector()), rotation)
-    }
-}
+    #[cfg(feature = "simba")]
+    mod isometry {
+        use nalgebra::{IsometryMatrix3, Rotation3, SimdRealField, Translation3};
 
-impl<T: Scalar + SimdRealField> From<IsometryMatrix3<T>> for Pose<T> {
-    fn from(isometry: IsometryMatrix3<T>) -> Self {
-        Self::from_matrix(isometry.rotation.into_inner(), isometry.translation.vector)
+        use super::{Pose, Scalar};
+
+        impl<T: Scalar + SimdRealField<Element: SimdRealField>> From<Pose<T>> for IsometryMatrix3<T> {
+            fn from(pose: Pose<T>) -> Self {
+                let rotation = Rotation3::from_matrix_unchecked(pose.rotation_matrix());
+                Self::from_parts(Translation3::from(pose.translation_vector()), rotation)
+            }
+        }
+
+        impl<T: Scalar + SimdRealField> From<IsometryMatrix3<T>> for Pose<T> {
+            fn from(isometry: IsometryMatrix3<T>) -> Self {
+                Self::from_matrix(isometry.rotation.into_inner(), isometry.translation.vector)
+            }
+        }
     }
 }

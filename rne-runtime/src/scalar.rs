@@ -1,21 +1,29 @@
 //! The number type that every function of a robot is generic over.
 
-use core::any::Any;
+#[cfg(feature = "simba")]
+mod field;
+#[cfg(not(feature = "simba"))]
+mod float;
+
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 use num_traits::{One, Zero};
-use simba::simd::SimdRealField;
 
-use crate::sin_cos::{Lanes, sin_cos};
-
-/// A real number, or a bundle of them: `f32`, `f64`, simba's SIMD lanes, dual numbers, fixed point.
+/// A real number, or a bundle of them: `f32`, `f64`, SIMD lanes, dual numbers, fixed point.
 ///
-/// Implemented for everything that is simba's [`SimdRealField`] and `Copy`. A type of your own that is no such field
-/// (an interval, say) implements this trait itself; a foreign one needs a newtype.
+/// Implemented for `f32` and `f64`, and with the feature `simba` (on by default) for everything that is simba's
+/// `SimdRealField` and `Copy`. A type of your own that is no such field (an interval, say) implements this trait
+/// itself; a foreign one needs a newtype.
 ///
 /// The ring operators come with their assigning forms, `+=` and so on: nalgebra's sums and products of matrices ask for
 /// them, and the generic recursion is written in nalgebra.
+#[diagnostic::on_unimplemented(
+    message = "dynamics cannot compute with `{Self}`",
+    label = "no real number",
+    note = "positions, velocities and torques are real numbers: write `0.0`, not `0`; there are `f32`, `f64`, and what \
+            implements `Scalar`"
+)]
 pub trait Scalar:
     Copy
     + Debug
@@ -107,72 +115,6 @@ pub trait Scalar:
         }
         self
     }
-}
-
-impl<T: SimdRealField + Copy> Scalar for T {
-    #[inline]
-    fn from_f64(value: f64) -> Self {
-        nalgebra::convert(value)
-    }
-
-    #[inline]
-    fn from_f32(value: f32) -> Self {
-        nalgebra::convert(value)
-    }
-
-    #[inline]
-    fn sin_cos(self) -> (Self, Self) {
-        let ([sine], [cosine]) = Self::sin_cos_array([self]);
-        (sine, cosine)
-    }
-
-    // Firmware calls nothing: compilers for small processors would rather share one copy.
-    #[cfg_attr(feature = "std", inline)]
-    #[cfg_attr(not(feature = "std"), allow(clippy::inline_always), inline(always))]
-    fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
-        let (mut sines, mut cosines) = (angles, angles);
-        let results: (&mut dyn Any, &mut dyn Any) = (&mut sines, &mut cosines);
-        if let Some(angles) = same::<_, [f64; N]>(angles)
-            && let (Some(sines), Some(cosines)) = (results.0.downcast_mut(), results.1.downcast_mut())
-        {
-            sin_cos(&angles, sines, cosines);
-        } else if let Some(angles) = same::<_, [f32; N]>(angles)
-            && let (Some(sines), Some(cosines)) = (results.0.downcast_mut(), results.1.downcast_mut())
-        {
-            sin_cos(&angles, sines, cosines);
-        } else {
-            for (sine, cosine) in sines.iter_mut().zip(&mut cosines) {
-                (*sine, *cosine) = sine.simd_sin_cos();
-            }
-        }
-        (sines, cosines)
-    }
-
-    #[inline]
-    fn mul_add(self, factor: Self, addend: Self) -> Self {
-        let terms = [addend, self, factor];
-        let double = same(terms).and_then(|[c, a, b]: [f64; 3]| same(c.plus_product(a, b)));
-        let single = || same(terms).and_then(|[c, a, b]: [f32; 3]| same(c.plus_product(a, b)));
-        double.or_else(single).unwrap_or_else(|| self * factor + addend)
-    }
-
-    #[inline]
-    fn by_sign(self, positive: Self, negative: Self) -> Self {
-        let zero = <Self as Zero>::zero();
-        positive.select(self.simd_gt(zero), negative.select(self.simd_lt(zero), zero))
-    }
-
-    #[inline]
-    fn sqrt(self) -> Self {
-        self.simd_sqrt()
-    }
-}
-
-/// `value` itself if its type is `B`. There is no specialisation in stable Rust; this test is of two constants and
-/// disappears in release builds.
-#[inline]
-fn same<A: Any, B: Any + Copy>(value: A) -> Option<B> {
-    (&value as &dyn Any).downcast_ref().copied()
 }
 
 /// The scalar in which a robot's constants are stored: `f64`, or `f32` to keep double precision off a target without

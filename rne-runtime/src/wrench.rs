@@ -1,7 +1,5 @@
 //! Force and moment at the tip.
 
-use nalgebra::Vector3;
-
 use crate::Scalar;
 
 /// The lecture's f_{n,n+1} and n_{n,n+1}: exerted BY the last link ON its environment, at the origin of the tip frame
@@ -21,16 +19,20 @@ impl<T: Scalar> Wrench<T> {
     pub fn zero() -> Self {
         Self { force: [T::zero(); 3], moment: [T::zero(); 3] }
     }
+}
 
+/// From and to nalgebra.
+#[cfg(feature = "nalgebra")]
+impl<T: Scalar> Wrench<T> {
     /// From nalgebra vectors.
     #[must_use]
-    pub fn from_vectors(force: Vector3<T>, moment: Vector3<T>) -> Self {
+    pub fn from_vectors(force: nalgebra::Vector3<T>, moment: nalgebra::Vector3<T>) -> Self {
         Self { force: force.into(), moment: moment.into() }
     }
 
     /// Force and moment as nalgebra vectors.
     #[must_use]
-    pub fn vectors(&self) -> (Vector3<T>, Vector3<T>) {
+    pub fn vectors(&self) -> (nalgebra::Vector3<T>, nalgebra::Vector3<T>) {
         (self.force.into(), self.moment.into())
     }
 }

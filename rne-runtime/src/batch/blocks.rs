@@ -168,6 +168,7 @@ fn registers<V: Vector, const N: usize>(unit: V::Unit, numbers: &[Aligned<V::Num
 }
 
 /// The torques of each state by itself.
+#[cfg(feature = "arm")]
 pub(super) fn one_by_one<R, T: BatchScalar, const DOF: usize>(all: States<'_, R, T, DOF>)
 where
     R: crate::InverseDynamics<DOF>,

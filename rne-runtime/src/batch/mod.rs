@@ -66,8 +66,12 @@ pub use unit::VectorUnit;
 
 use core::array::from_fn;
 
-use crate::{Arm, Constant, InverseDynamics, Scalar};
-use blocks::{States, one_by_one};
+#[cfg(feature = "arm")]
+use crate::{Arm, Constant};
+use crate::{InverseDynamics, Scalar};
+use blocks::States;
+#[cfg(feature = "arm")]
+use blocks::one_by_one;
 
 /// Torques from motion for many states at once.
 ///
@@ -105,6 +109,7 @@ pub trait BatchInverseDynamics<const DOF: usize>: InverseDynamics<DOF> {
     ) -> Result<(), LengthMismatch>;
 }
 
+#[cfg(feature = "arm")]
 /// One state after the other: a robot that is known at run time is loops, in which no vector unit finds work.
 impl<const DOF: usize, S: Constant + Sync> BatchInverseDynamics<DOF> for Arm<DOF, S> {
     fn inverse_dynamics_batch_on<T: BatchScalar>(
