@@ -105,6 +105,7 @@
 //! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[doc(inline)]
 pub use rne_macro::{
