@@ -12,9 +12,11 @@ mod lines;
 mod machine;
 mod mutants;
 mod mutate;
+mod package;
 mod performance;
 mod prose;
 mod single_calls;
+mod tool;
 mod verify;
 
 use std::process::ExitCode;
@@ -52,6 +54,8 @@ enum Task {
     Mutate(mutate::Mutate),
     Verify(verify::Verify),
     Lines(lines::Lines),
+    Package(package::Package),
+    Tool(tool::Tool),
 }
 
 /// What a task found.
@@ -81,6 +85,8 @@ impl Task {
             Self::Mutate(task) => ("mutate", false, task.run()),
             Self::Verify(task) => ("verify", false, task.run()),
             Self::Lines(task) => ("lines", false, task.run()),
+            Self::Package(task) => ("package", false, task.run()),
+            Self::Tool(task) => ("tool", task.install, task.run()),
         }
     }
 }

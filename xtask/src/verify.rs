@@ -46,6 +46,8 @@ enum Needs {
     Nothing,
     /// The oldest compiler that Cargo.toml allows; rustup gets it.
     OldestCompiler,
+    /// A tag of this repository, to compare with.
+    Tag,
 }
 
 /// Each with a target folder that an earlier one has filled as far as possible.
@@ -83,6 +85,51 @@ const STEPS: &[Step] = &[
         about: "the facade, the runtime and the plain types of the table without `std`",
         variables: &[],
         command: &["cargo", "check", "--package", "rne", "--package", "rne-model", "--no-default-features"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "features",
+        about: "every pair of features by itself",
+        variables: &[],
+        command: &["cargo", "xtask", "tool", "hack", "--install"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "floats",
+        about: "`f32` and `f64` without simba have the bits that they have with it",
+        variables: &[],
+        command: &[
+            "cargo",
+            "test",
+            "--package",
+            "rne-runtime",
+            "--no-default-features",
+            "--features",
+            "std",
+            "--test",
+            "floats",
+        ],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "deny",
+        about: "licences, sources and duplicates of dependencies",
+        variables: &[],
+        command: &["cargo", "xtask", "tool", "deny", "--install"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "semver",
+        about: "the public interface against the last tag",
+        variables: &[],
+        command: &["cargo", "xtask", "tool", "semver"],
+        needs: Needs::Tag,
+    },
+    Step {
+        name: "package",
+        about: "packages as a registry takes them, and a crate that has nothing else",
+        variables: &[],
+        command: &["cargo", "xtask", "package"],
         needs: Needs::Nothing,
     },
     Step {
@@ -151,6 +198,12 @@ impl Needs {
         match self {
             Self::Nothing => None,
             Self::OldestCompiler => machine::toolchain(oldest),
+            Self::Tag => {
+                let tag = machine::shell()
+                    .ok()
+                    .map(|shell| cmd!(shell, "git describe --tags").quiet().ignore_stderr().read());
+                tag.is_none_or(|tag| tag.is_err()).then(|| "there is no tag to compare with".to_owned())
+            }
         }
     }
 }

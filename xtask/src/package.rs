@@ -1,0 +1,123 @@
+//! Are the packages complete, and does a crate build that has nothing else?
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use xshell::{Shell, cmd};
+
+use crate::Verdict;
+use crate::machine;
+
+/// Packages every crate as a registry would take it, and builds a crate that depends on the packages alone
+///
+/// Each package is built by itself. Then a new crate derives a robot and prints its torques, and the packaged command
+/// line evaluates the same state: both from the packages, in a folder that knows nothing of this repository.
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when the two print other torques.
+
+Example:
+  cargo xtask package")]
+pub(crate) struct Package {
+    /// Keep the folder of the crate that has nothing else, and print where it is
+    #[arg(long)]
+    keep: bool,
+}
+
+/// The crates that are published, by the order in which they depend on each other.
+const CRATES: [&str; 7] = ["rne-model", "rne-robots", "rne-runtime", "rne-codegen", "rne-macro", "rne", "rne-cli"];
+
+const MAIN: &str = r#"use rne::InverseDynamics;
+
+#[derive(InverseDynamics)]
+#[robot(builtin = "puma560")]
+struct Puma560;
+
+fn main() {
+    let tau: [f64; 6] = Puma560.inverse_dynamics(&[0.1; 6], &[0.5; 6], &[1.0; 6]);
+    println!("{tau:?}");
+}
+"#;
+
+impl Package {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        let target = machine::target_folder("target")?;
+        let packaged = target.join("package");
+        // a package of before must not be taken for one of now
+        let _ = fs::remove_dir_all(&packaged);
+        machine::without_flags(cmd!(shell, "cargo package --workspace --allow-dirty --quiet")).run()?;
+
+        let folder = tempfile::tempdir()?;
+        let version = version()?;
+        let mut patch = String::from("[patch.crates-io]\n");
+        for name in CRATES {
+            let unpacked = unpacked(&shell, &packaged.join(format!("{name}-{version}.crate")), folder.path())?;
+            let _ = writeln!(patch, "{name} = {{ path = {:?} }}", unpacked.display().to_string());
+        }
+        let user = folder.path().join("user");
+        fs::create_dir_all(user.join("src"))?;
+        fs::write(
+            user.join("Cargo.toml"),
+            format!(
+                "[package]\nname = \"user\"\nedition = \"2024\"\n\n[dependencies]\nrne = \"{version}\"\n\n[workspace]\n\n\
+                 {patch}"
+            ),
+        )?;
+        fs::write(user.join("src/main.rs"), MAIN)?;
+        let build = target.join("packaged");
+        let (build, manifest) = (build.as_path(), user.join("Cargo.toml"));
+        let derived = machine::without_flags(cmd!(shell, "cargo run --quiet --manifest-path {manifest}"))
+            .env("CARGO_TARGET_DIR", build)
+            .read()?;
+        // a packaged crate is a workspace of its own; the patches come by a file beside it
+        let config = folder.path().join("patch.toml");
+        fs::write(&config, &patch)?;
+        let command_line = folder.path().join(format!("rne-cli-{version}/Cargo.toml"));
+        let (q, qd, qdd) = (["0.1"; 6].join(","), ["0.5"; 6].join(","), ["1.0"; 6].join(","));
+        let call = ["eval", "puma560", "--q", &q, "--qd", &qd, "--qdd", &qdd, "--json"];
+        let evaluated = machine::without_flags(cmd!(
+            shell,
+            "cargo run --quiet --config {config} --manifest-path {command_line} -- {call...}"
+        ))
+        .env("CARGO_TARGET_DIR", build)
+        .read()?;
+        let (derived, evaluated) = (numbers(&derived)?, numbers(&evaluated)?);
+        println!("packages: {} crates; a crate of them alone prints {derived:?}", CRATES.len());
+        let equal = derived.len() == 6 && derived == evaluated;
+        if !equal {
+            println!("packages: the packaged command line prints {evaluated:?}");
+        }
+        if self.keep {
+            println!("packages: {}", folder.keep().display());
+        }
+        Ok(Verdict::from(equal))
+    }
+}
+
+/// The version that all published crates share.
+fn version() -> Result<String> {
+    let manifest = machine::read("Cargo.toml")?;
+    let line = manifest.lines().find_map(|line| line.strip_prefix("version = "));
+    Ok(line.context("Cargo.toml has a version")?.trim_matches('"').to_owned())
+}
+
+/// Unpacks a package into a folder; where it is then.
+fn unpacked(shell: &Shell, package: &Path, folder: &Path) -> Result<PathBuf> {
+    if !package.is_file() {
+        bail!("there is no package {}", package.display());
+    }
+    cmd!(shell, "tar -xzf {package} -C {folder}").quiet().run()?;
+    let name = package.file_stem().context("a package has a name")?;
+    Ok(folder.join(name))
+}
+
+/// The numbers of a text that is a list with words around it.
+fn numbers(text: &str) -> Result<Vec<f64>> {
+    let words = text.split(|c: char| c.is_whitespace() || "[]{},:".contains(c));
+    let numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit() || c == '-'));
+    numbers.map(|word| word.parse::<f64>().with_context(|| word.to_owned())).collect()
+}
