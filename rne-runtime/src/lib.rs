@@ -32,6 +32,7 @@ mod mass_matrix;
 mod mechanism;
 mod mount;
 mod operations;
+mod payload;
 mod per_joint;
 mod pose;
 mod regressor;
@@ -61,6 +62,7 @@ pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(feature = "std")]
 pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use operations::Operations;
+pub use payload::Payload;
 pub use pose::Pose;
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 pub use trace::{LinkTrace, Trace};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rne_model::Robot;
 
 use crate::CompileError;
-use crate::function::Function;
+use crate::function::{Argument, Function};
 use crate::ir::Cost;
 use crate::pipeline::Formulation;
 use crate::plan::Plan;
@@ -91,12 +91,33 @@ impl PlanSet {
         }
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = Evaluator::new(robot, function);
-        let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        let mut plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        if function.takes(Argument::Payload) {
+            plans = plans.iter().flat_map(with_a_last_link).collect();
+        }
         let candidates = algorithms.iter().flat_map(|algorithm| plans.iter().map(|plan| (plan.clone(), *algorithm)));
         let costs = candidates
             .filter_map(|(plan, algorithm)| Some((evaluator.cost_of(&plan, algorithm)?.weight(), plan, algorithm)));
         costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, algorithm)| (plan, algorithm))
     }
+}
+
+/// The plans for an arm with a payload: its last link is no sphere, and what is best for the link alone may not be for
+/// both.
+fn with_a_last_link(plan: &Plan) -> Vec<Plan> {
+    let plan = Plan { gyrostat: false, ..plan.clone() };
+    let unscaled = Trick::Scales.left_out_of(&plan);
+    let scaled = if unscaled == plan { vec![plan] } else { vec![plan, unscaled] };
+    let by_column = |plan: Plan| {
+        [false, true].map(|axis_column| {
+            let mut plan = plan.clone();
+            if let Some(last) = plan.joints.last_mut() {
+                last.switches.axis_column = axis_column;
+            }
+            plan
+        })
+    };
+    scaled.into_iter().flat_map(by_column).collect()
 }
 
 /// A plan to be compiled as it stands.
