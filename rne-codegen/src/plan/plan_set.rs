@@ -8,7 +8,7 @@ use crate::CompileError;
 use crate::function::{Argument, Function};
 use crate::ir::Cost;
 use crate::pipeline::Formulation;
-use crate::plan::Plan;
+use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Scale};
 use crate::plan::cost::{self, Evaluator};
 use crate::plan::exploration::default_plan;
 use crate::plan::file::{PlanFile, Rewritten};
@@ -91,9 +91,11 @@ impl PlanSet {
         }
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = Evaluator::new(robot, function);
-        let mut plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
         if function.takes(Argument::Payload) {
-            plans = plans.iter().flat_map(with_a_last_link).collect();
+            let unscaled = Trick::Scales.left_out_of(&self.plan);
+            let plans = [&plans[..], &[unscaled]].concat();
+            return with_payload(&mut evaluator, &plans, &algorithms).unwrap_or(first);
         }
         let candidates = algorithms.iter().flat_map(|algorithm| plans.iter().map(|plan| (plan.clone(), *algorithm)));
         let costs = candidates
@@ -102,22 +104,42 @@ impl PlanSet {
     }
 }
 
-/// The plans for an arm with a payload: its last link is no sphere, and what is best for the link alone may not be for
-/// both.
-fn with_a_last_link(plan: &Plan) -> Vec<Plan> {
-    let plan = Plan { gyrostat: false, ..plan.clone() };
-    let unscaled = Trick::Scales.left_out_of(&plan);
-    let scaled = if unscaled == plan { vec![plan] } else { vec![plan, unscaled] };
-    let by_column = |plan: Plan| {
-        [false, true].map(|axis_column| {
-            let mut plan = plan.clone();
-            if let Some(last) = plan.joints.last_mut() {
-                last.switches.axis_column = axis_column;
+/// What may be better for an arm with a payload: what is best for the last link alone need not be for both.
+const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
+    // the payload would be turned with it
+    |plan| plan.turned_last_frame = false,
+    |plan| (plan.length_scale, plan.force_scale) = (Scale::Default, Scale::Default),
+    |plan| of_last(plan, |last| last.switches.axis_column = !last.switches.axis_column),
+    |plan| of_last(plan, |last| last.origin_shift = OriginShift::MinusD),
+    |plan| of_last(plan, |last| last.switches.first_moment_unturned = !last.switches.first_moment_unturned),
+    |plan| of_last(plan, |last| last.targets = [RegroupingTarget::Own; 3]),
+];
+
+fn of_last(plan: &mut Plan, change: impl Fn(&mut JointPlan)) {
+    if let Some(last) = plan.joints.last_mut() {
+        change(last);
+    }
+}
+
+/// The best plan and algorithm for an arm with a payload that some changes of the last link lead to, one after the other.
+fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorithm]) -> Option<(Plan, Algorithm)> {
+    let mut best: Option<(usize, Plan, Algorithm)> = None;
+    let mut look = |plan: &Plan, best: &mut Option<(usize, Plan, Algorithm)>| {
+        for &algorithm in algorithms {
+            let Some(cost) = evaluator.cost_of(plan, algorithm) else { continue };
+            if best.as_ref().is_none_or(|(weight, ..)| cost.weight() < *weight) {
+                *best = Some((cost.weight(), plan.clone(), algorithm));
             }
-            plan
-        })
+        }
     };
-    scaled.into_iter().flat_map(by_column).collect()
+    // with a payload no last link is a sphere
+    plans.iter().for_each(|plan| look(&Plan { gyrostat: false, ..plan.clone() }, &mut best));
+    for change in FOR_A_PAYLOAD {
+        let (_, mut plan, _) = best.clone()?;
+        change(&mut plan);
+        look(&plan, &mut best);
+    }
+    best.map(|(_, plan, algorithm)| (plan, algorithm))
 }
 
 /// A plan to be compiled as it stands.
