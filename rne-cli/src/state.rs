@@ -118,7 +118,9 @@ fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f6
     let of_a_point = given.filter(|List(values)| values.len() == 4);
     let (numbers, what) = match of_a_point {
         Some(_) => (4, ""),
-        None => (10, "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point"),
+        None => {
+            (10, "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point")
+        }
     };
     let list = argument(function, "--payload", given, Argument::Payload, numbers, what)?;
     Ok(list.map(|list| {

@@ -36,7 +36,17 @@ impl<'a, T: Copy> Arguments<'a, T> {
     #[must_use]
     pub const fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T], zero: T) -> Self {
         let zeros = [zero; 3];
-        Self { q, qd, qdd, force: zeros, moment: zeros, payload: [zero; 10], tau: &[], base: [zeros; 4], parameters: &[] }
+        Self {
+            q,
+            qd,
+            qdd,
+            force: zeros,
+            moment: zeros,
+            payload: [zero; 10],
+            tau: &[],
+            base: [zeros; 4],
+            parameters: &[],
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! What each link exerts on the next, from step 6.
 
-use crate::payload::AtTip;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
+use crate::payload::AtTip;
 use crate::per_joint::PerJoint;
 use crate::{Arm, Constant, JointWrenches, Scalar, Wrench};
 #[cfg(feature = "std")]

@@ -79,8 +79,7 @@ impl<T: Scalar> Payload<T> {
         let omega = rotation.tr_mul(&last.omega);
         let omega_dot = rotation.tr_mul(&last.omega_dot);
         let origin = (last.acceleration + last.omega_dot.cross(r)) + last.omega.cross(&last.omega.cross(r));
-        let acceleration =
-            (rotation.tr_mul(&origin) + omega_dot.cross(&com)) + omega.cross(&omega.cross(&com));
+        let acceleration = (rotation.tr_mul(&origin) + omega_dot.cross(&com)) + omega.cross(&omega.cross(&com));
         let gravity = rotation.tr_mul(&last.gravity);
         let force = (acceleration - gravity) * self.mass;
         let moment = (inertia * omega_dot + omega.cross(&(inertia * omega))) + com.cross(&force);

@@ -55,7 +55,8 @@ impl<'s> Payload<'s> {
             last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r)
         });
         let omega_cross_c = line.vector(Quantity::OmegaCrossD, || omega.cross(com));
-        let c_ddot = line.vector(Quantity::Acceleration, || back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
+        let c_ddot =
+            line.vector(Quantity::Acceleration, || back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
 
         // 5
         let gravity = line.vector(Quantity::Gravity, || back * last.gravity);

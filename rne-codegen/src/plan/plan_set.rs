@@ -8,12 +8,12 @@ use crate::CompileError;
 use crate::function::{Argument, Function};
 use crate::ir::Cost;
 use crate::pipeline::Formulation;
-use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Scale};
 use crate::plan::cost::{self, Evaluator};
 use crate::plan::exploration::default_plan;
 use crate::plan::file::{PlanFile, Rewritten};
 use crate::plan::graph_text;
 use crate::plan::trick::Trick;
+use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Scale};
 use crate::reduced::algorithm::Algorithm;
 
 /// The choices by which a robot's functions are compiled in the reduced form.

@@ -56,7 +56,9 @@ impl<'s> Load<'s> {
 fn of_link<'s>(builder: &'s Builder, matter: &PseudoInertia) -> Matrix<'s> {
     let s = matter.s;
     let trace = s[0][0] + s[1][1] + s[2][2];
-    Matrix([0, 1, 2].map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] }))))
+    Matrix(
+        [0, 1, 2].map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] }))),
+    )
 }
 
 /// Rz J Rzᵀ
