@@ -118,7 +118,7 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MovingBase, Operations, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MovingBase, Operations, Payload, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

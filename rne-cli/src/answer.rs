@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use rne::Wrench;
+use rne::{Payload, Wrench};
 use rne_codegen::{Answer, Argument, Labels, MatrixUnit, Shape};
-use rne_model::{JointKind, Robot};
+use rne_model::{Inertia, InertiaElement, JointKind, Robot};
 
 use crate::layout::{Align, columns, left, width};
 use crate::numbers::{at_the_point, exact, rounded};
@@ -83,6 +83,14 @@ fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
     write_lines(text, &cells);
     if let Some(Wrench { force, moment }) = &state.wrench {
         let _ = writeln!(text, "{QUIET}the last link exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+    }
+    if let Some(Payload { mass, com, inertia }) = &state.payload {
+        let mass = exact(*mass);
+        let _ = writeln!(text, "{QUIET}the tip carries {mass} kg with its centre at ({}) m{QUIET:#}", list(com));
+        if *inertia != Inertia::default() {
+            let elements = InertiaElement::ALL.map(|element| exact(*element.of(inertia))).join(", ");
+            let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
+        }
     }
     if takes(Argument::Base) {
         let base = &state.base;

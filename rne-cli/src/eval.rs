@@ -23,7 +23,7 @@ pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Which function; inverse_dynamics, or with --wrench inverse_dynamics_with_wrench, unless given
+    /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
     #[arg(long, value_name = "F", value_parser = arguments::function())]
     function: Option<Function>,
     /// Joint positions, rad or m
@@ -41,6 +41,10 @@ pub(crate) struct Arguments {
     /// Force and moment that the last link exerts on its environment, at the tip, in tip axes: N and N m
     #[arg(long, value_name = "fx,fy,fz,nx,ny,nz", allow_hyphen_values = true)]
     wrench: Option<List>,
+    /// What is fixed to the tip, in tip axes: mass, kg, its centre from the tip, m, and the inertia about it, kg m², which
+    /// may be left out
+    #[arg(long, value_name = "m,cx,cy,cz,xx,yy,zz,xy,xz,yz", allow_hyphen_values = true)]
+    payload: Option<List>,
     /// Angular velocity of a moving base, in frame 0, rad/s
     #[arg(long, value_name = "x,y,z", allow_hyphen_values = true)]
     base_omega: Option<List>,
@@ -76,6 +80,7 @@ Examples:
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace --axes lecture
   rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --wrench 3,-2,0,0,0,0.5 --json
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --payload 0.5,0.1,0,0
   rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 --qd 0,0 --tau 20,4
   rne eval robots/planar2.yaml --function jacobian --q 0.6,-1.1
   rne eval robots/planar2.yaml --function inverse_dynamics_on_moving_base --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
@@ -89,6 +94,7 @@ Every function takes exactly its arguments, and nothing is assumed to be zero:
   --q --qd --qdd    inverse_dynamics, inverse_dynamics_from_sin_cos (sines and cosines of --q), regressor,
                     inverse_dynamics_derivatives, joint_wrenches;
                     with --wrench inverse_dynamics_with_wrench,
+                    with --payload inverse_dynamics_with_payload,
                     with the --base-… options inverse_dynamics_on_moving_base
   --q --qd --tau    forward_dynamics
   --qd --qdd        actuator_torques; zero where no joint has a motor
@@ -114,9 +120,10 @@ struct Reply<'a> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = robot_file::robot(&arguments.file)?;
-    let function = arguments.function.unwrap_or(match arguments.wrench {
-        Some(_) => Function::InverseDynamicsWithWrench,
-        None => Function::InverseDynamics,
+    let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
+        (Some(_), _) => Function::InverseDynamicsWithWrench,
+        (None, Some(_)) => Function::InverseDynamicsWithPayload,
+        (None, None) => Function::InverseDynamics,
     });
     if arguments.trace && !function.returns_torques() {
         let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
@@ -160,6 +167,7 @@ impl Arguments {
             qdd: self.qdd.as_ref(),
             tau: self.tau.as_ref(),
             wrench: self.wrench.as_ref(),
+            payload: self.payload.as_ref(),
             base_omega: self.base_omega.as_ref(),
             base_omega_dot: self.base_omega_dot.as_ref(),
             base_acceleration: self.base_acceleration.as_ref(),
@@ -172,7 +180,10 @@ fn trace(arm: &DynArm, state: &State) -> Result<DynTrace<f64>, rne::WrongLength>
     let zero = vec![0.0; arm.dof()];
     // what the function does not take is at rest
     let [qd, qdd] = [&state.qd, &state.qdd].map(|values| if values.is_empty() { &zero } else { values });
-    arm.trace(&state.q, qd, qdd, &state.base, state.wrench.as_ref())
+    match &state.payload {
+        Some(payload) => arm.trace_with_payload(&state.q, qd, qdd, payload),
+        None => arm.trace(&state.q, qd, qdd, &state.base, state.wrench.as_ref()),
+    }
 }
 
 /// Numbers in the shape in which a function returns them.

@@ -1,6 +1,6 @@
 //! What a function is evaluated at: its arguments, complete and of the right lengths.
 
-use rne::{BaseMotion, DynArm, Pose, Wrench, WrongLength};
+use rne::{BaseMotion, DynArm, Payload, Pose, Wrench, WrongLength};
 use rne_codegen::{Argument, Function};
 use rne_model::Robot;
 
@@ -15,6 +15,7 @@ pub(crate) struct Given<'a> {
     pub(crate) qdd: Option<&'a List>,
     pub(crate) tau: Option<&'a List>,
     pub(crate) wrench: Option<&'a List>,
+    pub(crate) payload: Option<&'a List>,
     pub(crate) base_omega: Option<&'a List>,
     pub(crate) base_omega_dot: Option<&'a List>,
     pub(crate) base_acceleration: Option<&'a List>,
@@ -29,6 +30,7 @@ pub(crate) struct State {
     pub(crate) qdd: Vec<f64>,
     pub(crate) tau: Vec<f64>,
     pub(crate) wrench: Option<Wrench<f64>>,
+    pub(crate) payload: Option<Payload<f64>>,
     pub(crate) base: BaseMotion<f64>,
 }
 
@@ -46,6 +48,7 @@ impl State {
         let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
         let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
         let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
+        let payload = payload(function, given.payload)?;
         let axes = "three numbers x,y,z, in the axes of frame 0";
         let of_base = |name, list| {
             let list = argument(function, name, list, Base, 3, axes)?;
@@ -60,7 +63,7 @@ impl State {
             gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
-        Ok(Self { function, q, qd, qdd, tau, wrench, base })
+        Ok(Self { function, q, qd, qdd, tau, wrench, payload, base })
     }
 
     /// What the function returns, in the order of its layout.
@@ -70,6 +73,9 @@ impl State {
         Ok(match self.function {
             Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
             Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, &wrench())?,
+            Function::InverseDynamicsWithPayload => {
+                arm.inverse_dynamics_with_payload(q, qd, qdd, &self.payload.unwrap_or_default())?
+            }
             Function::InverseDynamicsFromSinCos => {
                 let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
                 arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)?
@@ -105,6 +111,23 @@ impl State {
 fn pose(pose: &Pose<f64>) -> impl Iterator<Item = f64> + use<> {
     let Pose { rotation, translation } = *pose;
     rotation.into_iter().chain([translation]).flatten()
+}
+
+/// Mass and centre of mass, and inertia where it is given.
+fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f64>>, Failure> {
+    let of_a_point = given.filter(|List(values)| values.len() == 4);
+    let (numbers, what) = match of_a_point {
+        Some(_) => (4, ""),
+        None => {
+            (10, "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point")
+        }
+    };
+    let list = argument(function, "--payload", given, Argument::Payload, numbers, what)?;
+    Ok(list.map(|list| {
+        let mut all = [0.0; 10];
+        all.iter_mut().zip(list).for_each(|(number, value)| *number = value);
+        Payload::from_array(all)
+    }))
 }
 
 fn triple(list: &[f64], from: usize) -> [f64; 3] {

@@ -62,8 +62,11 @@ impl Line {
 pub(crate) fn text(robot: &Robot, links: &[LinkTrace<f64>], axes: Axes, state: &State) -> String {
     let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
     let n = links.len();
-    let tip =
-        if state.wrench.is_some() { "what the last link exerts at the tip" } else { "0, nothing touches the tip" };
+    let tip = match (&state.wrench, &state.payload) {
+        (Some(_), _) => "what the last link exerts at the tip",
+        (None, Some(_)) => "what the last link exerts on the payload, at the tip",
+        (None, None) => "0, nothing touches the tip",
+    };
     let _ = writeln!(text, "{}", axes.meaning());
     let base = if state.function.takes(Argument::Base) {
         "ω0, ω̇0, c̈0, g0 as given, ċ0 = 0"

@@ -20,6 +20,9 @@ pub struct Arguments<'a, T> {
     pub force: [T; 3],
     /// Moment that the last link exerts at the tip, N m.
     pub moment: [T; 3],
+    /// What is fixed to the tip: mass, kg; centre of mass x, y, z from the origin of the tip frame, m; inertia about it
+    /// xx, yy, zz, xy, xz, yz, kg m², all in tip axes.
+    pub payload: [T; 10],
     /// Joint torques.
     pub tau: &'a [T],
     /// ω₀, ω̇₀, c̈₀ of the base and gravity, in frame 0.
@@ -33,7 +36,17 @@ impl<'a, T: Copy> Arguments<'a, T> {
     #[must_use]
     pub const fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T], zero: T) -> Self {
         let zeros = [zero; 3];
-        Self { q, qd, qdd, force: zeros, moment: zeros, tau: &[], base: [zeros; 4], parameters: &[] }
+        Self {
+            q,
+            qd,
+            qdd,
+            force: zeros,
+            moment: zeros,
+            payload: [zero; 10],
+            tau: &[],
+            base: [zeros; 4],
+            parameters: &[],
+        }
     }
 }
 
@@ -168,6 +181,10 @@ impl<T: Copy> Arguments<'_, T> {
     }
 
     fn get(&self, name: Name) -> Option<T> {
+        if let Quantity::Mass | Quantity::Com | Quantity::Inertia = name.quantity {
+            let index = Name::of_payload(name.joint).iter().position(|of| *of == name)?;
+            return Some(self.payload[index]);
+        }
         let Component::Vector(axis) = name.component else {
             let array = match name.quantity {
                 Quantity::Position => self.q,

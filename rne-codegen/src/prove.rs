@@ -222,6 +222,7 @@ fn values(robot: &Robot, program: &Interpreter, constants: &Exactly, point: &Sam
     let arguments = Arguments {
         force: vector(Quantity::JointForce, dof + 1),
         moment: vector(Quantity::JointMoment, dof + 1),
+        payload: Name::of_payload(dof + 1).map(|name| argument(robot, point, name)),
         tau: &tau,
         base: [Quantity::Omega, Quantity::OmegaDot, Quantity::Acceleration, Quantity::Gravity]
             .map(|quantity| vector(quantity, 0)),
@@ -339,9 +340,11 @@ fn errors(Reference { robot, faithful, motion }: &Reference<'_>, program: &Progr
     all
 }
 
-/// Arguments of any function: forces and the motion of the base are all the same vector.
+/// Arguments of any function: forces, the motion of the base and what a payload is given by are all of one vector.
 fn state<'a, T: Copy>([q, qd, qdd]: [&'a [T]; 3], vector: [T; 3], parameters: &'a [T]) -> Arguments<'a, T> {
-    Arguments { q, qd, qdd, force: vector, moment: vector, tau: qdd, base: [vector; 4], parameters }
+    let [x, y, z] = vector;
+    let payload = [x, y, z, x, x, z, x, y, z, y];
+    Arguments { q, qd, qdd, force: vector, moment: vector, payload, tau: qdd, base: [vector; 4], parameters }
 }
 
 /// The larger of two; what is no number is larger than any.

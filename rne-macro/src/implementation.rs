@@ -107,6 +107,9 @@ impl Target<'_> {
         let body = body.whole();
         let function = program.function;
         let wrench = function.takes(Argument::Wrench).then(|| quote!(let #krate::Wrench { force, moment } = wrench;));
+        // named as its type's array, which the body takes apart
+        let payload =
+            function.takes(Argument::Payload).then(|| quote!(let payload = &#krate::Payload::to_array(payload);));
         let base = function.takes(Argument::Base).then(|| {
             quote! {
                 let #krate::BaseMotion {
@@ -121,7 +124,7 @@ impl Target<'_> {
         let parameters = parameters.read(krate);
         let dof = Literal::usize_unsuffixed(program.dof);
         let documentation = description::method(program);
-        let method = self.signature(function, &quote!(#dof), &quote!(#wrench #base #parameters #body));
+        let method = self.signature(function, &quote!(#dof), &quote!(#wrench #payload #base #parameters #body));
         quote!(#[doc = #documentation] #method)
     }
 
@@ -136,6 +139,7 @@ impl Target<'_> {
             Argument::Accelerations => quote!(qdd: &[T; #dof]),
             Argument::Torques => quote!(tau: &[T; #dof]),
             Argument::Wrench => quote!(wrench: &#krate::Wrench<T>),
+            Argument::Payload => quote!(payload: &#krate::Payload<T>),
             Argument::Base => quote!(base: &#krate::BaseMotion<T>),
         });
         let returned = self.returned(function.shape(), dof);

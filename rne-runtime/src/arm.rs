@@ -4,13 +4,14 @@ use core::array;
 
 use rne_model::{Model, Motor};
 
+use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, LinkFrame};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::Known;
 use crate::trace::{self, LinkTrace, Trace};
-use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Scalar, Wrench};
+use crate::{BaseMotion, Constant, InverseDynamics, MovingBase, Payload, Scalar, Wrench};
 
 /// A robot at run time: the seven steps as loops over links. It answers every question that generated code answers, and
 /// is what generated code is tested against. In `f64`, without fused multiply-add, the seven steps give the same bits
@@ -103,7 +104,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> [T; DOF] {
-        let (_, loads) = self.mechanism().passes(JointMotions::new(q, qd, qdd), base, wrench);
+        let (_, loads) = self.mechanism().passes(JointMotions::new(q, qd, qdd), base, wrench.into());
         loads.map(|load| load.tau)
     }
 
@@ -121,7 +122,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     ) -> Trace<DOF, T> {
         let mut links = [LinkTrace::empty(); DOF];
         let joints = JointMotions::new(q, qd, qdd);
-        let (motions, loads) = self.mechanism().passes(joints, base, wrench);
+        let (motions, loads) = self.mechanism().passes(joints, base, wrench.into());
         let velocities = self.mechanism().velocities(joints, base, &motions);
         trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
         Trace { links }
@@ -149,6 +150,18 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
+    fn inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        payload: &Payload<T>,
+    ) -> [T; DOF] {
+        let joints = JointMotions::new(q, qd, qdd);
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Payload(payload));
+        loads.map(|load| load.tau)
+    }
+
     fn inverse_dynamics_from_sin_cos<T: Scalar>(
         &self,
         sin: &[T; DOF],
@@ -158,7 +171,7 @@ impl<const DOF: usize, S: Constant> InverseDynamics<DOF> for Arm<DOF, S> {
         qdd: &[T; DOF],
     ) -> [T; DOF] {
         let joints = JointMotions { turns: Some((sin, cos)), ..JointMotions::new(q, qd, qdd) };
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), None);
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Nothing);
         loads.map(|load| load.tau)
     }
 

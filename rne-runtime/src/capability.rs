@@ -3,7 +3,7 @@
 //! Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, m/s², N.
 
 use crate::smooth_sign::SmoothSign;
-use crate::{BaseMotion, Pose, Scalar, Wrench};
+use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
@@ -25,6 +25,17 @@ pub trait InverseDynamics<const DOF: usize> {
         qd: &[T; DOF],
         qdd: &[T; DOF],
         wrench: &Wrench<T>,
+    ) -> [T; DOF];
+
+    /// Torques when `payload` is fixed to the tip: a mass (kg), its centre (m) and the inertia about it (kg m²), all in
+    /// tip-frame axes, known when the program runs. They are those of the arm whose last link has the payload too.
+    #[must_use]
+    fn inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; DOF],
+        qd: &[T; DOF],
+        qdd: &[T; DOF],
+        payload: &Payload<T>,
     ) -> [T; DOF];
 
     /// Torques for a caller who has the sines and cosines of the joint positions already, from a CORDIC or a kinematics

@@ -2,13 +2,14 @@
 
 use rne_model::{Convention, Model, Motor, Robot, Row, Transform};
 
+use crate::at_tip::AtTip;
 use crate::link_frame::{Chain, LinkFrame};
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::mount::Mount;
 use crate::per_joint::Counted;
 use crate::trace::{self, LinkTrace, turn_to_base, turn_to_lecture};
-use crate::{BaseMotion, Constant, Scalar, Wrench, WrongLength};
+use crate::{BaseMotion, Constant, Payload, Scalar, Wrench, WrongLength};
 
 /// [`Arm`](crate::Arm) for a number of joints known at run time: the same recursion, the same bits, with slices for
 /// arrays.
@@ -137,6 +138,22 @@ impl<S: Constant> DynArm<S> {
         self.inverse_dynamics_on_moving_base_with_wrench(q, qd, qdd, &self.fixed_base(), Some(wrench))
     }
 
+    /// Torques when `payload` is fixed to the tip: those of the arm whose last link has the payload too.
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        payload: &Payload<T>,
+    ) -> Result<Vec<T>, WrongLength> {
+        let joints = self.joints(q, qd, qdd)?;
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Payload(payload));
+        Ok(loads.into_iter().map(|load| load.tau).collect())
+    }
+
     /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.
     ///
     /// # Errors
@@ -152,7 +169,7 @@ impl<S: Constant> DynArm<S> {
         self.has_length("sin", sin)?;
         self.has_length("cos", cos)?;
         let joints = JointMotions { turns: Some((sin, cos)), ..self.joints(q, qd, qdd)? };
-        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), None);
+        let (_, loads) = self.mechanism().passes(joints, &self.fixed_base(), AtTip::Nothing);
         Ok(loads.into_iter().map(|load| load.tau).collect())
     }
 
@@ -201,7 +218,7 @@ impl<S: Constant> DynArm<S> {
         wrench: Option<&Wrench<T>>,
     ) -> Result<Vec<T>, WrongLength> {
         let joints = self.joints(q, qd, qdd)?;
-        let (_, loads) = self.mechanism().passes(joints, base, wrench);
+        let (_, loads) = self.mechanism().passes(joints, base, wrench.into());
         Ok(loads.into_iter().map(|load| load.tau).collect())
     }
 
@@ -218,8 +235,30 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        let joints = self.joints(q, qd, qdd)?;
-        let (motions, loads) = self.mechanism().passes(joints, base, wrench);
+        self.traced(self.joints(q, qd, qdd)?, base, wrench.into())
+    }
+
+    /// The same on the base at rest, when `payload` is fixed to the tip.
+    ///
+    /// # Errors
+    /// When a joint argument does not have one element per joint.
+    pub fn trace_with_payload<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        payload: &Payload<T>,
+    ) -> Result<DynTrace<T>, WrongLength> {
+        self.traced(self.joints(q, qd, qdd)?, &self.fixed_base(), AtTip::Payload(payload))
+    }
+
+    fn traced<T: Scalar>(
+        &self,
+        joints: JointMotions<'_, T>,
+        base: &BaseMotion<T>,
+        tip: AtTip<'_, T>,
+    ) -> Result<DynTrace<T>, WrongLength> {
+        let (motions, loads) = self.mechanism().passes(joints, base, tip);
         let mut links = vec![LinkTrace::empty(); self.dof()];
         let velocities = self.mechanism().velocities(joints, base, &motions);
         trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);

@@ -1,5 +1,6 @@
 //! What each link exerts on the next, from step 6.
 
+use crate::at_tip::AtTip;
 use crate::link_state::JointMotions;
 use crate::mechanism::Mechanism;
 use crate::per_joint::PerJoint;
@@ -9,7 +10,7 @@ use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn joint_wrenches<T: Scalar>(self, q: &[T], qd: &[T], qdd: &[T]) -> J::Of<Wrench<T>> {
-        let (_, loads) = self.passes(JointMotions::new(q, qd, qdd), &self.fixed_base(), None);
+        let (_, loads) = self.passes(JointMotions::new(q, qd, qdd), &self.fixed_base(), AtTip::Nothing);
         self.per_joint.of(|i| {
             let joint = &loads.as_ref()[i].joint;
             Wrench::from_vectors(joint.force, joint.moment)

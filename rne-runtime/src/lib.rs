@@ -8,6 +8,8 @@
 mod actuation;
 #[cfg(feature = "arm")]
 mod arm;
+#[cfg(feature = "arm")]
+mod at_tip;
 mod base_motion;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod base_parameters;
@@ -47,6 +49,7 @@ mod mechanism;
 #[cfg(feature = "arm")]
 mod mount;
 mod operations;
+mod payload;
 #[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
@@ -79,6 +82,7 @@ pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use operations::Operations;
+pub use payload::Payload;
 pub use pose::Pose;
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]

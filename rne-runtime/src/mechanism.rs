@@ -4,11 +4,12 @@
 use nalgebra::Vector3;
 use rne_model::{Convention, Motor, Row, Transform};
 
+use crate::at_tip::AtTip;
 use crate::link_frame::Chain;
 use crate::link_state::{JointMotions, LinkLoad, LinkMotion};
 use crate::per_joint::PerJoint;
 use crate::seven_steps;
-use crate::{BaseMotion, Constant, Scalar, Wrench};
+use crate::{BaseMotion, Constant, Scalar};
 
 /// The table, the links prepared from it, and how to hold one value per joint.
 #[derive(Clone, Copy, Debug)]
@@ -53,17 +54,17 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         self,
         joints: JointMotions<'_, T>,
         base: &BaseMotion<T>,
-        wrench: Option<&Wrench<T>>,
+        tip: AtTip<'_, T>,
     ) -> (J::Of<LinkMotion<T>>, J::Of<LinkLoad<T>>) {
         let motions = self.motions(joints, base);
         let mut loads = self.per_joint.all(&LinkLoad::empty());
-        seven_steps::backward(self.chain, motions.as_ref(), wrench, loads.as_mut());
+        seven_steps::backward(self.chain, motions.as_ref(), tip, loads.as_mut());
         (motions, loads)
     }
 
     /// Torques of the seven steps with a free tip.
     pub(crate) fn torques<T: Scalar>(self, joints: JointMotions<'_, T>, base: &BaseMotion<T>) -> J::Of<T> {
-        let (_, loads) = self.passes(joints, base, None);
+        let (_, loads) = self.passes(joints, base, AtTip::Nothing);
         self.per_joint.of(|joint| loads.as_ref()[joint].tau)
     }
 

@@ -23,10 +23,11 @@
 
 use nalgebra::Vector3;
 
+use crate::at_tip::AtTip;
 use crate::joint::JointLaws;
 use crate::link_frame::{Chain, LinkFrame};
 use crate::link_state::{Carried, ForceMoment, Joint, JointMotions, LinkLoad, LinkMotion};
-use crate::{BaseMotion, Constant, Scalar, Wrench};
+use crate::{BaseMotion, Constant, Scalar};
 
 /// Step 1: angular velocity.
 ///
@@ -158,16 +159,17 @@ pub(crate) fn velocities<S: Constant, T: Scalar>(
 }
 
 /// The backward pass, steps 6 and 7, from the tip to the base: each link hands its wrench on to its parent. `tip` is
-/// what the last link exerts on its environment; `None` is a free tip.
+/// what the last link exerts there.
 pub(crate) fn backward<S: Constant, T: Scalar>(
     chain: Chain<'_, S>,
     motions: &[LinkMotion<T>],
-    tip: Option<&Wrench<T>>,
+    tip: AtTip<'_, T>,
     loads: &mut [LinkLoad<T>],
 ) {
     if let Some(last) = loads.last_mut() {
         let mount = chain.tip.to();
-        last.carry(&mount.rotation, &mount.r, &tip.map_or_else(ForceMoment::zero, ForceMoment::from));
+        let tip = tip.wrench(motions.last(), &mount);
+        last.carry(&mount.rotation, &mount.r, &tip);
     }
     for (index, (link, this)) in chain.links().zip(motions).enumerate().rev() {
         let inertia = inertia_wrench(&link, this);
@@ -202,7 +204,7 @@ mod tests {
         let mut motions = vec![LinkMotion::empty(); links.len()];
         let mut loads = vec![LinkLoad::empty(); links.len()];
         forward(chain, &base, JointMotions::new(&q, &qd, &qdd), &mut motions);
-        backward(chain, &motions, None, &mut loads);
+        backward(chain, &motions, AtTip::Nothing, &mut loads);
         loads.iter().map(|load| load.tau).collect()
     }
 

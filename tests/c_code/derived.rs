@@ -7,7 +7,7 @@ use rne::{
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
 
-pub(crate) use crate::states::Numbers;
+pub(crate) use crate::states::{self, Numbers};
 
 /// A robot's name, and what is derived for it in each form.
 pub(crate) type Forms = (&'static str, Vec<(Form, Box<dyn Derived>)>);
@@ -51,12 +51,15 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
     let array = |numbers: &Vec<T>| -> [T; DOF] { numbers.as_slice().try_into().expect("one per joint") };
     let [q, qd, qdd, tau] = given.joints.each_ref().map(array);
     let [ref q, ref qd, ref qdd, ref tau] = [q, qd, qdd, tau];
-    let [force, moment, omega, omega_dot, acceleration, gravity] = given.vectors;
+    let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = given.vectors;
     let base = BaseMotion { omega, omega_dot, velocity: [T::zero(); 3], acceleration, gravity };
     match function {
         Function::InverseDynamics => robot.inverse_dynamics(q, qd, qdd).to_vec(),
         Function::InverseDynamicsWithWrench => {
             robot.inverse_dynamics_with_wrench(q, qd, qdd, &Wrench { force, moment }).to_vec()
+        }
+        Function::InverseDynamicsWithPayload => {
+            robot.inverse_dynamics_with_payload(q, qd, qdd, &states::payload(payload)).to_vec()
         }
         Function::InverseDynamicsFromSinCos => {
             robot.inverse_dynamics_from_sin_cos(&array(&given.sine), &array(&given.cosine), q, qd, qdd).to_vec()

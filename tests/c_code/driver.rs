@@ -114,7 +114,9 @@ impl Driver<'_> {
         for (index, name) in vectors.iter().enumerate() {
             let _ = writeln!(text, "    const {real} *{name} = &given[{}];", joints.len() * n + 3 * index);
         }
-        for name in joints.iter().chain(&vectors) {
+        // its mass is the last element of a vector
+        let _ = writeln!(text, "    const {real} *payload = &given[{}];", joints.len() * n + 3 * vectors.len() + 2);
+        for name in joints.iter().chain(&vectors).chain(&["payload"]) {
             let _ = writeln!(text, "    (void){name};");
         }
         for function in functions {
@@ -124,6 +126,7 @@ impl Driver<'_> {
                 | Function::InverseDynamicsDerivatives
                 | Function::JointWrenches => "q, qd, qdd",
                 Function::InverseDynamicsWithWrench => "q, qd, qdd, force, moment",
+                Function::InverseDynamicsWithPayload => "q, qd, qdd, payload",
                 Function::InverseDynamicsFromSinCos => "sine, cosine, q, qd, qdd",
                 Function::GravityTorques
                 | Function::MassMatrix

@@ -36,7 +36,7 @@ pub(crate) fn states(robot: &Robot) -> Vec<State> {
             1 => joints[1..3].iter_mut().flatten().for_each(|x| *x *= 10_f64.powf(between(&mut rng, 9.0))),
             _ => {}
         }
-        State { joints, vectors: [(); 6].map(|()| [(); 3].map(|()| between(&mut rng, 10.0))) }
+        State { joints, vectors: [(); 10].map(|()| [(); 3].map(|()| between(&mut rng, 10.0))) }
     };
     (0..4 * special.len()).step_by(3).map(state).collect()
 }

@@ -1,20 +1,21 @@
 //! States at which C and Rust are compared.
 
-use rne::Scalar;
+use rne::model::Inertia;
+use rne::{Payload, Scalar};
 
 /// All that functions are asked with; in single precision, the same numbers rounded.
 #[derive(Debug)]
 pub(crate) struct State {
     /// q, q̇, q̈, τ.
     pub(crate) joints: [Vec<f64>; 4],
-    /// Force, moment; ω, ω̇, acceleration and gravity of the base.
-    pub(crate) vectors: [[f64; 3]; 6],
+    /// Force, moment; ω, ω̇, acceleration and gravity of the base; a payload.
+    pub(crate) vectors: [[f64; 3]; 10],
 }
 
 /// The same in a number type, with the sines and cosines of the positions.
 pub(crate) struct Numbers<T> {
     pub(crate) joints: [Vec<T>; 4],
-    pub(crate) vectors: [[T; 3]; 6],
+    pub(crate) vectors: [[T; 3]; 10],
     pub(crate) sine: Vec<T>,
     pub(crate) cosine: Vec<T>,
 }
@@ -34,4 +35,11 @@ impl State {
         let (sine, cosine) = joints[0].iter().map(|&q| Scalar::sin_cos(q)).unzip();
         Numbers { joints, vectors: self.vectors.map(|vector| vector.map(&rounded)), sine, cosine }
     }
+}
+
+/// A payload of four vectors: its mass is the last element of the first, then come centre of mass, moments and products
+/// of inertia.
+pub(crate) fn payload<T: Scalar>(vectors: &[[T; 3]; 4]) -> Payload<T> {
+    let [[_, _, mass], com, [xx, yy, zz], [xy, xz, yz]] = *vectors;
+    Payload { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz } }
 }

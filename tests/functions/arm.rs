@@ -5,7 +5,7 @@ use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::{Mutex, OnceLock};
 
-use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Pose, Scalar, Wrench};
+use rne::{BaseMotion, DynArm, DynTorqueDerivatives, Payload, Pose, Scalar, Wrench};
 use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program, Real};
 use rne_model::Robot;
@@ -43,13 +43,15 @@ pub(crate) struct Given<'a, T> {
     pub(crate) qdd: &'a [T],
     pub(crate) tau: &'a [T],
     pub(crate) wrench: Wrench<T>,
+    pub(crate) payload: Payload<T>,
     pub(crate) base: BaseMotion<T>,
 }
 
 impl<'a, T: Scalar> Given<'a, T> {
     pub(crate) fn of_joints(q: &'a [T], qd: &'a [T], qdd: &'a [T]) -> Self {
         let zero = [T::zero(); 3];
-        Self { q, qd, qdd, tau: &[], wrench: Wrench::zero(), base: BaseMotion::fixed(zero) }
+        let (wrench, payload) = (Wrench::zero(), Payload::none());
+        Self { q, qd, qdd, tau: &[], wrench, payload, base: BaseMotion::fixed(zero) }
     }
 }
 
@@ -170,6 +172,7 @@ impl Arm {
         let arguments = Arguments {
             force: given.wrench.force.map(Number),
             moment: given.wrench.moment.map(Number),
+            payload: given.payload.to_array().map(Number),
             tau: &tau,
             base: [omega, omega_dot, acceleration, gravity].map(|vector| vector.map(Number)),
             ..Arguments::of_joints(&q, &qd, &qdd, Number(T::zero()))
@@ -202,6 +205,17 @@ impl Arm {
     ) -> Vec<T> {
         let given = Given { wrench: *wrench, ..Given::of_joints(q, qd, qdd) };
         self.numbers(Function::InverseDynamicsWithWrench, &given)
+    }
+
+    pub(crate) fn inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T],
+        qd: &[T],
+        qdd: &[T],
+        payload: &Payload<T>,
+    ) -> Vec<T> {
+        let given = Given { payload: *payload, ..Given::of_joints(q, qd, qdd) };
+        self.numbers(Function::InverseDynamicsWithPayload, &given)
     }
 
     pub(crate) fn inverse_dynamics_on_moving_base<T: Scalar>(
@@ -306,13 +320,14 @@ fn pose<T: Scalar>(numbers: &[T]) -> Pose<T> {
 
 /// What the runtime returns, as a row of numbers.
 pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Given<'_, T>) -> Vec<T> {
-    let Given { q, qd, qdd, tau, ref wrench, ref base } = *given;
+    let Given { q, qd, qdd, tau, ref wrench, ref payload, ref base } = *given;
     let poses = |poses: Vec<Pose<T>>| -> Vec<T> {
         poses.iter().flat_map(|pose| [flat(pose.rotation), pose.translation.to_vec()].concat()).collect()
     };
     let numbers = match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
+        Function::InverseDynamicsWithPayload => arm.inverse_dynamics_with_payload(q, qd, qdd, payload),
         Function::InverseDynamicsFromSinCos => {
             let (sin, cos): (Vec<T>, Vec<T>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
             arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)

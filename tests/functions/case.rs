@@ -4,9 +4,9 @@ use std::sync::LazyLock;
 
 use fastrand::Rng;
 use nalgebra::{Matrix3, Rotation3, Vector3};
-use rne::{BaseMotion, Dual, Wrench};
+use rne::{BaseMotion, Dual, Payload, Wrench};
 use rne_codegen::Form;
-use rne_model::{Motor, Robot};
+use rne_model::{Inertia, Motor, Robot};
 
 use crate::arm::{Arm, Given, Maker};
 use crate::check::Worst;
@@ -23,6 +23,7 @@ pub(crate) struct Case {
     pub(crate) qdd: Vec<f64>,
     pub(crate) applied: Vec<f64>,
     pub(crate) wrench: Wrench<f64>,
+    pub(crate) payload: Payload<f64>,
     pub(crate) base: BaseMotion<f64>,
 }
 
@@ -65,7 +66,16 @@ fn case(seed: u64, maker: Maker) -> Case {
     let wrench = Wrench { force: triple(), moment: triple() };
     let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
     let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
-    Case { arm: Arm::new(&robot, maker), robot, q, qd, qdd, applied, wrench, base }
+    let payload = payload(&mut rng);
+    Case { arm: Arm::new(&robot, maker), robot, q, qd, qdd, applied, wrench, payload, base }
+}
+
+/// Any payload of a robot: up to 5 kg, half a metre from the tip. Nothing asks whether a body can have this inertia.
+pub(crate) fn payload(rng: &mut Rng) -> Payload<f64> {
+    let mut any = |range: f64| (2.0 * rng.f64() - 1.0) * range;
+    let (mass, com) = (2.5 + any(2.5), [any(0.5), any(0.5), any(0.5)]);
+    let [xx, yy, zz] = [0.2 + any(0.1), 0.2 + any(0.1), 0.2 + any(0.1)];
+    Payload { mass, com, inertia: Inertia { xx, yy, zz, xy: any(0.1), xz: any(0.1), yz: any(0.1) } }
 }
 
 /// A function of all cases of every maker, which reports its errors.
@@ -83,8 +93,8 @@ pub(crate) fn holds(of: &str, property: impl Fn(&Case, &mut Worst)) {
 impl Case {
     /// All that a function can be asked with.
     pub(crate) fn given(&self) -> Given<'_, f64> {
-        let Self { q, qd, qdd, applied, wrench, base, .. } = self;
-        Given { q, qd, qdd, tau: applied, wrench: *wrench, base: *base }
+        let Self { q, qd, qdd, applied, wrench, payload, base, .. } = self;
+        Given { q, qd, qdd, tau: applied, wrench: *wrench, payload: *payload, base: *base }
     }
 
     pub(crate) fn tau(&self) -> Vec<f64> {

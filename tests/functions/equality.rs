@@ -9,14 +9,15 @@ use rne_codegen::{Form, Function};
 use rne_model::{Dh, Robot};
 
 use crate::arm::{Arm, Given, Maker, of_runtime};
-use crate::case::{cases, largest};
+use crate::case::{cases, largest, payload};
 use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 13] = [
+const SAME_BITS: [Function; 14] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
+    Function::InverseDynamicsWithPayload,
     Function::InverseDynamicsFromSinCos,
     Function::GravityTorques,
     Function::BiasTorques,
@@ -52,6 +53,7 @@ fn scale(arm: &Arm, function: Function, given: &Given<'_, f64>) -> f64 {
     match function {
         Function::InverseDynamics
         | Function::InverseDynamicsWithWrench
+        | Function::InverseDynamicsWithPayload
         | Function::InverseDynamicsFromSinCos
         | Function::InverseDynamicsOnMovingBase
         | Function::GravityTorques
@@ -130,7 +132,9 @@ fn compare_at_states(arm: &Arm, maker: Maker, worst: &mut Worst) {
         let wrench = Wrench { force: triple(), moment: triple() };
         let [omega, omega_dot, velocity, acceleration, gravity] = [(); 5].map(|()| triple());
         let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
-        compare(arm, maker, &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, base }, TOLERANCE, worst);
+        let payload = payload(&mut rng);
+        let given = Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base };
+        compare(arm, maker, &given, TOLERANCE, worst);
     }
 }
 

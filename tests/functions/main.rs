@@ -18,6 +18,7 @@ mod golden;
 mod kinematics;
 mod matrices;
 mod operations;
+mod payload;
 mod peers;
 mod published;
 mod random_arms;

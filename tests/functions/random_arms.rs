@@ -20,7 +20,7 @@ use crate::check::Worst;
 use crate::compiler::Compiler;
 use crate::driver::{Driver, Unit};
 use crate::equality;
-use crate::states::{Numbers, State};
+use crate::states::{self, Numbers, State};
 
 /// So many arms in all.
 const ARMS: u64 = 2400;
@@ -97,15 +97,16 @@ fn of_each(seeds: &[u64], property: impl Fn(u64, &mut Worst) + Sync) -> Worst {
 fn state(rng: &mut Rng, dof: usize) -> State {
     let between = |rng: &mut Rng, range: f64| (2.0 * rng.f64() - 1.0) * range;
     let joints = [3.2, 2.0, 5.0, 50.0].map(|range| (0..dof).map(|_| between(rng, range)).collect());
-    State { joints, vectors: [(); 6].map(|()| [(); 3].map(|()| between(rng, 10.0))) }
+    State { joints, vectors: [(); 10].map(|()| [(); 3].map(|()| between(rng, 10.0))) }
 }
 
 /// What the functions are asked with at a state.
 fn at<R>(state: &State, ask: impl FnOnce(&Given<'_, f64>) -> R) -> R {
     let Numbers { joints: [q, qd, qdd, tau], vectors, .. } = state.double();
-    let [force, moment, omega, omega_dot, acceleration, gravity] = vectors;
+    let [force, moment, omega, omega_dot, acceleration, gravity, ref payload @ ..] = vectors;
+    let payload = states::payload(payload);
     let base = BaseMotion { omega, omega_dot, velocity: [0.0; 3], acceleration, gravity };
-    ask(&Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench: Wrench { force, moment }, base })
+    ask(&Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench: Wrench { force, moment }, payload, base })
 }
 
 fn is_exhaustive() -> bool {

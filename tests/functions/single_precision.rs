@@ -11,6 +11,7 @@ use crate::arm::{Arm, Given, Maker};
 use crate::case::largest;
 use crate::check::ROOT;
 use crate::golden::ROBOTS;
+use crate::states;
 
 const PAGE: &str = "docs/accuracy.md";
 const BEGIN: &str = "<!-- begin: measured functions, cargo test --test functions single -->\n";
@@ -21,7 +22,7 @@ const STATES: usize = 100;
 /// Arguments of a function, each array after the other: all of them are rounded to single precision.
 struct State {
     joints: [Vec<f32>; 4],
-    vectors: [[f32; 3]; 7],
+    vectors: [[f32; 3]; 11],
 }
 
 impl State {
@@ -32,17 +33,17 @@ impl State {
         let q = limits.map(|(low, high)| between(low.max(-3.1), high.min(3.1))).collect();
         let [qd, qdd, tau] =
             [2.0, 5.0, 50.0].map(|range| robot.joints.iter().map(|_| between(-range, range)).collect());
-        Self { joints: [q, qd, qdd, tau], vectors: [(); 7].map(|()| [(); 3].map(|()| between(-10.0, 10.0))) }
+        Self { joints: [q, qd, qdd, tau], vectors: [(); 11].map(|()| [(); 3].map(|()| between(-10.0, 10.0))) }
     }
 
     /// All numbers of a function, in a precision.
     fn ask<T: Scalar>(&self, arm: &Arm, function: Function, read: impl Fn(f32) -> T) -> Vec<T> {
         let [q, qd, qdd, tau] = self.joints.each_ref().map(|array| array.iter().map(|&x| read(x)).collect::<Vec<_>>());
-        let [force, moment, omega, omega_dot, velocity, acceleration, gravity] =
+        let [force, moment, omega, omega_dot, velocity, acceleration, gravity, ref payload @ ..] =
             self.vectors.map(|vector| vector.map(&read));
         let base = BaseMotion { omega, omega_dot, velocity, acceleration, gravity };
-        let wrench = Wrench { force, moment };
-        arm.numbers(function, &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, base })
+        let (wrench, payload) = (Wrench { force, moment }, states::payload(payload));
+        arm.numbers(function, &Given { q: &q, qd: &qd, qdd: &qdd, tau: &tau, wrench, payload, base })
     }
 }
 

@@ -3,18 +3,19 @@
 
 use fastrand::Rng;
 use proptest::prelude::*;
-use rne::{DynArm, Scalar, Wrench};
+use rne::{DynArm, Payload, Scalar, Wrench};
 use rne_codegen::{Arguments, Compiler, Component, Form, Function, Interpreter, Program, Quantity};
 use rne_model::Robot;
 
 use super::robots;
 
-/// A state at which to compare: joint arrays and a wrench.
+/// A state at which to compare: joint arrays, a wrench and a payload.
 pub(crate) struct State {
     q: Vec<f64>,
     qd: Vec<f64>,
     qdd: Vec<f64>,
     wrench: Wrench<f64>,
+    payload: Payload<f64>,
 }
 
 impl State {
@@ -22,12 +23,15 @@ impl State {
         let mut array = |scale: f64| (0..dof).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect();
         let (q, qd, qdd) = (array(3.0), array(2.0), array(5.0));
         let mut triple = || [(); 3].map(|()| (2.0 * rng.f64() - 1.0) * 10.0);
-        Self { q, qd, qdd, wrench: Wrench { force: triple(), moment: triple() } }
+        let wrench = Wrench { force: triple(), moment: triple() };
+        let payload = Payload::from_array([(); 10].map(|()| 2.0 * rng.f64() - 1.0));
+        Self { q, qd, qdd, wrench, payload }
     }
 
     fn arguments(&self) -> Arguments<'_, f64> {
         let Wrench { force, moment } = self.wrench;
-        Arguments { force, moment, ..Arguments::of_joints(&self.q, &self.qd, &self.qdd, 0.0) }
+        let payload = self.payload.to_array();
+        Arguments { force, moment, payload, ..Arguments::of_joints(&self.q, &self.qd, &self.qdd, 0.0) }
     }
 }
 
@@ -37,10 +41,11 @@ pub(crate) fn interpreted(program: &Program, state: &State) -> Vec<f64> {
 }
 
 pub(crate) fn runtime(arm: &DynArm, function: Function, state: &State) -> Vec<f64> {
-    let State { q, qd, qdd, wrench } = state;
+    let State { q, qd, qdd, wrench, payload } = state;
     match function {
         Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
         Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
+        Function::InverseDynamicsWithPayload => arm.inverse_dynamics_with_payload(q, qd, qdd, payload),
         Function::InverseDynamicsFromSinCos => {
             let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
             arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)

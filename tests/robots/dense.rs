@@ -1,6 +1,6 @@
 //! Two dense arms, in which nothing folds, against independent values at 32 states each.
 
-use rne::{DynArm, Scalar, Wrench};
+use rne::{DynArm, Payload, Scalar, Wrench};
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
 use rne_model::Robot;
 use serde_json::Value;
@@ -31,6 +31,10 @@ fn torques_of_dense_arms_are_the_independent_ones() {
                     Function::InverseDynamics => (array("tau"), arm.inverse_dynamics(&q, &qd, &qdd)),
                     Function::InverseDynamicsWithWrench => {
                         (array("tau_wrench"), arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench))
+                    }
+                    // they are no others' values: of nothing
+                    Function::InverseDynamicsWithPayload => {
+                        (array("tau"), arm.inverse_dynamics_with_payload(&q, &qd, &qdd, &Payload::none()))
                     }
                     Function::InverseDynamicsFromSinCos => {
                         let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();

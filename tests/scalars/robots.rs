@@ -1,6 +1,7 @@
 //! Two robots with all their functions, one in each form.
 
-use rne::{BaseMotion, Pose, Scalar, Wrench};
+use rne::model::Inertia;
+use rne::{BaseMotion, Payload, Pose, Scalar, Wrench};
 use rne::{
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
     Kinematics, MassMatrix, MovingBase, Regressor,
@@ -83,6 +84,8 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
 ) -> Vec<(&'static str, Vec<T>)> {
     let triple = |x: &[T; DOF]| [x[0], x[1], x[0] + x[1]];
     let wrench = Wrench { force: triple(qd), moment: triple(qdd) };
+    let ([xx, yy, zz], [xy, xz, yz]) = (triple(q), triple(qdd));
+    let payload = Payload { mass: q[0], com: triple(qd), inertia: Inertia { xx, yy, zz, xy, xz, yz } };
     let base = BaseMotion {
         omega: triple(qd),
         omega_dot: triple(qdd),
@@ -97,6 +100,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
     vec![
         ("inverse_dynamics", robot.inverse_dynamics(q, qd, qdd).to_vec()),
         ("inverse_dynamics_with_wrench", robot.inverse_dynamics_with_wrench(q, qd, qdd, &wrench).to_vec()),
+        ("inverse_dynamics_with_payload", robot.inverse_dynamics_with_payload(q, qd, qdd, &payload).to_vec()),
         ("inverse_dynamics_from_sin_cos", robot.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd).to_vec()),
         ("gravity_torques", robot.gravity_torques(q).to_vec()),
         ("bias_torques", robot.bias_torques(q, qd).to_vec()),

@@ -1,6 +1,6 @@
 //! All that the PUMA 560 can compute besides `inverse_dynamics`.
 
-use rne::{BaseMotion, Pose, Scalar, TorqueDerivatives, Wrench};
+use rne::{BaseMotion, Payload, Pose, Scalar, TorqueDerivatives, Wrench};
 
 use crate::numbers::Numbers;
 use crate::states::State;
@@ -21,6 +21,7 @@ pub struct Arguments {
     pub cos: [f32; 6],
     tau: [f32; 6],
     wrench: Wrench<f32>,
+    payload: Payload<f32>,
     base: BaseMotion<f32>,
 }
 
@@ -30,9 +31,10 @@ impl Arguments {
     pub fn at(State { q, qd, qdd }: State<6>) -> Self {
         let (sin, cos) = f32::sin_cos_array(q);
         let wrench = Wrench { force: [1.0, -2.0, 3.0], moment: [0.5, 0.25, -0.125] };
+        let payload = Payload::from_array([0.5, 0.01, -0.02, 0.1, 0.002, 0.003, 0.001, 0.0001, -0.0002, 0.0003]);
         let mut base = BaseMotion::fixed([0.0, 0.0, -9.81]);
         base.omega = [0.1, -0.2, 0.3];
-        Self { q, qd, qdd, sin, cos, tau: qdd, wrench, base }
+        Self { q, qd, qdd, sin, cos, tau: qdd, wrench, payload, base }
     }
 }
 
@@ -56,7 +58,7 @@ macro_rules! methods {
     ) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
-            use super::{BaseMotion, Pose, TorqueDerivatives, Wrench};
+            use super::{BaseMotion, Payload, Pose, TorqueDerivatives, Wrench};
 
             #[derive(
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
@@ -80,6 +82,8 @@ macro_rules! methods {
 
 methods! {
     InverseDynamics: inverse_dynamics_with_wrench(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], wrench: Wrench<f32>)
+        -> [f32; 6];
+    InverseDynamics: inverse_dynamics_with_payload(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], payload: Payload<f32>)
         -> [f32; 6];
     InverseDynamics: inverse_dynamics_from_sin_cos(
         sin: [f32; 6], cos: [f32; 6], q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]

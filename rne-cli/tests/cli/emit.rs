@@ -99,12 +99,17 @@ fn all_functions_compile_and_compute_the_same() {
         let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
         evaluated(&call)
     };
-    let calls: [(&str, &[&[&str]], &str); 21] = [
+    let calls: [(&str, &[&[&str]], &str); 22] = [
         ("inverse_dynamics", &[full], "q, qd, qdd"),
         (
             "inverse_dynamics_with_wrench",
             &[full, &["--wrench", wrench]],
             "q, qd, qdd, &[3., -2., 1.], &[0.1, 0.2, 0.5]",
+        ),
+        (
+            "inverse_dynamics_with_payload",
+            &[full, &["--payload", "2,0.1,0.2,-0.3,0.04,0.05,0.06,0.001,-0.002,0.003"]],
+            "q, qd, qdd, &[2., 0.1, 0.2, -0.3, 0.04, 0.05, 0.06, 0.001, -0.002, 0.003]",
         ),
         ("inverse_dynamics_from_sin_cos", &[full], "&q.map(f64::sin), &q.map(f64::cos), q, qd, qdd"),
         ("gravity_torques", &[positions], "q"),

@@ -5,7 +5,7 @@ use std::fs;
 use crate::call::{ROOT, fails, fine};
 use rne::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Wrench,
 };
 use serde_json::{Value, json};
 
@@ -179,6 +179,12 @@ fn every_function_has_the_shape_of_its_trait() {
     let wrench = Wrench { force: [3.0, -2.0, 1.0], moment: [0.1, 0.2, 0.5] };
     let with_wrench = of_puma("inverse_dynamics_with_wrench", full, &["--wrench", "3,-2,1,0.1,0.2,0.5"]);
     same(&with_wrench, &json!(arm.inverse_dynamics_with_wrench(&Q, &QD, &QDD, &wrench)));
+    let bob = Payload { mass: 2.0, com: [0.1, 0.2, -0.3], ..Payload::none() };
+    let body = Payload::from_array([2.0, 0.1, 0.2, -0.3, 0.04, 0.05, 0.06, 0.001, -0.002, 0.003]);
+    for (payload, written) in [(bob, "2,0.1,0.2,-0.3"), (body, "2,0.1,0.2,-0.3,0.04,0.05,0.06,0.001,-0.002,0.003")] {
+        let found = of_puma("inverse_dynamics_with_payload", full, &["--payload", written]);
+        same(&found, &json!(arm.inverse_dynamics_with_payload(&Q, &QD, &QDD, &payload)));
+    }
     same(&of_puma("gravity_torques", "q", &[]), &json!(arm.gravity_torques(&Q)));
     same(&of_puma("bias_torques", "q qd", &[]), &json!(arm.bias_torques(&Q, &QD)));
     same(&of_puma("mass_matrix", "q", &[]), &json!(arm.mass_matrix(&Q)));

@@ -36,6 +36,9 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
                 arrays.push(vector("force", Quantity::JointForce, tip));
                 arrays.push(vector("moment", Quantity::JointMoment, tip));
             }
+            Argument::Payload => {
+                arrays.push(ArgumentArray { name: "payload", elements: Name::of_payload(tip).map(used).into() });
+            }
             Argument::Base => {
                 arrays.push(vector("base_omega", Quantity::Omega, 0));
                 arrays.push(vector("base_omega_dot", Quantity::OmegaDot, 0));

@@ -8,6 +8,7 @@ pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
 pub(crate) mod mass_matrix;
+pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
 
@@ -16,6 +17,7 @@ use rne_model::Robot;
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
 use crate::formulate::kinematics::{Frame, Frames};
+use crate::formulate::payload::Payload;
 use crate::formulate::seven_steps::{Load, Motion, Wrench};
 use crate::function::{Argument, Function};
 use crate::ir::fold_report::Cause;
@@ -30,6 +32,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
     let outputs = match function {
         Function::InverseDynamics
         | Function::InverseDynamicsWithWrench
+        | Function::InverseDynamicsWithPayload
         | Function::InverseDynamicsFromSinCos
         | Function::GravityTorques
         | Function::BiasTorques
@@ -99,7 +102,10 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn loads(&self) -> Vec<Load<'s>> {
-        seven_steps::inverse_dynamics(&self.arm, &self.states, &self.base, &self.tip)
+        let motions = self.motions();
+        let payload = Payload::argument(self.builder, self.states.len()).zip(motions.last());
+        let tip = payload.map_or(self.tip, |(payload, last)| payload.wrench(&self.arm, last));
+        seven_steps::backward(&self.arm, &self.states, &motions, &tip)
     }
 
     fn motions(&self) -> Vec<Motion<'s>> {

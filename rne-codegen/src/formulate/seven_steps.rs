@@ -147,7 +147,12 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
 }
 
 /// Backward, parents last: the wrench at each joint, which its parent hands on.
-fn backward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>], tip: &Wrench<'s>) -> Vec<Load<'s>> {
+pub(crate) fn backward<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    motions: &[Motion<'s>],
+    tip: &Wrench<'s>,
+) -> Vec<Load<'s>> {
     let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
     if let Some(of_last) = carried.last_mut() {
         of_last.push(tip.carried(arm.builder.joint(motions.len()), arm.tip.rotation, &arm.tip));

@@ -76,6 +76,11 @@ impl Own {
         Self { quantity, heading, meaning: None }
     }
 
+    /// An argument whose names stand for something of this function.
+    pub(super) const fn names(quantity: Quantity, meaning: &'static str) -> Self {
+        Self::meaning(quantity, meaning, |_| String::new())
+    }
+
     /// The same, whose names stand for something else here.
     pub(super) const fn meaning(quantity: Quantity, meaning: &'static str, heading: fn(usize) -> String) -> Self {
         Self { quantity, heading, meaning: Some(meaning) }

@@ -31,6 +31,8 @@ pub enum Argument {
     Torques,
     /// Force and moment at the tip.
     Wrench,
+    /// Mass, centre of mass and inertia of what is fixed to the tip.
+    Payload,
     /// Motion of the base, and gravity.
     Base,
 }
@@ -47,9 +49,10 @@ impl Capability {
 
 impl Function {
     /// Those of the trait `InverseDynamics`: torques of an arm whose base stands still.
-    pub const TORQUES: [Self; 5] = [
+    pub const TORQUES: [Self; 6] = [
         Self::InverseDynamics,
         Self::InverseDynamicsWithWrench,
+        Self::InverseDynamicsWithPayload,
         Self::InverseDynamicsFromSinCos,
         Self::GravityTorques,
         Self::BiasTorques,

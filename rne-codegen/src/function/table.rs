@@ -3,7 +3,7 @@
 //! A function is added by a variant and an entry here, its formulas in `formulate`, and the runtime's own
 //! implementation. The entries stand in the order of the variants, those of a capability beside each other.
 
-use super::Argument::{Accelerations, Base, Cosines, Positions, Rates, Sines, Torques, Wrench};
+use super::Argument::{Accelerations, Base, Cosines, Payload, Positions, Rates, Sines, Torques, Wrench};
 use super::Length::{Fixed, Joints};
 use super::{Answer, AnswerTable, Entry, Labels, MatrixUnit, Own, Record, Shape};
 use crate::ir::quantity::Quantity;
@@ -16,6 +16,8 @@ named! {
         InverseDynamics = "inverse_dynamics",
         /// τ(q, q̇, q̈) when the last link exerts a wrench on its environment.
         InverseDynamicsWithWrench = "inverse_dynamics_with_wrench",
+        /// τ(q, q̇, q̈) when a payload is fixed to the tip.
+        InverseDynamicsWithPayload = "inverse_dynamics_with_payload",
         /// τ(q, q̇, q̈) from the sines and cosines of the positions.
         InverseDynamicsFromSinCos = "inverse_dynamics_from_sin_cos",
         /// τ(q, 0, 0).
@@ -116,6 +118,25 @@ pub(crate) const TABLE: &[Entry] = &[
             + Jᵀ w.",
         arguments: &[Positions, Rates, Accelerations, Wrench],
         ..Entry::torques(Function::InverseDynamicsWithWrench, Capability::InverseDynamics)
+    },
+    Entry {
+        summary: "Torques when a payload is fixed to the tip: its mass, centre of mass and inertia, in tip axes.",
+        details: "payload: mass (kg); centre of mass x, y, z from the origin of the tip frame (m; tool included); \
+            inertia about the centre of mass xx, yy, zz, xy, xz, yz (kg m²; xy is the tensor's element, -∫ x y \
+            dm). tau: those of the arm whose last link has this payload too.",
+        arguments: &[Positions, Rates, Accelerations, Payload],
+        own: &[
+            Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
+            Own::names(
+                Quantity::Com,
+                "centre of mass from the link frame's origin; of the payload, from that of the tip frame, for i = n + 1",
+            ),
+            Own::names(
+                Quantity::Inertia,
+                "inertia about the centre of mass; of the payload, in tip axes, for i = n + 1",
+            ),
+        ],
+        ..Entry::torques(Function::InverseDynamicsWithPayload, Capability::InverseDynamics)
     },
     Entry {
         summary: "Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.",

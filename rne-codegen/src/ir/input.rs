@@ -7,24 +7,23 @@ use crate::ir::quantity::{Axis, Component, Quantity};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Input {
     quantity: Quantity,
-    axis: Option<Axis>,
+    component: Component,
     joint: u16,
 }
 
 impl Input {
-    /// The argument of that name: a number, or a component of a vector.
+    /// The argument of that name: a number, a component of a vector or an element of a matrix.
     pub(crate) fn new(name: Name) -> Self {
         // joints and parameters are few
         Self {
             quantity: name.quantity,
-            axis: name.component.axis(),
+            component: name.component,
             joint: u16::try_from(name.joint).unwrap_or(u16::MAX),
         }
     }
 
     pub(crate) fn name(self) -> Name {
-        let component = self.axis.map_or(Component::Scalar, Component::Vector);
-        Name { component, ..Name::scalar(self.quantity, self.joint.into()) }
+        Name { component: self.component, ..Name::scalar(self.quantity, self.joint.into()) }
     }
 
     pub(crate) const fn quantity(self) -> Quantity {
@@ -37,6 +36,15 @@ impl Input {
     }
 
     pub(crate) const fn axis(self) -> Option<Axis> {
-        self.axis
+        self.component.axis()
+    }
+
+    /// The element of a matrix, counted by rows; otherwise the axis.
+    pub(crate) const fn element(self) -> usize {
+        match self.component {
+            Component::Scalar => 0,
+            Component::Vector(axis) => axis as usize,
+            Component::Matrix(row, column) => 3 * row as usize + column as usize,
+        }
     }
 }

@@ -53,6 +53,25 @@ impl Name {
         Self { quantity, joint, component: Component::Scalar, indices: [0; 2], part: 0, by: None }
     }
 
+    /// What a payload is given by, at the tip `tip` = n + 1: mass; centre of mass x, y, z; inertia xx, yy, zz, xy, xz,
+    /// yz.
+    pub(crate) const fn of_payload(tip: usize) -> [Self; 10] {
+        use Axis::{X, Y, Z};
+        let [com, inertia] = [Quantity::Com, Quantity::Inertia];
+        [
+            Self::scalar(Quantity::Mass, tip),
+            Self::vector(com, tip, X),
+            Self::vector(com, tip, Y),
+            Self::vector(com, tip, Z),
+            Self::matrix(inertia, tip, X, X),
+            Self::matrix(inertia, tip, Y, Y),
+            Self::matrix(inertia, tip, Z, Z),
+            Self::matrix(inertia, tip, X, Y),
+            Self::matrix(inertia, tip, X, Z),
+            Self::matrix(inertia, tip, Y, Z),
+        ]
+    }
+
     /// A component of a vector.
     #[must_use]
     pub const fn vector(quantity: Quantity, joint: usize, axis: Axis) -> Self {

@@ -42,6 +42,10 @@ impl SamplePoint {
             Quantity::Acceleration => self.random(10, axis),
             Quantity::Gravity => self.random(11, axis),
             Quantity::Parameter => self.random(12, index),
+            // of a payload
+            Quantity::Mass => self.random(13, 0),
+            Quantity::Com => self.random(14, axis),
+            Quantity::Inertia => self.random(15, input.element()),
             // nothing else is given
             other => self.random(64 + other as u64, index),
         }

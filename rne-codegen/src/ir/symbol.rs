@@ -1,6 +1,6 @@
 //! Symbolic numbers, vectors and matrices, with the operators that formulas are written in.
 
-use std::ops::Mul;
+use std::ops::{Add, Mul};
 
 use rne_model::QuarterTurns;
 
@@ -138,6 +138,15 @@ impl<'s> Matrix<'s> {
     pub(crate) fn transpose(self) -> Self {
         let [Vector([xx, xy, xz]), Vector([yx, yy, yz]), Vector([zx, zy, zz])] = self.0;
         Self::from_rows([[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]])
+    }
+}
+
+impl Add for Matrix<'_> {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let [[a, b, c], [x, y, z]] = [self.0, other.0];
+        Self([a + x, b + y, c + z])
     }
 }
 

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use rne_model::Robot;
 
 use crate::CompileError;
-use crate::function::Function;
+use crate::function::{Argument, Function};
 use crate::ir::Cost;
 use crate::pipeline::Formulation;
-use crate::plan::Plan;
 use crate::plan::cost::{self, Evaluator};
 use crate::plan::exploration::default_plan;
 use crate::plan::file::{PlanFile, Rewritten};
 use crate::plan::graph_text;
 use crate::plan::trick::Trick;
+use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Scale};
 use crate::reduced::algorithm::Algorithm;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
@@ -92,11 +92,54 @@ impl PlanSet {
         let plain = Plan { joints: Plan::new(robot.dof()).joints, ..self.plan.clone() };
         let mut evaluator = Evaluator::new(robot, function);
         let plans = if plain == self.plan { vec![plain] } else { vec![self.plan.clone(), plain] };
+        if function.takes(Argument::Payload) {
+            let unscaled = Trick::Scales.left_out_of(&self.plan);
+            let plans = [&plans[..], &[unscaled]].concat();
+            return with_payload(&mut evaluator, &plans, &algorithms).unwrap_or(first);
+        }
         let candidates = algorithms.iter().flat_map(|algorithm| plans.iter().map(|plan| (plan.clone(), *algorithm)));
         let costs = candidates
             .filter_map(|(plan, algorithm)| Some((evaluator.cost_of(&plan, algorithm)?.weight(), plan, algorithm)));
         costs.min_by_key(|(weight, ..)| *weight).map_or(first, |(_, plan, algorithm)| (plan, algorithm))
     }
+}
+
+/// What may be better for an arm with a payload: what is best for the last link alone need not be for both.
+const FOR_A_PAYLOAD: [fn(&mut Plan); 6] = [
+    // the payload would be turned with it
+    |plan| plan.turned_last_frame = false,
+    |plan| (plan.length_scale, plan.force_scale) = (Scale::Default, Scale::Default),
+    |plan| of_last(plan, |last| last.switches.axis_column = !last.switches.axis_column),
+    |plan| of_last(plan, |last| last.origin_shift = OriginShift::MinusD),
+    |plan| of_last(plan, |last| last.switches.first_moment_unturned = !last.switches.first_moment_unturned),
+    |plan| of_last(plan, |last| last.targets = [RegroupingTarget::Own; 3]),
+];
+
+fn of_last(plan: &mut Plan, change: impl Fn(&mut JointPlan)) {
+    if let Some(last) = plan.joints.last_mut() {
+        change(last);
+    }
+}
+
+/// The best plan and algorithm for an arm with a payload that some changes of the last link lead to, one after the other.
+fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorithm]) -> Option<(Plan, Algorithm)> {
+    let mut best: Option<(usize, Plan, Algorithm)> = None;
+    let mut look = |plan: &Plan, best: &mut Option<(usize, Plan, Algorithm)>| {
+        for &algorithm in algorithms {
+            let Some(cost) = evaluator.cost_of(plan, algorithm) else { continue };
+            if best.as_ref().is_none_or(|(weight, ..)| cost.weight() < *weight) {
+                *best = Some((cost.weight(), plan.clone(), algorithm));
+            }
+        }
+    };
+    // with a payload no last link is a sphere
+    plans.iter().for_each(|plan| look(&Plan { gyrostat: false, ..plan.clone() }, &mut best));
+    for change in FOR_A_PAYLOAD {
+        let (_, mut plan, _) = best.clone()?;
+        change(&mut plan);
+        look(&plan, &mut best);
+    }
+    best.map(|(_, plan, algorithm)| (plan, algorithm))
 }
 
 /// A plan to be compiled as it stands.

@@ -1,15 +1,17 @@
 //! The ways in which a function can be written under a plan, and which of them takes the fewest operations.
 
 use crate::reduced::aba;
-use crate::reduced::backward::torques;
+use crate::reduced::backward::{torques, torques_with};
 use crate::reduced::crba::{self, BodiesPer};
 use crate::reduced::forward::{Arm, motions};
 use crate::reduced::joint_frames::JointFrames;
+use crate::reduced::payload::Load;
 use crate::reduced::rnea_derivatives::sensitivity;
 
 use serde::{Deserialize, Serialize};
 
 use crate::formulate::ldlt;
+use crate::formulate::payload::Payload;
 use crate::formulate::square;
 use crate::function::Function;
 use crate::ir::name::{Name, WithRespectTo};
@@ -29,17 +31,20 @@ pub enum Algorithm {
     UnitColumns,
     /// Articulated bodies.
     Aba(BodiesPer),
+    /// The recursion, with the payload in frame N of the last joint instead of the last link's.
+    UnturnedPayload,
 }
 
 impl Algorithm {
     /// All of them, with their names in plan files.
-    const NAMES: [(Self, &'static str); 6] = [
+    const NAMES: [(Self, &'static str); 7] = [
         (Self::Rnea, "rnea"),
         (Self::Crba(BodiesPer::Group), "crba_by_groups"),
         (Self::Crba(BodiesPer::Joint), "crba_by_joints"),
         (Self::UnitColumns, "unit_columns"),
         (Self::Aba(BodiesPer::Group), "aba_by_groups"),
         (Self::Aba(BodiesPer::Joint), "aba_by_joints"),
+        (Self::UnturnedPayload, "unturned_payload"),
     ];
 
     #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
@@ -56,6 +61,7 @@ impl Algorithm {
             | Function::InverseDynamicsWithWrench
             | Function::InverseDynamicsFromSinCos
             | Function::BiasTorques => &[Algorithm::Rnea],
+            Function::InverseDynamicsWithPayload => &[Algorithm::Rnea, Algorithm::UnturnedPayload],
             Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
@@ -91,6 +97,7 @@ impl Algorithm {
             Self::UnitColumns => Some("columns: one recursion per joint that accelerates"),
             Self::Aba(BodiesPer::Group) => Some("articulated bodies, gathered per group of parallel axes"),
             Self::Aba(BodiesPer::Joint) => Some("articulated bodies, gathered joint by joint"),
+            Self::UnturnedPayload => Some("the payload in frame N of the last joint (13)"),
         }
     }
 }
@@ -193,7 +200,12 @@ pub(crate) fn write<'s>(
                 (name, element)
             })
         }
-        _ => by_joint(Quantity::Torque, recursion(builder, arm)),
+        (_, algorithm) => {
+            let moved = motions(builder, arm);
+            let unturned = algorithm == Algorithm::UnturnedPayload;
+            let payload = Payload::argument(builder, arm.rows().len()).map(|payload| Load { payload, unturned });
+            by_joint(Quantity::Torque, torques_with(builder, arm, &moved, payload))
+        }
     }
 }
 

@@ -14,6 +14,7 @@ use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_a
 use crate::reduced::inward::full;
 use crate::reduced::joint_frames::JointFrame;
 use crate::reduced::link_parameters::PseudoInertia;
+use crate::reduced::payload::Load;
 use crate::reduced::regrouping::is_parallel;
 
 use crate::ir::name::Name;
@@ -62,6 +63,16 @@ struct Child<'s> {
 
 /// The torques, base to tip.
 pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s>]) -> Vec<Symbol<'s>> {
+    torques_with(builder, arm, moved, None)
+}
+
+/// The same with what the last link carries.
+pub(crate) fn torques_with<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    moved: &[Moved<'s>],
+    payload: Option<Load<'s>>,
+) -> Vec<Symbol<'s>> {
     let rows = arm.rows();
     let tip = tip_wrench(builder, arm);
     let mut torques = Vec::with_capacity(rows.len());
@@ -73,7 +84,8 @@ pub(crate) fn torques<'s>(builder: &'s Builder, arm: &Arm<'_>, moved: &[Moved<'s
         let (torque, next) = if arm.is_spin(index) {
             spin(builder, arm, index, link, tip)
         } else {
-            let (own, unturned) = own_wrench(builder, arm, index, link);
+            let payload = payload.filter(|_| index + 1 == rows.len());
+            let (own, unturned) = own_wrench(builder, arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
             let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
             match rows[index].kind {
@@ -136,7 +148,13 @@ fn length_inward(arm: &Arm<'_>) -> Number {
 }
 
 /// F and N of the link itself: the part in its frame, and the part in frame N.
-fn own_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, link: &Moved<'s>) -> (Wrench<'s>, Wrench<'s>) {
+fn own_wrench<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    payload: Option<Load<'s>>,
+) -> (Wrench<'s>, Wrench<'s>) {
     let JointPlan { moment, switches: on, .. } = arm.plan.joints[index];
     let matter = &arm.parameters.links[index];
     let is_revolute = arm.rows()[index].kind != Prismatic;
@@ -148,7 +166,12 @@ fn own_wrench<'s>(builder: &'s Builder, arm: &Arm<'_>, index: usize, link: &Move
     } else {
         own = first_moment(builder, arm, &link.own, matter, h);
     }
-    if on.second_moment_unturned && is_revolute {
+    if let Some(load) = payload {
+        // second moments of both at once
+        let to_unturned = load.unturned && is_revolute;
+        let both = load.with_link(builder, arm, link, matter, to_unturned);
+        if to_unturned { unturned = unturned.plus(both) } else { own = own.plus(both) }
+    } else if on.second_moment_unturned && is_revolute {
         let s = turned_second_moment(builder, matter, link.group_turn);
         unturned.moment = unturned.moment + antisymmetric_of(&link.unturned.gradient, &s);
     } else {

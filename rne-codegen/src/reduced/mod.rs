@@ -16,5 +16,6 @@ pub(crate) mod forward;
 pub(crate) mod inward;
 pub(crate) mod joint_frames;
 pub(crate) mod link_parameters;
+pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;

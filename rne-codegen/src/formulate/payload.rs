@@ -1,0 +1,72 @@
+//! A payload that is fixed to the tip: one link more, whose joint does not move.
+//!
+//! ```text
+//! R, r    of the tip, from the axes and the centre of mass of the last link n      c, m, I   of the payload, in tip axes
+//!
+//! ω = Rᵀ ω_n      ω̇ = Rᵀ ω̇_n      g = Rᵀ g_n
+//! c̈ = Rᵀ (c̈_n + ω̇_n × r + ω_n × (ω_n × r)) + ω̇ × c + ω × (ω × c)
+//! f = m (c̈ - g)                   n = I ω̇ + ω × (I ω) + c × f          about the origin of the tip frame
+//! ```
+
+use crate::formulate::arm::Arm;
+use crate::formulate::seven_steps::{Motion, Wrench};
+use crate::function::Argument;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Matrix, Symbol, Vector};
+
+/// What is known of a payload, in tip axes.
+#[derive(Clone, Copy)]
+pub(crate) struct Payload<'s> {
+    pub(crate) mass: Symbol<'s>,
+    /// From the origin of the tip frame.
+    pub(crate) com: Vector<'s>,
+    /// About the centre of mass.
+    pub(crate) inertia: Matrix<'s>,
+}
+
+impl<'s> Payload<'s> {
+    /// The argument of the function that is being written, if it has one.
+    pub(crate) fn argument(builder: &'s Builder, dof: usize) -> Option<Self> {
+        if !builder.function.takes(Argument::Payload) {
+            return None;
+        }
+        let [mass, x, y, z, xx, yy, zz, xy, xz, yz] = Name::of_payload(dof + 1).map(|name| builder.argument(name));
+        Some(Self {
+            mass,
+            com: Vector([x, y, z]),
+            inertia: Matrix::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
+        })
+    }
+
+    /// What the last link exerts on it, at the tip, in tip axes.
+    pub(crate) fn wrench(&self, arm: &Arm<'s>, last: &Motion<'s>) -> Wrench<'s> {
+        let Self { mass, com, inertia } = *self;
+        let dof = arm.links.len();
+        let (line, r, back) = (arm.builder.joint(dof + 1), arm.tip.r, arm.tip.rotation.transpose());
+
+        // 1, 2
+        let omega = line.vector(Quantity::Omega, || back * last.turning.omega);
+        let omega_dot = line.vector(Quantity::OmegaDot, || back * last.turning.omega_dot);
+
+        // 4
+        let omega_cross_r = line.named(dof).vector(Quantity::OmegaCrossR, || last.turning.omega.cross(r));
+        let tip = line.vector(Quantity::JointPointAcceleration, || {
+            last.c_ddot + last.turning.omega_dot.cross(r) + last.turning.omega.cross(omega_cross_r)
+        });
+        let omega_cross_c = line.vector(Quantity::OmegaCrossD, || omega.cross(com));
+        let c_ddot =
+            line.vector(Quantity::Acceleration, || back * tip + omega_dot.cross(com) + omega.cross(omega_cross_c));
+
+        // 5
+        let gravity = line.vector(Quantity::Gravity, || back * last.gravity);
+
+        // 6
+        let angular_momentum = line.vector(Quantity::AngularMomentum, || inertia * omega);
+        let inertia_moment =
+            line.vector(Quantity::InertiaMoment, || inertia * omega_dot + omega.cross(angular_momentum));
+        let force = line.vector(Quantity::JointForce, || (c_ddot - gravity) * mass);
+        let moment = line.vector(Quantity::JointMoment, || inertia_moment + com.cross(force));
+        Wrench { force, moment }
+    }
+}

@@ -1,0 +1,87 @@
+//! A payload on the last link (the reduced form, section 13).
+//!
+//! ```text
+//! r = R c + t        F = m (a + U r)        N = moment of (R I Rᵀ + J_n) + r × F
+//! ```
+//!
+//! R and t lead from the tip to the frame of the last link, J_n is what regrouping has left of that link's own inertia.
+
+use crate::formulate::payload::Payload;
+use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::backward::Wrench;
+use crate::reduced::forward::{Arm, Motion, Moved};
+use crate::reduced::link_parameters::PseudoInertia;
+
+use crate::ir::{Builder, Matrix, Number, Vector};
+
+/// A payload, and the axes in which what it asks for is written.
+#[derive(Clone, Copy)]
+pub(crate) struct Load<'s> {
+    pub(crate) payload: Payload<'s>,
+    /// Frame N of the last joint, if that is revolute; otherwise the last link's.
+    pub(crate) unturned: bool,
+}
+
+impl<'s> Load<'s> {
+    /// What the payload asks for, and the second moments of the last link with it: about the origin of the last frame.
+    pub(crate) fn with_link(
+        &self,
+        builder: &'s Builder,
+        arm: &Arm<'_>,
+        link: &Moved<'s>,
+        matter: &PseudoInertia,
+        unturned: bool,
+    ) -> Wrench<'s> {
+        let Payload { mass, com, inertia } = self.payload;
+        let tip = &arm.joint_frames.tip;
+        let rotation = Matrix(tip.rotation.map(|row| builder.vector(row)));
+        let origin_shift = arm.parameters.origin_shifts.last().copied().unwrap_or_default();
+        let [x, y, z] = tip.translation;
+        let r = rotation * com + builder.vector([x, y, z - origin_shift]);
+        let inertia = rotation * inertia * rotation.transpose() + of_link(builder, matter);
+        let (r, inertia, motion) = if unturned {
+            (link.group_turn.about_z(r), turned(inertia, link.group_turn), &link.unturned)
+        } else {
+            (r, inertia, &link.own)
+        };
+        let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+        let per = |scale: Number| scale.inverse().unwrap_or(Number::ONE);
+        let point = motion.acceleration + motion.gradient.of(r.times(lambda));
+        let force = point * mass.times(mu * per(lambda));
+        Wrench { force, moment: moment(inertia, motion) + r.times(per(mu)).cross(force) }
+    }
+}
+
+/// J = tr(S) 1 - S of what is left of the link.
+fn of_link<'s>(builder: &'s Builder, matter: &PseudoInertia) -> Matrix<'s> {
+    let s = matter.s;
+    let trace = s[0][0] + s[1][1] + s[2][2];
+    Matrix(
+        [0, 1, 2].map(|row| builder.vector([0, 1, 2].map(|k| if row == k { trace - s[row][k] } else { -s[row][k] }))),
+    )
+}
+
+/// Rz J Rzᵀ
+fn turned<'s>(j: Matrix<'s>, turn: SymbolicTurn<'s>) -> Matrix<'s> {
+    let SymbolicTurn { s, c } = turn;
+    let [Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])] = j.0;
+    let half = c * xy;
+    let column = c * (xx - yy) - s * xy;
+    let u = c * column - s * half;
+    let xy = s * column + c * half;
+    let (xz, yz) = (c * xz - s * yz, s * xz + c * yz);
+    Matrix::from_rows([[yy + u, xy, xz], [xy, xx - u, yz], [xz, yz, zz]])
+}
+
+/// J ω̇ + ω × J ω, by the elements of U (the form `diagonal` of section 3.3).
+fn moment<'s>(j: Matrix<'s>, motion: &Motion<'s>) -> Vector<'s> {
+    let [Vector([xx, xy, xz]), Vector([_, yy, yz]), Vector([_, _, zz])] = j.0;
+    let ([x, y, z], [dx, dy, dz]) = (motion.omega.0, motion.omega_dot.0);
+    let u = &motion.gradient.u;
+    let [of_yz, of_xz, of_xy] = motion.gradient.differences;
+    Vector([
+        dx * xx + y * z * (zz - yy) + u[1][0] * xz - u[2][0] * xy - of_yz * yz,
+        dy * yy + x * z * (xx - zz) + u[2][1] * xy - u[0][1] * yz - of_xz * xz,
+        dz * zz + x * y * (yy - xx) + u[0][2] * yz - u[1][2] * xz - of_xy * xy,
+    ])
+}

@@ -1,0 +1,56 @@
+//! What the last link exerts at the tip: nothing, a wrench that is known, or what moves a payload.
+
+use nalgebra::{Matrix3, Vector3};
+
+use crate::link_state::{ForceMoment, LinkMotion};
+use crate::mount::Mount;
+use crate::{Payload, Scalar, Wrench};
+
+impl<T: Scalar> Payload<T> {
+    /// What the last link exerts on it, at the tip, in tip axes: steps 1, 2, 4, 5 and 6 of one link more, whose joint
+    /// does not move. `last` is the motion of the last link, `tip` where the tip frame stands on it.
+    ///
+    /// - ω = Rᵀ ω_n, ω̇ = Rᵀ ω̇_n, g = Rᵀ g_n
+    /// - c̈ = Rᵀ (c̈_n + ω̇_n × r + ω_n × (ω_n × r)) + ω̇ × c + ω × (ω × c)
+    /// - f = m (c̈ - g), n = I ω̇ + ω × (I ω) + c × f
+    pub(crate) fn wrench(&self, last: &LinkMotion<T>, tip: &Mount<T>) -> ForceMoment<T> {
+        let (com, inertia) = (Vector3::from(self.com), Matrix3::from(self.inertia.rows()).transpose());
+        let (r, rotation) = (&tip.r, &tip.rotation);
+        let omega = rotation.tr_mul(&last.omega);
+        let omega_dot = rotation.tr_mul(&last.omega_dot);
+        let origin = (last.acceleration + last.omega_dot.cross(r)) + last.omega.cross(&last.omega.cross(r));
+        let acceleration = (rotation.tr_mul(&origin) + omega_dot.cross(&com)) + omega.cross(&omega.cross(&com));
+        let gravity = rotation.tr_mul(&last.gravity);
+        let force = (acceleration - gravity) * self.mass;
+        let moment = (inertia * omega_dot + omega.cross(&(inertia * omega))) + com.cross(&force);
+        ForceMoment { force, moment }
+    }
+}
+
+/// What the last link exerts at the tip.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum AtTip<'a, T> {
+    /// Nothing.
+    Nothing,
+    /// A force and a moment.
+    Wrench(&'a Wrench<T>),
+    /// What moves a body.
+    Payload(&'a Payload<T>),
+}
+
+impl<'a, T> From<Option<&'a Wrench<T>>> for AtTip<'a, T> {
+    fn from(wrench: Option<&'a Wrench<T>>) -> Self {
+        wrench.map_or(Self::Nothing, Self::Wrench)
+    }
+}
+
+impl<T: Scalar> AtTip<'_, T> {
+    /// In tip axes, for the last link's motion.
+    pub(crate) fn wrench(self, last: Option<&LinkMotion<T>>, tip: &Mount<T>) -> ForceMoment<T> {
+        match (self, last) {
+            (Self::Wrench(wrench), _) => wrench.into(),
+            (Self::Payload(payload), Some(last)) => payload.wrench(last, tip),
+            _ => ForceMoment::zero(),
+        }
+    }
+}

@@ -1,0 +1,117 @@
+//! A payload against the table that has it: mass, centre of mass and inertia of the last link with the payload lumped in,
+//! by nalgebra.
+
+use std::path::PathBuf;
+
+use fastrand::Rng;
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use rne::{DynArm, Payload};
+use rne_model::{Inertia, Link, Robot};
+
+use crate::arm::{Arm, Maker};
+use crate::case::{self, Case};
+use crate::check::{ROOT, Worst, error_on_scale, relative_error};
+
+const TOLERANCE: f64 = 1e-13;
+
+/// I about a point from which the centre of mass is at `c`: I + m (c·c 1 - c cᵀ).
+fn about(inertia: Matrix3<f64>, mass: f64, c: Vector3<f64>) -> Matrix3<f64> {
+    inertia + (Matrix3::identity() * c.dot(&c) - c * c.transpose()) * mass
+}
+
+/// The last link as one body with the payload, in its link frame.
+fn lumped(link: &Link, tool: (Rotation3<f64>, Vector3<f64>), payload: &Payload<f64>) -> Link {
+    let (rotation, translation) = tool;
+    let com = rotation * Vector3::from(payload.com) + translation;
+    let inertia = rotation * Matrix3::from(payload.inertia.rows()) * rotation.transpose();
+    let (own, mass) = (Vector3::from(link.com), link.mass + payload.mass);
+    let centre = (own * link.mass + com * payload.mass) / mass;
+    let j =
+        about(Matrix3::from(link.inertia.rows()), link.mass, own - centre) + about(inertia, payload.mass, com - centre);
+    let inertia = Inertia { xx: j.m11, yy: j.m22, zz: j.m33, xy: j.m12, xz: j.m13, yz: j.m23 };
+    Link { mass, com: centre.into(), inertia }
+}
+
+/// The runtime's arm whose last link has the payload.
+fn carrying(robot: &Robot, payload: &Payload<f64>) -> DynArm {
+    let [roll, pitch, yaw] = robot.tool.rpy.map(|angle| angle.radians);
+    let tool = (Rotation3::from_euler_angles(roll, pitch, yaw), Vector3::from(robot.tool.xyz));
+    let mut robot = robot.clone();
+    let link = &mut robot.joints.last_mut().expect("a joint").row.link;
+    *link = lumped(link, tool, payload);
+    DynArm::from_robot(&robot)
+}
+
+/// The largest error at a state, of the torques or, where these vanish, of a hundredth of what the joints carry.
+fn error(arm: &Arm, payload: &Payload<f64>, [q, qd, qdd]: [&[f64]; 3]) -> f64 {
+    let lumped = carrying(&arm.robot, payload);
+    let expected = lumped.inverse_dynamics(q, qd, qdd).expect("one per joint");
+    let wrenches = lumped.joint_wrenches(q, qd, qdd).expect("one per joint");
+    let parts = wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment]).flatten();
+    let scale = parts.fold(0.0, |scale: f64, part| scale.max(part.abs()));
+    error_on_scale(&arm.inverse_dynamics_with_payload(q, qd, qdd, payload), &expected, 1e-2 * scale)
+}
+
+#[test]
+fn random_arms_carry_it_as_their_own_link() {
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for Case { arm, q, qd, qdd, payload, .. } in case::cases(maker) {
+            worst.see("τ", error(arm, payload, [q, qd, qdd]));
+        }
+        worst.at_most(TOLERANCE, &format!("payload of random arms, {maker}"));
+    }
+}
+
+#[test]
+fn shipped_arms_carry_it_as_their_own_link() {
+    let folder = PathBuf::from(format!("{ROOT}/robots"));
+    let names = std::fs::read_dir(folder).expect("a folder").filter_map(|entry| {
+        let name = entry.expect("an entry").file_name().into_string().expect("UTF-8");
+        (name.ends_with(".yaml") && !name.ends_with(".plan.yaml")).then_some(name)
+    });
+    let names: Vec<String> = names.collect();
+    assert!(names.len() >= 15);
+    for maker in Maker::ALL {
+        let mut worst = Worst::default();
+        for name in &names {
+            let arm = Arm::from_file(&format!("robots/{name}"), maker);
+            let mut rng = Rng::with_seed(7);
+            for _ in 0..8 {
+                let mut array = |range: f64| -> Vec<f64> {
+                    (0..arm.robot.dof()).map(|_| (2.0 * rng.f64() - 1.0) * range).collect()
+                };
+                let (q, qd, qdd) = (array(3.0), array(2.0), array(5.0));
+                worst.see("τ", error(arm, &case::payload(&mut rng), [&q, &qd, &qdd]));
+            }
+        }
+        worst.at_most(TOLERANCE, &format!("payload of shipped arms, {maker}"));
+    }
+}
+
+#[test]
+fn without_mass_and_inertia_it_is_the_arm_alone() {
+    case::holds("no payload", |case, worst| {
+        let nothing = Payload { com: [0.3, -0.2, 0.1], ..Payload::default() };
+        let found = case.arm.inverse_dynamics_with_payload(&case.q, &case.qd, &case.qdd, &nothing);
+        worst.see("τ", relative_error(&found, &case.tau()));
+    });
+}
+
+/// What a payload of one kilogram adds to an arm at rest is a weight at its point.
+#[test]
+fn a_kilogram_at_rest_weighs_as_its_wrench() {
+    case::holds("weight of a payload", |case, worst| {
+        let (q, rest) = (&case.q, vec![0.0; case.q.len()]);
+        let bob = Payload { mass: 1.0, com: case.payload.com, ..Payload::none() };
+        // the arm bears the weight: it exerts -m g on the payload, in tip axes
+        let axes = case.arm.forward_kinematics(q).rotation_matrix();
+        let up = axes.transpose() * -case.gravity();
+        let moment = Vector3::from(bob.com).cross(&up);
+        let wrench = rne::Wrench { force: up.into(), moment: moment.into() };
+        let expected = case.arm.inverse_dynamics_with_wrench(q, &rest, &rest, &wrench);
+        let found = case.arm.inverse_dynamics_with_payload(q, &rest, &rest, &bob);
+        // a joint that bears none of it has the rounding of its sine
+        worst.see("τ", error_on_scale(&found, &expected, case.gravity().norm()));
+    });
+}
