@@ -74,6 +74,10 @@ mod source;
 #[cfg(feature = "std")]
 mod spelling;
 #[cfg(feature = "std")]
+mod unit;
+#[cfg(feature = "std")]
+mod urdf;
+#[cfg(feature = "std")]
 mod varying;
 
 #[cfg(feature = "std")]
@@ -92,3 +96,5 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::{is_control, one_line};
+#[cfg(feature = "std")]
+pub use urdf::is_urdf;
