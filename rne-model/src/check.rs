@@ -9,7 +9,7 @@ use crate::{Robot, document, schema, source, urdf};
 pub struct Checked {
     /// The robot.
     pub robot: Robot,
-    /// Lints: warnings only, often none.
+    /// Lints: warnings and notes, often none.
     pub lints: Report,
 }
 

@@ -64,6 +64,8 @@ mod quantity;
 #[cfg(feature = "std")]
 mod render;
 #[cfg(feature = "std")]
+mod resistance;
+#[cfg(feature = "std")]
 mod robot;
 #[cfg(feature = "std")]
 mod run_time;

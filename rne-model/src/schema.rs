@@ -45,6 +45,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     // Where something else is wrong it may be that which has no effect.
     if !cx.has_errors() {
         without_effect(cx);
+        lint::inertias(cx, node, convention, &joints);
     }
     let run_time = cx.run_time.take();
     Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints, run_time })
@@ -199,9 +200,6 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
         }
     }
     let joints = joints.into_iter().collect::<Option<Vec<Joint>>>()?;
-    if let (Some(item), Some(last)) = (items.last(), joints.last()) {
-        lint::massless_last_link(cx, item, &last.row.link);
-    }
     unique.then_some(joints)
 }
 
@@ -260,7 +258,7 @@ fn dh(cx: &Context, node: &Node, joint: usize) -> Option<Dh> {
 fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
     read_mapping!(cx, node, "a link", {
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
-        com: or([0.0; 3]) "com" |cx, node| position(cx, node, |axis| Entry::Com(joint, axis)),
+        com: or([0.0; 3]) "com" |cx, node| centre_of_mass(cx, node, joint),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
     });
@@ -287,8 +285,17 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
             }
         }));
     }
-    lint::triangle_inequality(cx, place, moments);
+    lint::triangle_inequality(cx, place.clone(), moments);
+    lint::radius_of_gyration(cx, place, mass, moments);
     Some((Link { mass, com, inertia }, (written, about)))
+}
+
+fn centre_of_mass(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
+    list(cx, node, "[x, y, z] (m)", |cx, node, axis| {
+        let value = entry(Entry::Com(joint, axis))(cx, node)?;
+        lint::centre_of_mass(cx, node, value);
+        Some(value)
+    })
 }
 
 fn mass(cx: &Context, node: &Node, joint: usize) -> Option<f64> {

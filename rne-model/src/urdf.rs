@@ -25,7 +25,7 @@ pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnost
     let first_line = rest.lines().next().unwrap_or_default().trim_end();
     let place = start..start + first_line.len();
     if is_urdf(rest) {
-        let template = name.ends_with(".xacro") || head(rest).contains("xmlns:xacro");
+        let template = head(rest).contains("xmlns:xacro");
         let before = if template { "this is a template, so let `xacro` write the URDF first; then " } else { "" };
         let is_a_path = !name.starts_with('<') && !name.contains(char::is_whitespace);
         let file = if is_a_path { name } else { "FILE" };
