@@ -19,7 +19,7 @@ Example:
   rne check robots/*.yaml
 
 A plan is compiled and proved, the one beside a robot file too. Exit status 1 when a file has errors;
-lints are warnings and leave it at 0.")]
+lints, which are warnings and notes, leave it at 0.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]

@@ -2,14 +2,14 @@
 
 use crate::decode::Context;
 use crate::diagnostic::{Problems, Report};
-use crate::{Robot, document, schema, source};
+use crate::{Robot, document, schema, source, urdf};
 
 /// A valid robot file: the robot, and what is remarkable about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Checked {
     /// The robot.
     pub robot: Robot,
-    /// Lints: warnings only, often none.
+    /// Lints: warnings and notes, often none.
     pub lints: Report,
 }
 
@@ -27,6 +27,10 @@ fn check_with_run_time(name: &str, text: &str, run_time: &[&str]) -> Result<Chec
     let problems = Problems::new();
     if !source::size_is_fine(text.len(), &problems) {
         return Err(problems.finish(name, ""));
+    }
+    if let Some(other_format) = urdf::instead_of_a_robot_file(name, text) {
+        problems.push(other_format);
+        return Err(problems.finish(name, text));
     }
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))

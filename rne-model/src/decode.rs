@@ -12,7 +12,7 @@ use crate::diagnostic::{Diagnostic, Problems};
 use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
 use crate::quantity::Quantity;
-use crate::source::{inside, quoted, rounded};
+use crate::source::{inside, one_line, quoted, rounded};
 use crate::spelling::{LONGEST_WORD, did_you_mean};
 
 /// Reads a mapping by a table of its keys, one line each:
@@ -128,8 +128,12 @@ impl<'t> Context<'t> {
     }
 
     fn wrong_shape<T>(&self, node: &Node, expected: &str) -> Option<T> {
+        self.wrong_shape_with(node, expected, None)
+    }
+
+    fn wrong_shape_with<T>(&self, node: &Node, expected: &str, help: Option<String>) -> Option<T> {
         let message = format!("found {} where {expected} is needed", node.described());
-        self.refuse(Diagnostic::error(node.head(), message).label(format!("{expected} is needed")))
+        self.refuse(Diagnostic::error(node.head(), message).label(format!("{expected} is needed")).maybe_help(help))
     }
 
     /// The text as it stands in the file, for messages and suggestions.
@@ -171,11 +175,28 @@ impl<'d> Fields<'d> {
         cx.problems.count(2 * entries.len() * allowed.len());
         let missing: Vec<_> = allowed.iter().copied().filter(|allowed| node.get(allowed).is_none()).collect();
         let mut misspelt = Vec::new();
-        for Entry { key, key_span, .. } in entries.iter().filter(|entry| !allowed.contains(&entry.key.as_str())) {
+        for (index, entry) in entries.iter().enumerate().filter(|(_, it)| !allowed.contains(&it.key.as_str())) {
+            let Entry { key, key_span, .. } = entry;
+            if let Some((meant, mistake)) = without_blank(entry, &missing) {
+                misspelt.push(meant);
+                cx.report(mistake);
+                continue;
+            }
+            let before = index.checked_sub(1).and_then(|before| entries.get(before));
+            if let Some(mistake) = before.and_then(|before| decimals(cx, before, entry)) {
+                cx.report(mistake);
+                continue;
+            }
+            if allowed.contains(&"position") && matches!(key.as_str(), "lower" | "upper") {
+                if key == "lower" || node.get("lower").is_none() {
+                    cx.report(one_position(cx, node, entry));
+                }
+                continue;
+            }
             let meant = cx.did_you_mean(key, missing.iter().copied());
             misspelt.extend(meant);
             let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
-            let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key));
+            let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key, allowed));
             cx.report(Diagnostic::error(key_span.clone(), message).label("unknown key").maybe_help(help));
         }
         Some(Self { cx, node, what, misspelt })
@@ -241,8 +262,48 @@ fn how_to_write(key: &str) -> Option<&'static str> {
     })
 }
 
-/// Where a key belongs that stands in the wrong mapping, or what stands for it here.
-fn place_of(key: &str) -> Option<String> {
+/// `theta:0`, which YAML takes for a key without a value: the key that is meant, and what is wrong.
+fn without_blank(entry: &Entry, missing: &[&'static str]) -> Option<(&'static str, Diagnostic)> {
+    let (key, value) = entry.key.split_once(':')?;
+    let meant = missing.iter().copied().find(|missing| *missing == key)?;
+    let message = format!("a blank is missing between `{meant}:` and its value {}", quoted(value));
+    let help = format!("write `{meant}: {}`", one_line(value));
+    Some((meant, Diagnostic::error(entry.key_span.clone(), message).label("a blank is missing").help(help)))
+}
+
+/// `{mass: 1,98}`, which YAML takes for the value 1 and a key `98`.
+fn decimals(cx: &Context, before: &Entry, entry: &Entry) -> Option<Diagnostic> {
+    let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    let (Content::Scalar(whole), Content::Scalar(nothing)) = (&before.value.content, &entry.value.content) else {
+        return None;
+    };
+    let joined = format!("{},{}", whole.text, entry.key);
+    let is_comma = nothing.text.is_empty() && digits(whole.text.trim_start_matches('-')) && digits(&entry.key);
+    // A blank after the comma separates on purpose.
+    let is_tight = cx.text.get(before.value.span.start..entry.key_span.end) == Some(joined.as_str());
+    (is_comma && is_tight).then(|| {
+        let message = format!("`{joined}` is two values here; the decimal sign is a point");
+        let help = format!("write `{}: {}.{}`", one_line(&before.key), whole.text, entry.key);
+        Diagnostic::error(before.value.span.start..entry.key_span.end, message).label("a decimal comma?").help(help)
+    })
+}
+
+/// `{lower: -pi, upper: pi}`, as in URDF.
+fn one_position(cx: &Context, limits: &Node, entry: &Entry) -> Diagnostic {
+    let limit = |key| limits.get(key).map_or_else(|| "…".to_owned(), |node| one_line(cx.raw(node)));
+    let help = format!("write `position: [{}, {}]`", limit("lower"), limit("upper"));
+    let message = format!("unknown key {}; the two limits of a position are one list", quoted(&entry.key));
+    Diagnostic::error(entry.key_span.clone(), message).label("unknown key").help(help)
+}
+
+/// Where a key belongs that stands in the wrong mapping, or what stands for it here; `allowed` are the keys that it
+/// might have.
+fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
+    if allowed.contains(&"dh") && !key.is_empty() && key.chars().all(|c| c.is_ascii_digit()) {
+        return Some(format!(
+            "joints have no numbers, their order counts: delete `{key}:`, so that the joint begins with `- type: …`"
+        ));
+    }
     let place = match key {
         "theta" | "d" | "a" | "alpha" => "dh",
         "mass" | "com" | "inertia" | "inertia_about" => "link",
@@ -286,14 +347,32 @@ pub(crate) fn list<const N: usize>(
     read: impl Fn(&Context, &Node, usize) -> Option<f64>,
 ) -> Option<[f64; N]> {
     let Content::Sequence(items) = &node.content else {
-        return cx.wrong_shape(node, &format!("a list of {N} numbers {what}"));
+        let help = separated::<N>(cx.raw(node));
+        return cx.wrong_shape_with(node, &format!("a list of {N} numbers {what}"), help);
     };
     if items.len() != N {
         let message = format!("a list of {} where {N} numbers {what} are needed", items.len());
-        return cx.refuse(Diagnostic::error(node.span.clone(), message).label(format!("{N} numbers are needed")));
+        let wrong = Diagnostic::error(node.span.clone(), message).label(format!("{N} numbers are needed"));
+        return cx.refuse(wrong.maybe_help(separated::<N>(cx.raw(node))));
     }
     let values: Vec<Option<f64>> = items.iter().enumerate().map(|(index, item)| read(cx, item, index)).collect();
     values.into_iter().collect::<Option<Vec<f64>>>()?.try_into().ok()
+}
+
+/// What to write instead of `[0 -0.02 0]`, `0 0 0.3` or `[0, 0, 0,3]`, where as many numbers as are needed can be seen.
+fn separated<const N: usize>(raw: &str) -> Option<String> {
+    let inner = raw.trim_start_matches('[').trim_end_matches(']').trim();
+    if inner.len() > 100 {
+        return None;
+    }
+    let words: Vec<&str> = inner.split_whitespace().map(|word| word.trim_end_matches(',')).collect();
+    let is_number = |word: &str| word.parse::<f64>().is_ok();
+    if words.len() == N && words.iter().all(|word| is_number(word)) {
+        return Some(format!("separate the numbers by commas: `[{}]`", words.join(", ")));
+    }
+    let points: Vec<String> = words.iter().map(|word| word.replacen(',', ".", 1)).collect();
+    (words.len() == N && points.iter().all(|word| is_number(word)))
+        .then(|| format!("the decimal sign is a point: `[{}]`", points.join(", ")))
 }
 
 /// A number that is not negative.
@@ -338,8 +417,26 @@ pub(crate) fn choice<T: Copy>(cx: &Context, node: &Node, what: &str, words: &[(&
     cx.refuse(
         Diagnostic::error(node.span.clone(), message)
             .label(format!("must be {allowed}"))
-            .maybe_help(meant.map(|meant| format!("did you mean `{meant}`?"))),
+            .maybe_help(meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| no_joint(what, &scalar.text))),
     )
+}
+
+/// What becomes of a joint of URDF that is none here.
+fn no_joint(what: &str, word: &str) -> Option<String> {
+    (what == "joint type").then_some(())?;
+    Some(match word.to_lowercase().as_str() {
+        "fixed" => {
+            "a fixed joint has no row: count its link into the link before it (mass, com, inertia); behind the last \
+             joint, its offset is `tool`"
+                .to_owned()
+        }
+        "floating" | "planar" | "spherical" | "ball" | "universal" | "cylindrical" | "screw" => {
+            "a joint with several degrees of freedom is a row for each: massless links between revolute and prismatic \
+             joints"
+                .to_owned()
+        }
+        _ => return None,
+    })
 }
 
 /// The format's word for a word of others.

@@ -12,13 +12,16 @@ pub enum Severity {
     Error,
     /// The file is valid, yet this is probably not what was meant (a lint).
     Warning,
+    /// The file is valid, and published data have the same, yet it is worth a look: nothing that a build should repeat
+    /// each time.
+    Note,
 }
 
 /// One mistake or warning, with its place in the file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Diagnostic {
-    /// Error or warning.
+    /// Error, warning or note.
     pub severity: Severity,
     /// A sentence: what is wrong, the value found, what is allowed.
     pub message: String,
@@ -45,6 +48,11 @@ impl Diagnostic {
         Self { severity: Severity::Warning, ..Self::error(span, message) }
     }
 
+    /// A note.
+    pub(crate) fn note(span: Range<usize>, message: impl Into<String>) -> Self {
+        Self { severity: Severity::Note, ..Self::error(span, message) }
+    }
+
     pub(crate) fn label(self, label: impl Into<String>) -> Self {
         Self { label: Some(label.into()), ..self }
     }
@@ -58,7 +66,7 @@ impl Diagnostic {
     }
 }
 
-/// What is wrong with one file: errors first, then warnings, each in the order of the text.
+/// What is wrong with one file: errors first, then warnings, then notes, each in the order of the text.
 ///
 /// `Display` gives the full rendering without colour; [`Report::render`] and [`Report::short`] give the others.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,6 +112,11 @@ impl Report {
     /// The warnings, in the order of the text.
     pub fn warnings(&self) -> impl Iterator<Item = &Diagnostic> {
         self.diagnostics.iter().filter(|found| found.severity == Severity::Warning)
+    }
+
+    /// The notes, in the order of the text.
+    pub fn notes(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.diagnostics.iter().filter(|found| found.severity == Severity::Note)
     }
 
     /// How much work the reading was, the same on every machine: events of the parser, characters of expressions, parts

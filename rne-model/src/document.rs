@@ -150,7 +150,7 @@ impl<'t> Builder<'t> {
             self.problems.count(1);
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
-                syntax_error(at, error.info()).maybe_help(self.open_bracket())
+                syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
             match event {
@@ -189,6 +189,29 @@ impl<'t> Builder<'t> {
         let start = self.stack.last()?.start;
         let bracket = self.text.get(start..)?.chars().next().filter(|c| matches!(c, '[' | '{'))?;
         Some(format!("is the `{bracket}` in line {} closed?", line(&self.breaks, start)))
+    }
+
+    /// What the lines at a syntax error look like: a list that begins as a mapping, or a key without its blank.
+    fn around(&self, at: usize) -> Option<String> {
+        let before = self.text.get(..at)?;
+        let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let here = self.text.get(start..)?.lines().next()?;
+        if here.trim_start().starts_with("- ") {
+            let help =
+                "a dash begins an item of a list, and what stands above it here is none: begin that with `- ` too";
+            return Some(help.to_owned());
+        }
+        let above = before.get(..start)?.lines().rev().find(|line| !line.trim().is_empty()).unwrap_or_default();
+        [here, above].into_iter().find_map(|line| {
+            let line = line.trim().trim_start_matches("- ");
+            let (key, value) = line.split_once(':')?;
+            let is_key = !key.is_empty() && key.chars().all(|c| c.is_ascii_lowercase() || c == '_');
+            let is_tight =
+                value.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '+' | '.' | '[' | '{'));
+            (is_key && is_tight && line.len() < 80).then(|| {
+                format!("a blank is missing after the colon: write `{key}: {}`", crate::source::one_line(value))
+            })
+        })
     }
 
     fn offset(&self, index: usize) -> usize {

@@ -15,6 +15,7 @@ use crate::diagnostic::Diagnostic;
 use crate::quantity::{LARGEST_POWER, Quantity};
 use crate::source::quoted;
 use crate::spelling::did_you_mean;
+use crate::unit;
 use crate::varying::leave_out;
 
 /// Parentheses, signs and powers inside one another; bounds the recursion of the parser.
@@ -555,10 +556,10 @@ impl<'t> Parser<'t> {
         if whole == "0" && tail.starts_with(['x', 'X', 'o', 'O', 'b', 'B']) {
             return Err(wrong("numbers are decimal", "convert it"));
         }
-        if tail.starts_with("deg") {
-            return Err(wrong("angles are in radians", &format!("write `deg({literal})`")));
-        }
         if tail.starts_with(is_name_start) {
+            if let Some(mistake) = self.with_unit(digits_end) {
+                return Err(mistake);
+            }
             return Err(wrong("an operator is missing or it is cut short", "write a product with `*`, no unit"));
         }
         if !tail.is_empty() {
@@ -604,15 +605,34 @@ impl<'t> Parser<'t> {
     fn no_operator(&mut self) -> Mistake {
         let c = self.peek().unwrap_or(' ');
         let range = self.here();
-        let before = self.text.get(..self.at).unwrap_or_default().trim_end();
-        let degrees = before.trim_start_matches(|c: char| !c.is_ascii_digit());
-        if c == '°' && degrees.parse::<f64>().is_ok() {
-            let message = format!("{} is not part of an expression", quoted("°"));
-            return Mistake::new(range, message).help(format!("angles are in radians: write `deg({degrees})`"));
+        if let Some(mistake) = self.with_unit(self.at).or_else(|| self.decimal_comma()) {
+            return mistake;
         }
         foreign(c, range.clone()).unwrap_or_else(|| {
             Mistake::new(range, format!("{} stands where an operator is needed", quoted(&c.to_string())))
         })
+    }
+
+    /// A number with a unit, where all that follows the byte `at` is one.
+    fn with_unit(&self, at: usize) -> Option<Mistake> {
+        let (before, after) = self.text.split_at_checked(at)?;
+        let (before, written) = (before.trim(), after.trim());
+        let help = unit::instead(before, written)?;
+        let start = at + (after.len() - after.trim_start().len());
+        let message = format!("the number {} has the unit {}; numbers have none here", quoted(before), quoted(written));
+        Some(Mistake::new(start..start + written.len(), message).help(help))
+    }
+
+    /// `1,98`: a number with the decimal sign of other languages.
+    fn decimal_comma(&self) -> Option<Mistake> {
+        let (whole, fraction) = self.text.trim().split_once(',')?;
+        let digits = |text: &str| !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+        if !digits(whole.trim_start_matches(['-', '+'])) || !digits(fraction) || !self.rest().starts_with(',') {
+            return None;
+        }
+        let message = format!("{} is not part of a number", quoted(","));
+        let mistake = Mistake::new(self.here(), message);
+        Some(mistake.help(format!("the decimal sign is a point: write `{whole}.{fraction}`")))
     }
 }
 

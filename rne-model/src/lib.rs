@@ -64,6 +64,8 @@ mod quantity;
 #[cfg(feature = "std")]
 mod render;
 #[cfg(feature = "std")]
+mod resistance;
+#[cfg(feature = "std")]
 mod robot;
 #[cfg(feature = "std")]
 mod run_time;
@@ -73,6 +75,10 @@ mod schema;
 mod source;
 #[cfg(feature = "std")]
 mod spelling;
+#[cfg(feature = "std")]
+mod unit;
+#[cfg(feature = "std")]
+mod urdf;
 #[cfg(feature = "std")]
 mod varying;
 
@@ -92,3 +98,5 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::{is_control, one_line};
+#[cfg(feature = "std")]
+pub use urdf::is_urdf;

@@ -1,4 +1,7 @@
 //! Lints: values that are allowed and yet are probably not what was meant.
+//!
+//! A warning is probably a mistake, so that a build repeats it until it is dealt with. What published tables have is a
+//! note: `rne check` shows it, a build does not.
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 use std::ops::{Range, RangeInclusive};
@@ -6,15 +9,21 @@ use std::ops::{Range, RangeInclusive};
 use crate::angle::nearest_right_angle;
 use crate::decode::Context;
 use crate::diagnostic::Diagnostic;
-use crate::document::Node;
+use crate::document::{Content, Node};
+use crate::expression::Names as _;
 use crate::inertia::TOLERANCE;
+use crate::resistance::{self, Unresisted};
 use crate::source::{quoted, rounded};
-use crate::{Angle, JointKind, Limits, Link};
+use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
 /// No arm has a longer link, m.
 const LONGEST: f64 = 20.0;
+/// No link has its centre of mass farther along an axis of its frame, m.
+const FARTHEST: f64 = 5.0;
+/// No link has its mass farther from its centre of mass, in the mean, m.
+const WIDEST_GYRATION: f64 = 2.0;
 /// No arm has a heavier link, kg.
 const HEAVIEST: f64 = 2000.0;
 /// What the acceleration of gravity measures on Earth, generously, m/s².
@@ -87,6 +96,17 @@ pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
     }
 }
 
+/// Millimetres taken for metres, in a centre of mass.
+pub(crate) fn centre_of_mass(cx: &Context, node: &Node, value: f64) {
+    if value.abs() > FARTHEST {
+        let message = format!(
+            "the centre of mass lies {} m from the origin of the link frame, over {FARTHEST} m",
+            cx.shown(node, value)
+        );
+        cx.report(Diagnostic::lint(node.span.clone(), message).label("millimetres?").help("lengths are in metres"));
+    }
+}
+
 /// Millimetres taken for metres.
 pub(crate) fn length(cx: &Context, node: &Node, value: f64) {
     if value.abs() > LONGEST {
@@ -113,24 +133,98 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
             rounded(b),
             rounded(c)
         );
-        cx.report(Diagnostic::lint(place, message).label("violates the triangle inequality").help(
+        cx.report(Diagnostic::note(place, message).label("violates the triangle inequality").help(
             "published tables do have such tensors, and dynamics works with them; if the numbers are your own, \
              check them",
         ));
     }
 }
 
-/// A last link that resists nothing.
-pub(crate) fn massless_last_link(cx: &Context, joint: &Node, link: &Link) {
-    if link.mass == 0.0 {
-        let place = joint.get("link").unwrap_or(joint);
-        let place = place.get("mass").unwrap_or(place).head();
-        cx.report(
-            Diagnostic::lint(place, "the last link has no mass: its joint may move without any torque or force")
-                .label("massless")
-                .help("give the last link the mass of flange and tool; without inertia the mass matrix is singular"),
-        );
+/// Grams or millimetres in an inertia: no link has its mass so far out.
+pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [.., largest]: [f64; 3]) {
+    if mass <= 0.0 || largest <= 0.0 {
+        return;
     }
+    let radius = libm::sqrt(largest / mass);
+    if radius > WIDEST_GYRATION {
+        let (mass, shown) = (rounded(mass), rounded(radius));
+        let message = format!(
+            "the inertia has a radius of gyration of {shown} m: as if the {mass} kg of the link lay that far from its \
+             centre of mass"
+        );
+        // sqrt(1e6) and sqrt(1e9): of the units that CAD programs have
+        let label = if radius > 1000.0 * WIDEST_GYRATION { "g mm²?" } else { "kg mm²?" };
+        let help = "inertias are in kg m²: 1 kg mm² is 1e-6 kg m², 1 g mm² is 1e-9 kg m²";
+        cx.report(Diagnostic::lint(place, message).label(label).help(help));
+    }
+}
+
+/// What the joints' inertias are together: joints that nothing resists, and masses whose inertia is forgotten.
+pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints: &[Joint]) {
+    let Some(Content::Sequence(items)) = root.get("joints").map(|node| &node.content) else { return };
+    cx.count(joints.len() * joints.len() * joints.len());
+    let unresisted = resistance::unresisted(convention, joints);
+    let mut turns = false;
+    for (index, ((item, joint), unresisted)) in items.iter().zip(joints).zip(unresisted).enumerate() {
+        turns |= joint.row.kind == JointKind::Revolute;
+        match unresisted {
+            Some(unresisted) => no_resistance(cx, item, convention, (index, joint), unresisted),
+            None if turns => mass_without_inertia(cx, item, index, joint),
+            None => {}
+        }
+    }
+}
+
+/// A joint that moves without any torque or force: the mass matrix is singular.
+fn no_resistance(
+    cx: &Context,
+    item: &Node,
+    convention: Convention,
+    (index, joint): (usize, &Joint),
+    unresisted: Unresisted,
+) {
+    let number = index + 1;
+    let (key, missing) = match (joint.row.kind, convention, joint.row.dh.alpha.right) {
+        (JointKind::Prismatic, ..) => ("mass", format!("a mass: `link: {{mass: …}}` of joint {number}")),
+        (_, Convention::Modified, _) | (_, _, Some(QuarterTurns::Zero | QuarterTurns::Two)) => {
+            ("inertia", format!("inertia about the axis of joint {number}, its z axis: `inertia: {{zz: …}}`"))
+        }
+        (_, _, Some(QuarterTurns::One | QuarterTurns::Three)) => {
+            ("inertia", format!("inertia about the axis of joint {number}, its y axis: `inertia: {{yy: …}}`"))
+        }
+        _ => ("inertia", format!("inertia about the axis of joint {number}")),
+    };
+    let place = item.get("link").unwrap_or(item);
+    let place = [key, "mass"].iter().find_map(|key| place.get(key)).unwrap_or(place).head();
+    let message = match unresisted {
+        Unresisted::Alone => format!("no inertia resists joint {number}: it moves without any torque or force"),
+        Unresisted::WithOthers => format!(
+            "no inertia resists joint {number} where the joints behind it move against it: it then moves without any \
+             torque or force"
+        ),
+    };
+    let consequence = "or accelerations (`forward_dynamics`) are not finite";
+    if joint.motor.is_some_and(|motor| motor.inertia > 0.0) {
+        // what real arms with light wrists have; with its rotor the joint is in order
+        let message = format!("no link's inertia resists joint {number}, only the rotor of its motor does");
+        let help = format!("where rotors do not count, give link {number} {missing}, {consequence}");
+        cx.report(Diagnostic::note(place, message).label("resists nothing").help(help));
+        return;
+    }
+    let help = format!("give link {number} {missing}, {consequence}");
+    cx.report(Diagnostic::lint(place, message).label("resists nothing").help(help));
+}
+
+/// A mass whose inertia is not even said to be zero.
+fn mass_without_inertia(cx: &Context, item: &Node, index: usize, joint: &Joint) {
+    let Some(link) = item.get("link").filter(|link| link.get("inertia").is_none()) else { return };
+    let Some(mass) = link.get("mass").filter(|_| joint.row.link.mass > 0.0) else { return };
+    let message = format!("link {} has the mass {} kg and no inertia", index + 1, cx.shown(mass, joint.row.link.mass));
+    cx.report(
+        Diagnostic::lint(mass.head(), message)
+            .label("a point mass?")
+            .help("add the `inertia` about the centre of mass, kg m²; if a point mass is meant, write `inertia: {}`"),
+    );
 }
 
 /// Degrees in the position limits of a revolute joint.

@@ -32,23 +32,24 @@ fn severity(severity: Severity) -> &'static str {
     match severity {
         Severity::Error => "error",
         Severity::Warning => "warning",
+        Severity::Note => "note",
     }
 }
 
 fn rest(report: &Report) -> Option<String> {
-    let count = |severity| report.diagnostics.iter().skip(SHOWN).filter(|found| found.severity == severity).count();
-    match (count(Severity::Error), count(Severity::Warning)) {
-        (0, 0) => None,
-        (errors, 0) => Some(format!("and {errors} more errors")),
-        (0, warnings) => Some(format!("and {warnings} more warnings")),
-        (errors, warnings) => Some(format!("and {errors} more errors and {warnings} more warnings")),
-    }
+    let rest = report.diagnostics.get(SHOWN..).filter(|rest| !rest.is_empty())?;
+    let counted = [Severity::Error, Severity::Warning, Severity::Note].into_iter().filter_map(|kind| {
+        let count = rest.iter().filter(|found| found.severity == kind).count();
+        (count > 0).then(|| format!("{count} more {}s", severity(kind)))
+    });
+    Some(format!("and {}", counted.collect::<Vec<_>>().join(" and ")))
 }
 
 fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
     let level = match found.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
+        Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(&found.message);
     // Only the line concerned is handed over: the caret of a span of several lines ends with its first.

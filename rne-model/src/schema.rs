@@ -8,7 +8,7 @@ use crate::diagnostic::Diagnostic;
 use crate::document::{self, Content, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::quantity::Quantity;
-use crate::source::{is_control, is_line_break, quoted, rounded};
+use crate::source::{is_control, is_line_break, one_line, quoted, rounded};
 use crate::varying::{entry, fixed, inertia_about_com, inertia_element, unknown_names, without_effect};
 use crate::{
     Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, Limits, Link, Motor,
@@ -31,7 +31,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     read_mapping!(cx, node, "a robot file", {
         _format: required "format" format,
         name: required "name" robot_name,
-        title: optional "title" |cx, node| one_line(cx, node, "title"),
+        title: optional "title" |cx, node| text_of_one_line(cx, node, "title"),
         source: required "source" lines,
         notes: optional "notes" lines,
         parameters: or(Vec::new()) "parameters" parameters,
@@ -45,6 +45,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
     // Where something else is wrong it may be that which has no effect.
     if !cx.has_errors() {
         without_effect(cx);
+        lint::inertias(cx, node, convention, &joints);
     }
     let run_time = cx.run_time.take();
     Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints, run_time })
@@ -69,7 +70,7 @@ fn robot_name(cx: &Context, node: &Node) -> Option<String> {
 }
 
 /// A text of one line: it stands in headings and in comments of generated code.
-fn one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
+fn text_of_one_line(cx: &Context, node: &Node, what: &str) -> Option<String> {
     let text = printable(cx, node, &format!("the {what}"), is_line_break)?;
     if !text.contains(is_line_break) {
         return Some(text);
@@ -169,7 +170,9 @@ fn transform(cx: &Context, node: &Node, place: fn(usize) -> Entry) -> Option<Tra
 fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
     let Content::Sequence(items) = &node.content else {
         let message = format!("found {} where a list of joints is needed", node.described());
-        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of joints is needed"));
+        let help =
+            "begin each joint with a dash, such as `- type: revolute`; joints have no numbers, their order counts";
+        return cx.refuse(Diagnostic::error(node.head(), message).label("a list of joints is needed").help(help));
     };
     if items.is_empty() {
         let message = "a robot without joints; 1 to 64 joints are allowed";
@@ -197,16 +200,32 @@ fn joints(cx: &Context, node: &Node) -> Option<Vec<Joint>> {
         }
     }
     let joints = joints.into_iter().collect::<Option<Vec<Joint>>>()?;
-    if let (Some(item), Some(last)) = (items.last(), joints.last()) {
-        lint::massless_last_link(cx, item, &last.row.link);
-    }
     unique.then_some(joints)
+}
+
+/// A joint under a number or a name of its own, `- 1: {type: …}`: what is meant, if that is what stands there.
+fn wrapped_joint(node: &Node) -> Option<Diagnostic> {
+    let Content::Mapping(entries) = &node.content else { return None };
+    let [document::Entry { key, key_span, value }] = entries.as_slice() else { return None };
+    value.get("type").or_else(|| value.get("dh"))?;
+    let message = format!("the joint stands below a key {}; its own keys begin the item", quoted(key));
+    let help = if key.chars().all(|c| c.is_ascii_digit()) {
+        format!(
+            "joints have no numbers, their order counts: delete `{key}:`, so that the joint begins with `- type: …`"
+        )
+    } else {
+        format!("write `- name: {}`, and below that `type`, `dh` and the other keys", one_line(key))
+    };
+    Some(Diagnostic::error(key_span.clone(), message).label("not here").help(help))
 }
 
 /// The joint with this index, from 0.
 fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
+    if let Some(mistake) = wrapped_joint(node) {
+        return cx.refuse(mistake);
+    }
     read_mapping!(cx, node, "a joint", {
-        name: or(format!("joint{}", index + 1)) "name" |cx, node| one_line(cx, node, "joint name"),
+        name: or(format!("joint{}", index + 1)) "name" |cx, node| text_of_one_line(cx, node, "joint name"),
         kind: required "type" joint_kind,
         dh: required "dh" |cx, node| dh(cx, node, index),
         link: or((Link::default(), (Inertia::default(), InertiaReference::Com))) "link"
@@ -239,7 +258,7 @@ fn dh(cx: &Context, node: &Node, joint: usize) -> Option<Dh> {
 fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, InertiaReference))> {
     read_mapping!(cx, node, "a link", {
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
-        com: or([0.0; 3]) "com" |cx, node| position(cx, node, |axis| Entry::Com(joint, axis)),
+        com: or([0.0; 3]) "com" |cx, node| centre_of_mass(cx, node, joint),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
     });
@@ -266,8 +285,17 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
             }
         }));
     }
-    lint::triangle_inequality(cx, place, moments);
+    lint::triangle_inequality(cx, place.clone(), moments);
+    lint::radius_of_gyration(cx, place, mass, moments);
     Some((Link { mass, com, inertia }, (written, about)))
+}
+
+fn centre_of_mass(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
+    list(cx, node, "[x, y, z] (m)", |cx, node, axis| {
+        let value = entry(Entry::Com(joint, axis))(cx, node)?;
+        lint::centre_of_mass(cx, node, value);
+        Some(value)
+    })
 }
 
 fn mass(cx: &Context, node: &Node, joint: usize) -> Option<f64> {

@@ -44,26 +44,42 @@ fn lints() {
         ),
         ("d: 0.4", "d: 400", 11, 23, "the length `400` m is over 20 m", "lengths are in metres"),
         ("a: 0, alpha: pi/2", "a: -21, alpha: pi/2", 11, 31, "the length `-21` m", "metres"),
-        ("com: [0, 0, 0.3]", "com: [0, 0, 300]", 14, 19, "the length `300` m", "metres"),
-        ("xyz: [0, 0, 1]", "xyz: [0, 0, 1000]", 6, 20, "the length `1000` m", "metres"),
-        ("mass: 2.5", "mass: 2500", 13, 13, "the mass `2500` kg is over 2000 kg", "kilograms"),
+        ("com: [0, 0, 0.3]", "com: [0, 0, 300]", 14, 19, "the centre of mass lies `300` m from the origin", "metres"),
         (
-            "zz: 0.02",
-            "zz: 0.23",
+            "com: [0, 0, 0.3]",
+            "com: [0, 0, -5.1]",
+            14,
+            19,
+            "`-5.1` m from the origin of the link frame, over 5 m",
+            "metres",
+        ),
+        (
+            "{xx: 0.1, yy: 0.12, zz: 0.02}",
+            "{xx: 11, yy: 9, zz: 9}",
             15,
             16,
-            "principal moments 0.1, 0.12 and 0.23 kg m² the largest exceeds",
-            "check them",
+            "a radius of gyration of 2.09762 m: as if the 2.5 kg of the link lay that far",
+            "1 kg mm² is 1e-6 kg m²",
         ),
+        (
+            "      inertia: {xx: 0.1, yy: 0.12, zz: 0.02}\n",
+            "",
+            13,
+            13,
+            "link 1 has the mass `2.5` kg and no inertia",
+            "write `inertia: {}`",
+        ),
+        ("xyz: [0, 0, 1]", "xyz: [0, 0, 1000]", 6, 20, "the length `1000` m", "metres"),
+        ("mass: 2.5", "mass: 2500", 13, 13, "the mass `2500` kg is over 2000 kg", "kilograms"),
         (
             "link: {mass: r, inertia: {",
             "link: {inertia: {xx: r/100, ",
             22,
             11,
-            "the last link has no mass",
-            "flange and tool",
+            "no inertia resists joint 2: it moves without any torque or force",
+            "give link 2 a mass: `link: {mass: …}` of joint 2",
         ),
-        ("link: {mass: r, ", "link: {mass: r-r, ", 22, 18, "the last link has no mass", "flange and tool"),
+        ("link: {mass: r, ", "link: {mass: r-r, ", 22, 18, "no inertia resists joint 2", "a mass"),
         ("{m: 1.5, ", "{m: 1.5, unused: 1, ", 7, 22, "the parameter `unused` is never used", "delete it"),
         (
             "[-pi, pi]",
@@ -83,6 +99,89 @@ fn lints() {
     }
 }
 
+/// What published tables have: seen by `rne check`, not repeated by each build.
+#[test]
+fn notes() {
+    let note = the_one("zz: 0.02", "zz: 0.23");
+    assert_eq!(note.severity, Severity::Note);
+    assert_eq!((note.line, note.column), (15, 16));
+    assert!(
+        note.message.contains("principal moments 0.1, 0.12 and 0.23 kg m² the largest exceeds"),
+        "{}",
+        note.message
+    );
+    let text = with("link: {mass: r, inertia: {", "motor: {inertia: 1e-4}\n    link: {inertia: {xx: r/100, ");
+    let report = found(&text);
+    assert_eq!((report.warnings().count(), report.notes().count()), (0, 1), "{report}");
+    let note = report.notes().next().unwrap();
+    assert_eq!(note.message, "no link's inertia resists joint 2, only the rotor of its motor does");
+    assert_eq!((note.line, note.column), (23, 11));
+}
+
+const PLANE: &str = "format: 1
+name: plane
+source: test
+convention: standard
+gravity: [0, -9.81, 0]
+joints:
+";
+
+/// Revolute joints, each with its alpha and its link.
+fn arm(links: &[(&str, &str)]) -> String {
+    links.iter().fold(PLANE.to_owned(), |text, (alpha, link)| {
+        text + &format!("  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: {alpha}}}, link: {{{link}}}}}\n")
+    })
+}
+
+#[test]
+fn joints_that_nothing_resists() {
+    let bar = "mass: 1, com: [0.3, 0, 0], inertia: {xx: 0.001, yy: 0.01, zz: 0.01}";
+    // each: the arm, line and text underlined, what the one warning says, and what its help says
+    for (links, line, underlined, message, help) in [
+        (vec![("0", bar), ("0", "")], 8, "{}", "no inertia resists joint 2: it moves", "z axis: `inertia: {zz: …}`"),
+        (vec![("0", bar), ("pi/2", "")], 8, "{}", "no inertia resists joint 2: it moves", "y axis: `inertia: {yy: …}`"),
+        (vec![("0", bar), ("0.3", "")], 8, "{}", "no inertia resists joint 2: it moves", "the axis of joint 2, or"),
+        // the tool of a wrist that is a point on the axis
+        (vec![("0", bar), ("0", "mass: 0.2, com: [0, 0, 0.1]")], 8, "0.2", "no inertia resists joint 2: it", "{zz: …}"),
+        (
+            vec![("0", bar), ("0", "mass: 0.2, inertia: {xx: 1e-3, yy: 1e-3}")],
+            8,
+            "{xx: 1e-3, yy: 1e-3}",
+            "no inertia resists joint 2: it moves",
+            "{zz: …}",
+        ),
+        (
+            vec![("0", ""), ("0", bar)],
+            7,
+            "{}",
+            "no inertia resists joint 1 where the joints behind it move against it",
+            "{zz: …}",
+        ),
+    ] {
+        let text = arm(&links);
+        let report = found(&text);
+        let [warning] = report.diagnostics.as_slice() else { panic!("{links:?}\n{report}") };
+        assert_eq!(warning.severity, Severity::Warning);
+        assert_eq!((warning.line, &text[warning.span.clone()]), (line, underlined), "{report}");
+        assert!(warning.message.starts_with(message), "{report}");
+        let found = warning.help.as_deref().unwrap_or_default();
+        assert!(found.contains(help) && found.ends_with("(`forward_dynamics`) are not finite"), "{report}");
+    }
+    // all that it takes
+    for link in ["inertia: {xx: 1e-6, zz: 1e-6}", "mass: 1e-3, com: [0, 0.001, 0], inertia: {}", bar] {
+        assert_eq!(found(&arm(&[("0", bar), ("0", link)])).to_string(), "", "{link}");
+    }
+}
+
+#[test]
+fn masses_that_never_turn_need_no_inertia() {
+    let slide = "  - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: 2}}\n";
+    let turn = "  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 2, com: [0.1, 0, 0]}}\n";
+    assert_eq!(found(&format!("{PLANE}{slide}{slide}")).to_string(), "");
+    let report = found(&format!("{PLANE}{slide}{turn}"));
+    assert_eq!(report.short(), "robots/x.yaml:8:73: warning: link 2 has the mass `2` kg and no inertia");
+}
+
 #[test]
 fn what_is_no_lint() {
     for (old, new) in [
@@ -96,8 +195,12 @@ fn what_is_no_lint() {
         // A thin rod: the triangle inequality is an equality.
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{yy: 0.12, zz: 0.12}"),
         ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{}"),
-        // A massless link that is not the last, with inertia.
+        // A massless link with inertia.
         ("mass: 2.5", "mass: 0"),
+        // A point mass on purpose.
+        ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{ }"),
+        ("com: [0, 0, 0.3]", "com: [0, 0, -5]"),
+        ("{xx: 0.1, yy: 0.12, zz: 0.02}", "{xx: 9, yy: 9, zz: 9}"),
         ("d: 0.4", "d: 20"),
         // Along any other axis a sign says nothing, and an arm may float.
         ("[0, 0, -9.81]", "[9.81, 0, 0]"),

@@ -1,0 +1,232 @@
+//! Which joints no inertia resists: where the mass matrix is singular in every state.
+
+use crate::{Convention, Joint, JointKind, Row, parent};
+
+/// What is below this part of the largest moment that the links could have, at their distance from the base, is
+/// rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// So many states, at irrational parts of a turn, decide: a joint that none of them finds resisted never is, for the
+/// determinant of the mass matrix is analytic in the positions.
+const STATES: u32 = 3;
+
+/// A joint that no inertia resists.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Unresisted {
+    /// It moves no mass and turns no inertia.
+    Alone,
+    /// It moves without resistance where the joints behind it move against it.
+    WithOthers,
+}
+
+/// For each joint whether anything resists it, base to tip; `None` where something does.
+///
+/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), and M = Lᵀ L from the tip to
+/// the base: the pivot of a joint is the inertia that resists it while all joints behind it move freely. Only the link
+/// of the joint itself, and what is before it, cannot be moved against it, so that is the link to look at.
+pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option<Unresisted>> {
+    let mut all = vec![Some(Unresisted::Alone); joints.len()];
+    for state in 1..=STATES {
+        for (known, found) in all.iter_mut().zip(in_state(convention, joints, state)) {
+            *known = match (*known, found) {
+                (Some(Unresisted::Alone), Some(Unresisted::Alone)) => Some(Unresisted::Alone),
+                (Some(_), Some(_)) => Some(Unresisted::WithOthers),
+                _ => None,
+            };
+        }
+    }
+    all
+}
+
+fn in_state(convention: Convention, joints: &[Joint], state: u32) -> Vec<Option<Unresisted>> {
+    let (mut matrix, reach) = mass_matrix(convention, joints, state);
+    let mut found = vec![None; joints.len()];
+    for joint in (0..joints.len()).rev() {
+        let least = ROUNDING * reach[joint];
+        let alone = matrix[joint][joint];
+        found[joint] = (alone <= least).then_some(Unresisted::WithOthers);
+        if alone <= least {
+            continue;
+        }
+        let column: Vec<f64> = (0..joint).map(|row| matrix[row][joint]).collect();
+        for (row, a) in column.iter().enumerate() {
+            for (of, b) in column.iter().enumerate() {
+                matrix[row][of] -= a * b / alone;
+            }
+        }
+    }
+    let (matrix, _) = mass_matrix(convention, joints, state);
+    for (joint, found) in found.iter_mut().enumerate() {
+        if found.is_some() && matrix[joint][joint] <= ROUNDING * reach[joint] {
+            *found = Some(Unresisted::Alone);
+        }
+    }
+    found
+}
+
+type Vector = [f64; 3];
+
+/// The mass matrix, and beside it for each joint the moment that the links behind it could have at their distance from
+/// the base: what rounding is relative to.
+fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec<f64>>, Vec<f64>) {
+    let dof = joints.len();
+    let (mut matrix, mut reach) = (vec![vec![0.0; dof]; dof], vec![0.0; dof]);
+    let frames = frames(convention, joints, state);
+    for (index, joint) in joints.iter().enumerate() {
+        let Frame { rotation, origin, .. } = &frames[index];
+        let link = &joint.row.link;
+        let com = add(*origin, turned(rotation, link.com));
+        let trace = link.inertia.xx + link.inertia.yy + link.inertia.zz;
+        // velocity of the centre of mass, and rotation in the link's axes, per joint that carries the link
+        let mut carriers = Vec::new();
+        let mut carrier = Some(index);
+        while let Some(joint) = carrier {
+            carriers.push(joint);
+            carrier = parent(joint);
+        }
+        let columns: Vec<(usize, Vector, Vector)> = carriers
+            .into_iter()
+            .map(|carrier| {
+                let Frame { axis, foot, .. } = &frames[carrier];
+                match joints[carrier].row.kind {
+                    JointKind::Revolute => {
+                        let arm = sub(com, *foot);
+                        reach[carrier] += link.mass * (dot(com, com) + dot(*foot, *foot)) + trace;
+                        (carrier, cross(*axis, arm), turned_back(rotation, *axis))
+                    }
+                    JointKind::Prismatic => {
+                        reach[carrier] += link.mass;
+                        (carrier, *axis, [0.0; 3])
+                    }
+                }
+            })
+            .collect();
+        let tensor = link.inertia.rows();
+        for (row, v, w) in &columns {
+            let moment = tensor.map(|line| dot(line, *w));
+            for (column, other_v, other_w) in &columns {
+                matrix[*row][*column] += link.mass * dot(*v, *other_v) + dot(moment, *other_w);
+            }
+        }
+    }
+    (matrix, reach)
+}
+
+/// A link frame in frame 0, with the axis of the joint before it.
+struct Frame {
+    rotation: [Vector; 3],
+    origin: Vector,
+    axis: Vector,
+    /// A point of the axis.
+    foot: Vector,
+}
+
+fn frames(convention: Convention, joints: &[Joint], state: u32) -> Vec<Frame> {
+    let mut frames: Vec<Frame> = Vec::with_capacity(joints.len());
+    for (index, joint) in joints.iter().enumerate() {
+        let Row { kind, dh, .. } = &joint.row;
+        let identity = ([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], [0.0; 3]);
+        let (rotation, origin) =
+            parent(index).and_then(|parent| frames.get(parent)).map_or(identity, |it| (it.rotation, it.origin));
+        // multiples of the golden ratio: no joint at a right angle, no two in step
+        #[allow(clippy::cast_precision_loss)] // small numbers
+        let q = 0.3 + 1.618_033_988_749_895 * ((index + 1) as f64 * f64::from(state)).rem_euclid(3.7);
+        let (theta, d) = match kind {
+            JointKind::Revolute => (dh.theta.radians + q, dh.d),
+            JointKind::Prismatic => (dh.theta.radians, dh.d + q),
+        };
+        let (sin, cos) = libm::sincos(theta);
+        let z = [[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]];
+        let x = [[1.0, 0.0, 0.0], [0.0, dh.alpha.cos, -dh.alpha.sin], [0.0, dh.alpha.sin, dh.alpha.cos]];
+        frames.push(match convention {
+            Convention::Standard => {
+                let axis = turned(&rotation, [0.0, 0.0, 1.0]);
+                let turn = product(&rotation, &z);
+                let end = add(origin, turned(&turn, [dh.a, 0.0, d]));
+                Frame { rotation: product(&turn, &x), origin: end, axis, foot: origin }
+            }
+            Convention::Modified => {
+                let turn = product(&rotation, &x);
+                let foot = add(origin, turned(&rotation, [dh.a, 0.0, 0.0]));
+                let axis = turned(&turn, [0.0, 0.0, 1.0]);
+                let end = add(foot, turned(&turn, [0.0, 0.0, d]));
+                Frame { rotation: product(&turn, &z), origin: end, axis, foot }
+            }
+        });
+    }
+    frames
+}
+
+fn add(a: Vector, b: Vector) -> Vector {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn sub(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn turned(rotation: &[Vector; 3], v: Vector) -> Vector {
+    rotation.map(|row| dot(row, v))
+}
+
+fn turned_back(rotation: &[Vector; 3], v: Vector) -> Vector {
+    [0, 1, 2].map(|column| dot(rotation.map(|row| row[column]), v))
+}
+
+fn product(a: &[Vector; 3], b: &[Vector; 3]) -> [Vector; 3] {
+    a.map(|row| [0, 1, 2].map(|column| dot(row, b.map(|row| row[column]))))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fmt::Write as _;
+
+    use super::*;
+    use crate::Robot;
+
+    /// An arm of revolute joints about z, one after the other: length of the link, then what is under `link`.
+    fn planar(links: &[(f64, &str)]) -> Vec<Option<Unresisted>> {
+        let mut text = "format: 1\nname: x\nsource: x\nconvention: standard\ngravity: [0, 0, 0]\njoints:\n".to_owned();
+        for (length, link) in links {
+            let dh = format!("{{theta: 0, d: 0, a: {length}, alpha: 0}}");
+            let _ = writeln!(text, "  - {{type: revolute, dh: {dh}, link: {{{link}}}}}");
+        }
+        let robot = Robot::from_yaml(&text).unwrap();
+        unresisted(robot.convention, &robot.joints)
+    }
+
+    #[test]
+    fn a_bar_resists_and_a_massless_one_does_not() {
+        let bar = "mass: 2, com: [-0.2, 0, 0]";
+        assert_eq!(planar(&[(0.4, bar)]), [None]);
+        assert_eq!(planar(&[(0.4, "")]), [Some(Unresisted::Alone)]);
+        assert_eq!(planar(&[(0.4, bar), (0.4, "")]), [None, Some(Unresisted::Alone)]);
+        // the second carries a mass, and so resists the first
+        assert_eq!(planar(&[(0.4, ""), (0.4, bar)]), [None, None]);
+        // on its axis
+        assert_eq!(planar(&[(0.4, bar), (0.4, "mass: 2, com: [-0.4, 0, 0]")]), [None, Some(Unresisted::Alone)]);
+        assert_eq!(planar(&[(0.0, "inertia: {zz: 0.1}")]), [None]);
+    }
+
+    #[test]
+    fn two_joints_on_one_axis_need_two_inertias() {
+        let bar = "mass: 2, com: [-0.2, 0, 0]";
+        assert_eq!(planar(&[(0.0, ""), (0.4, bar)]), [Some(Unresisted::WithOthers), None]);
+        assert_eq!(planar(&[(0.0, "inertia: {zz: 0.001}"), (0.4, bar)]), [None, None]);
+    }
+
+    #[test]
+    fn a_point_mass_resists_two_joints_of_a_plane() {
+        let point = (0.4, "mass: 2");
+        assert_eq!(planar(&[(0.4, ""), point]), [None, None]);
+        assert_eq!(planar(&[(0.4, ""), (0.4, ""), point]), [Some(Unresisted::WithOthers), None, None]);
+    }
+}
