@@ -5,11 +5,14 @@ mod answer;
 mod arguments;
 mod base_parameters;
 mod check;
+mod convert;
 mod emit;
 mod eval;
+mod export;
 mod functions;
 mod heading;
 mod highlight;
+mod import;
 mod layout;
 mod numbers;
 mod ops;
@@ -57,5 +60,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
+        Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),
+        Some(Command::Convert(arguments)) => ("rne convert", convert::run(&arguments)),
+        Some(Command::Export(arguments)) => ("rne export", export::run(&arguments)),
     }
 }

@@ -52,6 +52,8 @@ mod diagnostic;
 #[cfg(feature = "std")]
 mod document;
 #[cfg(feature = "std")]
+mod double;
+#[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
 mod formula;
@@ -82,6 +84,8 @@ pub use check::{Checked, check, check_bytes, check_bytes_with_run_time};
 pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
+#[cfg(feature = "std")]
+pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]
 pub use expression::number;
 #[cfg(feature = "std")]

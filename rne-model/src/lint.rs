@@ -120,6 +120,19 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
     }
 }
 
+/// A negative principal moment in a file that knows it.
+pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64; 3]) {
+    let message = format!(
+        "the inertia is not positive semidefinite, as `physical: false` says: its smallest eigenvalue about the centre \
+         of mass is {} kg m²",
+        rounded(smallest)
+    );
+    cx.report(Diagnostic::lint(place, message).label("not the inertia of a body").help(
+        "inverse dynamics works with it; the mass matrix may not be positive definite, and then there is no forward \
+         dynamics",
+    ));
+}
+
 /// A last link that resists nothing.
 pub(crate) fn massless_last_link(cx: &Context, joint: &Node, link: &Link) {
     if link.mass == 0.0 {
