@@ -73,7 +73,11 @@ fn lock(text: &str) -> Result<(String, f64), String> {
 fn name(text: &str) -> Result<String, String> {
     let is_name = text.starts_with(|c: char| c.is_ascii_lowercase())
         && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    if is_name { Ok(text.to_owned()) } else { Err("a name is lower-case letters, digits and `_`, a letter first".into()) }
+    if is_name {
+        Ok(text.to_owned())
+    } else {
+        Err("a name is lower-case letters, digits and `_`, a letter first".into())
+    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
@@ -110,7 +114,8 @@ fn read(path: &Path) -> Result<(String, String), Failure> {
     let (name, read) = if path == Path::new("-") {
         ("<standard input>".to_owned(), io::stdin().lock().take(LONGEST + 1).read_to_end(&mut bytes))
     } else {
-        let name = path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
+        let name =
+            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
         let is_file = std::fs::metadata(path).map(|metadata| metadata.is_file());
         let read = match is_file {
             Ok(true) => File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes)),

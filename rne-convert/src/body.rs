@@ -73,7 +73,6 @@ impl Body {
                 xz: element(0, 2),
                 yz: element(1, 2),
             },
-
         }
     }
 
@@ -124,7 +123,8 @@ mod tests {
 
     #[test]
     fn the_tensor_turns_with_its_frame() {
-        let turned = |yaw| Body::at(1.0, Pose::new([0.0; 3], [0.0, 0.0, yaw]), inertia(1.0, 3.0, 5.0)).to_link().inertia;
+        let turned =
+            |yaw| Body::at(1.0, Pose::new([0.0; 3], [0.0, 0.0, yaw]), inertia(1.0, 3.0, 5.0)).to_link().inertia;
         assert_eq!(turned(FRAC_PI_2), inertia(3.0, 1.0, 5.0));
         // At 45°, xy is (xx - yy)/2.
         assert_eq!(turned(FRAC_PI_4), Inertia { xy: -1.0, ..inertia(2.0, 2.0, 5.0) });

@@ -96,13 +96,19 @@ pub(crate) fn extract(
             ..Extracted::default()
         },
     };
-    let mut chain = Chain { base: walk.base(base)?, gravity: Vector::decimal(gravity), joints: Vec::new(), tip: Pose::identity() };
+    let mut chain =
+        Chain { base: walk.base(base)?, gravity: Vector::decimal(gravity), joints: Vec::new(), tip: Pose::identity() };
     chain.gravity = chain.base.rotation.transpose() * chain.gravity;
     walk.along(base, &path, &mut chain)?;
     if !walk.loose.is_empty() {
         let joints = names(walk.loose.iter().map(|&joint| &urdf.joints[joint].name));
-        let message = format!("movable joints off the chain from {} to {}: {joints}", quoted(&walk.told.base), quoted(&walk.told.tip));
-        let help = "a chain holds them still: say where with --lock JOINT=VALUE, or all others at zero with --lock-others";
+        let message = format!(
+            "movable joints off the chain from {} to {}: {joints}",
+            quoted(&walk.told.base),
+            quoted(&walk.told.tip)
+        );
+        let help =
+            "a chain holds them still: say where with --lock JOINT=VALUE, or all others at zero with --lock-others";
         return Err(urdf.source.error(&urdf.joints[walk.loose[0]].span, message, help.to_owned()));
     }
     walk.told.snapped = walk.snapping.found;
@@ -191,7 +197,8 @@ fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Repo
         };
         let joint = &urdf.joints[index];
         if !joint.kind.has_one_freedom() {
-            let message = format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
+            let message =
+                format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
             return Err(urdf.source.error(&joint.span, message, None));
         }
         if !value.is_finite() || value.abs() > 1e9 {
@@ -323,7 +330,8 @@ impl Walk<'_> {
         }
         chain.tip = pose;
         if chain.joints.is_empty() {
-            let message = format!("no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
+            let message =
+                format!("no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
             return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
         }
         if chain.joints.len() > MAX_JOINTS {

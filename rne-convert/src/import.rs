@@ -160,11 +160,8 @@ impl Urdf {
                  negative one",
                 quoted(&joint.name)
             );
-            let several = if lumped.len() > 1 {
-                format!(" (lumped of {})", crate::source::names(lumped))
-            } else {
-                String::new()
-            };
+            let several =
+                if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
             let help = format!("correct the inertia{several}, or take it as it is with --keep-unphysical");
             return Err(self.source.error(span, message, help));
         }
@@ -242,7 +239,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     }
     if let Some(Difference { position, torque, .. }) = change {
         notes.push(format!(
-            "- {} angles are snapped to multiples of pi/12: torques move by up to {torque:.1e} of the largest, the tip by \
+            "- angles snapped to multiples of pi/12: {}; torques move by up to {torque:.1e} of the largest, the tip by \
              {position:.1e} m",
             told.snapped.len()
         ));

@@ -187,7 +187,9 @@ fn in_degrees(value: f64) -> String {
 /// Whether a text means itself without quotation marks, within a line.
 fn is_plain(text: &str) -> bool {
     let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
-        && text.chars().all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | ' ' | '/' | '.' | '-' | '(' | ')' | '+'));
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | ' ' | '/' | '.' | '-' | '(' | ')' | '+'));
     let words = ["null", "true", "false", "yes", "no", "on", "off", "nan", "inf"];
     is_word && !text.ends_with(' ') && !words.contains(&text.to_lowercase().as_str())
 }
@@ -246,7 +248,8 @@ fn block(text: &str) -> String {
             && !line.ends_with(char::is_whitespace)
             && !line.chars().any(|c| c.is_control() || matches!(c, '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{FEFF}'))
     };
-    if !text.contains('\n') || !text.split('\n').all(is_line) {
+    let is_list = text.contains('\n') || text.starts_with("- ");
+    if !is_list || !text.split('\n').all(is_line) {
         return scalar(text);
     }
     format!("|\n  {}", text.split('\n').collect::<Vec<_>>().join("\n  "))

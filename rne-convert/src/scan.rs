@@ -242,9 +242,8 @@ impl Scanner<'_> {
     fn write(&mut self, element: &Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
         let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
         for attribute in tag.attributes() {
-            let attribute = attribute.map_err(|error| {
-                self.source.error(place, format!("this is not XML: {error}"), None)
-            })?;
+            let attribute =
+                attribute.map_err(|error| self.source.error(place, format!("this is not XML: {error}"), None))?;
             let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
             if key == "quat_xyzw" {
                 let help = "write the rotation as rpy, in the axes of the parent".to_owned();

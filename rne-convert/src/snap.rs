@@ -99,9 +99,15 @@ mod tests {
 
     #[test]
     fn multiples_of_15_degrees_have_their_words() {
-        for (twelfths, text) in
-            [(0.0, "0"), (6.0, "pi/2"), (-6.0, "-pi/2"), (12.0, "pi"), (8.0, "2*pi/3"), (-5.0, "-5*pi/12"), (24.0, "2*pi")]
-        {
+        for (twelfths, text) in [
+            (0.0, "0"),
+            (6.0, "pi/2"),
+            (-6.0, "-pi/2"),
+            (12.0, "pi"),
+            (8.0, "2*pi/3"),
+            (-5.0, "-5*pi/12"),
+            (24.0, "2*pi"),
+        ] {
             assert_eq!(angle_text(of_twelfths(twelfths)).as_deref(), Some(text));
         }
         assert_eq!(angle_text(1.5708), None);

@@ -13,7 +13,12 @@ pub(crate) struct Source {
 
 impl Source {
     /// A mistake at some bytes of the text.
-    pub(crate) fn error(&self, span: &Range<usize>, message: impl Into<String>, help: impl Into<Option<String>>) -> Report {
+    pub(crate) fn error(
+        &self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<Option<String>>,
+    ) -> Report {
         let help: Option<String> = help.into();
         Report::of_error(&self.file, &self.text, span.clone(), message, help.as_deref())
     }

@@ -84,7 +84,9 @@ pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
         let d = length((next_from - o).dot(z), next_from, o);
         let (a, alpha) = match convention {
             Convention::Standard => axes.twist(k, normals.get(k)),
-            Convention::Modified => k.checked_sub(1).map_or((0.0, 0.0), |before| axes.twist(before, normals.get(before))),
+            Convention::Modified => {
+                k.checked_sub(1).map_or((0.0, 0.0), |before| axes.twist(before, normals.get(before)))
+            }
         };
         rows.push(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) });
         let frame = match (convention, normals.get(k)) {

@@ -157,7 +157,8 @@ impl Urdf {
         let mut known = HashMap::new();
         for (index, (joint, span)) in joints.into_iter().zip(&scanned.joints).enumerate() {
             if let Some(first) = known.insert(joint.name.clone(), span) {
-                let message = format!("the joint {} is there already, in line {}", quoted(&joint.name), self.line(first));
+                let message =
+                    format!("the joint {} is there already, in line {}", quoted(&joint.name), self.line(first));
                 return Err(self.source.error(span, message, "names of joints must differ".to_owned()));
             }
             let link = |name: &str| {
@@ -190,7 +191,10 @@ impl Urdf {
             let (place, message) = match roots.get(1) {
                 Some(&second) => {
                     let roots = names(roots.iter().map(|&root| &self.links[root].name));
-                    (self.links[second].span.clone(), format!("no joint moves the links {roots}; one of them is the root"))
+                    (
+                        self.links[second].span.clone(),
+                        format!("no joint moves the links {roots}; one of them is the root"),
+                    )
                 }
                 None if self.links.is_empty() => (0..0, "there is no link".to_owned()),
                 None => (self.joints[0].span.clone(), "the joints form a circle: no link is the root".to_owned()),

@@ -15,6 +15,7 @@ mod mutate;
 mod performance;
 mod prose;
 mod single_calls;
+mod urdf;
 mod verify;
 
 use std::process::ExitCode;
@@ -52,6 +53,7 @@ enum Task {
     Mutate(mutate::Mutate),
     Verify(verify::Verify),
     Lines(lines::Lines),
+    Urdf(urdf::Urdf),
 }
 
 /// What a task found.
@@ -81,6 +83,7 @@ impl Task {
             Self::Mutate(task) => ("mutate", false, task.run()),
             Self::Verify(task) => ("verify", false, task.run()),
             Self::Lines(task) => ("lines", false, task.run()),
+            Self::Urdf(task) => ("urdf", task.install, task.run()),
         }
     }
 }
