@@ -6,9 +6,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
+use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
-use crate::{check, emit, eval, example, list, new, ops, search, show};
+use crate::{check, convert, emit, eval, example, export, import, list, new, ops, search, show};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -28,6 +29,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c            the same in C99, without a library
   rne new my_arm --dof 6                           a robot file of your own, to fill in
   rne search my_arm.yaml --seconds 60              look for a form with fewer operations
+  rne import arm.urdf --tip flange -o arm.yaml     a robot file of an arm in a URDF
 
 FILE may be the name of a shipped robot, such as puma560; rne list has them.
 Exit status: 0 fine, 1 the input is at fault, 2 the command line is.
@@ -48,6 +50,9 @@ pub(crate) enum Command {
     New(new::Arguments),
     List(list::Arguments),
     Example(example::Arguments),
+    Import(import::Arguments),
+    Convert(convert::Arguments),
+    Export(export::Arguments),
 }
 
 /// Reads the name of a function; help and messages list them all.
@@ -95,6 +100,15 @@ pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
 pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
     let value = |trick: Trick| PossibleValue::new(trick.name()).help(trick.formula());
     PossibleValuesParser::new(Trick::ALL.map(value)).try_map(|name| name.parse::<Trick>())
+}
+
+/// Reads a convention.
+pub(crate) fn convention() -> impl TypedValueParser<Value = Convention> {
+    PossibleValuesParser::new([
+        PossibleValue::new("standard").help("Rz(theta) Tz(d) Tx(a) Rx(alpha), link frames at the far ends"),
+        PossibleValue::new("modified").help("Rx(alpha) Tx(a) Rz(theta) Tz(d), link frames on the joints"),
+    ])
+    .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
 }
 
 /// Reads the number of a joint; which numbers there are, the robot says.

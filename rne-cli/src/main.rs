@@ -5,12 +5,15 @@ mod answer;
 mod arguments;
 mod base_parameters;
 mod check;
+mod convert;
 mod emit;
 mod eval;
 mod example;
+mod export;
 mod functions;
 mod heading;
 mod highlight;
+mod import;
 mod layout;
 mod list;
 mod new;
@@ -63,5 +66,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
+        Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),
+        Some(Command::Convert(arguments)) => ("rne convert", convert::run(&arguments)),
+        Some(Command::Export(arguments)) => ("rne export", export::run(&arguments)),
     }
 }

@@ -6,6 +6,9 @@ use std::path::Path;
 
 use tempfile::NamedTempFile;
 
+use crate::outcome::Failure;
+use crate::terminal::{GOOD, TYPED};
+
 /// What stands where a file is to be written.
 pub(crate) enum Existing {
     Nothing,
@@ -78,6 +81,33 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
     file.as_file().sync_all()?;
     file.persist(&path)?;
     Ok(Written::Anew)
+}
+
+/// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise. Returns what
+/// was done, for the reader.
+pub(crate) fn write_new(path: &Path, text: &str, source: &Path, force: bool) -> Result<String, Failure> {
+    let shown = path.display();
+    if is_same(path, source) {
+        return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
+    }
+    match existing(path) {
+        Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
+        Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file; name another"))),
+        Existing::Unreadable(error) => return Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
+        Existing::Text(old) if old == text => {}
+        Existing::Text(_) | Existing::Other if !force => {
+            return Err(Failure::usage(format_args!(
+                "{shown} is there already and stays as it is; {TYPED}--force{TYPED:#} overwrites it"
+            )));
+        }
+        Existing::Nothing | Existing::Text(_) | Existing::Other => {}
+    }
+    let word = match replace(path, text) {
+        Ok(Written::Anew) => "wrote",
+        Ok(Written::Unchanged) => "up to date:",
+        Err(error) => return Err(Failure::input(format_args!("{shown} cannot be written: {error}"))),
+    };
+    Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
 }
 
 /// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the

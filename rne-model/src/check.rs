@@ -25,6 +25,10 @@ pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
 fn check_with_run_time(name: &str, text: &str, run_time: &[&str]) -> Result<Checked, Report> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let problems = Problems::new();
+    if source::is_xml(text, &problems) {
+        // Its first line will do: a URDF may be long.
+        return Err(problems.finish(name, text.lines().next().unwrap_or_default()));
+    }
     if !source::size_is_fine(text.len(), &problems) {
         return Err(problems.finish(name, ""));
     }

@@ -41,6 +41,14 @@ fn largest(inertia: &Inertia) -> f64 {
     inertia.rows().iter().flatten().fold(0.0, |largest: f64, element| largest.max(element.abs()))
 }
 
+impl Inertia {
+    /// The principal moments, ascending, kg m²; `None` when an element is not finite. A body has none below zero.
+    #[must_use]
+    pub fn principal_moments(&self) -> Option<[f64; 3]> {
+        principal_moments(self)
+    }
+}
+
 /// The principal moments, ascending, by Jacobi's rotations; `None` when an element is not finite.
 pub(crate) fn principal_moments(inertia: &Inertia) -> Option<[f64; 3]> {
     if !inertia.rows().iter().flatten().all(|element| element.is_finite()) {

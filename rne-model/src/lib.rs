@@ -18,7 +18,8 @@
 //! let report = rne_model::check("pendulum.yaml", text).unwrap_err();
 //! assert_eq!(
 //!     report.short(),
-//!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, inertia, inertia_about"
+//!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, inertia, inertia_about, \
+//!      physical"
 //! );
 //! assert_eq!(report.diagnostics[0].help.as_deref(), Some("did you mean `mass`?"));
 //!
@@ -51,6 +52,8 @@ mod decode;
 mod diagnostic;
 #[cfg(feature = "std")]
 mod document;
+#[cfg(feature = "std")]
+mod double;
 #[cfg(feature = "std")]
 mod expression;
 #[cfg(feature = "std")]
@@ -88,6 +91,8 @@ pub use check::{Checked, check, check_bytes, check_bytes_with_run_time};
 pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
+#[cfg(feature = "std")]
+pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]
 pub use expression::number;
 #[cfg(feature = "std")]

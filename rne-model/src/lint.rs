@@ -140,6 +140,19 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
     }
 }
 
+/// A negative principal moment in a file that knows it.
+pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64; 3]) {
+    let message = format!(
+        "the inertia is not positive semidefinite, as `physical: false` says: its smallest eigenvalue about the centre \
+         of mass is {} kg m²",
+        rounded(smallest)
+    );
+    cx.report(Diagnostic::lint(place, message).label("not the inertia of a body").help(
+        "inverse dynamics works with it; the mass matrix may not be positive definite, and then there is no forward \
+         dynamics",
+    ));
+}
+
 /// Grams or millimetres in an inertia: no link has its mass so far out.
 pub(crate) fn radius_of_gyration(cx: &Context, place: Range<usize>, mass: f64, [.., largest]: [f64; 3]) {
     if mass <= 0.0 || largest <= 0.0 {

@@ -1,6 +1,6 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Inertia, Model, Motor, Row, RunTime, Transform};
+use crate::{Convention, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +63,17 @@ pub struct Limits {
     pub velocity: Option<f64>,
     /// Largest torque or force, N m or N.
     pub effort: Option<f64>,
+}
+
+impl Joint {
+    /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding: that of a
+    /// body is. A file must say `physical: false` where it is not.
+    #[must_use]
+    pub fn is_physical(&self) -> bool {
+        let Link { mass, com, inertia } = self.row.link;
+        let magnitude = inertia::largest_magnitude(&self.written_inertia.0, mass, com);
+        inertia.principal_moments().is_some_and(|moments| moments[0] >= -inertia::TOLERANCE * magnitude)
+    }
 }
 
 impl Robot {

@@ -261,6 +261,7 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
         com: or([0.0; 3]) "com" |cx, node| centre_of_mass(cx, node, joint),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
+        physical: or(true) "physical" |cx, node| choice(cx, node, "answer", &[("true", true), ("false", false)]),
     });
     let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
     let inertia = inertia_about_com(cx, place.clone(), joint, (written, about), (mass, com))?;
@@ -269,7 +270,12 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
         return cx.refuse(Diagnostic::error(place, message));
     };
     let magnitude = inertia::largest_magnitude(&written, mass, com);
-    if moments[0] < -inertia::TOLERANCE * magnitude {
+    let is_body = moments[0] >= -inertia::TOLERANCE * magnitude;
+    if !is_body && !physical {
+        lint::unphysical(cx, place, moments);
+        return Some((Link { mass, com, inertia }, (written, about)));
+    }
+    if !is_body {
         let message = format!(
             "the inertia is not positive semidefinite: its smallest eigenvalue about the centre of mass is {} kg m²; \
              it must be zero or positive",

@@ -391,6 +391,33 @@ fn all_mistakes_of_a_file_are_found_and_shown_up_to_twenty() {
 
 /// Files made to take long or much memory end in an error soon.
 #[test]
+fn a_urdf_is_told_about_import() {
+    let tag = "<robot name=\"arm\">";
+    for text in
+        [format!("<?xml version=\"1.0\"?>\n{tag}"), tag.to_owned(), format!("\n {tag}"), format!("<!-- a -->{tag}")]
+    {
+        let report = check("arm.urdf", &text).unwrap_err();
+        let [error] = &report.diagnostics[..] else { panic!("{report}") };
+        assert!(error.message.starts_with("this is XML, as a URDF is"), "{}", error.message);
+        assert!(error.help.as_ref().is_some_and(|help| help.contains("rne import ARM.urdf")), "{:?}", error.help);
+    }
+    let long = format!("<robot>{}", " ".repeat(2 << 20));
+    assert!(check("long.urdf", &long).unwrap_err().short().contains("this is XML"), "however long it is");
+}
+
+#[test]
+fn an_inertia_that_no_body_has_is_kept_where_the_file_says_so() {
+    let file = |link: &str| {
+        format!("{BASE}  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}, link: {{{link}}}}}\n")
+    };
+    let report = check("x", &file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}")).unwrap_err();
+    assert!(report.short().contains("not positive semidefinite"), "{report}");
+    let checked = check("x", &file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}, physical: false")).unwrap();
+    assert!(checked.lints.to_string().contains("as `physical: false` says"), "{}", checked.lints);
+    assert!(!checked.robot.joints.last().unwrap().is_physical());
+}
+
+#[test]
 fn hostile_files() {
     let fill = |unit: &str| unit.repeat((1 << 20) / unit.len());
     let mut bomb = "a0: &a0 [x, x, x, x, x, x, x, x, x, x]\n".to_owned();

@@ -17,6 +17,7 @@ mod performance;
 mod prose;
 mod single_calls;
 mod tool;
+mod urdf;
 mod verify;
 
 use std::process::ExitCode;
@@ -56,6 +57,7 @@ enum Task {
     Lines(lines::Lines),
     Package(package::Package),
     Tool(tool::Tool),
+    Urdf(urdf::Urdf),
 }
 
 /// What a task found.
@@ -87,6 +89,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
+            Self::Urdf(task) => ("urdf", task.install, task.run()),
         }
     }
 }

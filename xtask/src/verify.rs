@@ -81,6 +81,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "urdf",
+        about: "real arms imported from URDF beside Pinocchio, which is fetched",
+        variables: &[],
+        command: &["cargo", "xtask", "urdf", "--install"],
+        needs: Needs::Nothing,
+    },
+    Step {
         name: "no_std",
         about: "the facade, the runtime and the plain types of the table without `std`",
         variables: &[],

@@ -6,7 +6,6 @@ mod causes;
 mod constants;
 mod cost;
 mod differentiation;
-mod double;
 pub(crate) mod fold_report;
 mod graph;
 mod input;

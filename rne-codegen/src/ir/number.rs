@@ -1,8 +1,7 @@
 //! Exact constants: a value to 106 bits beside its images in two prime fields.
 
-use rne_model::{Angle, InertiaReference, Joint, QuarterTurns};
+use rne_model::{Angle, Double, InertiaReference, Joint, QuarterTurns, decimal_digits};
 
-use super::double::{Double, decimal_digits};
 use super::operators;
 use super::residue::Residue;
 

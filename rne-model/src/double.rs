@@ -1,26 +1,34 @@
 //! Numbers of twice the precision: the unevaluated sum of two `f64`, about 106 bits.
 //!
+//! The compiler compares values with them; a conversion between descriptions of an arm computes in them, so that a
+//! number that is the same in both keeps its digits and a structural zero stays one.
+//!
 //! T. J. Dekker, "A floating-point technique for extending the available precision", Numer. Math. 18, 1971.
 
-use super::operators;
+use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `high + low`, with |low| at most half a unit in the last place of `high`.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
-pub(crate) struct Double {
-    pub(crate) high: f64,
-    pub(crate) low: f64,
+pub struct Double {
+    /// The number, rounded.
+    pub high: f64,
+    /// What rounding took away.
+    pub low: f64,
 }
 
 /// π/2 to 106 bits.
 const HALF_PI: Double = Double { high: std::f64::consts::FRAC_PI_2, low: 6.123_233_995_736_766e-17 };
 
 impl Double {
-    pub(crate) const fn new(value: f64) -> Self {
+    /// The number `value`, exactly.
+    #[must_use]
+    pub const fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 
     /// The number whose shortest decimal is that of `value`: 0.1 is a tenth, not the binary fraction next to it.
-    pub(crate) fn decimal(value: f64) -> Self {
+    #[must_use]
+    pub fn decimal(value: f64) -> Self {
         let (digits, exponent) = decimal_digits(value.abs());
         let ten = Self::new(10.0);
         #[allow(clippy::cast_precision_loss)] // the rest of the digits is in `low`
@@ -34,11 +42,15 @@ impl Double {
         if value < 0.0 { -number } else { number }
     }
 
-    pub(crate) fn to_f64(self) -> f64 {
+    /// The nearest `f64`.
+    #[must_use]
+    pub fn to_f64(self) -> f64 {
         self.high + self.low
     }
 
-    pub(crate) fn sqrt(self) -> Self {
+    /// The square root; 0 of what is not positive.
+    #[must_use]
+    pub fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::default();
         }
@@ -47,8 +59,9 @@ impl Double {
         root + (self - root * root) / (root + root)
     }
 
-    /// Sine and cosine of an angle in rad.
-    pub(crate) fn sin_cos(self) -> (Self, Self) {
+    /// Sine and cosine of an angle in rad, of a few turns.
+    #[must_use]
+    pub fn sin_cos(self) -> (Self, Self) {
         let quarters = (self.high / HALF_PI.high).round();
         let r = self - HALF_PI * Self::new(quarters);
         let square = r * r;
@@ -71,8 +84,9 @@ impl Double {
     }
 }
 
-/// The digits and the decimal exponent of the shortest decimal that reads back as `value`.
-pub(crate) fn decimal_digits(value: f64) -> (u64, i32) {
+/// The digits and the decimal exponent of the shortest decimal that reads back as `value`, which is not negative.
+#[must_use]
+pub fn decimal_digits(value: f64) -> (u64, i32) {
     let text = format!("{value:e}");
     let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
     let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
@@ -106,25 +120,52 @@ fn two_product(a: f64, b: f64) -> Double {
     Double { high, low: ((a_high * b_high - high) + a_high * b_low + a_low * b_high) + a_low * b_low }
 }
 
-operators! { Double:
-    a + b => {
-        let (s, t) = (two_sum(a.high, b.high), two_sum(a.low, b.low));
+impl Add for Double {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        let (s, t) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
         let s = quick_sum(s.high, s.low + t.high);
         quick_sum(s.high, s.low + t.low)
-    };
-    -a => Self { high: -a.high, low: -a.low };
-    a - b => a + -b;
-    a * b => {
-        let p = two_product(a.high, b.high);
-        quick_sum(p.high, p.low + (a.high * b.low + a.low * b.high))
-    };
-    a / b => {
-        let first = a.high / b.high;
-        let rest = a - b * Self::new(first);
-        let second = rest.high / b.high;
-        let rest = rest - b * Self::new(second);
-        quick_sum(first, second) + Self::new(rest.high / b.high)
-    };
+    }
+}
+
+impl Neg for Double {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self { high: -self.high, low: -self.low }
+    }
+}
+
+impl Sub for Double {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for Double {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        let p = two_product(self.high, other.high);
+        quick_sum(p.high, p.low + (self.high * other.low + self.low * other.high))
+    }
+}
+
+impl Div for Double {
+    type Output = Self;
+
+    #[allow(clippy::suspicious_arithmetic_impl)] // three digits of a quotient, each of 53 bits
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        let rest = self - other * Self::new(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::new(second);
+        quick_sum(first, second) + Self::new(rest.high / other.high)
+    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,49 @@
+//! `rne export`: a robot file for programs that read other formats.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::outcome::{Failure, Outcome};
+use crate::{output_file, robot_file};
+
+/// Write an arm as a URDF, for other programs
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne export robots/ur5.yaml --urdf -o ur5.urdf
+  rne export robots/puma560.yaml --urdf | less
+
+Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link stands on the axis of its joint. Gravity
+that is not [0, 0, -9.81] in `world` is told, for a URDF cannot say it.")]
+pub(crate) struct Arguments {
+    /// The robot file; - is standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The format: URDF
+    #[arg(long, required = true)]
+    urdf: bool,
+    /// Where to write it; standard output, unless given
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out")]
+    force: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = robot_file::robot(&arguments.file)?;
+    let exported = rne_convert::export(&robot);
+    let mut remark = String::new();
+    for line in exported.remarks {
+        let _ = writeln!(remark, "{line}");
+    }
+    match &arguments.out {
+        Some(out) => {
+            remark += &output_file::write_new(out, &exported.text, &arguments.file, arguments.force)?;
+            Ok(Outcome::remark(remark))
+        }
+        None => Ok(Outcome { text: exported.text, remark, ..Outcome::default() }),
+    }
+}

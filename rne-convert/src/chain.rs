@@ -1,0 +1,403 @@
+//! From a tree of links to the chain between a base and a tip: what is fixed to a link is lumped into it.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use rne_model::{Limits, Motor, Report};
+
+use crate::body::Body;
+use crate::geometry::{Pose, Rotation, Vector, decimal};
+use crate::snap::{Snapped, Snapping};
+use crate::source::{names, quoted};
+use crate::urdf::{Joint, Urdf};
+
+/// More joints than a robot file may have.
+const MAX_JOINTS: usize = 64;
+
+/// Which chain of a tree is meant.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Selection {
+    /// The link that stands still; the root, unless given.
+    pub base: Option<String>,
+    /// The link at the end of the arm; needed where the tree has several leaves.
+    pub tip: Option<String>,
+    /// Movable joints that are held, and where: rad or m.
+    pub lock: Vec<(String, f64)>,
+    /// Whether every other movable joint off the chain is held at zero.
+    pub lock_others: bool,
+}
+
+/// A serial arm: joints with bodies between them.
+#[derive(Clone, Debug)]
+pub(crate) struct Chain {
+    /// World → base.
+    pub(crate) base: Pose,
+    /// The acceleration of gravity in the axes of the base, m/s².
+    pub(crate) gravity: Vector,
+    pub(crate) joints: Vec<ChainJoint>,
+    /// Frame of the last moved link → tip frame.
+    pub(crate) tip: Pose,
+}
+
+/// A joint and the link that it moves, whose frame stands on the joint.
+#[derive(Clone, Debug)]
+pub(crate) struct ChainJoint {
+    pub(crate) name: String,
+    pub(crate) is_prismatic: bool,
+    /// Frame of the link before, at the first joint the base → frame of this one's link, at q = 0.
+    pub(crate) place: Pose,
+    /// Of length 1, in the link's axes.
+    pub(crate) axis: Vector,
+    /// About the origin of the link's frame.
+    pub(crate) body: Body,
+    pub(crate) limits: Limits,
+    pub(crate) motor: Option<Motor>,
+}
+
+/// What became of a tree on its way to a chain.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Extracted {
+    pub(crate) base: String,
+    pub(crate) tip: String,
+    /// Per joint of the chain its place in the text.
+    pub(crate) spans: Vec<Range<usize>>,
+    /// Per joint of the chain the links that were lumped into the link it moves.
+    pub(crate) lumped: Vec<Vec<String>>,
+    /// Joints that are held, and where.
+    pub(crate) held: Vec<(String, f64)>,
+    /// Movable joints on what stands still: nothing of them reaches the arm.
+    pub(crate) aside: Vec<String>,
+    pub(crate) snapped: Vec<Snapped>,
+}
+
+/// Takes the chain out of the tree. `gravity` is in the axes of the root link.
+pub(crate) fn extract(
+    urdf: &Urdf,
+    selection: &Selection,
+    gravity: [f64; 3],
+    snap: bool,
+) -> Result<(Chain, Extracted), Report> {
+    let base = match &selection.base {
+        Some(name) => link(urdf, name, "base")?,
+        None => urdf.root,
+    };
+    let path = path(urdf, base, tip(urdf, base, selection)?)?;
+    let tip = path.last().map_or(base, |&joint| urdf.joints[joint].child);
+    let locks = locks(urdf, selection)?;
+    let mut walk = Walk {
+        urdf,
+        selection,
+        locks,
+        snapping: Snapping { is_on: snap, ..Snapping::default() },
+        loose: Vec::new(),
+        told: Extracted {
+            base: urdf.links[base].name.clone(),
+            tip: urdf.links[tip].name.clone(),
+            ..Extracted::default()
+        },
+    };
+    let mut chain =
+        Chain { base: walk.base(base)?, gravity: Vector::decimal(gravity), joints: Vec::new(), tip: Pose::identity() };
+    chain.gravity = chain.base.rotation.transpose() * chain.gravity;
+    walk.along(base, &path, &mut chain)?;
+    if !walk.loose.is_empty() {
+        let joints = names(walk.loose.iter().map(|&joint| &urdf.joints[joint].name));
+        let message = format!(
+            "movable joints off the chain from {} to {}: {joints}",
+            quoted(&walk.told.base),
+            quoted(&walk.told.tip)
+        );
+        let help =
+            "a chain holds them still: say where with --lock JOINT=VALUE, or all others at zero with --lock-others";
+        return Err(urdf.source.error(&urdf.joints[walk.loose[0]].span, message, help.to_owned()));
+    }
+    walk.told.snapped = walk.snapping.found;
+    Ok((chain, walk.told))
+}
+
+fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report> {
+    urdf.links.iter().position(|link| link.name == name).ok_or_else(|| {
+        let message = format!("there is no link {} that could be the {what}", quoted(name));
+        let known = names(urdf.links.iter().map(|link| &link.name));
+        urdf.source.error(&(0..0), message, format!("the links are {known}"))
+    })
+}
+
+/// The link where the chain ends.
+fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<usize, Report> {
+    if let Some(name) = &selection.tip {
+        return link(urdf, name, "tip");
+    }
+    let leaves = leaves(urdf, base);
+    if let [(leaf, _)] = leaves[..] {
+        return Ok(leaf);
+    }
+    let listed = leaves.iter().map(|&(leaf, joints)| {
+        let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
+        format!("  {} ({joints})", quoted(&urdf.links[leaf].name))
+    });
+    const LISTED: usize = 60;
+    let more = leaves.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+    let listed = listed.take(LISTED).collect::<Vec<_>>().join("\n");
+    let message = format!("{} has {} leaves, so the tip must be named", quoted(&urdf.links[base].name), leaves.len());
+    let help = format!("name one, or a link before it, with --tip; in the order of the text:\n{listed}{more}");
+    Err(urdf.source.error(&urdf.links[base].span, message, help))
+}
+
+/// The links behind `base` that carry no other, with the number of movable joints in between.
+fn leaves(urdf: &Urdf, base: usize) -> Vec<(usize, usize)> {
+    let mut leaves = Vec::new();
+    let mut open = vec![(base, 0)];
+    while let Some((link, joints)) = open.pop() {
+        let children = &urdf.links[link].children;
+        if children.is_empty() {
+            leaves.push((link, joints));
+        }
+        let below = |&joint: &usize| {
+            let joint = &urdf.joints[joint];
+            (joint.child, joints + usize::from(joint.kind.has_one_freedom()))
+        };
+        open.extend(children.iter().rev().map(below));
+    }
+    leaves
+}
+
+/// The joints from `base` to `tip`.
+fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, Report> {
+    let mut path = Vec::new();
+    let mut link = tip;
+    while link != base {
+        let Some(joint) = urdf.links[link].parent else {
+            let message = format!(
+                "the link {} does not lead to {}: it hangs on {}",
+                quoted(&urdf.links[base].name),
+                quoted(&urdf.links[tip].name),
+                quoted(&urdf.links[link].name)
+            );
+            let help = "the base must stand between the root and the tip".to_owned();
+            return Err(urdf.source.error(&urdf.links[tip].span, message, help));
+        };
+        path.push(joint);
+        link = urdf.joints[joint].parent;
+    }
+    path.reverse();
+    Ok(path)
+}
+
+/// The joints that are held by name.
+fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Report> {
+    let mut locks = HashMap::new();
+    for (name, value) in &selection.lock {
+        let Some(index) = urdf.joints.iter().position(|joint| joint.name == *name) else {
+            let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
+            let help = format!("the movable joints are {}", names(movable.map(|joint| &joint.name)));
+            let message = format!("there is no joint {} to be locked", quoted(name));
+            return Err(urdf.source.error(&(0..0), message, help));
+        };
+        let joint = &urdf.joints[index];
+        if !joint.kind.has_one_freedom() {
+            let message =
+                format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
+            return Err(urdf.source.error(&joint.span, message, None));
+        }
+        if !value.is_finite() || value.abs() > 1e9 {
+            let message = format!("the joint {} cannot be locked at {value}", quoted(name));
+            return Err(urdf.source.error(&joint.span, message, None));
+        }
+        if locks.insert(index, *value).is_some() {
+            let message = format!("the joint {} is locked twice", quoted(name));
+            return Err(urdf.source.error(&joint.span, message, None));
+        }
+    }
+    Ok(locks)
+}
+
+/// A walk through the tree.
+struct Walk<'a> {
+    urdf: &'a Urdf,
+    selection: &'a Selection,
+    locks: HashMap<usize, f64>,
+    snapping: Snapping,
+    /// Movable joints off the chain that nobody holds.
+    loose: Vec<usize>,
+    told: Extracted,
+}
+
+impl Walk<'_> {
+    /// World → base: the joints up to there are held.
+    fn base(&mut self, base: usize) -> Result<Pose, Report> {
+        let before = path(self.urdf, self.urdf.root, base)?;
+        let mut pose = Pose::identity();
+        for joint in before {
+            pose = pose * self.across(joint);
+        }
+        Ok(pose)
+    }
+
+    /// The placement of what a held joint carries.
+    fn across(&mut self, index: usize) -> Pose {
+        let joint = &self.urdf.joints[index];
+        let place = self.place(joint);
+        if joint.kind == crate::urdf::Kind::Fixed {
+            return place;
+        }
+        let Some(value) = self.held(index, 0) else {
+            self.loose.push(index);
+            return place;
+        };
+        self.told.held.push((joint.name.clone(), value));
+        let moved = match joint.kind {
+            crate::urdf::Kind::Prismatic => {
+                Pose { rotation: Rotation::identity(), translation: self.axis(joint) * decimal(value) }
+            }
+            kind if kind.has_one_freedom() => {
+                Pose { rotation: Rotation::about(self.axis(joint), value), translation: Vector::ZERO }
+            }
+            // Planar, floating, spherical: held where they are at zero.
+            _ => Pose::identity(),
+        };
+        place * moved
+    }
+
+    /// Where a joint is held, if it is.
+    fn held(&self, index: usize, depth: usize) -> Option<f64> {
+        if let Some(&value) = self.locks.get(&index) {
+            return Some(value);
+        }
+        if !self.selection.lock_others {
+            return None;
+        }
+        // One that follows a held one is held by it.
+        let leader = self.urdf.joints[index].mimic.as_ref().filter(|_| depth < MAX_JOINTS).and_then(|mimic| {
+            let leader = self.urdf.joints.iter().position(|joint| joint.name == mimic.joint)?;
+            Some(mimic.multiplier * self.held(leader, depth + 1)? + mimic.offset)
+        });
+        Some(leader.unwrap_or(0.0))
+    }
+
+    fn place(&mut self, joint: &Joint) -> Pose {
+        Pose::new(joint.xyz, self.snapping.rpy(&format!("joint {}", joint.name), joint.rpy))
+    }
+
+    /// The direction of a joint that `along` or `locks` has found to have one; the default where it has none.
+    fn axis(&mut self, joint: &Joint) -> Vector {
+        let direction = Vector::decimal(joint.axis).direction().unwrap_or_else(|| Vector::unit(0));
+        self.snapping.axis(&format!("joint {}", joint.name), joint.axis, direction)
+    }
+
+    fn along(&mut self, base: usize, path: &[usize], chain: &mut Chain) -> Result<(), Report> {
+        // The frame of the current link in that of the last one that moves.
+        let mut pose = Pose::identity();
+        self.aside(base, path.first().copied());
+        for (i, &index) in path.iter().enumerate() {
+            let next = path.get(i + 1).copied();
+            let joint = &self.urdf.joints[index];
+            if joint.kind == crate::urdf::Kind::Fixed || self.locks.contains_key(&index) {
+                pose = pose * self.across(index);
+            } else {
+                self.refuse(joint)?;
+                let place = pose * self.place(joint);
+                let axis = self.axis(joint);
+                let [viscous, friction] = joint.friction;
+                let motor = (joint.friction != [0.0; 2]).then_some(Motor {
+                    inertia: 0.0,
+                    gear_ratio: 1.0,
+                    viscous,
+                    coulomb: [friction, 0.0 - friction],
+                });
+                chain.joints.push(ChainJoint {
+                    name: joint.name.clone(),
+                    is_prismatic: joint.kind == crate::urdf::Kind::Prismatic,
+                    place,
+                    axis,
+                    body: Body::NONE,
+                    limits: joint.limits,
+                    motor,
+                });
+                self.told.spans.push(joint.span.clone());
+                self.told.lumped.push(Vec::new());
+                pose = Pose::identity();
+            }
+            if chain.joints.is_empty() {
+                self.aside(joint.child, next);
+                continue;
+            }
+            let body = self.lump(joint.child, pose, next);
+            if let Some(last) = chain.joints.last_mut() {
+                last.body = last.body + body;
+            }
+        }
+        chain.tip = pose;
+        if chain.joints.is_empty() {
+            let message =
+                format!("no movable joint between {} and {}", quoted(&self.told.base), quoted(&self.told.tip));
+            return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
+        }
+        if chain.joints.len() > MAX_JOINTS {
+            let message = format!("{} movable joints; a robot file has at most {MAX_JOINTS}", chain.joints.len());
+            return Err(self.urdf.source.error(&self.urdf.links[base].span, message, None));
+        }
+        Ok(())
+    }
+
+    /// A joint of the chain must be one that a table has.
+    fn refuse(&self, joint: &Joint) -> Result<(), Report> {
+        let error = |message: String, help: String| Err(self.urdf.source.error(&joint.span, message, help));
+        let name = quoted(&joint.name);
+        if !joint.kind.has_one_freedom() {
+            let message = format!("the joint {name} on the chain is {}", joint.kind.name());
+            let help = "a row of a table is one revolute or prismatic joint; choose base and tip around this one";
+            return error(message, help.to_owned());
+        }
+        if let Some(mimic) = &joint.mimic {
+            let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
+            let help = format!(
+                "its torque belongs to that joint, which no row of a table can say; end the chain before it, or hold it \
+                 still with --lock {}=VALUE",
+                rne_model::one_line(&joint.name)
+            );
+            return error(message, help);
+        }
+        if joint.axis == [0.0; 3] {
+            return error(format!("the axis of the joint {name} has no direction"), "write such as 0 0 1".to_owned());
+        }
+        Ok(())
+    }
+
+    /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
+    /// link stands at `pose`.
+    fn lump(&mut self, link: usize, pose: Pose, next: Option<usize>) -> Body {
+        let mut body = Body::NONE;
+        let mut open = vec![(link, pose)];
+        while let Some((index, pose)) = open.pop() {
+            let link = &self.urdf.links[index];
+            if link.mass != 0.0 || link.inertia != rne_model::Inertia::default() {
+                let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
+                let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
+                body = body + own.seen_from(pose);
+                if let Some(lumped) = self.told.lumped.last_mut() {
+                    lumped.push(link.name.clone());
+                }
+            }
+            for &joint in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
+                open.push((self.urdf.joints[joint].child, pose * self.across(joint)));
+            }
+        }
+        body
+    }
+
+    /// What moves on a link that stands still moves by itself.
+    fn aside(&mut self, link: usize, next: Option<usize>) {
+        let mut open = vec![link];
+        while let Some(index) = open.pop() {
+            for &joint in self.urdf.links[index].children.iter().rev().filter(|&&joint| Some(joint) != next) {
+                let joint = &self.urdf.joints[joint];
+                if joint.kind != crate::urdf::Kind::Fixed {
+                    self.told.aside.push(joint.name.clone());
+                }
+                open.push(joint.child);
+            }
+        }
+    }
+}

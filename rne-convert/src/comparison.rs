@@ -1,0 +1,83 @@
+//! How much two arms differ, over many states.
+
+use nalgebra::{Matrix3, Vector3};
+use rne_model::Robot;
+use rne_runtime::{DynArm, Pose};
+
+use crate::dynamics::{Dynamics, State};
+
+/// States at which arms are compared.
+pub(crate) const STATES: usize = 1000;
+
+/// The largest differences over 1,000 states within the limits, with speeds up to 2 and accelerations up to 5 (rad or m).
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Difference {
+    /// Of the tip's place, m.
+    pub position: f64,
+    /// Of the tip's rotation, rad.
+    pub rotation: f64,
+    /// Of a torque or force, relative to the largest of its state.
+    pub torque: f64,
+    /// Of a torque or force, N m or N.
+    pub absolute_torque: f64,
+    /// Of an acceleration that the same torques cause, relative to the largest of its state; `None` where the mass
+    /// matrix is singular.
+    pub acceleration: Option<f64>,
+}
+
+impl Difference {
+    /// Between two chains.
+    pub(crate) fn of_chains(one: &Dynamics, other: &Dynamics) -> Self {
+        let mut difference = Self { acceleration: Some(0.0), ..Self::default() };
+        for State { q, qd, qdd } in one.states(STATES) {
+            difference.tips(one.tip(&q), other.tip(&q));
+            let torques = one.torques(&q, &qd, &qdd);
+            difference.torques(&torques, &other.torques(&q, &qd, &qdd));
+            // The torques that cause q̈ in the one.
+            let caused = other.accelerations(&q, &qd, &torques);
+            difference.acceleration = difference
+                .acceleration
+                .zip(one.accelerations(&q, &qd, &torques).zip(caused))
+                .map(|(largest, (a, b))| largest.max(relative(&a, &b)));
+        }
+        difference
+    }
+
+    /// Between a chain and the table made of it, as the runtime of rne computes that.
+    pub(crate) fn of_table(chain: &Dynamics, robot: &Robot) -> Self {
+        let arm = DynArm::from_robot(robot);
+        let mut difference = Self::default();
+        for State { q, qd, qdd } in chain.states(STATES) {
+            if let Ok(tip) = arm.forward_kinematics(&q) {
+                difference.tips(chain.tip(&q), placed(&tip));
+            }
+            if let Ok(torques) = arm.inverse_dynamics(&q, &qd, &qdd) {
+                difference.torques(&chain.torques(&q, &qd, &qdd), &torques);
+            }
+        }
+        difference
+    }
+
+    fn tips(&mut self, (r, p): (Matrix3<f64>, Vector3<f64>), (rotation, position): (Matrix3<f64>, Vector3<f64>)) {
+        self.position = self.position.max((p - position).norm());
+        // sin of half the angle, from the distance of the matrices: exact where the angle is small.
+        let half = ((r - rotation).norm() / 8.0_f64.sqrt()).min(1.0);
+        self.rotation = self.rotation.max(2.0 * half.asin());
+    }
+
+    fn torques(&mut self, one: &[f64], other: &[f64]) {
+        self.torque = self.torque.max(relative(one, other));
+        let difference = one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        self.absolute_torque = self.absolute_torque.max(difference);
+    }
+}
+
+fn relative(one: &[f64], other: &[f64]) -> f64 {
+    let largest = one.iter().map(|x| x.abs()).fold(0.0, f64::max);
+    let difference = one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    if difference == 0.0 { 0.0 } else { difference / largest.max(f64::MIN_POSITIVE) }
+}
+
+fn placed(pose: &Pose<f64>) -> (Matrix3<f64>, Vector3<f64>) {
+    (pose.rotation_matrix(), pose.translation_vector())
+}

@@ -1,0 +1,93 @@
+//! From one convention to the other: the same arm, the same frame 0 where its z axis lies on joint 1.
+
+use rne_model::{Convention, Double, JointKind, Report, Robot, Row, check};
+
+use crate::body::Body;
+use crate::chain::{Chain, ChainJoint};
+use crate::comparison::Difference;
+use crate::dynamics::Dynamics;
+use crate::geometry::{Pose, Rotation, Vector, decimal};
+use crate::import::{remarks, robot as robot_of};
+use crate::robot_file;
+use crate::table::table;
+
+/// A robot in another convention.
+#[derive(Clone, Debug)]
+pub struct Converted {
+    /// The robot.
+    pub robot: Robot,
+    /// Its robot file.
+    pub text: String,
+    /// Between the two tables: rounding.
+    pub rounding: Difference,
+    /// What is remarkable, in sentences.
+    pub remarks: Vec<String>,
+}
+
+/// The same arm with the rows of `convention`. Name, title, source, limits and motors stay; expressions of the file are
+/// written as their values, and notes say that it was converted.
+///
+/// # Errors
+///
+/// When the table cannot be written as a valid robot file.
+pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Report> {
+    let chain = of_robot(robot);
+    let table = table(&chain, convention);
+    let mut result = robot_of(&chain, &table, convention);
+    result.name.clone_from(&robot.name);
+    result.title.clone_from(&robot.title);
+    result.source.clone_from(&robot.source);
+    let word = |convention| match convention {
+        Convention::Standard => "standard",
+        Convention::Modified => "modified",
+    };
+    let note = format!("- converted from {} to {} rows by rne", word(robot.convention), word(convention));
+    result.notes = Some(robot.notes.as_ref().map_or_else(|| note.clone(), |notes| format!("{notes}\n{note}")));
+    let text = robot_file::write(&result);
+    let checked = check(&format!("{}, converted", robot.name), &text)?;
+    let rounding = Difference::of_table(&Dynamics::of(&chain), &checked.robot);
+    Ok(Converted { remarks: remarks(&checked.robot, &table), robot: checked.robot, text, rounding })
+}
+
+/// The chain of a table: the frame of each link stands on its joint, z along the axis.
+pub(crate) fn of_robot(robot: &Robot) -> Chain {
+    let rows: Vec<&Row> = robot.rows().collect();
+    let mut joints = Vec::with_capacity(rows.len());
+    // What the row before leaves for the next joint: the end of its link.
+    let mut end = Pose::identity();
+    for (joint, row) in robot.joints.iter().zip(&rows) {
+        let screw = screw_x(row);
+        let (before, after) = match robot.convention {
+            Convention::Standard => (end, screw),
+            Convention::Modified => (screw, Pose::identity()),
+        };
+        joints.push(ChainJoint {
+            name: joint.name.clone(),
+            is_prismatic: row.kind == JointKind::Prismatic,
+            place: before * screw_z(row),
+            axis: Vector::unit(2),
+            body: Body::of_link(&row.link).seen_from(after),
+            limits: joint.limits,
+            motor: joint.motor,
+        });
+        end = after;
+    }
+    let base = placement(&robot.base);
+    let tip = end * placement(&robot.tool);
+    Chain { base, gravity: Vector::decimal(robot.gravity), joints, tip }
+}
+
+pub(crate) fn placement(transform: &rne_model::Transform) -> Pose {
+    Pose::new(transform.xyz, transform.rpy.map(|angle| angle.radians))
+}
+
+/// Tx(a) Rx(alpha), in either order.
+fn screw_x(row: &Row) -> Pose {
+    Pose { rotation: Rotation::x(row.dh.alpha.radians), translation: Vector::unit(0) * decimal(row.dh.a) }
+}
+
+/// Rz(theta) Tz(d), in either order.
+fn screw_z(row: &Row) -> Pose {
+    let zero = Double::new(0.0);
+    Pose { rotation: Rotation::z(row.dh.theta.radians), translation: Vector([zero, zero, decimal(row.dh.d)]) }
+}

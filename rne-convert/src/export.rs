@@ -1,0 +1,148 @@
+//! From a table to a URDF, so that any reader of URDF can be held against rne.
+
+use std::fmt::Write as _;
+
+use rne_model::{Robot, one_line};
+
+use crate::body::Body;
+use crate::chain::ChainJoint;
+use crate::conventions::of_robot;
+use crate::geometry::{Pose, rounded};
+use crate::robot_file::number;
+
+/// A robot as a URDF.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exported {
+    /// The URDF.
+    pub text: String,
+    /// The acceleration of gravity in the axes of its root link `world`, m/s²: a URDF cannot say it.
+    pub gravity: [f64; 3],
+    /// What the URDF cannot say, in sentences.
+    pub remarks: Vec<String>,
+}
+
+/// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
+/// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
+#[must_use]
+pub fn export(robot: &Robot) -> Exported {
+    let chain = of_robot(robot);
+    let gravity = (chain.base.rotation * chain.gravity).rounded(10.0);
+    let mut remarks = Vec::new();
+    if gravity != [0.0, 0.0, -9.81] {
+        let [x, y, z] = gravity.map(number);
+        remarks.push(format!(
+            "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; where that is not the default, set it: \
+             model.gravity.linear = np.array([{x}, {y}, {z}])"
+        ));
+    }
+    if robot.joints.iter().any(|joint| joint.motor.is_some()) {
+        remarks.push("motors have no place in a URDF".to_owned());
+    }
+    let mut text = String::from("<?xml version=\"1.0\"?>\n");
+    if let Some(title) = &robot.title {
+        let _ = writeln!(text, "<!-- {} -->", comment(title));
+    }
+    for remark in &remarks {
+        let _ = writeln!(text, "<!-- {} -->", comment(remark));
+    }
+    let _ = writeln!(text, "<robot name=\"{}\">\n  <link name=\"world\"/>\n  <link name=\"base\"/>", robot.name);
+    fixed(&mut text, "world_to_base", ("world", "base"), chain.base);
+    let mut names = Names::default();
+    let mut parent = "base".to_owned();
+    for (index, joint) in chain.joints.iter().enumerate() {
+        let child = format!("link_{}", index + 1);
+        link(&mut text, &child, &joint.body);
+        movable(&mut text, &names.unique(&joint.name), joint, (&parent, &child));
+        parent = child;
+    }
+    text.push_str("  <link name=\"tip\"/>\n");
+    fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
+    text.push_str("</robot>\n");
+    Exported { text, gravity, remarks }
+}
+
+/// The names of joints that are taken.
+#[derive(Default)]
+struct Names(Vec<String>);
+
+impl Names {
+    /// The name of a joint as an attribute; that of another fixed joint gets a stroke.
+    fn unique(&mut self, name: &str) -> String {
+        let mut name = one_line(name);
+        while matches!(name.as_str(), "world_to_base" | "to_tip") || self.0.contains(&name) {
+            name.push('\'');
+        }
+        self.0.push(name.clone());
+        quick_xml::escape::escape(name.as_str()).into_owned()
+    }
+}
+
+/// Text for a comment of XML, in which `--` must not stand.
+fn comment(text: &str) -> String {
+    let mut text = one_line(text);
+    while text.contains("--") {
+        text = text.replace("--", "- -");
+    }
+    let end = if text.ends_with('-') { " " } else { "" };
+    text + end
+}
+
+fn vector(values: [f64; 3]) -> String {
+    values.map(number).join(" ")
+}
+
+fn origin(pose: Pose) -> String {
+    let size = pose.translation.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
+    // All digits: a URDF has no other word for pi/2.
+    format!("<origin xyz=\"{}\" rpy=\"{}\"/>", vector(pose.translation.rounded(size)), vector(pose.rotation.to_rpy()))
+}
+
+fn fixed(text: &mut String, name: &str, (parent, child): (&str, &str), pose: Pose) {
+    let _ = writeln!(
+        text,
+        "  <joint name=\"{name}\" type=\"fixed\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{child}\"/>\n    \
+         {}\n  </joint>",
+        origin(pose)
+    );
+}
+
+fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (&str, &str)) {
+    let limits = joint.limits;
+    let kind = match (joint.is_prismatic, limits.position) {
+        (true, _) => "prismatic",
+        (false, Some(_)) => "revolute",
+        (false, None) => "continuous",
+    };
+    let (lower, upper) = limits.position.unwrap_or(if joint.is_prismatic { (-1e9, 1e9) } else { (0.0, 0.0) });
+    let position = if kind == "continuous" {
+        String::new()
+    } else {
+        format!("lower=\"{}\" upper=\"{}\" ", number(lower), number(upper))
+    };
+    let _ = writeln!(
+        text,
+        "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{child}\"/>\n    \
+         {}\n    <axis xyz=\"0 0 1\"/>\n    <limit {position}effort=\"{}\" velocity=\"{}\"/>\n  </joint>",
+        origin(joint.place),
+        number(limits.effort.unwrap_or(0.0)),
+        number(limits.velocity.unwrap_or(0.0))
+    );
+}
+
+fn link(text: &mut String, name: &str, body: &Body) {
+    let link = body.to_link();
+    let i = link.inertia;
+    let _ = writeln!(
+        text,
+        "  <link name=\"{name}\">\n    <inertial>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n      <mass value=\"{}\"/>\n      \
+         <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n  </link>",
+        vector(link.com),
+        number(rounded(body.mass, 1.0)),
+        number(i.xx),
+        number(i.xy),
+        number(i.xz),
+        number(i.yy),
+        number(i.yz),
+        number(i.zz)
+    );
+}

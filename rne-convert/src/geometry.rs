@@ -1,0 +1,327 @@
+//! Vectors, rotations and poses of twice the precision.
+//!
+//! A conversion turns numbers many times and rounds once, at the end. What is equal on paper, a sum of decimals or a
+//! product of rotations that is the identity, is then equal to 1e-30, and rounding gives the number that a person would
+//! write.
+
+use std::ops::{Add, Mul, Neg, Sub};
+
+use rne_model::{Angle, Double, QuarterTurns};
+
+/// What cancels leaves less than this of what went in: far below an `f64`'s last place, far above that of a [`Double`].
+const CANCELLED: f64 = 1e-26;
+
+/// A number as its text has it: 0.1 is a tenth.
+pub(crate) fn decimal(value: f64) -> Double {
+    Double::decimal(value)
+}
+
+/// The nearest `f64`, where what is left of a cancellation of numbers of size `scale` is zero.
+pub(crate) fn rounded(value: Double, scale: f64) -> f64 {
+    let value = value.to_f64();
+    if value.abs() <= CANCELLED * scale { 0.0 } else { value }
+}
+
+/// A vector.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub(crate) struct Vector(pub(crate) [Double; 3]);
+
+impl Vector {
+    pub(crate) const ZERO: Self = Self([Double::new(0.0); 3]);
+
+    /// The numbers as their texts have them.
+    pub(crate) fn decimal(numbers: [f64; 3]) -> Self {
+        Self(numbers.map(decimal))
+    }
+
+    /// The unit vector along an axis of the frame.
+    pub(crate) fn unit(axis: usize) -> Self {
+        let mut vector = Self::ZERO;
+        vector.0[axis] = Double::new(1.0);
+        vector
+    }
+
+    pub(crate) fn dot(self, other: Self) -> Double {
+        let [x, y, z] = self.0;
+        let [a, b, c] = other.0;
+        x * a + y * b + z * c
+    }
+
+    pub(crate) fn cross(self, other: Self) -> Self {
+        let [x, y, z] = self.0;
+        let [a, b, c] = other.0;
+        Self([y * c - z * b, z * a - x * c, x * b - y * a])
+    }
+
+    pub(crate) fn norm(self) -> Double {
+        self.dot(self).sqrt()
+    }
+
+    /// The vector of length 1; `None` where there is no direction.
+    pub(crate) fn direction(self) -> Option<Self> {
+        // Scaled first, so that no square vanishes.
+        let largest = self.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return None;
+        }
+        let scaled = self * (Double::new(1.0) / Double::new(largest));
+        Some(scaled * (Double::new(1.0) / scaled.norm()))
+    }
+
+    /// What of it is perpendicular to the unit vector `axis`.
+    pub(crate) fn across(self, axis: Self) -> Self {
+        self - axis * self.dot(axis)
+    }
+
+    pub(crate) fn to_f64(self) -> [f64; 3] {
+        self.0.map(Double::to_f64)
+    }
+
+    /// The nearest `f64`; what is left of a cancellation of numbers of size `scale` is zero.
+    pub(crate) fn rounded(self, scale: f64) -> [f64; 3] {
+        self.0.map(|x| rounded(x, scale))
+    }
+}
+
+impl Add for Vector {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self([0, 1, 2].map(|i| self.0[i] + other.0[i]))
+    }
+}
+
+impl Neg for Vector {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(self.0.map(|x| -x))
+    }
+}
+
+impl Sub for Vector {
+    type Output = Self;
+
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul<Double> for Vector {
+    type Output = Self;
+
+    fn mul(self, factor: Double) -> Self {
+        Self(self.0.map(|x| x * factor))
+    }
+}
+
+/// The sine and cosine of an angle. Right angles are exact, as everywhere in rne; so are, to the precision of a
+/// [`Double`], the multiples of pi/12 that a text can only round.
+pub(crate) fn sin_cos(radians: f64) -> (Double, Double) {
+    if let Some(right) = Angle::new(radians).right {
+        return exact(right);
+    }
+    if let Some(twelfths) = twelfths_of_pi(radians) {
+        let twelfth = Double { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 } / Double::new(12.0);
+        return (twelfth * Double::new(twelfths)).sin_cos();
+    }
+    decimal(radians).sin_cos()
+}
+
+fn exact(right: QuarterTurns) -> (Double, Double) {
+    let (sin, cos) = right.sin_cos();
+    (Double::new(sin), Double::new(cos))
+}
+
+/// Which multiple of pi/12 an angle is, within 4 units in the last place: then no text could say it better.
+pub(crate) fn twelfths_of_pi(radians: f64) -> Option<f64> {
+    let twelfths = (radians * 12.0 / std::f64::consts::PI).round();
+    let nearest = twelfths * std::f64::consts::PI / 12.0;
+    ((radians - nearest).abs() <= 4.0 * f64::EPSILON * nearest.abs()).then_some(twelfths)
+}
+
+/// The angle of the point (cos, sin), in (-pi, pi]: -pi is written as pi. Right angles come out as the nearest `f64`.
+pub(crate) fn atan2(sin: Double, cos: Double) -> f64 {
+    use std::f64::consts::{FRAC_PI_2, PI};
+    let size = (sin * sin + cos * cos).sqrt();
+    let small = |x: Double| x.to_f64().abs() <= CANCELLED * size.to_f64();
+    match (small(sin), small(cos)) {
+        (true, _) if cos.to_f64() >= 0.0 => return 0.0,
+        (true, _) => return PI,
+        (_, true) => return FRAC_PI_2.copysign(sin.to_f64()),
+        _ => {}
+    }
+    let first = sin.to_f64().atan2(cos.to_f64());
+    // One step of Newton from the rounded angle: what is left is its own sine.
+    let (s, c) = Double::new(first).sin_cos();
+    let angle = (Double::new(first) + (sin * c - cos * s) / size).to_f64();
+    if angle == -PI { PI } else { angle }
+}
+
+/// A rotation: components in the turned frame into components in the frame that it is turned against.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Rotation {
+    /// The axes of the turned frame.
+    pub(crate) columns: [Vector; 3],
+}
+
+impl Rotation {
+    pub(crate) fn identity() -> Self {
+        Self { columns: [0, 1, 2].map(Vector::unit) }
+    }
+
+    /// About x.
+    pub(crate) fn x(radians: f64) -> Self {
+        let (s, c) = sin_cos(radians);
+        let zero = Double::new(0.0);
+        Self { columns: [Vector::unit(0), Vector([zero, c, s]), Vector([zero, -s, c])] }
+    }
+
+    /// About y.
+    fn y(radians: f64) -> Self {
+        let (s, c) = sin_cos(radians);
+        let zero = Double::new(0.0);
+        Self { columns: [Vector([c, zero, -s]), Vector::unit(1), Vector([s, zero, c])] }
+    }
+
+    /// About z.
+    pub(crate) fn z(radians: f64) -> Self {
+        let (s, c) = sin_cos(radians);
+        let zero = Double::new(0.0);
+        Self { columns: [Vector([c, s, zero]), Vector([-s, c, zero]), Vector::unit(2)] }
+    }
+
+    /// Fixed-axis roll, pitch, yaw as in URDF: Rz(yaw) Ry(pitch) Rx(roll).
+    pub(crate) fn rpy([roll, pitch, yaw]: [f64; 3]) -> Self {
+        Self::z(yaw) * Self::y(pitch) * Self::x(roll)
+    }
+
+    /// About a unit vector (Rodrigues).
+    pub(crate) fn about(axis: Vector, radians: f64) -> Self {
+        let (s, c) = sin_cos(radians);
+        let rest = Double::new(1.0) - c;
+        let turned = |v: Vector| v * c + axis.cross(v) * s + axis * (axis.dot(v) * rest);
+        Self { columns: [0, 1, 2].map(|i| turned(Vector::unit(i))) }
+    }
+
+    /// The frame whose z axis is `z` and whose x axis is `x`, both of length 1 and perpendicular.
+    pub(crate) fn of_axes(x: Vector, z: Vector) -> Self {
+        Self { columns: [x, z.cross(x), z] }
+    }
+
+    pub(crate) fn transpose(self) -> Self {
+        let [x, y, z] = self.columns;
+        Self { columns: [0, 1, 2].map(|i| Vector([x.0[i], y.0[i], z.0[i]])) }
+    }
+
+    /// Roll, pitch and yaw. Near a pitch of ±90° only the difference, or the sum, of roll and yaw is well defined: roll
+    /// is computed first and rounded, and yaw is what is then left of the rotation, so that their rounding does not
+    /// turn it.
+    pub(crate) fn to_rpy(self) -> [f64; 3] {
+        let [x, y, z] = self.columns;
+        let level = (x.0[0] * x.0[0] + x.0[1] * x.0[1]).sqrt();
+        let pitch = atan2(-x.0[2], level);
+        let roll = if level.to_f64() <= CANCELLED { 0.0 } else { atan2(y.0[2], z.0[2]) };
+        // R Rx(-roll) = Rz(yaw) Ry(pitch), whose second column is (-sin yaw, cos yaw, 0).
+        let second = self * Self::x(-roll) * Vector::unit(1);
+        [roll, pitch, atan2(-second.0[0], second.0[1])]
+    }
+}
+
+impl Mul for Rotation {
+    type Output = Self;
+
+    fn mul(self, other: Self) -> Self {
+        Self { columns: other.columns.map(|column| self * column) }
+    }
+}
+
+impl Mul<Vector> for Rotation {
+    type Output = Vector;
+
+    fn mul(self, v: Vector) -> Vector {
+        self.columns[0] * v.0[0] + self.columns[1] * v.0[1] + self.columns[2] * v.0[2]
+    }
+}
+
+/// A placement of one frame in another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Pose {
+    pub(crate) rotation: Rotation,
+    pub(crate) translation: Vector,
+}
+
+impl Pose {
+    pub(crate) fn identity() -> Self {
+        Self { rotation: Rotation::identity(), translation: Vector::ZERO }
+    }
+
+    /// A translation and fixed-axis roll, pitch, yaw.
+    pub(crate) fn new(xyz: [f64; 3], rpy: [f64; 3]) -> Self {
+        Self { rotation: Rotation::rpy(rpy), translation: Vector::decimal(xyz) }
+    }
+
+    pub(crate) fn inverse(self) -> Self {
+        let rotation = self.rotation.transpose();
+        Self { rotation, translation: -(rotation * self.translation) }
+    }
+
+    /// A point given in this frame, in the frame around it.
+    pub(crate) fn point(self, point: Vector) -> Vector {
+        self.rotation * point + self.translation
+    }
+}
+
+impl Mul for Pose {
+    type Output = Self;
+
+    fn mul(self, next: Self) -> Self {
+        Self { rotation: self.rotation * next.rotation, translation: self.point(next.translation) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, PI};
+
+    use super::*;
+
+    fn difference(a: Rotation, b: Rotation) -> f64 {
+        let parts = a.columns.into_iter().zip(b.columns);
+        parts.map(|(a, b)| (a - b).norm().to_f64()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn angles_come_back_to_the_last_bit() {
+        for angle in [0.0, 1.570_796_327, 1.5708, 3.1415, -0.3, 2.9, 1e-9, -1e-17, FRAC_PI_3, -FRAC_PI_4, PI, 0.1] {
+            let (s, c) = sin_cos(angle);
+            assert_eq!(atan2(s, c), angle, "{angle}");
+        }
+        assert_eq!(atan2(Double::new(-1.0), Double::new(0.0)), -FRAC_PI_2);
+        assert_eq!(atan2(Double::new(-0.0), Double::new(-1.0)), PI);
+    }
+
+    #[test]
+    fn decimals_stay_decimals() {
+        let a = Pose::new([0.1, 0.333, 0.0], [FRAC_PI_4, 0.0, 0.0]);
+        let b = Pose::new([0.2, 0.0, 0.0], [-FRAC_PI_4, 0.0, 0.0]);
+        let sum = a * b;
+        assert_eq!(sum.translation.rounded(1.0), [0.3, 0.333, 0.0]);
+        assert_eq!(sum.rotation.to_rpy(), [0.0; 3]);
+        assert_eq!((a.inverse() * a).translation.rounded(1.0), [0.0; 3]);
+    }
+
+    /// The usual way, asin or atan2 for each angle by itself, loses 1.5e-11 here.
+    #[test]
+    fn roll_pitch_yaw_near_the_pole() {
+        for off in [0.0, 1e-16, 1e-13, 1e-12, -1e-10, 1e-9, -1e-8, 1e-6, 1e-3] {
+            for (roll, yaw) in [(0.3, -1.1), (0.0, 2.0), (-2.9, 0.4), (3.0, 3.0)] {
+                for pitch in [FRAC_PI_2 + off, -FRAC_PI_2 + off] {
+                    let rotation = Rotation::rpy([roll, pitch, yaw]);
+                    let back = Rotation::rpy(rotation.to_rpy());
+                    assert!(difference(rotation, back) < 6e-16, "{off} {roll} {yaw}: {:?}", rotation.to_rpy());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,275 @@
+//! From a URDF to a robot file, with an account of what was done.
+
+use rne_model::{
+    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Report, Robot, Row, RunTime, Transform, check,
+};
+
+use crate::chain::{Chain, Extracted, Selection, extract};
+use crate::comparison::Difference;
+use crate::dynamics::Dynamics;
+use crate::geometry::{Pose, Vector};
+use crate::robot_file;
+use crate::snap::Snapped;
+use crate::source::quoted;
+use crate::table::{FAR, Table, table};
+use crate::urdf::Urdf;
+
+/// How a URDF becomes a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// Which chain of the tree is meant.
+    pub selection: Selection,
+    /// The rows of the table.
+    pub convention: Convention,
+    /// Whether angles within 2e-4 rad of a multiple of pi/12 are taken for it.
+    pub snap: bool,
+    /// Whether bodies are kept whose inertia is not positive semidefinite.
+    pub keep_unphysical: bool,
+    /// The acceleration of gravity in the axes of the root link, m/s².
+    pub gravity: [f64; 3],
+    /// The name of the robot, `[a-z][a-z0-9_]*`; made of that of the URDF unless given.
+    pub name: Option<String>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            selection: Selection::default(),
+            convention: Convention::Standard,
+            snap: true,
+            keep_unphysical: false,
+            gravity: [0.0, 0.0, -9.81],
+            name: None,
+        }
+    }
+}
+
+/// A robot made of a URDF.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The robot.
+    pub robot: Robot,
+    /// Its robot file: reading it gives the robot, bit for bit.
+    pub text: String,
+    /// What was done on the way.
+    pub account: Account,
+}
+
+/// What an import did.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// The links at the ends of the chain.
+    pub base: String,
+    /// The link at the end of the chain.
+    pub tip: String,
+    /// Joints that are held, and where, rad or m.
+    pub held: Vec<(String, f64)>,
+    /// Movable joints that stand on what does not move; nothing of them reaches the arm.
+    pub aside: Vec<String>,
+    /// Per joint the links with mass that were lumped into one body.
+    pub lumped: Vec<(String, Vec<String>)>,
+    /// Angles and axes that were taken for what they round.
+    pub snapped: Vec<Snapped>,
+    /// What that changed; `None` where nothing was snapped.
+    pub change: Option<Difference>,
+    /// Between the chain and the table as rne computes it: the rounding of the conversion.
+    pub rounding: Difference,
+    /// What is remarkable, in sentences.
+    pub remarks: Vec<String>,
+    /// The lints of the robot file.
+    pub lints: Report,
+}
+
+impl Urdf {
+    /// Converts a chain of the tree into a table.
+    ///
+    /// ```
+    /// let text = r#"
+    /// <robot name="Pendulum">
+    ///   <link name="base"/>
+    ///   <link name="rod"><inertial>
+    ///     <origin xyz="0 0 -0.25"/><mass value="2"/>
+    ///     <inertia ixx="0.04" ixy="0" ixz="0" iyy="0.04" iyz="0" izz="0"/>
+    ///   </inertial></link>
+    ///   <joint name="hinge" type="continuous">
+    ///     <parent link="base"/><child link="rod"/><axis xyz="0 1 0"/>
+    ///   </joint>
+    /// </robot>"#;
+    /// let imported = rne_convert::Urdf::read("pendulum.urdf", text).unwrap().import(&Default::default()).unwrap();
+    /// assert_eq!(imported.robot.name, "pendulum");
+    /// assert_eq!(imported.robot.gravity, [0.0, -9.81, 0.0]);
+    /// assert_eq!(imported.robot.joints[0].row.link.com, [0.0, -0.25, 0.0]);
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// What stands in the way, with its place in the URDF: a name that is not there, a tip that must be named, movable
+    /// joints off the chain that nobody holds, joints that no row of a table can say, bodies that are none.
+    pub fn import(&self, options: &Options) -> Result<Imported, Report> {
+        let (chain, told) = extract(self, &options.selection, options.gravity, options.snap)?;
+        let table = table(&chain, options.convention);
+        let mut robot = robot(&chain, &table, options.convention);
+        robot.name = options.name.clone().unwrap_or_else(|| identifier(&self.name));
+        robot.title = title(&self.name);
+        robot.source = format!(
+            "{}, from {} to {}; imported by rne {}",
+            printable(&self.source.file),
+            printable(&told.base),
+            printable(&told.tip),
+            env!("CARGO_PKG_VERSION")
+        );
+        if !options.keep_unphysical {
+            self.refuse_unphysical(&robot, &told)?;
+        }
+        let exact = Dynamics::of(&chain);
+        let change = if told.snapped.is_empty() {
+            None
+        } else {
+            let (raw, _) = extract(self, &options.selection, options.gravity, false)?;
+            Some(Difference::of_chains(&Dynamics::of(&raw), &exact))
+        };
+        robot.notes = notes(&told, change.as_ref());
+        let text = robot_file::write(&robot);
+        let checked = check(&format!("{}, imported", self.source.file), &text)?;
+        let rounding = Difference::of_table(&exact, &checked.robot);
+        let joints = chain.joints.iter().map(|joint| joint.name.clone());
+        let account = Account {
+            remarks: remarks(&robot, &table),
+            lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
+            base: told.base,
+            tip: told.tip,
+            held: told.held,
+            aside: told.aside,
+            snapped: told.snapped,
+            change,
+            rounding,
+            lints: checked.lints,
+        };
+        Ok(Imported { robot: checked.robot, text, account })
+    }
+
+    /// Bodies of which the inertia has a negative eigenvalue.
+    fn refuse_unphysical(&self, robot: &Robot, told: &Extracted) -> Result<(), Report> {
+        for ((joint, span), lumped) in robot.joints.iter().zip(&told.spans).zip(&told.lumped) {
+            if joint.is_physical() {
+                continue;
+            }
+            let moment = joint.row.link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
+            let message = format!(
+                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has a \
+                 negative one",
+                quoted(&joint.name)
+            );
+            let several =
+                if lumped.len() > 1 { format!(" (lumped of {})", crate::source::names(lumped)) } else { String::new() };
+            let help = format!("correct the inertia{several}, or take it as it is with --keep-unphysical");
+            return Err(self.source.error(span, message, help));
+        }
+        Ok(())
+    }
+}
+
+/// The robot of a chain and its table, without texts.
+pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Robot {
+    let start = chain.base * table.start;
+    let gravity = start.rotation.transpose() * (chain.base.rotation * chain.gravity);
+    let joints = chain.joints.iter().zip(&table.rows).zip(&table.frames).map(|((joint, dh), frame)| {
+        let link = joint.body.seen_from(frame.inverse()).to_link();
+        let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
+        Joint {
+            name: joint.name.clone(),
+            row: Row { kind, dh: *dh, link },
+            written_inertia: (link.inertia, InertiaReference::Com),
+            limits: joint.limits,
+            motor: joint.motor,
+        }
+    });
+    Robot {
+        name: String::new(),
+        title: None,
+        source: String::new(),
+        notes: None,
+        convention,
+        gravity: gravity.rounded(10.0),
+        base: transform(start),
+        tool: transform(table.tool),
+        parameters: Vec::new(),
+        joints: joints.collect(),
+        run_time: RunTime::default(),
+    }
+}
+
+/// A placement of the robot file.
+fn transform(pose: Pose) -> Transform {
+    let size = |v: Vector| v.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
+    let xyz = pose.translation.rounded(size(pose.translation)).map(|x| if x.abs() < 1e-15 { 0.0 } else { x });
+    Transform { xyz, rpy: pose.rotation.to_rpy().map(Angle::new) }
+}
+
+/// A name for a robot file.
+pub(crate) fn identifier(name: &str) -> String {
+    let mut identifier = String::new();
+    for c in name.chars().take(60) {
+        let c = c.to_ascii_lowercase();
+        if c.is_ascii_lowercase() || (c.is_ascii_digit() && !identifier.is_empty()) {
+            identifier.push(c);
+        } else if !identifier.is_empty() && !identifier.ends_with('_') {
+            identifier.push('_');
+        }
+    }
+    let identifier = identifier.trim_end_matches('_');
+    if identifier.is_empty() { "arm".to_owned() } else { identifier.to_owned() }
+}
+
+fn title(name: &str) -> Option<String> {
+    let title = printable(name).trim().to_owned();
+    (!title.is_empty()).then_some(title)
+}
+
+/// A text of the URDF in one of a robot file: one line, without control characters.
+fn printable(text: &str) -> String {
+    rne_model::one_line(text)
+}
+
+/// What a reader of the robot file should know.
+fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
+    let mut notes = Vec::new();
+    for (joint, value) in &told.held {
+        notes.push(format!("- the joint {} is held at {}", printable(joint), robot_file::number(*value)));
+    }
+    if let Some(Difference { position, torque, .. }) = change {
+        notes.push(format!(
+            "- angles snapped to multiples of pi/12: {}; torques move by up to {torque:.1e} of the largest, the tip by \
+             {position:.1e} m",
+            told.snapped.len()
+        ));
+    }
+    (!notes.is_empty()).then(|| notes.join("\n"))
+}
+
+/// What is remarkable about a table.
+pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
+    let mut remarks = Vec::new();
+    for (joint, tilt) in &table.levelled {
+        remarks.push(format!(
+            "the axes of joints {joint} and {} are {tilt:.1e} rad off parallel and are taken as parallel: their common \
+             normal is too far away for a table",
+            joint + 1
+        ));
+    }
+    for (index, row) in robot.rows().enumerate() {
+        if row.dh.d.abs() > FAR || row.dh.a.abs() > FAR {
+            remarks.push(format!(
+                "row {} has d = {:.0} m and a = {:.0} m, since two axes are nearly parallel; digits are lost there",
+                index + 1,
+                row.dh.d,
+                row.dh.a
+            ));
+        }
+    }
+    let has_mass = |joint: &Joint| joint.row.link.mass != 0.0 || joint.row.link.inertia != Inertia::default();
+    if !robot.joints.iter().any(has_mass) {
+        remarks.push("no link has mass: the URDF has no inertial data".to_owned());
+    }
+    remarks
+}

@@ -1,0 +1,32 @@
+//! Other descriptions of an arm into a Denavit-Hartenberg table, and back.
+//!
+//! Strings in, data out: nothing here opens a file or prints. [`Urdf::import`] makes a robot file of a chain of a URDF,
+//! [`convert()`] writes a table in the other convention, [`export()`] writes it as a URDF, [`robot_file::write`] is the
+//! writer of robot files.
+//!
+//! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
+//! table, and what is zero on paper is zero: the compiler folds it away.
+#![forbid(unsafe_code)]
+
+mod body;
+mod chain;
+mod comparison;
+mod conventions;
+mod dynamics;
+mod export;
+mod geometry;
+mod import;
+pub mod robot_file;
+mod scan;
+mod snap;
+mod source;
+mod table;
+mod urdf;
+
+pub use chain::Selection;
+pub use comparison::Difference;
+pub use conventions::{Converted, convert};
+pub use export::{Exported, export};
+pub use import::{Account, Imported, Options};
+pub use snap::{Snapped, TOLERANCE};
+pub use urdf::Urdf;

@@ -1,0 +1,256 @@
+//! Robots as robot files: what `check` reads, as a person would write it.
+
+use std::fmt::Write as _;
+
+use rne_model::{Convention, Inertia, InertiaReference, Joint, JointKind, Limits, Link, Motor, Robot, Transform};
+
+use crate::snap::angle_text;
+
+/// Width of a folded text.
+const WIDTH: usize = 110;
+
+/// The robot file of a robot. Reading it gives the robot again, bit for bit, but for parameters that stay free until run
+/// time: every number is written as its value.
+///
+/// Angles are written as `pi/2`, limits as `deg(170)` where that is the same number; every other number with the
+/// digits that it needs.
+///
+/// ```
+/// let text = "
+/// format: 1
+/// name: pendulum
+/// source: a lecture
+/// convention: standard
+/// gravity: [0, -9.81, 0]
+/// joints:
+///   - {type: revolute, dh: {theta: 1.5707963267948966, d: 0, a: 0.5, alpha: 0}, link: {mass: 2, com: [-0.25, 0, 0]}}
+/// ";
+/// let robot = rne_model::Robot::from_yaml(text).unwrap();
+/// let written = rne_convert::robot_file::write(&robot);
+/// assert!(written.contains("    dh: {theta: pi/2, d: 0, a: 0.5, alpha: 0}"));
+/// assert_eq!(rne_model::Robot::from_yaml(&written).unwrap(), robot);
+/// ```
+#[must_use]
+pub fn write(robot: &Robot) -> String {
+    let mut text = String::new();
+    let convention = match robot.convention {
+        Convention::Standard => "standard",
+        Convention::Modified => "modified",
+    };
+    let _ = writeln!(text, "format: 1\nname: {}", robot.name);
+    if let Some(title) = &robot.title {
+        let _ = writeln!(text, "title: {}", scalar(title));
+    }
+    let _ = writeln!(text, "source: {}", folded(&robot.source));
+    if let Some(notes) = &robot.notes {
+        let _ = writeln!(text, "notes: {}", block(notes));
+    }
+    if !robot.parameters.is_empty() {
+        let _ = writeln!(text, "parameters:");
+        for (name, value) in &robot.parameters {
+            let _ = writeln!(text, "  {name}: {}", number(*value));
+        }
+    }
+    let _ = writeln!(text, "convention: {convention}");
+    noted(&mut text, &format!("gravity: {}", list(&robot.gravity)), "m/s²");
+    for (key, placement) in [("base", &robot.base), ("tool", &robot.tool)] {
+        if *placement != Transform::IDENTITY {
+            noted(&mut text, &format!("{key}: {}", transform(placement)), "m, rad");
+        }
+    }
+    text.push_str("joints:\n");
+    for (index, joint) in robot.joints.iter().enumerate() {
+        if index > 0 {
+            text.push('\n');
+        }
+        write_joint(&mut text, joint, index == 0);
+    }
+    text
+}
+
+/// A line with its units behind it.
+fn noted(text: &mut String, line: &str, units: &str) {
+    let _ = writeln!(text, "{line}   # {units}");
+}
+
+/// One block of the list; with units where `is_first`.
+fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
+    let Joint { name, row, limits, motor, .. } = joint;
+    let is_revolute = row.kind == JointKind::Revolute;
+    let line = |text: &mut String, line: String, units: &str| {
+        if is_first {
+            noted(text, &line, units);
+        } else {
+            text.push_str(&line);
+            text.push('\n');
+        }
+    };
+    let kind = if is_revolute { "revolute" } else { "prismatic" };
+    let _ = writeln!(text, "  - name: {}\n    type: {kind}", scalar(name));
+    let dh = &row.dh;
+    let dh = format!(
+        "    dh: {{theta: {}, d: {}, a: {}, alpha: {}}}",
+        angle(dh.theta.radians),
+        number(dh.d),
+        number(dh.a),
+        angle(dh.alpha.radians)
+    );
+    line(text, dh, "rad, m");
+    let (written, about) = joint.written_inertia;
+    let Link { mass, com, .. } = row.link;
+    if row.link != Link::default() || written != Inertia::default() || about != InertiaReference::Com {
+        text.push_str("    link:\n");
+        line(text, format!("      mass: {}", number(mass)), "kg");
+        if com != [0.0; 3] {
+            line(text, format!("      com: {}", list(&com)), "m");
+        }
+        if written != Inertia::default() {
+            line(text, format!("      inertia: {}", inertia(&written)), "kg m²");
+        }
+        if about == InertiaReference::Origin {
+            text.push_str("      inertia_about: origin\n");
+        }
+        if !joint.is_physical() {
+            text.push_str("      physical: false\n");
+        }
+    }
+    if *limits != Limits::default() {
+        let units = if is_revolute { "rad, rad/s, N m" } else { "m, m/s, N" };
+        line(text, format!("    limits: {}", limited(limits, is_revolute)), units);
+    }
+    if let Some(motor) = motor {
+        let _ = writeln!(text, "    motor: {}", motor_text(motor));
+    }
+}
+
+fn transform(placement: &Transform) -> String {
+    let rpy: Vec<String> = placement.rpy.iter().map(|turn| angle(turn.radians)).collect();
+    format!("{{xyz: {}, rpy: [{}]}}", list(&placement.xyz), rpy.join(", "))
+}
+
+/// The elements that are not zero; a tensor has one at least.
+fn inertia(tensor: &Inertia) -> String {
+    let Inertia { xx, yy, zz, xy, xz, yz } = *tensor;
+    let elements = [("xx", xx), ("yy", yy), ("zz", zz), ("xy", xy), ("xz", xz), ("yz", yz)];
+    pairs(elements.iter().filter(|(_, value)| *value != 0.0).map(|(key, value)| (*key, number(*value))))
+}
+
+fn limited(limits: &Limits, is_revolute: bool) -> String {
+    let degrees = |value: f64| if is_revolute { in_degrees(value) } else { number(value) };
+    let position = limits.position.map(|(low, high)| ("position", format!("[{}, {}]", degrees(low), degrees(high))));
+    let velocity = limits.velocity.map(|velocity| ("velocity", degrees(velocity)));
+    let effort = limits.effort.map(|effort| ("effort", number(effort)));
+    pairs([position, velocity, effort].into_iter().flatten())
+}
+
+fn motor_text(motor: &Motor) -> String {
+    let Motor { inertia, gear_ratio, viscous, coulomb } = *motor;
+    let given = |key, value: f64, default: f64| (value != default).then(|| (key, number(value)));
+    let coulomb = (coulomb != [0.0; 2]).then(|| ("coulomb", list(&coulomb)));
+    let parts =
+        [given("inertia", inertia, 0.0), given("gear_ratio", gear_ratio, 1.0), given("viscous", viscous, 0.0), coulomb];
+    pairs(parts.into_iter().flatten())
+}
+
+fn pairs<'a>(pairs: impl Iterator<Item = (&'a str, String)>) -> String {
+    let pairs: Vec<String> = pairs.map(|(key, value)| format!("{key}: {value}")).collect();
+    format!("{{{}}}", pairs.join(", "))
+}
+
+fn list(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+/// A number with all digits that it needs to be read back; zero has no sign.
+pub(crate) fn number(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-4 || value.abs() >= 1e9 {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+fn angle(value: f64) -> String {
+    angle_text(value).unwrap_or_else(|| number(value))
+}
+
+/// An angle, or an angular velocity, in whole degrees where that is the same number.
+fn in_degrees(value: f64) -> String {
+    let degrees = value.to_degrees().round();
+    let text = format!("{}deg({})", if value < 0.0 { "-" } else { "" }, degrees.abs());
+    if value != 0.0 && degrees.abs() <= 720.0 && rne_model::number(&text) == Ok(value) { text } else { number(value) }
+}
+
+/// Whether a text means itself without quotation marks, within a line.
+fn is_plain(text: &str) -> bool {
+    let is_word = text.starts_with(|c: char| c.is_ascii_alphabetic())
+        && text
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || matches!(c, '_' | ' ' | '/' | '.' | '-' | '(' | ')' | '+'));
+    let words = ["null", "true", "false", "yes", "no", "on", "off", "nan", "inf"];
+    is_word && !text.ends_with(' ') && !words.contains(&text.to_lowercase().as_str())
+}
+
+/// A text of one line.
+fn scalar(text: &str) -> String {
+    if is_plain(text) {
+        return text.to_owned();
+    }
+    let mut quoted = String::from("\"");
+    for c in text.chars() {
+        match c {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            '\n' => quoted.push_str("\\n"),
+            '\r' => quoted.push_str("\\r"),
+            '\t' => quoted.push_str("\\t"),
+            '\u{85}' | '\u{A0}' | '\u{2028}' | '\u{2029}' | '\u{FEFF}' => {
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+/// A text of one line, folded where it is long.
+fn folded(text: &str) -> String {
+    let is_foldable = text.chars().count() > WIDTH
+        && text.split(' ').all(|word| !word.is_empty() && word.chars().all(|c| !c.is_whitespace() && !c.is_control()));
+    if !is_foldable {
+        return scalar(text);
+    }
+    let mut lines = vec![String::new()];
+    for word in text.split(' ') {
+        let line = lines.last().map_or(0, |line| line.chars().count());
+        if line > 0 && line + 1 + word.chars().count() > WIDTH {
+            lines.push(String::new());
+        }
+        if let Some(line) = lines.last_mut() {
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+    }
+    format!(">\n  {}", lines.join("\n  "))
+}
+
+/// A text of several lines.
+fn block(text: &str) -> String {
+    let is_line = |line: &str| {
+        !line.is_empty()
+            && !line.starts_with(char::is_whitespace)
+            && !line.ends_with(char::is_whitespace)
+            && !line.chars().any(|c| c.is_control() || matches!(c, '\u{85}' | '\u{2028}' | '\u{2029}' | '\u{FEFF}'))
+    };
+    let is_list = text.contains('\n') || text.starts_with("- ");
+    if !is_list || !text.split('\n').all(is_line) {
+        return scalar(text);
+    }
+    format!("|\n  {}", text.split('\n').collect::<Vec<_>>().join("\n  "))
+}

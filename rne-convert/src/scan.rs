@@ -1,0 +1,315 @@
+//! The first look at a URDF: what of it matters, where it stands, and what no reader should let pass.
+//!
+//! `urdf-rs` reads the numbers, yet it knows no lines, it skips words that are no numbers, and it refuses a whole arm
+//! for a mesh that it does not know. So it gets a shorter text: links, inertias and joints alone.
+
+use std::fmt::Write as _;
+use std::ops::Range;
+
+use quick_xml::Reader;
+use quick_xml::events::{BytesStart, Event};
+use rne_model::Report;
+
+use crate::source::{Source, quoted};
+
+/// Far more than the description of any arm.
+pub(crate) const MAX_BYTES: usize = 16 << 20;
+/// What dynamics needs stands four deep.
+const MAX_DEPTH: usize = 64;
+/// More links than any robot has.
+const MAX_ELEMENTS: usize = 20_000;
+/// No number of an arm is larger, in SI units.
+const LARGEST: f64 = 1e9;
+
+/// What matters of the text, and the places of links and joints in the order of the text.
+pub(crate) struct Scanned {
+    pub(crate) text: String,
+    pub(crate) links: Vec<Range<usize>>,
+    pub(crate) joints: Vec<Range<usize>>,
+}
+
+/// An element that matters.
+struct Element {
+    name: &'static str,
+    parent: &'static str,
+    attributes: &'static [Attribute],
+}
+
+struct Attribute {
+    name: &'static str,
+    kind: Kind,
+    required: bool,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Text,
+    Number,
+    /// A number that may be infinite.
+    Limit,
+    Vector,
+}
+
+const fn text(name: &'static str) -> Attribute {
+    Attribute { name, kind: Kind::Text, required: true }
+}
+
+const fn number(name: &'static str) -> Attribute {
+    Attribute { name, kind: Kind::Number, required: true }
+}
+
+const fn optional(name: &'static str, kind: Kind) -> Attribute {
+    Attribute { name, kind, required: false }
+}
+
+const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Vector)];
+
+const ELEMENTS: &[Element] = &[
+    Element { name: "robot", parent: "", attributes: &[optional("name", Kind::Text)] },
+    Element { name: "link", parent: "robot", attributes: &[text("name")] },
+    Element { name: "inertial", parent: "link", attributes: &[] },
+    Element { name: "origin", parent: "inertial", attributes: ORIGIN },
+    Element { name: "mass", parent: "inertial", attributes: &[number("value")] },
+    Element {
+        name: "inertia",
+        parent: "inertial",
+        attributes: &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
+    },
+    Element { name: "joint", parent: "robot", attributes: &[text("name"), text("type")] },
+    Element { name: "origin", parent: "joint", attributes: ORIGIN },
+    Element { name: "parent", parent: "joint", attributes: &[text("link")] },
+    Element { name: "child", parent: "joint", attributes: &[text("link")] },
+    Element {
+        name: "axis",
+        parent: "joint",
+        attributes: &[Attribute { name: "xyz", kind: Kind::Vector, required: true }],
+    },
+    Element {
+        name: "limit",
+        parent: "joint",
+        attributes: &[
+            optional("lower", Kind::Limit),
+            optional("upper", Kind::Limit),
+            optional("effort", Kind::Limit),
+            optional("velocity", Kind::Limit),
+        ],
+    },
+    Element {
+        name: "mimic",
+        parent: "joint",
+        attributes: &[text("joint"), optional("multiplier", Kind::Number), optional("offset", Kind::Number)],
+    },
+    Element {
+        name: "dynamics",
+        parent: "joint",
+        attributes: &[optional("damping", Kind::Number), optional("friction", Kind::Number)],
+    },
+];
+
+/// Reads the text once.
+pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
+    let bytes = source.text.len();
+    if bytes > MAX_BYTES {
+        let message = format!("a URDF of {bytes} bytes; at most {MAX_BYTES} are read");
+        return Err(Source { file: source.file.clone(), text: String::new() }.error(&(0..0), message, None));
+    }
+    let mut scanner = Scanner {
+        source,
+        scanned: Scanned { text: String::new(), links: Vec::new(), joints: Vec::new() },
+        open: Vec::new(),
+        has_robot: false,
+    };
+    let mut reader = Reader::from_str(&source.text);
+    loop {
+        let start = usize::try_from(reader.buffer_position()).unwrap_or(0);
+        let event = reader.read_event();
+        let end = usize::try_from(reader.buffer_position()).unwrap_or(0);
+        // No byte order mark and no blanks before the tag in what is underlined.
+        let start = start + source.text.get(start..end).and_then(|text| text.find('<')).unwrap_or(0);
+        let place = start..end.max(start);
+        match event {
+            Ok(Event::Start(tag)) => scanner.open(&tag, place, false)?,
+            Ok(Event::Empty(tag)) => scanner.open(&tag, place, true)?,
+            Ok(Event::End(_)) => scanner.close(),
+            Ok(Event::DocType(_)) => {
+                let message = "a document type; its entities are not read";
+                let help = "delete the line: a URDF needs none".to_owned();
+                return Err(source.error(&place, message, help));
+            }
+            Ok(Event::Eof) => break,
+            Ok(_) => {}
+            Err(error) => {
+                let at = usize::try_from(reader.error_position()).unwrap_or(0).min(bytes);
+                return Err(source.error(&(at..at), format!("this is not XML: {error}"), None));
+            }
+        }
+    }
+    if !scanner.open.is_empty() {
+        return Err(source.error(&(bytes..bytes), "this is not XML: the text ends within an element", None));
+    }
+    if !scanner.has_robot {
+        let message = "there is no element `robot`; a URDF is XML that begins with <robot name=\"…\">";
+        return Err(source.error(&(0..0), message, None));
+    }
+    Ok(scanner.scanned)
+}
+
+struct Scanner<'a> {
+    source: &'a Source,
+    scanned: Scanned,
+    open: Vec<Open>,
+    has_robot: bool,
+}
+
+/// An element that is open.
+struct Open {
+    /// `None` where neither it nor what it holds matters.
+    element: Option<&'static Element>,
+    place: Range<usize>,
+    /// The elements that matter in it.
+    children: Vec<&'static str>,
+}
+
+impl Scanner<'_> {
+    fn open(&mut self, tag: &BytesStart, place: Range<usize>, is_empty: bool) -> Result<(), Report> {
+        let name = tag.name();
+        let name = String::from_utf8_lossy(name.as_ref()).into_owned();
+        if self.open.len() >= MAX_DEPTH {
+            let message = format!("elements more than {MAX_DEPTH} deep; a URDF needs six");
+            return Err(self.source.error(&place, message, None));
+        }
+        let element = self.element(&name, &place)?;
+        if let Some(element) = element {
+            if let Some(parent) = self.open.last_mut() {
+                let several = matches!(element.name, "link" | "joint");
+                if !several && parent.children.contains(&element.name) {
+                    let message = format!("a second `{}` in one `{}`", element.name, element.parent);
+                    return Err(self.source.error(&place, message, None));
+                }
+                if !several {
+                    parent.children.push(element.name);
+                }
+            }
+            self.write(element, tag, &place)?;
+        }
+        self.open.push(Open { element, place, children: Vec::new() });
+        if is_empty {
+            self.close();
+        }
+        Ok(())
+    }
+
+    /// The element that matters, if this is one.
+    fn element(&mut self, name: &str, place: &Range<usize>) -> Result<Option<&'static Element>, Report> {
+        let parent = match self.open.last() {
+            None => "",
+            Some(Open { element: Some(parent), .. }) => parent.name,
+            Some(_) => return Ok(None),
+        };
+        let element = ELEMENTS.iter().find(|element| element.name == name && element.parent == parent);
+        if parent.is_empty() {
+            if element.is_none() || self.has_robot {
+                let message = match self.has_robot {
+                    true => "a second element behind `robot`; a URDF is one robot".to_owned(),
+                    false => format!("the element {} where `robot` is needed: this is no URDF", quoted(name)),
+                };
+                let help = name.contains("sdf").then(|| "SDF is another format; convert it to URDF first".to_owned());
+                return Err(self.source.error(place, message, help));
+            }
+            self.has_robot = true;
+        }
+        if name.starts_with("xacro:") {
+            let message = format!("the macro {}; it is not expanded yet", quoted(name));
+            let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
+            return Err(self.source.error(place, message, help));
+        }
+        let places = match name {
+            "link" => &mut self.scanned.links,
+            "joint" => &mut self.scanned.joints,
+            _ => return Ok(element),
+        };
+        if element.is_some() {
+            if places.len() >= MAX_ELEMENTS {
+                let message = format!("more than {MAX_ELEMENTS} elements `{name}`");
+                return Err(self.source.error(place, message, None));
+            }
+            places.push(place.clone());
+        }
+        Ok(element)
+    }
+
+    /// Writes the tag with the attributes that matter.
+    fn write(&mut self, element: &Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
+        let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
+        for attribute in tag.attributes() {
+            let attribute =
+                attribute.map_err(|error| self.source.error(place, format!("this is not XML: {error}"), None))?;
+            let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
+            if key == "quat_xyzw" {
+                let help = "write the rotation as rpy, in the axes of the parent".to_owned();
+                return Err(self.source.error(place, "a rotation as `quat_xyzw` is not read", help));
+            }
+            let Some(index) = element.attributes.iter().position(|known| known.name == key) else { continue };
+            let raw = String::from_utf8_lossy(&attribute.value).into_owned();
+            let value = quick_xml::escape::unescape(&raw)
+                .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
+                .into_owned();
+            if let Some(fault) = fault(element.attributes[index].kind, &value) {
+                let message = format!("{} of `{}` is {}; {fault}", quoted(&key), element.name, quoted(&value));
+                let found = self.source.text.get(place.clone()).and_then(|tag| tag.find(&raw));
+                let span = found.map_or(place.clone(), |at| place.start + at..place.start + at + raw.len());
+                return Err(self.source.error(&span, message, None));
+            }
+            values[index] = Some(value);
+        }
+        // Shorter than it was: the pieces that are kept are those of the text.
+        let text = &mut self.scanned.text;
+        let _ = write!(text, "<{}", element.name);
+        for (attribute, value) in element.attributes.iter().zip(&values) {
+            match value {
+                Some(value) => {
+                    let _ = write!(text, " {}=\"{}\"", attribute.name, quick_xml::escape::escape(value.as_str()));
+                }
+                None if attribute.required => {
+                    let message = format!("`{}` lacks the attribute `{}`", element.name, attribute.name);
+                    return Err(self.source.error(place, message, None));
+                }
+                // What urdf-rs asks for and robots leave out.
+                None if attribute.kind == Kind::Limit && matches!(attribute.name, "effort" | "velocity") => {
+                    let _ = write!(text, " {}=\"0\"", attribute.name);
+                }
+                None => {}
+            }
+        }
+        text.push('>');
+        Ok(())
+    }
+
+    fn close(&mut self) {
+        if let Some(Open { element: Some(element), place, children }) = self.open.pop() {
+            let _ = (place, children);
+            let _ = writeln!(self.scanned.text, "</{}>", element.name);
+        }
+    }
+}
+
+/// Why a value cannot be that of an attribute.
+fn fault(kind: Kind, value: &str) -> Option<&'static str> {
+    let number = |word: &str| word.parse::<f64>().ok();
+    let fine = |word: &str| number(word).is_some_and(|x| x.abs() <= LARGEST);
+    let words: Vec<&str> = value.split_whitespace().collect();
+    match kind {
+        Kind::Text if value.trim().is_empty() => Some("it must not be empty"),
+        Kind::Text => None,
+        Kind::Number if words.len() != 1 || !words.iter().all(|word| fine(word)) => {
+            Some("it must be one number of at most 1e9")
+        }
+        Kind::Limit if words.len() != 1 || !words.iter().all(|word| number(word).is_some_and(|x| !x.is_nan())) => {
+            Some("it must be one number")
+        }
+        Kind::Vector if words.len() != 3 || !words.iter().all(|word| fine(word)) => {
+            Some("it must be three numbers, each of at most 1e9")
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,48 @@
+//! The text that is read, and mistakes in it.
+
+use std::ops::Range;
+
+use rne_model::Report;
+
+/// A text and what messages call it.
+#[derive(Clone, Debug)]
+pub(crate) struct Source {
+    pub(crate) file: String,
+    pub(crate) text: String,
+}
+
+impl Source {
+    /// A mistake at some bytes of the text.
+    pub(crate) fn error(
+        &self,
+        span: &Range<usize>,
+        message: impl Into<String>,
+        help: impl Into<Option<String>>,
+    ) -> Report {
+        let help: Option<String> = help.into();
+        Report::of_error(&self.file, &self.text, span.clone(), message, help.as_deref())
+    }
+}
+
+/// So many names stand in a message; of the others it says how many there are.
+const NAMED: usize = 24;
+
+/// Names for a message: `a`, `b` and 3 more.
+pub(crate) fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
+    let names: Vec<S> = names.into_iter().collect();
+    let shown: Vec<String> = names.iter().take(NAMED).map(|name| quoted(name.as_ref())).collect();
+    match names.len().saturating_sub(NAMED) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}
+
+/// A name of the file in a message: one line, not too long.
+pub(crate) fn quoted(name: &str) -> String {
+    const LONGEST: usize = 60;
+    let line = rne_model::one_line(name);
+    if line.chars().count() <= LONGEST {
+        return format!("`{line}`");
+    }
+    format!("`{}…`", line.chars().take(LONGEST).collect::<String>())
+}

@@ -1,0 +1,204 @@
+//! From a chain to the rows of a Denavit-Hartenberg table.
+//!
+//! z of every frame is the positive axis of its joint: then q, its sign and its limits stay what they were. What the
+//! axes leave free is chosen so that the table is short:
+//!
+//! - parallel axes: the normal begins where the one before ended, so that d is zero;
+//! - one line: a = 0, x stays, the origin is that of the next joint;
+//! - x points so that |theta| ≤ pi/2, at ±pi/2 so that a > 0, or else theta > 0;
+//! - frame 0: the origin of the base on the first axis, x of the base;
+//! - the last frame: the origin of the last joint, x of its link.
+//!
+//! Both conventions share the common normals: the standard frame stands at the far end of one, the modified frame at
+//! the near end of the next.
+
+use rne_model::{Angle, Convention, Dh, Double};
+
+use crate::chain::Chain;
+use crate::geometry::{Pose, Rotation, Vector, atan2, rounded, twelfths_of_pi};
+use crate::snap::of_twelfths;
+
+/// What is shorter than this, m, is the rounding of an `f64`.
+const NOTHING: f64 = 1e-15;
+/// A tilt that is the rounding of an `f64`, rad.
+const ROUNDING: f64 = 1e-15;
+/// More than this is unlike any arm, m: two axes are nearly parallel.
+pub(crate) const FAR: f64 = 100.0;
+
+/// The rows of a table and the frames they lead to.
+pub(crate) struct Table {
+    /// Base → frame 0.
+    pub(crate) start: Pose,
+    pub(crate) rows: Vec<Dh>,
+    /// Frame of each moved link → frame i of the table: both are fixed to the link.
+    pub(crate) frames: Vec<Pose>,
+    /// Frame n → tip.
+    pub(crate) tool: Pose,
+    /// Pairs of axes, from 1, that are taken as parallel although they are tilted by so much, rad.
+    pub(crate) levelled: Vec<(usize, f64)>,
+}
+
+/// The common normal of the axes of two neighbouring joints.
+struct Normal {
+    /// Where it begins, on the first axis.
+    from: Vector,
+    /// Where it ends, on the second.
+    to: Vector,
+    /// Its direction, of length 1.
+    x: Vector,
+}
+
+/// The joints at q = 0, in the frame of the base.
+struct Axes {
+    /// Frames of the moved links.
+    links: Vec<Pose>,
+    points: Vec<Vector>,
+    directions: Vec<Vector>,
+}
+
+/// Writes the chain as a table.
+pub(crate) fn table(chain: &Chain, convention: Convention) -> Table {
+    let mut axes = Axes::of(chain);
+    let n = axes.points.len();
+    let first = axes.directions[0];
+    // The foot of the base's origin on the first axis.
+    let origin = axes.points[0].across(first);
+    let x = perpendicular(first, [0, 1, 2].map(Vector::unit));
+    let mut levelled = Vec::new();
+    let mut normals: Vec<Normal> = Vec::new();
+    for k in 0..n.saturating_sub(1) {
+        let (origin, x) = normals.last().map_or((origin, x), |normal| (normal.to, normal.x));
+        normals.push(axes.normal(k, origin, x, &mut levelled));
+    }
+    let last = axes.directions[n - 1];
+    let last_x = perpendicular(last, axes.links[n - 1].rotation.columns);
+
+    let mut rows = Vec::with_capacity(n);
+    let mut frames = Vec::with_capacity(n);
+    for k in 0..n {
+        let before = k.checked_sub(1).map(|before| &normals[before]);
+        let (o, x) = before.map_or((origin, x), |normal| (normal.to, normal.x));
+        let z = axes.directions[k];
+        let (next_from, next_x) = normals.get(k).map_or((axes.points[k], last_x), |normal| (normal.from, normal.x));
+        let theta = canonical(atan2(z.dot(x.cross(next_x)), x.dot(next_x)));
+        let d = length((next_from - o).dot(z), next_from, o);
+        let (a, alpha) = match convention {
+            Convention::Standard => axes.twist(k, normals.get(k)),
+            Convention::Modified => {
+                k.checked_sub(1).map_or((0.0, 0.0), |before| axes.twist(before, normals.get(before)))
+            }
+        };
+        rows.push(Dh { theta: Angle::new(theta), d, a, alpha: Angle::new(alpha) });
+        let frame = match (convention, normals.get(k)) {
+            (_, None) => Pose { rotation: Rotation::of_axes(last_x, last), translation: axes.points[k] },
+            (Convention::Standard, Some(normal)) => {
+                Pose { rotation: Rotation::of_axes(normal.x, axes.directions[k + 1]), translation: normal.to }
+            }
+            (Convention::Modified, Some(normal)) => {
+                Pose { rotation: Rotation::of_axes(normal.x, z), translation: normal.from }
+            }
+        };
+        frames.push(axes.links[k].inverse() * frame);
+    }
+    let start = Pose { rotation: Rotation::of_axes(x, first), translation: origin };
+    let tool = frames[n - 1].inverse() * chain.tip;
+    Table { start, rows, frames, tool, levelled }
+}
+
+impl Axes {
+    fn of(chain: &Chain) -> Self {
+        let mut axes = Self { links: Vec::new(), points: Vec::new(), directions: Vec::new() };
+        let mut link = Pose::identity();
+        for joint in &chain.joints {
+            link = link * joint.place;
+            axes.links.push(link);
+            axes.points.push(link.translation);
+            axes.directions.push(link.rotation * joint.axis);
+        }
+        axes
+    }
+
+    /// The normal from axis `k` to the next one; `origin` and `x` are those of the frame before.
+    fn normal(&mut self, k: usize, origin: Vector, x: Vector, levelled: &mut Vec<(usize, f64)>) -> Normal {
+        let (z, next) = (self.directions[k], self.directions[k + 1]);
+        let cross = z.cross(next);
+        let tilt = cross.norm();
+        let way = self.points[k + 1] - self.points[k];
+        let skew = (tilt.to_f64() > ROUNDING).then(|| {
+            // The feet of two skew lines, by Cramer's rule.
+            let square = tilt * tilt;
+            let along = way.cross(next).dot(cross) / square;
+            let along_next = way.cross(z).dot(cross) / square;
+            (self.points[k] + z * along, self.points[k + 1] + next * along_next)
+        });
+        // Feet so far away cannot be written: what their rounding costs is more than the tilt is worth over a metre.
+        let skew = skew.filter(|(from, to)| {
+            let far = (*from - self.points[k]).norm().to_f64().max((*to - self.points[k + 1]).norm().to_f64());
+            let is_lost = tilt.to_f64() < f64::EPSILON * far;
+            if is_lost {
+                levelled.push((k + 1, tilt.to_f64()));
+            }
+            !is_lost
+        });
+        if let Some((from, to)) = skew {
+            let normal = cross * (Double::new(1.0) / tilt);
+            let length = to - from;
+            let leads = length.norm().to_f64() > NOTHING;
+            let normal = if leads && length.dot(normal).to_f64() < 0.0 { -normal } else { normal };
+            return Normal { from, to, x: facing(x, z, normal, leads) };
+        }
+        // The same direction, to the last bit.
+        self.directions[k + 1] = if z.dot(next).to_f64() < 0.0 { -z } else { z };
+        let across = way.across(z);
+        if across.norm().to_f64() <= NOTHING {
+            let point = self.points[k + 1] - (self.points[k + 1] - self.points[k]).across(z);
+            return Normal { from: point, to: point, x };
+        }
+        // Not where a nearly parallel pair has led far away.
+        let from = if (origin - self.points[k]).norm().to_f64() > FAR { self.points[k] } else { origin };
+        let distance = (self.points[k + 1] - from).across(z);
+        let direction = distance.direction().unwrap_or(x);
+        Normal { from, to: from + distance, x: facing(x, z, direction, true) }
+    }
+
+    /// a and alpha from axis `k` to the next one; of the last joint both are zero.
+    fn twist(&self, k: usize, normal: Option<&Normal>) -> (f64, f64) {
+        let Some(Normal { from, to, x }) = normal else { return (0.0, 0.0) };
+        let (z, next) = (self.directions[k], self.directions[k + 1]);
+        let alpha = canonical(atan2(x.dot(z.cross(next)), z.dot(next)));
+        (length((*to - *from).dot(*x), *to, *from), alpha)
+    }
+}
+
+/// The normal `x`, or its opposite, so that the angle from `before` about `z` is at most a right one. At exactly a right
+/// angle it stays where it `leads` to the next axis, for then a > 0; else theta is to be positive.
+fn facing(before: Vector, z: Vector, x: Vector, leads: bool) -> Vector {
+    const RIGHT: f64 = 1e-20;
+    let (sin, cos) = (z.dot(before.cross(x)).to_f64(), before.dot(x).to_f64());
+    if cos < -RIGHT || (cos <= RIGHT && !leads && sin < 0.0) { -x } else { x }
+}
+
+/// A unit vector perpendicular to `z`: the first of `hints` that is nearly so, made so, else the one that is most.
+fn perpendicular(z: Vector, hints: [Vector; 3]) -> Vector {
+    let tilt = |hint: &Vector| hint.dot(z).to_f64().abs();
+    let near = hints.iter().find(|hint| tilt(hint) < 0.5);
+    let hint = near.copied().unwrap_or_else(|| {
+        let mut sorted = hints;
+        sorted.sort_by(|a, b| tilt(a).total_cmp(&tilt(b)));
+        sorted[0]
+    });
+    hint.across(z).direction().unwrap_or_else(|| Vector::unit(0))
+}
+
+/// A length between two points, rounded once; what is the rounding of an `f64` is nothing.
+fn length(value: Double, from: Vector, to: Vector) -> f64 {
+    let scale = from.to_f64().into_iter().chain(to.to_f64()).map(f64::abs).fold(0.0, f64::max);
+    let value = rounded(value, scale);
+    if value.abs() < NOTHING { 0.0 } else { value }
+}
+
+/// An angle as a person would write it: -pi is pi, and a multiple of pi/12 has the bits of that expression.
+fn canonical(angle: f64) -> f64 {
+    let angle = twelfths_of_pi(angle).map_or(angle, of_twelfths);
+    if angle == -std::f64::consts::PI { std::f64::consts::PI } else { angle }
+}

@@ -1,0 +1,62 @@
+//! Robot files made of URDFs against Pinocchio, which reads the same URDF.
+
+use anyhow::Result;
+use clap::Args;
+use xshell::cmd;
+
+use crate::Verdict;
+use crate::machine::{self, Missing};
+
+/// What is installed: Pinocchio, and packages that have arms as URDF.
+const PACKAGES: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
+
+/// Imports real arms and compares them with Pinocchio
+///
+/// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and with it
+/// by no more than the import tells. `xtask/urdf.py` has the arms and the comparison.
+#[derive(Args)]
+#[command(after_help = "\
+Needs python3 with venv; Pinocchio and the arms are fetched into target/urdf/venv.
+
+Examples:
+  cargo xtask urdf              with what is installed there
+  cargo xtask urdf --install    install it first")]
+pub(crate) struct Urdf {
+    /// Install what is missing, with pip, below target/
+    #[arg(long)]
+    pub(crate) install: bool,
+}
+
+impl Urdf {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        let target = machine::target_folder("target")?;
+        let venv = target.join("urdf/venv");
+        let python = venv.join("bin/python");
+        let can_import = || {
+            let found = cmd!(shell, "{python} -c 'import pinocchio, numpy'").quiet().ignore_stdout().ignore_stderr();
+            python.exists() && found.run().is_ok()
+        };
+        if !can_import() {
+            if !self.install {
+                return Err(Missing::error("there is no Pinocchio; `cargo xtask urdf --install` gets it"));
+            }
+            if !machine::has("python3") {
+                return Err(Missing::error("there is no python3"));
+            }
+            if cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
+                return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
+            }
+        }
+        if self.install {
+            let packages = PACKAGES;
+            let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
+            if install.quiet().ignore_stderr().run().is_err() && !can_import() {
+                return Err(Missing::error("Pinocchio and its arms cannot be fetched"));
+            }
+        }
+        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        let rne = target.join("debug/rne");
+        Ok(Verdict::from(cmd!(shell, "{python} xtask/urdf.py {rne}").quiet().run().is_ok()))
+    }
+}
