@@ -6,6 +6,7 @@
 mod batch_profile;
 mod certificate;
 mod counts;
+mod features;
 mod growth;
 mod instructions;
 mod lines;
@@ -57,6 +58,7 @@ enum Task {
     Lines(lines::Lines),
     Package(package::Package),
     Tool(tool::Tool),
+    Features(features::Features),
     Urdf(urdf::Urdf),
 }
 
@@ -89,6 +91,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
+            Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
         }
     }

@@ -46,6 +46,8 @@ enum Needs {
     Nothing,
     /// The oldest compiler that Cargo.toml allows; rustup gets it.
     OldestCompiler,
+    /// A program, here or in `target/tools`.
+    Program(&'static str),
     /// A tag of this repository, to compare with.
     Tag,
 }
@@ -98,7 +100,7 @@ const STEPS: &[Step] = &[
         name: "features",
         about: "every pair of features by itself",
         variables: &[],
-        command: &["cargo", "xtask", "tool", "hack", "--install"],
+        command: &["cargo", "xtask", "features"],
         needs: Needs::Nothing,
     },
     Step {
@@ -122,8 +124,8 @@ const STEPS: &[Step] = &[
         name: "deny",
         about: "licences, sources and duplicates of dependencies",
         variables: &[],
-        command: &["cargo", "xtask", "tool", "deny", "--install"],
-        needs: Needs::Nothing,
+        command: &["cargo", "xtask", "tool", "deny"],
+        needs: Needs::Program("cargo-deny"),
     },
     Step {
         name: "semver",
@@ -205,6 +207,11 @@ impl Needs {
         match self {
             Self::Nothing => None,
             Self::OldestCompiler => machine::toolchain(oldest),
+            Self::Program(name) => {
+                let here = machine::root().join("target/tools/bin").join(name).is_file() || machine::has(name);
+                let task = name.trim_start_matches("cargo-");
+                (!here).then(|| format!("there is no {name} (cargo xtask tool {task} --install)"))
+            }
             Self::Tag => {
                 let tag = machine::shell()
                     .ok()

@@ -1,0 +1,80 @@
+//! Does the library build with every set of its features?
+
+use anyhow::{Context, Result};
+use clap::Args;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use xshell::cmd;
+
+use crate::Verdict;
+use crate::machine;
+
+/// Builds the facade with no feature, each one, each pair and all of them, every warning an error
+#[derive(Args)]
+#[command(after_help = "\
+Exit status: 1 when a set does not build.
+
+Example:
+  cargo xtask features")]
+pub(crate) struct Features {}
+
+/// For a nightly compiler.
+const UNSTABLE: &str = "core_float_math";
+
+/// What is read of `cargo metadata`.
+#[derive(Deserialize)]
+struct Metadata {
+    packages: Vec<Package>,
+}
+
+#[derive(Deserialize)]
+struct Package {
+    name: String,
+    features: BTreeMap<String, Vec<String>>,
+}
+
+impl Features {
+    pub(crate) fn run() -> Result<Verdict> {
+        let shell = machine::shell()?;
+        let metadata = cmd!(shell, "cargo metadata --no-deps --format-version 1").quiet().read()?;
+        // JSON is YAML
+        let Metadata { packages } = serde_yaml::from_str(&metadata)?;
+        let facade = packages.into_iter().find(|package| package.name == "rne").context("the facade")?;
+        let names: Vec<String> =
+            facade.features.into_keys().filter(|name| name != "default" && name != UNSTABLE).collect();
+        let mut failed = Vec::new();
+        let sets = sets(&names);
+        for set in &sets {
+            let check = cmd!(shell, "cargo check --quiet --package rne --no-default-features --features {set}");
+            if machine::without_flags(check).env("RUSTFLAGS", "-D warnings").quiet().run().is_err() {
+                failed.push(set.clone());
+            }
+        }
+        println!("features: {} sets of {} build", sets.len() - failed.len(), names.join(", "));
+        for set in &failed {
+            println!("features: `{set}` does not");
+        }
+        Ok(Verdict::from(failed.is_empty()))
+    }
+}
+
+/// Nothing, each, each pair, all: what goes wrong takes two.
+fn sets(names: &[String]) -> Vec<String> {
+    let mut sets = vec![String::new(), names.join(",")];
+    for (index, name) in names.iter().enumerate() {
+        sets.push(name.clone());
+        sets.extend(names[index + 1..].iter().map(|other| format!("{name},{other}")));
+    }
+    sets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::sets;
+
+    #[test]
+    fn every_pair_is_a_set() {
+        let names = ["a", "b", "c"].map(str::to_owned);
+        assert_eq!(sets(&names), ["", "a,b,c", "a", "a,b", "a,c", "b", "b,c", "c"]);
+    }
+}
