@@ -16,6 +16,8 @@ pub(crate) struct Attribute {
     pub(crate) form: Form,
     /// The most operations allowed.
     pub(crate) max_ops: Option<Limit>,
+    /// Whether the lints of the robot file are known and stay unsaid.
+    pub(crate) allow_lints: bool,
     /// The path of the crate `rne` in the user's crate.
     pub(crate) krate: Path,
 }
@@ -75,12 +77,13 @@ impl Attribute {
             source: entries.source,
             form: entries.form.unwrap_or_default(),
             max_ops: entries.max_ops,
+            allow_lints: entries.seen.iter().any(|key| key == "allow_lints"),
             krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
         }
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `form`, `max_ops` and `crate`";
+const KEYS: &str = "`path`, `yaml`, `form`, `max_ops`, `allow_lints` and `crate`";
 
 #[derive(Default)]
 struct Entries {
@@ -114,13 +117,19 @@ impl Entries {
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
-        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "crate") {
+        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "allow_lints" | "crate") {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
         if self.seen.contains(&name) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
         }
         self.seen.push(name.clone());
+        if name == "allow_lints" {
+            return match input.peek(Token![=]) {
+                false => Ok(()),
+                true => Err(input.error(format!("`{name}` has no value: write it alone"))),
+            };
+        }
         if !input.peek(Token![=]) {
             let example = match name.as_str() {
                 "path" => "\"robots/arm.yaml\"",
