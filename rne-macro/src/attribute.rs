@@ -125,10 +125,8 @@ impl Entries {
         }
         self.seen.push(name.clone());
         if name == "allow_lints" {
-            return match input.peek(Token![=]) {
-                false => Ok(()),
-                true => Err(input.error(format!("`{name}` has no value: write it alone"))),
-            };
+            let has_value = input.peek(Token![=]);
+            return if has_value { Err(input.error("`allow_lints` has no value: write it alone")) } else { Ok(()) };
         }
         if !input.peek(Token![=]) {
             let example = match name.as_str() {

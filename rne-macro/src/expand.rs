@@ -134,7 +134,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
         Err(report) => {
             let joints = guess_joints(&report);
             errors.at_span(source.span(), describe(report));
-            Loaded { joints, watched, ..Loaded::default() }
+            Loaded { watched, joints, ..Loaded::default() }
         }
     }
 }

@@ -45,8 +45,8 @@ use rne_codegen::Capability;
 /// # `path = "…"`
 ///
 /// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where a macro is
-/// not told its source file, as in some editors, it starts at the package's `src` or at its folder (that of
-/// `Cargo.toml`).
+/// not told its source file, as in some editors, it is looked for from the package's `src`, from its folder (that of
+/// `Cargo.toml`), and then from every folder with sources.
 ///
 /// # `yaml = "…"`
 ///
