@@ -7,7 +7,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::plan::{self, Fingerprint, PlanFile, PlanSet};
 use rne_codegen::{Capability, Compiler, Form, Program};
-use rne_model::{Report, Robot, check_bytes, check_bytes_with_run_time};
+use rne_model::{Checked, Report, Robot, check_bytes, check_bytes_with_run_time};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
@@ -15,6 +15,7 @@ use crate::error::{Errors, describe};
 use crate::implementation::Target;
 use crate::location::{self, RobotFile};
 use crate::parameters::Parameters;
+use crate::warning::warnings;
 
 /// The derive of a capability.
 ///
@@ -48,11 +49,15 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         }
         None => target.stub(capability, loaded.joints),
     };
+    // a shipped file is not the user's to change
+    let is_silent = attribute.allow_lints || matches!(attribute.source, Some(Source::Builtin(_)));
+    let said = if is_silent { None } else { attribute.source.as_ref().zip(loaded.lints.as_ref()) };
+    let warnings = said.map(|(source, lints)| warnings(lints, &item, source.span()));
     // a plan that is not used is not watched
     let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file));
     let watched = loaded.watched;
     let errors = errors.into_tokens();
-    quote!(#errors #watched #plan #code)
+    quote!(#errors #warnings #watched #plan #code)
 }
 
 fn is_struct(item: &DeriveInput, errors: &mut Errors) {
@@ -93,6 +98,8 @@ pub(crate) struct Loaded {
     pub(crate) plan: Option<RobotFile>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
+    /// What is suspicious about a valid file.
+    lints: Option<Report>,
 }
 
 pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
@@ -102,10 +109,8 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
             Ok(file) => {
                 let plan = location::plan_beside(&file);
                 let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
-                {
-                    let watched = watch(&file);
-                    (file.shown, file.bytes, watched, plan)
-                }
+                let watched = watch(&file);
+                (file.shown, file.bytes, watched, plan)
             }
             Err(missing) => {
                 errors.at(path, missing);
@@ -131,13 +136,15 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
         }
     });
     match checked {
-        Ok(Some(checked)) => Loaded { joints: checked.robot.dof(), robot: Some(checked.robot), watched, plan },
+        Ok(Some(Checked { robot, lints })) => {
+            Loaded { joints: robot.dof(), robot: Some(robot), watched, plan, lints: Some(lints) }
+        }
         // a field is no parameter, which has been said
         Ok(None) => Loaded { watched, ..Loaded::default() },
         Err(report) => {
             let joints = guess_joints(&report);
             errors.at_span(source.span(), describe(report));
-            Loaded { robot: None, watched, plan: None, joints }
+            Loaded { watched, joints, ..Loaded::default() }
         }
     }
 }

@@ -13,6 +13,7 @@ mod location;
 mod parameters;
 #[cfg(test)]
 mod tests;
+mod warning;
 
 use proc_macro::TokenStream;
 use rne_codegen::Capability;
@@ -44,8 +45,8 @@ use rne_codegen::Capability;
 /// # `path = "…"`
 ///
 /// The robot file. A relative path starts at the folder of the source file, as with `include_str!`. Where a macro is
-/// not told its source file, as in some editors, it starts at the package's `src` or at its folder (that of
-/// `Cargo.toml`).
+/// not told its source file, as in some editors, it is looked for from the package's `src`, from its folder (that of
+/// `Cargo.toml`), and then from every folder with sources.
 ///
 /// # `yaml = "…"`
 ///
@@ -225,8 +226,28 @@ use rne_codegen::Capability;
 /// A mistake in the robot file is an error of the compiler with file, line, column, the line itself, what is allowed,
 /// and often what was probably meant. Whatever uses the struct still compiles, so that the mistake stands alone.
 ///
-/// Lints, values that are allowed and yet suspicious (degrees for radians, 1.5708 for pi/2), are not shown: a macro has
-/// no way to warn. `rne check FILE` shows them.
+/// A lint, a value that is allowed and yet probably not what was meant, is a warning of the compiler under the path in
+/// the attribute: degrees for radians, 1.5708 for pi/2, a joint that no inertia resists, millimetres, a mass without
+/// its inertia. It says file, line, column and what to write instead:
+///
+/// ```text
+/// warning: use of deprecated constant `_::ROBOT_FILE`: robots/arm.yaml:8:45: the angle `90` rad is more than a full turn
+///          if these are degrees, write `deg(90)`
+///   --> src/main.rs:4:16
+///    |
+///  4 | #[robot(path = "../robots/arm.yaml")]
+///    |                ^^^^^^^^^^^^^^^^^^^^^
+/// ```
+///
+/// A macro has no way of its own to warn, so a constant that is marked as deprecated is used there. Where warnings are
+/// errors, by `#![deny(warnings)]` or `-D warnings`, a lint is one too, as every warning of such a crate. What
+/// published tables have, as tensors that violate the triangle inequality, is a note: `rne check FILE` shows it, a
+/// build does not.
+///
+/// # `allow_lints`
+///
+/// The lints are known, the numbers are meant: `#[robot(path = "…", allow_lints)]` has no warnings of the robot file.
+/// `#[allow(deprecated)]` on the struct does the same. A point mass is said in the file, by `inertia: {}`.
 #[proc_macro_derive(InverseDynamics, attributes(robot))]
 pub fn derive_inverse_dynamics(input: TokenStream) -> TokenStream {
     expand::capability(Capability::InverseDynamics, input.into()).into()

@@ -1,7 +1,8 @@
 //! From the path in the attribute to the bytes of the file.
 
+use std::collections::VecDeque;
 use std::path::{Component, Path, PathBuf};
-use std::{env, fmt, io};
+use std::{env, fmt, fs, io};
 
 use proc_macro2::Span;
 use rne_model::{plan_of, read_file};
@@ -68,10 +69,12 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     let written = literal.value();
     let places = places(Path::new(&written), source_file.as_deref(), package.as_deref());
     let short = |file: &Path| short(&working_directory.join(file), &working_directory, package.as_deref());
-    for Place { file, .. } in &places {
-        let shown = || short(file).map_or_else(|| written.clone(), |file| file.display().to_string());
-        match read_file(file) {
-            Ok(bytes) => return Ok(RobotFile { absolute: Some(working_directory.join(file)), shown: shown(), bytes }),
+    let guessed = package.as_deref().filter(|_| source_file.is_none());
+    let guessed = guessed.into_iter().flat_map(|package| guesses(Path::new(&written), package));
+    for file in places.iter().map(|place| place.file.clone()).chain(guessed) {
+        let shown = || short(&file).map_or_else(|| written.clone(), |file| file.display().to_string());
+        match read_file(&file) {
+            Ok(bytes) => return Ok(RobotFile { absolute: Some(working_directory.join(&file)), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
             Err(error) => return Err(Missing::Unreadable { shown: shown(), error }),
         }
@@ -135,6 +138,32 @@ fn places(written: &Path, source_file: Option<&Path>, package: Option<&Path>) ->
     places
 }
 
+/// Where else the file may be when the source file is unknown: the path from every folder with sources, for the source
+/// file is in one of them; at last the path without its leading `..` from the package and from `src`. So many folders
+/// are looked at, those near the package first.
+fn guesses(written: &Path, package: &Path) -> Vec<PathBuf> {
+    const FOLDERS: usize = 200;
+    if written.is_absolute() {
+        return Vec::new();
+    }
+    let mut waiting: VecDeque<PathBuf> = ["src", "tests", "examples", "benches"].map(|name| package.join(name)).into();
+    let mut folders = Vec::new();
+    while let Some(folder) = waiting.pop_front().filter(|_| folders.len() < FOLDERS) {
+        let inside = fs::read_dir(&folder).into_iter().flatten().flatten();
+        let inside = inside.filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir()));
+        let mut inside: Vec<PathBuf> = inside.map(|entry| entry.path()).collect();
+        inside.sort();
+        waiting.extend(inside);
+        folders.push(folder);
+    }
+    // `a/../b` has a meaning where `a` is no folder
+    let mut guesses: Vec<PathBuf> = folders.iter().map(|folder| normal(&folder.join(written))).collect();
+    let is_up = |part: &Component<'_>| matches!(part, Component::ParentDir | Component::CurDir);
+    let rest: PathBuf = written.components().skip_while(is_up).collect();
+    guesses.extend([package.join(&rest), package.join("src").join(&rest)]);
+    guesses
+}
+
 /// The same file name with its folders, in the folders above that of the source file, nearest first: what is meant
 /// where one `..` too few or too many is written.
 fn neighbours(written: &Path, source_folder: &Path) -> impl Iterator<Item = PathBuf> {
@@ -191,6 +220,24 @@ mod tests {
     #[test]
     fn a_path_starts_in_the_package_when_the_source_file_is_unknown() {
         assert_eq!(found("../robots/x.yaml", None), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
+    }
+
+    /// As an editor that does not tell the source file: this crate asks for a file of another package of the repository.
+    #[test]
+    fn a_source_file_that_is_unknown_is_in_some_folder_with_sources() {
+        let repository = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository");
+        let first = |written: &str, package: &str| {
+            let guesses = guesses(Path::new(written), &repository.join(package));
+            let found = guesses.into_iter().find(|file| file.is_file());
+            found.map(|file| file.strip_prefix(repository).expect("in the repository").to_owned())
+        };
+        // written in tests/users/tests/ui/pass and in tests/users/tests/ui
+        assert_eq!(first("../robots/rod.yaml", "tests/users"), Some("tests/users/tests/ui/robots/rod.yaml".into()));
+        assert_eq!(first("robots/rod.yaml", "tests/users"), Some("tests/users/tests/ui/robots/rod.yaml".into()));
+        // in src/a/b, were there such a folder
+        assert_eq!(first("../../../robots/planar1.yaml", "."), Some("robots/planar1.yaml".into()));
+        assert_eq!(first("robots/nowhere.yaml", "tests/users"), None);
+        assert_eq!(first("/robots/rod.yaml", "tests/users"), None);
     }
 
     #[test]
