@@ -2,6 +2,7 @@
 #![forbid(unsafe_code)]
 
 mod answer;
+mod arm;
 mod arguments;
 mod base_parameters;
 mod check;

@@ -16,6 +16,8 @@ pub(crate) struct Attribute {
     pub(crate) form: Form,
     /// The most operations allowed.
     pub(crate) max_ops: Option<Limit>,
+    /// Whether rotors belong to the arm.
+    pub(crate) rotors: bool,
     /// The path of the crate `rne` in the user's crate.
     pub(crate) krate: Path,
 }
@@ -75,12 +77,13 @@ impl Attribute {
             source: entries.source,
             form: entries.form.unwrap_or_default(),
             max_ops: entries.max_ops,
+            rotors: entries.seen.iter().any(|key| key == "rotors"),
             krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
         }
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `form`, `max_ops` and `crate`";
+const KEYS: &str = "`path`, `yaml`, `form`, `max_ops`, `rotors` and `crate`";
 
 #[derive(Default)]
 struct Entries {
@@ -114,13 +117,19 @@ impl Entries {
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
-        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "crate") {
+        if !matches!(name.as_str(), "path" | "yaml" | "form" | "max_ops" | "rotors" | "crate") {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
         if self.seen.contains(&name) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
         }
         self.seen.push(name.clone());
+        if name == "rotors" {
+            return match input.peek(Token![=]) {
+                true => Err(syn::Error::new(key.span(), "`rotors` takes no value: it is there, or it is not")),
+                false => Ok(()),
+            };
+        }
         if !input.peek(Token![=]) {
             let example = match name.as_str() {
                 "path" => "\"robots/arm.yaml\"",
