@@ -2,8 +2,8 @@
 #![forbid(unsafe_code)]
 
 mod answer;
-mod arm;
 mod arguments;
+mod arm;
 mod base_parameters;
 mod check;
 mod emit;

@@ -31,9 +31,7 @@ fn check_text(name: &str, text: &str, run_time: &[&str], settings: &[(&str, f64)
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))
         .flatten()
-        .and_then(|root| {
-            schema::robot(&Context::new(text, &problems, run_time).with_settings(settings), &root)
-        });
+        .and_then(|root| schema::robot(&Context::new(text, &problems, run_time).with_settings(settings), &root));
     let report = problems.finish(name, text);
     match robot {
         Some(robot) if !report.has_errors() => Ok(Checked { robot, lints: report }),
@@ -112,12 +110,7 @@ pub fn check_bytes_with_settings(name: &str, bytes: &[u8], settings: &[(&str, f6
     check_anything(name, bytes, &[], settings)
 }
 
-fn check_anything(
-    name: &str,
-    bytes: &[u8],
-    run_time: &[&str],
-    settings: &[(&str, f64)],
-) -> Result<Checked, Report> {
+fn check_anything(name: &str, bytes: &[u8], run_time: &[&str], settings: &[(&str, f64)]) -> Result<Checked, Report> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let error = match std::str::from_utf8(bytes) {
         Ok(text) => return check_text(name, text, run_time, settings),

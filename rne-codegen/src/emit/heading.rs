@@ -38,7 +38,8 @@ impl Heading {
             let ([x, y, z], [roll, pitch, yaw]) = (xyz, rpy.map(|turn| angle(&turn)));
             format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
         };
-        let rotors = if robot.has_rotors() { "\nwith its rotors: torques contain G² Jm q̈ of the motors" } else { "" };
+        let rotors =
+            if robot.has_rotors() { "\nwith its rotors: torques contain G² Jm q̈ of the motors" } else { "" };
         Self {
             title: inert::title(robot),
             source: fill(&format!("Source: {}", robot.source.trim_end()), 100, "", ""),

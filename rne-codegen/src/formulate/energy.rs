@@ -24,9 +24,7 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
     }
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
         if let Some(rotor) = link.rotor {
-            twice = builder
-                .joint(index + 1)
-                .within(Quantity::KineticEnergy, || twice + rotor * (state.qd * state.qd));
+            twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || twice + rotor * (state.qd * state.qd));
         }
     }
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
