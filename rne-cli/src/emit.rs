@@ -9,11 +9,12 @@ use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 
 use crate::arguments::FunctionOrAll;
+use crate::arm::Rotors;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
-use crate::{arguments, functions, robot_file};
+use crate::{arguments, functions};
 
 /// Write the generated code as a file that compiles by itself
 #[derive(Args)]
@@ -26,7 +27,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c -o puma560.c                   C99: puma560.c, and puma560.h beside it
   rne emit robots/puma560.yaml --lang c --real double --prefix arm     arm_inverse_dynamics(const double q[6], ...
 
-The five functions of the trait InverseDynamics are written unless --function names others; all is every
+The six functions of the trait InverseDynamics are written unless --function names others; all is every
 function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
 --force only. --check exits with 1 when the file is stale, and says how to refresh it. C needs no library; on standard
 output header and source are one file.")]
@@ -34,6 +35,8 @@ pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
     /// Language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
@@ -117,7 +120,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = arguments.rotors.robot(&arguments.file)?;
     let programs = programs(arguments, &robot)?;
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
     let files = match (arguments.lang, out, header) {
@@ -350,6 +353,9 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     }
     for function in &arguments.functions {
         let _ = write!(command, " --function {function}");
+    }
+    if arguments.rotors.rotors {
+        command.push_str(" --rotors");
     }
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);

@@ -9,12 +9,13 @@ use rne_model::Robot;
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::arm::{Rotors, Setting};
 use crate::layout::wrap;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Entry};
-use crate::{answer, arguments, robot_file};
+use crate::{answer, arguments, arm};
 
 /// Compute a function at one state, by the runtime; --trace shows every vector of every step
 #[derive(Args)]
@@ -23,6 +24,11 @@ pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
+    /// Another value of a parameter of the file; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Setting>,
     /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
     #[arg(long, value_name = "F", value_parser = arguments::function())]
     function: Option<Function>,
@@ -119,7 +125,8 @@ struct Reply<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = arm::with_settings(&arguments.file, &arguments.set)?;
+    let robot = Robot { rotors: arguments.rotors.rotors, ..robot };
     let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
         (Some(_), _) => Function::InverseDynamicsWithWrench,
         (None, Some(_)) => Function::InverseDynamicsWithPayload,

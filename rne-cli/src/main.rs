@@ -3,6 +3,7 @@
 
 mod answer;
 mod arguments;
+mod arm;
 mod base_parameters;
 mod check;
 mod convert;

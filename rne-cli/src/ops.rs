@@ -9,11 +9,12 @@ use rne_codegen::{CompileError, Form, Function, Operations};
 use rne_model::Robot;
 use serde::Serialize;
 
+use crate::arm::Rotors;
 use crate::layout::{Align, columns};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
-use crate::{arguments, functions, plan_file, robot_file};
+use crate::{arguments, functions, plan_file};
 
 /// Count the operations of every function, before folding and in the generated code
 #[derive(Args)]
@@ -37,6 +38,8 @@ pub(crate) struct Arguments {
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function(),
         conflicts_with = "tricks")]
     functions: Vec<Function>,
+    #[command(flatten)]
+    rotors: Rotors,
     /// A list of {robot, function, form, mul, add, div, sincos, statements}
     #[arg(long)]
     json: bool,
@@ -77,7 +80,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut savings = String::new();
     let mut failures: Vec<Failure> = Vec::new();
     for path in plan_file::robots(&arguments.files) {
-        let outcome = robot_file::robot(path).and_then(|robot| {
+        let outcome = arguments.rotors.robot(path).and_then(|robot| {
             let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
                 savings.push_str(&tricks(&robot, compiler.plans()?));

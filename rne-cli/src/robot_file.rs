@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Robot, check_bytes, read_file, read_limited, robot_of};
+use rne_model::{Checked, Robot, check_bytes_with_settings, read_file, read_limited, robot_of};
 use rne_robots::RobotFile;
 
 use crate::outcome::Failure;
@@ -30,6 +30,11 @@ pub(crate) fn shipped(name: &str) -> Result<&'static RobotFile, Failure> {
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
+    read_with(path, &[])
+}
+
+/// The same with other values of the file's parameters.
+pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
@@ -39,7 +44,8 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
     }
     if let Some(robot) = of_a_name(path) {
         let name = format!("{} (shipped)", robot.name);
-        return check_bytes(&name, robot.yaml.as_bytes()).map_err(|report| Failure::from(&report));
+        return check_bytes_with_settings(&name, robot.yaml.as_bytes(), settings)
+            .map_err(|report| Failure::from(&report));
     }
     let (name, bytes) = if path == Path::new("-") {
         ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
@@ -55,7 +61,7 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    check_bytes(&name, &bytes).map_err(|report| Failure::from(&report))
+    check_bytes_with_settings(&name, &bytes, settings).map_err(|report| Failure::from(&report))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

@@ -9,10 +9,11 @@ use rne_codegen::plan::Trick;
 use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
 use rne_model::Robot;
 
+use crate::arm::Rotors;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
-use crate::{arguments, base_parameters, heading, highlight, robot_file};
+use crate::{arguments, base_parameters, heading, highlight};
 
 /// Show the generated code of a function, step by step, with what was folded and why
 #[derive(Args)]
@@ -33,6 +34,8 @@ pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
     file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
     /// One joint only, counted from 1 at the base
     #[arg(long, value_name = "I", value_parser = arguments::joint)]
     joint: Option<usize>,
@@ -114,7 +117,7 @@ impl Kept {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let file = arguments.file.display().to_string();
-    let robot = robot_file::robot(&arguments.file)?;
+    let robot = arguments.rotors.robot(&arguments.file)?;
     if arguments.base_parameters {
         return Ok(Outcome::text(heading::robot(&robot) + "\n" + &base_parameters::text(&robot)));
     }

@@ -128,7 +128,9 @@ impl<'r> Compiler<'r> {
         if !robot.run_time.is_empty() {
             return Ok(self.numbered(function, reference));
         }
-        if let Some(rewritten) = self.plans.get().and_then(|plans| plans.rewritten.get(&function)) {
+        // graphs are those of links alone
+        let of_links = self.plans.get().filter(|_| !(robot.has_rotors() && function.feels_rotors()));
+        if let Some(rewritten) = of_links.and_then(|plans| plans.rewritten.get(&function)) {
             let program = rewritten
                 .formulation(robot, function)
                 .and_then(|formulation| formulation.proved(function, self.target, &reference))

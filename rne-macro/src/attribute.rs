@@ -18,6 +18,8 @@ pub(crate) struct Attribute {
     pub(crate) max_ops: Option<Limit>,
     /// Whether the lints of the robot file are known and stay unsaid.
     pub(crate) allow_lints: bool,
+    /// Whether rotors belong to the arm.
+    pub(crate) rotors: bool,
     /// The path of the crate `rne` in the user's crate.
     pub(crate) krate: Path,
 }
@@ -80,12 +82,13 @@ impl Attribute {
             form: entries.form.unwrap_or_default(),
             max_ops: entries.max_ops,
             allow_lints: entries.seen.iter().any(|key| key == "allow_lints"),
+            rotors: entries.seen.iter().any(|key| key == "rotors"),
             krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
         }
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `allow_lints` and `crate`";
+const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `allow_lints` and `crate`";
 
 #[derive(Default)]
 struct Entries {
@@ -119,16 +122,20 @@ impl Entries {
         }
         let key = Ident::parse_any(input)?;
         let name = key.to_string();
-        if !matches!(name.as_str(), "path" | "yaml" | "builtin" | "form" | "max_ops" | "allow_lints" | "crate") {
+        if !matches!(
+            name.as_str(),
+            "path" | "yaml" | "builtin" | "form" | "max_ops" | "rotors" | "allow_lints" | "crate"
+        ) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
         if self.seen.contains(&name) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
         }
         self.seen.push(name.clone());
-        if name == "allow_lints" {
+        if matches!(name.as_str(), "rotors" | "allow_lints") {
             let has_value = input.peek(Token![=]);
-            return if has_value { Err(input.error("`allow_lints` has no value: write it alone")) } else { Ok(()) };
+            let message = format!("`{name}` has no value: it is there, or it is not");
+            return if has_value { Err(syn::Error::new(key.span(), message)) } else { Ok(()) };
         }
         if !input.peek(Token![=]) {
             let example = match name.as_str() {

@@ -37,6 +37,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
             return None;
         }
         let (capability, span) = (Capability::InverseDynamics, Span::call_site());
+        let robot = rne_model::Robot { rotors: attribute.rotors, ..robot };
         let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut said)?;
         compiler.for_target(Machine::Throughput).compile(Function::InverseDynamics, attribute.form).ok()
     });

@@ -32,6 +32,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     let parameters = Parameters::of(&item, &mut errors);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
+        let robot = Robot { rotors: attribute.rotors, ..robot };
         let span = attribute.source.as_ref().map_or_else(Span::call_site, Source::span);
         let compiler = compiler(&robot, capability, attribute.form, loaded.plan.as_ref(), span, &mut errors)?;
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;

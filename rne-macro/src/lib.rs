@@ -126,6 +126,32 @@ use rne_codegen::Capability;
 /// assert!((below - above - 2.0 * (1.0 + 9.81)).abs() < 1e-13);
 /// ```
 ///
+/// # `rotors`
+///
+/// The arm with its rotors: `#[robot(path = "…", rotors)]` makes G² Jm q̈ of the motors a part of the torques of
+/// `inverse_dynamics` and its variants, of the mass matrix, of forward dynamics and of kinetic energy; `Actuation` then
+/// adds friction alone. Every derive of the type takes it. A robot without motors stays as it is.
+///
+/// ```
+/// use rne::{ForwardDynamics, InverseDynamics};
+///
+/// #[derive(InverseDynamics, ForwardDynamics)]
+/// #[robot(rotors, yaml = "
+/// format: 1
+/// name: geared
+/// source: own
+/// convention: standard
+/// gravity: [0, 0, -9.81]
+/// joints: [{type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {inertia: {zz: 0.5}},
+///           motor: {inertia: 2.0e-4, gear_ratio: 50}}]
+/// ")]
+/// struct Geared;
+///
+/// // 0.5 kg m² of the link, 50² 2e-4 of the rotor
+/// assert_eq!(Geared.inverse_dynamics(&[0.0], &[0.0], &[2.0]), [2.0]);
+/// assert_eq!(Geared.forward_dynamics(&[0.0], &[0.0], &[2.0]), [2.0]);
+/// ```
+///
 /// # `max_ops = N`
 ///
 /// The build fails when one call of `inverse_dynamics` takes more than `N` multiplications and additions together: a

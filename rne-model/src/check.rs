@@ -19,10 +19,10 @@ pub struct Checked {
 ///
 /// Everything that is wrong with the file, with line, column and what is allowed.
 pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
-    check_with_run_time(name, text, &[])
+    check_text(name, text, &[], &[])
 }
 
-fn check_with_run_time(name: &str, text: &str, run_time: &[&str]) -> Result<Checked, Report> {
+fn check_text(name: &str, text: &str, run_time: &[&str], settings: &[(&str, f64)]) -> Result<Checked, Report> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let problems = Problems::new();
     if source::is_xml(text, &problems) {
@@ -39,7 +39,7 @@ fn check_with_run_time(name: &str, text: &str, run_time: &[&str]) -> Result<Chec
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))
         .flatten()
-        .and_then(|root| schema::robot(&Context::new(text, &problems, run_time), &root));
+        .and_then(|root| schema::robot(&Context::new(text, &problems, run_time).with_settings(settings), &root));
     let report = problems.finish(name, text);
     match robot {
         Some(robot) if !report.has_errors() => Ok(Checked { robot, lints: report }),
@@ -88,9 +88,40 @@ pub fn check_bytes(name: &str, bytes: &[u8]) -> Result<Checked, Report> {
 /// parameter; a function, another power or an exponent that does; a number that depends on one and is zero in the file,
 /// for zeros are folded away; a run-time parameter on which nothing depends.
 pub fn check_bytes_with_run_time(name: &str, bytes: &[u8], run_time: &[&str]) -> Result<Checked, Report> {
+    check_anything(name, bytes, run_time, &[])
+}
+
+/// As [`check_bytes`], for a robot some of whose parameters have other values than those in the file; what the file
+/// defines through them follows.
+///
+/// ```
+/// use rne_model::check_bytes_with_settings;
+///
+/// let text = "
+/// format: 1
+/// name: pendulum
+/// source: a lecture
+/// convention: standard
+/// gravity: [0, -9.81, 0]
+/// parameters: {payload: 0, m: 1.2 + payload}
+/// joints:
+///   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mass: m, com: [-1/4, 0, 0]}}
+/// ";
+/// let robot = check_bytes_with_settings("pendulum.yaml", text.as_bytes(), &[("payload", 2.0)]).unwrap().robot;
+/// assert_eq!(robot.joints[0].row.link.mass, 1.2 + 2.0);
+/// ```
+///
+/// # Errors
+///
+/// As [`check_bytes`], of the file with these values; a name that does not stand under `parameters`.
+pub fn check_bytes_with_settings(name: &str, bytes: &[u8], settings: &[(&str, f64)]) -> Result<Checked, Report> {
+    check_anything(name, bytes, &[], settings)
+}
+
+fn check_anything(name: &str, bytes: &[u8], run_time: &[&str], settings: &[(&str, f64)]) -> Result<Checked, Report> {
     let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
     let error = match std::str::from_utf8(bytes) {
-        Ok(text) => return check_with_run_time(name, text, run_time),
+        Ok(text) => return check_text(name, text, run_time, settings),
         Err(error) => error,
     };
     let problems = Problems::new();

@@ -38,6 +38,8 @@ pub(crate) struct Context<'t> {
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// The parameters that stay free until run time, and what is found to depend on them.
     pub(crate) run_time: RefCell<RunTime>,
+    /// Parameters that have another value than that of the file.
+    pub(crate) settings: &'t [(&'t str, f64)],
     /// How many unknown words were compared with known ones.
     suggestions: Cell<usize>,
 }
@@ -80,7 +82,12 @@ impl<'t> Context<'t> {
     pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
         let names = run_time.iter().map(|&name| name.to_owned()).collect();
         let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
-        Self { text, problems, parameters: RefCell::default(), run_time, suggestions: Cell::new(0) }
+        Self { text, problems, parameters: RefCell::default(), run_time, settings: &[], suggestions: Cell::new(0) }
+    }
+
+    /// With other values of these parameters.
+    pub(crate) fn with_settings(self, settings: &'t [(&'t str, f64)]) -> Self {
+        Self { settings, ..self }
     }
 
     /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a

@@ -86,7 +86,7 @@ mod urdf;
 mod varying;
 
 #[cfg(feature = "std")]
-pub use check::{Checked, check, check_bytes, check_bytes_with_run_time};
+pub use check::{Checked, check, check_bytes, check_bytes_with_run_time, check_bytes_with_settings};
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]

@@ -28,6 +28,8 @@ pub struct Robot {
     /// The parameters that stay free until run time, and which numbers depend on them; empty unless asked for, by
     /// [`check_bytes_with_run_time`](crate::check_bytes_with_run_time).
     pub run_time: RunTime,
+    /// Whether rotors belong to the arm; no file says so, [`Robot::with_rotors`] does.
+    pub rotors: bool,
 }
 
 /// One joint of a [`Robot`], with the link it moves.
@@ -81,6 +83,21 @@ impl Robot {
     #[must_use]
     pub fn dof(&self) -> usize {
         self.joints.len()
+    }
+
+    /// The arm with its rotors: what a rotor behind a gear resists with, G² Jm q̈, is part of its torques, of its mass
+    /// matrix and of its kinetic energy, and so of its forward dynamics. Friction is not, and the rotor's gyroscopic
+    /// torques are left out. A robot without motors stays as it is.
+    #[must_use]
+    pub fn with_rotors(self) -> Self {
+        Self { rotors: true, ..self }
+    }
+
+    /// Whether some rotor belongs to the arm and resists.
+    #[must_use]
+    pub fn has_rotors(&self) -> bool {
+        let resists = |motor: Motor| motor.inertia * motor.gear_ratio != 0.0;
+        self.rotors && self.joints.iter().any(|joint| joint.motor.is_some_and(resists))
     }
 
     /// The joint whose link carries `joint`, both counted from 0; `None` for the base. A robot is a chain.

@@ -9,7 +9,9 @@ use crate::document::{self, Content, Node};
 use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, rounded};
-use crate::varying::{entry, fixed, inertia_about_com, inertia_element, unknown_names, without_effect};
+use crate::varying::{
+    entry, fixed, inertia_about_com, inertia_element, unknown_names, unknown_settings, without_effect,
+};
 use crate::{
     Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, Limits, Link, Motor,
     Robot, Row, Transform, inertia, lint,
@@ -28,6 +30,7 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         format(cx, version)?;
     }
     unknown_names(cx, node);
+    unknown_settings(cx, node);
     read_mapping!(cx, node, "a robot file", {
         _format: required "format" format,
         name: required "name" robot_name,
@@ -48,7 +51,20 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         lint::inertias(cx, node, convention, &joints);
     }
     let run_time = cx.run_time.take();
-    Some(Robot { name, title, source, notes, convention, gravity, base, tool, parameters, joints, run_time })
+    Some(Robot {
+        name,
+        title,
+        source,
+        notes,
+        convention,
+        gravity,
+        base,
+        tool,
+        parameters,
+        joints,
+        run_time,
+        rotors: false,
+    })
 }
 
 fn format(cx: &Context, node: &Node) -> Option<()> {
@@ -128,6 +144,9 @@ fn parameters(cx: &Context, node: &Node) -> Option<Vec<(String, f64)>> {
     for (index, document::Entry { key, key_span, value }) in entries.iter().enumerate() {
         let name = parameter_name(cx, key, key_span.clone());
         let mut quantity = quantity(cx, value);
+        if let Some(&(_, set)) = cx.settings.iter().find(|(name, _)| name == key) {
+            quantity = quantity.map(|_| Quantity::constant(set));
+        }
         values.push(name.zip(quantity.as_ref().map(|quantity| quantity.value)));
         if let Some(own) = cx.run_time_index(key) {
             // What it is in the file is but its value there, whatever that depends on.

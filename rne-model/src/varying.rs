@@ -130,6 +130,16 @@ pub(crate) fn inertia_about_com(
 
 /// The names asked for that stand nowhere under `parameters`.
 pub(crate) fn unknown_names(cx: &Context, root: &Node) {
+    let names = cx.run_time.borrow().names.clone();
+    unknown(cx, root, names.iter().map(String::as_str), " for run time");
+}
+
+/// The names that are to have another value and stand nowhere there.
+pub(crate) fn unknown_settings(cx: &Context, root: &Node) {
+    unknown(cx, root, cx.settings.iter().map(|(name, _)| *name), " to be set");
+}
+
+fn unknown<'n>(cx: &Context, root: &Node, names: impl Iterator<Item = &'n str>, what: &str) {
     let parameters = root.get("parameters");
     let known: Vec<&str> = match parameters.map(|node| &node.content) {
         None => Vec::new(),
@@ -137,8 +147,8 @@ pub(crate) fn unknown_names(cx: &Context, root: &Node) {
         // Of another shape: reported where it is read.
         Some(_) => return,
     };
-    for name in &cx.run_time.borrow().names {
-        if known.contains(&name.as_str()) {
+    for name in names {
+        if known.contains(&name) {
             continue;
         }
         let mut listed = known.iter().take(MOST_LISTED).map(|name| quoted(name)).collect::<Vec<_>>().join(", ");
@@ -148,7 +158,7 @@ pub(crate) fn unknown_names(cx: &Context, root: &Node) {
             _ => listed.insert_str(0, "there are "),
         }
         let place = parameters.map_or(root.head(), Node::head);
-        let message = format!("no parameter {} for run time; under `parameters` {listed}", quoted(name));
+        let message = format!("no parameter {}{what}; under `parameters` {listed}", quoted(name));
         let help = cx.did_you_mean(name, known.iter().copied()).map_or_else(
             || format!("define `{name}: …` under `parameters`"),
             |meant| format!("did you mean `{meant}`?"),

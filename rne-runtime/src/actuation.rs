@@ -17,7 +17,9 @@ use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
     pub(crate) fn actuator_torques<T: Scalar>(self, qd: &[T], qdd: &[T]) -> J::Of<T> {
-        self.per_joint.of(|i| self.motors[i].map_or_else(T::zero, |motor| torque(&motor, qd[i], qdd[i])))
+        // a rotor that belongs to the arm is in its torques
+        let of_rotor = |qdd| if self.rotors { T::zero() } else { qdd };
+        self.per_joint.of(|i| self.motors[i].map_or_else(T::zero, |motor| torque(&motor, qd[i], of_rotor(qdd[i]))))
     }
 }
 

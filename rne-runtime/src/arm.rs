@@ -54,6 +54,7 @@ pub struct Arm<const DOF: usize, S = f64> {
     links: [LinkFrame<S>; DOF],
     tip: Mount<S>,
     motors: [Option<Motor<S>>; DOF],
+    rotors: bool,
 }
 
 impl<const DOF: usize, S: Constant> Arm<DOF, S> {
@@ -63,7 +64,7 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         let Model { convention, tool, rows, .. } = &model;
         let links = array::from_fn(|index| LinkFrame::new(*convention, rows, index));
         let tip = Mount::of_tip(*convention, rows, tool);
-        Self { model, links, tip, motors: [None; DOF] }
+        Self { model, links, tip, motors: [None; DOF], rotors: false }
     }
 
     /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
@@ -73,7 +74,17 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
         self
     }
 
-    /// The motors, base to tip. [`Actuation`](crate::Actuation) alone asks for them.
+    /// The arm with its rotors, as [`Robot::with_rotors`](rne_model::Robot::with_rotors) has it: G² Jm q̈ is part of its
+    /// torques, its mass matrix and its kinetic energy, and friction alone is left to
+    /// [`Actuation`](crate::Actuation).
+    #[must_use]
+    pub const fn with_rotors(mut self) -> Self {
+        self.rotors = true;
+        self
+    }
+
+    /// The motors, base to tip. [`Actuation`](crate::Actuation) alone asks for them, unless the arm is taken
+    /// [with its rotors](Self::with_rotors).
     #[must_use]
     pub const fn motors(&self) -> &[Option<Motor<S>>; DOF] {
         &self.motors
@@ -131,7 +142,8 @@ impl<const DOF: usize, S: Constant> Arm<DOF, S> {
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Known<DOF>, S> {
         let Model { convention, gravity, base, tool, rows } = &self.model;
         let chain = Chain { links: &self.links, tip: &self.tip };
-        Mechanism { per_joint: Known, chain, convention: *convention, rows, motors: &self.motors, gravity, base, tool }
+        let (motors, rotors) = (&self.motors, self.rotors);
+        Mechanism { per_joint: Known, chain, convention: *convention, rows, motors, rotors, gravity, base, tool }
     }
 }
 

@@ -25,6 +25,7 @@ pub struct DynArm<S = f64> {
     links: Vec<LinkFrame<S>>,
     tip: Mount<S>,
     motors: Vec<Option<Motor<S>>>,
+    rotors: bool,
 }
 
 /// The seven steps of one state of a [`DynArm`], in the axes of form P.
@@ -40,7 +41,8 @@ impl DynArm {
     pub fn from_robot(robot: &Robot) -> Self {
         let motors = robot.joints.iter().map(|joint| joint.motor).collect();
         let rows = robot.rows().copied().collect();
-        Self { motors, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
+        let rotors = robot.rotors;
+        Self { motors, rotors, ..Self::of_rows(robot.convention, robot.gravity, robot.base, robot.tool, rows) }
     }
 }
 
@@ -62,7 +64,7 @@ impl<S: Constant> DynArm<S> {
         let links = (0..rows.len()).map(|index| LinkFrame::new(convention, &rows, index)).collect();
         let tip = Mount::of_tip(convention, &rows, &tool);
         let motors = vec![None; rows.len()];
-        Self { convention, gravity, base, tool, rows, links, tip, motors }
+        Self { convention, gravity, base, tool, rows, links, tip, motors, rotors: false }
     }
 
     /// The same robot with these motors, base to tip, in place of those it has; `None` where a joint has none.
@@ -72,6 +74,12 @@ impl<S: Constant> DynArm<S> {
     pub fn with_motors(self, motors: Vec<Option<Motor<S>>>) -> Result<Self, WrongLength> {
         self.has_length("motors", &motors)?;
         Ok(Self { motors, ..self })
+    }
+
+    /// As [`Arm::with_rotors`](crate::Arm::with_rotors): rotors belong to the arm.
+    #[must_use]
+    pub fn with_rotors(self) -> Self {
+        Self { rotors: true, ..self }
     }
 
     /// Number of joints.
@@ -286,9 +294,9 @@ impl<S: Constant> DynArm<S> {
     }
 
     pub(crate) fn mechanism(&self) -> Mechanism<'_, Counted, S> {
-        let Self { convention, gravity, base, tool, rows, links, tip, motors } = self;
-        let per_joint = Counted(rows.len());
-        Mechanism { per_joint, chain: Chain { links, tip }, convention: *convention, rows, motors, gravity, base, tool }
+        let Self { convention, gravity, base, tool, rows, links, tip, motors, rotors } = self;
+        let (per_joint, convention, rotors) = (Counted(rows.len()), *convention, *rotors);
+        Mechanism { per_joint, chain: Chain { links, tip }, convention, rows, motors, rotors, gravity, base, tool }
     }
 }
 
@@ -301,7 +309,8 @@ impl DynArm<f64> {
         let rows = self.rows.iter().map(|row| row.to_f32()).collect();
         let motors = self.motors.iter().map(|motor| motor.map(Motor::to_f32)).collect();
         let (base, tool) = (self.base.to_f32(), self.tool.to_f32());
-        DynArm { motors, ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows) }
+        let rotors = self.rotors;
+        DynArm { motors, rotors, ..DynArm::of_rows(self.convention, self.gravity.map(|x| x as f32), base, tool, rows) }
     }
 }
 

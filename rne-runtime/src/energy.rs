@@ -1,7 +1,8 @@
 //! Kinetic and potential energy.
 //!
 //! ```text
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i)      ω and ċ of steps 1 and 3, in the axes of form P
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i) [+ ½ Σ G² Jm q̇², of an arm with its rotors]
+//!                                              ω and ċ of steps 1 and 3, in the axes of form P
 //! V = - Σ m_i g · c_i                          c_i = R_i c̄_i + p_i from the rows of the table, in the axes of frame 0
 //! ```
 //!
@@ -28,6 +29,11 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities.as_ref()) {
             let spin = motion.omega.dot(&(link.inertia * motion.omega));
             twice += link.mass * velocity.dot(velocity) + spin;
+        }
+        for (index, &qd) in qd.iter().enumerate() {
+            if let Some(rotor) = self.rotor(index) {
+                twice += rotor.to::<T>() * (qd * qd);
+            }
         }
         twice * T::from_f64(0.5)
     }

@@ -30,7 +30,8 @@ impl<const DOF: usize> Arm<DOF> {
     /// When the robot does not have `DOF` joints.
     pub fn from_robot(robot: &Robot) -> Result<Self, WrongJointCount> {
         let model = robot.model().ok_or(WrongJointCount { expected: DOF, found: robot.dof() })?;
-        Ok(Self::new(model).with_motors(array::from_fn(|joint| robot.joints[joint].motor)))
+        let arm = Self::new(model).with_motors(array::from_fn(|joint| robot.joints[joint].motor));
+        Ok(if robot.rotors { arm.with_rotors() } else { arm })
     }
 }
 

@@ -19,6 +19,8 @@ pub(crate) struct Mechanism<'a, J, S> {
     pub(crate) convention: Convention,
     pub(crate) rows: &'a [Row<S>],
     pub(crate) motors: &'a [Option<Motor<S>>],
+    /// Whether rotors belong to the arm.
+    pub(crate) rotors: bool,
     pub(crate) gravity: &'a [S; 3],
     pub(crate) base: &'a Transform<S>,
     pub(crate) tool: &'a Transform<S>,
@@ -59,7 +61,18 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let motions = self.motions(joints, base);
         let mut loads = self.per_joint.all(&LinkLoad::empty());
         seven_steps::backward(self.chain, motions.as_ref(), tip, loads.as_mut());
+        for (index, (load, &qdd)) in loads.as_mut().iter_mut().zip(joints.qdd).enumerate() {
+            if let Some(rotor) = self.rotor(index) {
+                load.tau += rotor.to::<T>() * qdd;
+            }
+        }
         (motions, loads)
+    }
+
+    /// G² Jm of a rotor that belongs to the arm.
+    pub(crate) fn rotor(self, joint: usize) -> Option<S> {
+        let motor = self.motors[joint].as_ref().filter(|_| self.rotors)?;
+        Some((motor.gear_ratio * motor.gear_ratio) * motor.inertia)
     }
 
     /// Torques of the seven steps with a free tip.

@@ -86,13 +86,13 @@ impl Driver<'_> {
         text.push_str("int main(void)\n{\n");
         for precision in Precision::ALL {
             let real = precision.c_type();
-            let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 18);
+            let _ = writeln!(text, "    {real} {real}s[{}];", 6 * dof + 30);
         }
         for precision in Precision::ALL {
             // where no file has this number type
             let _ = writeln!(text, "    (void)print_{};", precision.c_type());
         }
-        let count = 6 * dof + 18;
+        let count = 6 * dof + 30;
         let _ = writeln!(text, "    while (read_float(floats, {count}u) && read_double(doubles, {count}u)) {{");
         for Unit { prefix, precision, .. } in self.units {
             let _ = writeln!(text, "        {prefix}_all({}s);", precision.c_type());

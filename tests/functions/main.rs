@@ -24,6 +24,7 @@ mod published;
 mod random_arms;
 #[path = "../random/robots.rs"]
 mod robots;
+mod rotors;
 mod single_precision;
 #[path = "../c_code/states.rs"]
 mod states;

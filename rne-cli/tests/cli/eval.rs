@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::call::{ROOT, fails, fine};
+use crate::call::{ROOT, fails, fine, folder};
 use rne::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Wrench,
@@ -167,6 +167,41 @@ fn same(found: &Value, expected: &Value) {
             assert!((a - b).abs() <= 2.0 * f64::EPSILON * b.abs(), "{a} is not {b}");
         }
     }
+}
+
+/// A parameter of the file has another value, and what is defined through it follows.
+#[test]
+fn parameters_are_set() {
+    let file = folder("settings").join("pendulum.yaml");
+    let text = "{format: 1, name: pendulum, source: own, convention: standard, gravity: [0, -9.81, 0],
+        parameters: {held: 0, m: 1.2 + held}, joints: [
+        {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mass: m, com: [-1/4, 0, 0]}}]}";
+    fs::write(&file, text).expect("a file");
+    let file = file.to_str().expect("UTF-8");
+    let call = ["eval", file, "--json", "--function", "gravity_torques", "--q", "0"];
+    let torque = |more: &[&str]| {
+        let reply: Value = serde_json::from_str(&fine(&[&call[..], more].concat())).expect("JSON");
+        reply["result"][0].as_f64().expect("a number")
+    };
+    assert!((torque(&[]) - 1.2 * 9.81 / 4.0).abs() < 1e-14);
+    assert!((torque(&["--set", "held=2"]) - 3.2 * 9.81 / 4.0).abs() < 1e-14);
+    assert!((torque(&["--set", "held=0.5", "--set", "m=2*4"]) - 8.0 * 9.81 / 4.0).abs() < 1e-13);
+    let fails = |status, more: &[&str], words: &[&str]| fails(status, &[&call[..], more].concat(), words);
+    fails(1, &["--set", "hold=2"], &["no parameter `hold`", "there are `held`, `m`", "did you mean `held`?"]);
+    fails(1, &["--set", "held=-2"], &["the mass `m` = -0.8 is negative"]);
+    fails(2, &["--set", "held=2", "--set", "held=3"], &["--set gives held twice"]);
+    fails(2, &["--set", "held"], &["write NAME=VALUE"]);
+}
+
+#[test]
+fn rotors_are_part_of_the_arm_where_asked_for() {
+    let call = ["eval", PUMA, "--json", "--function", "mass_matrix", "--q", "0,0,0,0,0,0"];
+    let element = |more: &[&str]| {
+        let reply: Value = serde_json::from_str(&fine(&[&call[..], more].concat())).expect("JSON");
+        reply["result"][1][1].as_f64().expect("a number")
+    };
+    // G² Jm = 107.815² 2e-4 kg m²
+    assert!((element(&["--rotors"]) - element(&[]) - 107.815 * 107.815 * 2e-4).abs() < 1e-12);
 }
 
 /// The numbers of the runtime, in the shape of the traits.

@@ -49,6 +49,26 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula
     of_joint(templates, joint)
 }
 
+/// The formulas of a step for a payload, as the link behind the last; `{p}` is the last one, R turns tip axes into its own.
+pub(super) fn payload_formulas(step: Step, joint: usize) -> Vec<Formula> {
+    let templates: Templates = match step {
+        Step::AngularVelocity => &[(Quantity::Omega, "ω{i} = Rᵀ ω{p}")],
+        Step::AngularAcceleration => &[(Quantity::OmegaDot, "ω̇{i} = Rᵀ ω̇{p}")],
+        Step::Acceleration => &[(
+            Quantity::Acceleration,
+            "c̈{i} = Rᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})) + ω̇{i} × com{i} + ω{i} × (ω{i} × com{i})",
+        )],
+        Step::Gravity => &[(Quantity::Gravity, "g{i} = Rᵀ g{p}")],
+        Step::Wrenches => &[
+            (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
+            (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i})"),
+            (Quantity::JointMoment, "n{p},{i} = n{i} + com{i} × f{p},{i}"),
+        ],
+        Step::Velocity | Step::Torque | Step::Beyond => &[],
+    };
+    of_joint(templates, joint)
+}
+
 /// The formulas of the reduced form that stand in the place of a step. The order of their terms and the frame in which
 /// they are evaluated are choices of the plan.
 pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula> {

@@ -38,10 +38,12 @@ impl Heading {
             let ([x, y, z], [roll, pitch, yaw]) = (xyz, rpy.map(|turn| angle(&turn)));
             format!("{what}: ({x}, {y}, {z}) m, roll pitch yaw ({roll}, {pitch}, {yaw}) rad")
         };
+        let rotors =
+            if robot.has_rotors() { "\nwith its rotors: torques contain G² Jm q̈ of the motors" } else { "" };
         Self {
             title: inert::title(robot),
             source: fill(&format!("Source: {}", robot.source.trim_end()), 100, "", ""),
-            frames: format!("{convention}\nacceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²"),
+            frames: format!("{convention}\nacceleration of gravity in frame 0: ({x}, {y}, {z}) m/s²{rotors}"),
             ends: ends.into_iter().filter(|(_, end)| **end != Transform::IDENTITY).map(place).collect(),
             table: dh_table(robot),
         }

@@ -8,12 +8,12 @@ use rne_model::{JointKind, Robot};
 
 use super::annotated::{Annotated, Part};
 use super::expression::{self, statement as written};
-use super::formula::{Formula, formulas, reduced_formulas};
+use super::formula::{Formula, formulas, payload_formulas, reduced_formulas};
 use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
-use crate::function::{Form, Function};
+use crate::function::{Argument, Form, Function};
 use crate::ir::fold_report::{self, Cause, Causes, Fold, FoldReport, Place};
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Quantity, Step};
@@ -204,10 +204,15 @@ pub fn listing<'a>(robot: &Robot, program: &'a Program, what: Selection) -> List
 
 fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
     // out with steps 1 to 5, back with 6 and 7
-    let outward = (1..=program.dof).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
-    let inward = (1..=program.dof).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
+    // a payload is one link more
+    let last = program.dof + usize::from(program.function.takes(Argument::Payload));
+    let outward = (1..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
+    let inward = (1..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
     let mut sections = Vec::new();
-    for (joint, step) in outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step)) {
+    // its joint does not move
+    let is_of_links = |joint, step| joint <= program.dof || !matches!(step, Step::Velocity | Step::Torque);
+    let places = outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step) && is_of_links(joint, step));
+    for (joint, step) in places {
         let here = |place: &Place| place.joint == joint && place.step == step;
         let turns = program.sines_and_cosines.iter().filter(|turn| here(&turn.place)).map(Line::SineCosine);
         let statements = program.statements.iter().filter(|statement| here(&statement.place)).map(Line::Statement);
@@ -315,6 +320,7 @@ fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Ve
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
+        Form::SevenSteps if joint > program.dof => payload_formulas(step, joint),
         Form::SevenSteps => formulas(step, kind, joint),
         Form::Reduced if program.is_of_bodies() => Vec::new(),
         Form::Reduced => reduced_formulas(step, kind, joint),
@@ -341,7 +347,11 @@ fn step_title(program: &Program, joint: usize, step: Step) -> String {
         (_, Step::AngularAcceleration) => "angular acceleration, accelerations of points",
         _ => step.title(),
     };
-    let of = if joint == 0 { "base".to_owned() } else { format!("joint {joint}") };
+    let of = match joint {
+        0 => "base".to_owned(),
+        _ if joint > program.dof => "payload".to_owned(),
+        _ => format!("joint {joint}"),
+    };
     format!("{of}, step {}: {title}", step.number())
 }
 

@@ -14,6 +14,7 @@
 
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot, Transform};
 
+use crate::formulate::actuation;
 use crate::function::Argument;
 use crate::ir::Builder;
 use crate::ir::fold_report::Cause;
@@ -48,6 +49,8 @@ pub(crate) struct Link<'s> {
     pub(crate) mass: Symbol<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
+    /// G² Jm of the joint's rotor, if that belongs to the arm.
+    pub(crate) rotor: Option<Symbol<'s>>,
 }
 
 /// The constants of a robot.
@@ -97,6 +100,7 @@ impl<'s> Arm<'s> {
                 com: table_axes.map_or(com, |axes| axes * com),
                 table_axes: table_axes.unwrap_or_else(|| identity(builder)),
                 mass: mass(builder, robot, index),
+                rotor: actuation::rotor(builder, robot, index),
                 inertia: builder.name_matrix(
                     Quantity::Inertia,
                     joint,

@@ -1,8 +1,9 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i);   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²;   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
 
 use crate::formulate::arm::Arm;
+use crate::formulate::joint::JointState;
 use crate::formulate::kinematics::Frames;
 use crate::formulate::seven_steps::Motion;
 use crate::ir::fold_report::Cause;
@@ -10,7 +11,7 @@ use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Symbol, Vector};
 
-pub(crate) fn kinetic<'s>(arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
+pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[Motion<'s>]) -> Symbol<'s> {
     let builder = arm.builder;
     let mut twice = builder.constant(0.0, Cause::Arithmetic);
     for (index, (link, motion)) in arm.links.iter().zip(motions).enumerate() {
@@ -20,6 +21,11 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, motions: &[Motion<'s>]) -> Symbol<'s> {
             let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + omega.dot(momentum);
             twice + of_link
         });
+    }
+    for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
+        if let Some(rotor) = link.rotor {
+            twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || twice + rotor * (state.qd * state.qd));
+        }
     }
     let half = builder.entry(Name::scalar(Quantity::Half, 0), 0.5);
     let energy = builder.joint(motions.len()).within(Quantity::KineticEnergy, || twice * half);

@@ -191,7 +191,7 @@ impl<'s, 'r> Derivation<'s, 'r> {
     }
 
     fn kinetic_energy(&self) -> Outputs<'s> {
-        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy::kinetic(&self.arm, &self.motions()))]
+        vec![(Name::scalar(Quantity::KineticEnergy, 0), energy::kinetic(&self.arm, &self.states, &self.motions()))]
     }
 
     fn potential_energy(&self) -> Outputs<'s> {

@@ -180,8 +180,11 @@ pub(crate) fn backward<'s>(
         });
         let wrench = Wrench { force, moment };
 
-        // 7   τ_i = e · n_{p,i} (prismatic: e · f_{p,i})
-        let torque = line.scalar(Quantity::Torque, || joint.actuator(&wrench));
+        // 7   τ_i = e · n_{p,i} (prismatic: e · f_{p,i})      with the rotor, if that belongs to the arm: + G² Jm q̈_i
+        let torque = line.scalar(Quantity::Torque, || {
+            let torque = joint.actuator(&wrench);
+            link.rotor.map_or(torque, |rotor| torque + rotor * joint.state.qdd)
+        });
 
         loads.push(Load { wrench, torque });
         if let Some(parent) = link.parent {

@@ -93,6 +93,15 @@ impl Function {
         self.entry().returns_torques
     }
 
+    /// Whether rotors that belong to the arm change what it returns.
+    #[must_use]
+    pub fn feels_rotors(self) -> bool {
+        match self {
+            Self::MassMatrix | Self::ForwardDynamics | Self::KineticEnergy | Self::ActuatorTorques => true,
+            _ => self.returns_torques() && self.takes(Argument::Accelerations),
+        }
+    }
+
     /// Whether what it returns are the accelerations of the joints.
     #[must_use]
     pub const fn returns_accelerations(self) -> bool {

@@ -84,7 +84,9 @@ impl PlanSet {
     /// The algorithm by which a function takes the fewest operations, and the plan for it: that at hand, or that
     /// without the choices that it makes joint by joint for the recursion.
     pub(crate) fn cheapest(&self, robot: &Robot, function: Function) -> (Plan, Algorithm) {
-        let algorithms = Algorithm::of_so_many(function, robot.dof());
+        let mut algorithms = Algorithm::of_so_many(function, robot.dof());
+        // articulated bodies are those of links alone
+        algorithms.retain(|algorithm| !(robot.has_rotors() && matches!(algorithm, Algorithm::Aba(_))));
         let first = (self.plan.clone(), algorithms.first().copied().unwrap_or(Algorithm::Rnea));
         if algorithms.len() < 2 {
             return first;

@@ -94,6 +94,7 @@ pub(crate) fn torques_with<'s>(
             }
         };
         builder.at(Quantity::Torque, index + 1);
+        let torque = torque + builder.rate_dot(rows, index).times(arm.joint_frames.rotors[index]);
         let torque = if rows[index].reversed { -torque } else { torque };
         builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
         torques.push(torque);

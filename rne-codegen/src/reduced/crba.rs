@@ -208,6 +208,8 @@ pub(crate) fn mass_matrix<'s>(builder: &'s Builder, arm: &Arm<'_>, bodies_per: B
             (row..dof)
                 .map(|column| {
                     let element = matrix[row][column].signed(rows[row].reversed != rows[column].reversed);
+                    let element =
+                        if row == column { element + builder.number(arm.joint_frames.rotors[row]) } else { element };
                     let by = Some(WithRespectTo::RateDot(column + 1));
                     builder.name(Name { by, ..Name::scalar(Quantity::Torque, row + 1) }, element);
                     element

@@ -5,7 +5,7 @@
 //! nothing is put right here: the base is turned into the first joint's frame, the last joint's constant angle into its
 //! link, anti-parallel axes are made parallel.
 
-use rne_model::{Convention, JointKind, QuarterTurns, Robot, Transform};
+use rne_model::{Convention, Joint, JointKind, Motor, QuarterTurns, Robot, Transform};
 
 use crate::ir::{Embedding, ExactAngle, Number};
 use crate::reduced::link_parameters::{
@@ -47,6 +47,8 @@ pub(crate) struct JointFrames {
     /// Acceleration of gravity in the axes of the base, which are those of joint 1 at rest.
     pub(crate) gravity: Triple,
     pub(crate) tip: Tip,
+    /// G² Jm of the rotors that belong to the arm; zero for the others.
+    pub(crate) rotors: Vec<Number>,
     /// How the numbers of the file were read.
     pub(crate) embedding: Embedding,
     /// Sines and cosines of the constant angles of the file, none negative.
@@ -163,7 +165,10 @@ impl JointFrames {
         }
         let turns = rows.iter().flat_map(|row| [row.alpha, row.theta]).chain([alpha]);
         let known = turns.flat_map(|turn| [turn.sin.abs(), turn.cos.abs()]).collect();
-        Self { rows, gravity: robot.gravity.map(decimal), tip, embedding, known }
+        let rotor = |motor: Motor| decimal(motor.gear_ratio) * decimal(motor.gear_ratio) * decimal(motor.inertia);
+        let of_arm = |joint: &Joint| joint.motor.filter(|_| robot.rotors).map(rotor).unwrap_or_default();
+        let rotors = robot.joints.iter().map(of_arm).collect();
+        Self { rows, gravity: robot.gravity.map(decimal), tip, rotors, embedding, known }
     }
 
     /// α = ±π becomes 0: from there on all turns count the other way round, until the next such row.

@@ -1,0 +1,63 @@
+//! Which arm a command is about: that of the file, or with its rotors, or with other values of its parameters.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use clap::Args;
+use rne_model::Robot;
+
+use crate::outcome::Failure;
+use crate::robot_file;
+
+/// Rotors belong to the arm.
+#[derive(Args, Clone, Copy, Default)]
+pub(crate) struct Rotors {
+    /// The arm with its rotors: G² Jm q̈ of the motors is in torques, mass matrix, forward dynamics and kinetic energy
+    #[arg(long)]
+    pub(crate) rotors: bool,
+}
+
+impl Rotors {
+    /// The robot of a file.
+    pub(crate) fn robot(self, path: &Path) -> Result<Robot, Failure> {
+        Ok(Robot { rotors: self.rotors, ..robot_file::robot(path)? })
+    }
+}
+
+/// A parameter of the file and its value here: `payload=2`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Setting {
+    pub(crate) name: String,
+    pub(crate) value: f64,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as payload=2")?;
+        let (name, value) = (name.trim(), value.trim());
+        if name.is_empty() {
+            return Err("the name is missing; write NAME=VALUE, such as payload=2".to_owned());
+        }
+        if value.is_empty() {
+            return Err(format!("the value is missing; write {name}=VALUE, such as {name}=2"));
+        }
+        let value = rne_model::number(value).map_err(|mistake| {
+            let hint = mistake.help.as_deref().unwrap_or("write a number or an expression, such as 0.5 or pi/2");
+            format!("`{value}` is no number: {}; {hint}", mistake.message)
+        })?;
+        Ok(Self { name: name.to_owned(), value })
+    }
+}
+
+/// The robot of a file with other values of its parameters.
+pub(crate) fn with_settings(path: &Path, settings: &[Setting]) -> Result<Robot, Failure> {
+    for (index, Setting { name, .. }) in settings.iter().enumerate() {
+        if settings[..index].iter().any(|other| other.name == *name) {
+            return Err(Failure::usage(format_args!("--set gives {name} twice")));
+        }
+    }
+    let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();
+    Ok(robot_file::read_with(path, &settings)?.robot)
+}
