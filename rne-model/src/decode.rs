@@ -11,6 +11,7 @@ use crate::RunTime;
 use crate::diagnostic::{Diagnostic, Problems};
 use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
+use crate::keys::Mapping;
 use crate::quantity::Quantity;
 use crate::source::{inside, quoted, rounded};
 use crate::spelling::{LONGEST_WORD, did_you_mean};
@@ -23,12 +24,18 @@ macro_rules! read_mapping {
     ($cx:ident, $node:ident, $what:literal, {
         $($variable:ident: $rule:ident $(($default:expr))? $key:literal $reader:expr,)*
     }) => {
-        let fields = $crate::decode::Fields::open($cx, $node, $what, &[$($key),*])?;
+        let keys = const { &[$($crate::Key { name: $key, is_required: $crate::decode::is_required(stringify!($rule)) }),*] };
+        let fields = $crate::decode::Fields::open($cx, $node, $crate::Mapping { name: $what, keys })?;
         $(let $variable = fields.$rule($key, $($default,)? $reader);)*
         $(let $variable = $variable?;)*
     };
 }
 pub(crate) use read_mapping;
+
+/// Whether a rule of [`read_mapping`] is `required`, which alone begins so.
+pub(crate) const fn is_required(rule: &str) -> bool {
+    matches!(rule.as_bytes(), [b'r', ..])
+}
 
 /// What every reader needs: the text, the names of the numbers, and where mistakes go.
 pub(crate) struct Context<'t> {
@@ -38,6 +45,8 @@ pub(crate) struct Context<'t> {
     pub(crate) parameters: RefCell<BTreeMap<String, Parameter>>,
     /// The parameters that stay free until run time, and what is found to depend on them.
     pub(crate) run_time: RefCell<RunTime>,
+    /// The mappings that the format has, of those the file opens; once each.
+    pub(crate) mappings: RefCell<Vec<Mapping>>,
     /// How many unknown words were compared with known ones.
     suggestions: Cell<usize>,
 }
@@ -80,7 +89,14 @@ impl<'t> Context<'t> {
     pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
         let names = run_time.iter().map(|&name| name.to_owned()).collect();
         let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
-        Self { text, problems, parameters: RefCell::default(), run_time, suggestions: Cell::new(0) }
+        Self {
+            text,
+            problems,
+            parameters: RefCell::default(),
+            run_time,
+            mappings: RefCell::default(),
+            suggestions: Cell::new(0),
+        }
     }
 
     /// The candidate that `word` was probably meant to be. So many candidates and so many words bound the work that a
@@ -115,6 +131,13 @@ impl<'t> Context<'t> {
     pub(crate) fn parameter_name(&self, index: Option<usize>) -> String {
         let run_time = self.run_time.borrow();
         index.and_then(|index| run_time.names.get(index)).cloned().unwrap_or_default()
+    }
+
+    fn opens(&self, mapping: Mapping) {
+        let mut mappings = self.mappings.borrow_mut();
+        if mappings.iter().all(|known| known.name != mapping.name) {
+            mappings.push(mapping);
+        }
     }
 
     pub(crate) fn report(&self, diagnostic: Diagnostic) {
@@ -157,13 +180,11 @@ pub(crate) struct Fields<'d> {
 }
 
 impl<'d> Fields<'d> {
-    /// Opens a mapping that may have the keys `allowed`; every other key is reported here.
-    pub(crate) fn open(
-        cx: &'d Context<'d>,
-        node: &'d Node,
-        what: &'static str,
-        allowed: &[&'static str],
-    ) -> Option<Self> {
+    /// Opens a mapping; every key that it may not have is reported here.
+    pub(crate) fn open(cx: &'d Context<'d>, node: &'d Node, mapping: Mapping) -> Option<Self> {
+        let what = mapping.name;
+        let allowed: Vec<&'static str> = mapping.keys.iter().map(|key| key.name).collect();
+        cx.opens(mapping);
         let Content::Mapping(entries) = &node.content else {
             return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
         };
