@@ -24,7 +24,9 @@ macro_rules! read_mapping {
     ($cx:ident, $node:ident, $what:literal, {
         $($variable:ident: $rule:ident $(($default:expr))? $key:literal $reader:expr,)*
     }) => {
-        let keys = const { &[$($crate::Key { name: $key, is_required: $crate::decode::is_required(stringify!($rule)) }),*] };
+        let keys = const {
+            &[$($crate::Key { name: $key, is_required: $crate::decode::is_required(stringify!($rule)) }),*]
+        };
         let fields = $crate::decode::Fields::open($cx, $node, $crate::Mapping { name: $what, keys })?;
         $(let $variable = fields.$rule($key, $($default,)? $reader);)*
         $(let $variable = $variable?;)*
