@@ -101,7 +101,8 @@
 //! # Robot files
 //!
 //! [`model`] reads and checks them, and has the plain types of the table that [`Arm::new`] takes: one YAML document per
-//! arm, where every number may be an expression (`pi/2`, `m*a^2/12`).
+//! arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] explains every key, and leads an
+//! arm from its datasheet to its torque.
 //! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
@@ -132,3 +133,7 @@ pub use rne_runtime::{
 // Derived code names them.
 #[doc(hidden)]
 pub use rne_runtime::{RunTimeParameter, batch};
+
+#[cfg(doc)]
+#[doc = include_str!("../docs/robot-file.md")]
+pub mod robot_file {}

@@ -1,7 +1,8 @@
 //! Documents are true: what stands between `<!-- begin: NAME … -->` and `<!-- end -->` is what the code prints today.
 //!
 //! With `RNE_WRITE_DOCUMENTS` set, the blocks are written anew. What is measured (`<!-- begin: measured NAME … -->`)
-//! stays as it is: `cargo xtask performance` writes it. And what the documents lead to is there: links, files, tests.
+//! stays as it is: `cargo xtask performance` writes it. What a command prints (`<!-- begin: output … -->`) is for
+//! `rne-cli/tests/cli/documents.rs`, which runs it. And what the documents lead to is there: links, files, tests.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
@@ -12,12 +13,13 @@ use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
 use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
 use rne_model::{Convention, JointKind, Robot};
 
-/// The documents with blocks, and which blocks these are; measured ones do not count.
+/// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
 const DOCUMENTS: &[(&str, &[&str])] = &[
     ("README.md", &["headline", "example", "twelve_lines"]),
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
+    ("docs/robot-file.md", &["desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
 ];
@@ -61,6 +63,8 @@ fn block(name: &str) -> String {
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
+        "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
+        "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
         "twelve_lines" => code(2),
         "code" => code(5),
@@ -354,7 +358,7 @@ fn renewed(document: &str) -> (String, Vec<String>) {
             let name = heading.split([',', ' ']).next().unwrap_or_default();
             let written: Vec<&str> = lines.by_ref().take_while(|line| *line != "<!-- end -->").collect();
             match name {
-                "measured" => written.iter().for_each(|line| {
+                "measured" | "output" => written.iter().for_each(|line| {
                     text.push_str(line);
                     text.push('\n');
                 }),

@@ -196,6 +196,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         parameters: Vec::new(),
         joints: joints.collect(),
         run_time: RunTime::default(),
+        rotors: false,
     }
 }
 

@@ -11,6 +11,7 @@ use crate::RunTime;
 use crate::diagnostic::{Diagnostic, Problems};
 use crate::document::{Content, Entry, Node, Scalar, Style};
 use crate::expression::{Expression, Meaning, Names};
+use crate::keys::Mapping;
 use crate::quantity::Quantity;
 use crate::source::{inside, one_line, quoted, rounded};
 use crate::spelling::{LONGEST_WORD, did_you_mean};
@@ -23,12 +24,20 @@ macro_rules! read_mapping {
     ($cx:ident, $node:ident, $what:literal, {
         $($variable:ident: $rule:ident $(($default:expr))? $key:literal $reader:expr,)*
     }) => {
-        let fields = $crate::decode::Fields::open($cx, $node, $what, &[$($key),*])?;
+        let keys = const {
+            &[$($crate::Key { name: $key, is_required: $crate::decode::is_required(stringify!($rule)) }),*]
+        };
+        let fields = $crate::decode::Fields::open($cx, $node, $crate::Mapping { name: $what, keys })?;
         $(let $variable = fields.$rule($key, $($default,)? $reader);)*
         $(let $variable = $variable?;)*
     };
 }
 pub(crate) use read_mapping;
+
+/// Whether a rule of [`read_mapping`] is `required`, which alone begins so.
+pub(crate) const fn is_required(rule: &str) -> bool {
+    matches!(rule.as_bytes(), [b'r', ..])
+}
 
 /// What every reader needs: the text, the names of the numbers, and where mistakes go.
 pub(crate) struct Context<'t> {
@@ -40,6 +49,8 @@ pub(crate) struct Context<'t> {
     pub(crate) run_time: RefCell<RunTime>,
     /// Parameters that have another value than that of the file.
     pub(crate) settings: &'t [(&'t str, f64)],
+    /// The mappings that the format has, of those the file opens; once each.
+    pub(crate) mappings: RefCell<Vec<Mapping>>,
     /// How many unknown words were compared with known ones.
     suggestions: Cell<usize>,
 }
@@ -82,7 +93,15 @@ impl<'t> Context<'t> {
     pub(crate) fn new(text: &'t str, problems: &'t Problems, run_time: &[&str]) -> Self {
         let names = run_time.iter().map(|&name| name.to_owned()).collect();
         let run_time = RefCell::new(RunTime { names, ..RunTime::default() });
-        Self { text, problems, parameters: RefCell::default(), run_time, settings: &[], suggestions: Cell::new(0) }
+        Self {
+            text,
+            problems,
+            parameters: RefCell::default(),
+            run_time,
+            settings: &[],
+            mappings: RefCell::default(),
+            suggestions: Cell::new(0),
+        }
     }
 
     /// With other values of these parameters.
@@ -122,6 +141,13 @@ impl<'t> Context<'t> {
     pub(crate) fn parameter_name(&self, index: Option<usize>) -> String {
         let run_time = self.run_time.borrow();
         index.and_then(|index| run_time.names.get(index)).cloned().unwrap_or_default()
+    }
+
+    fn opens(&self, mapping: Mapping) {
+        let mut mappings = self.mappings.borrow_mut();
+        if mappings.iter().all(|known| known.name != mapping.name) {
+            mappings.push(mapping);
+        }
     }
 
     pub(crate) fn report(&self, diagnostic: Diagnostic) {
@@ -168,13 +194,11 @@ pub(crate) struct Fields<'d> {
 }
 
 impl<'d> Fields<'d> {
-    /// Opens a mapping that may have the keys `allowed`; every other key is reported here.
-    pub(crate) fn open(
-        cx: &'d Context<'d>,
-        node: &'d Node,
-        what: &'static str,
-        allowed: &[&'static str],
-    ) -> Option<Self> {
+    /// Opens a mapping; every key that it may not have is reported here.
+    pub(crate) fn open(cx: &'d Context<'d>, node: &'d Node, mapping: Mapping) -> Option<Self> {
+        let what = mapping.name;
+        let allowed: Vec<&'static str> = mapping.keys.iter().map(|key| key.name).collect();
+        cx.opens(mapping);
         let Content::Mapping(entries) = &node.content else {
             return cx.wrong_shape(node, &format!("a mapping ({})", allowed.join(", ")));
         };
@@ -203,7 +227,7 @@ impl<'d> Fields<'d> {
             let meant = cx.did_you_mean(key, missing.iter().copied());
             misspelt.extend(meant);
             let message = format!("unknown key {}; {what} has the keys {}", quoted(key), allowed.join(", "));
-            let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key, allowed));
+            let help = meant.map(|meant| format!("did you mean `{meant}`?")).or_else(|| place_of(key, &allowed));
             cx.report(Diagnostic::error(key_span.clone(), message).label("unknown key").maybe_help(help));
         }
         Some(Self { cx, node, what, misspelt })

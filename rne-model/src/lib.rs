@@ -61,6 +61,8 @@ mod formula;
 #[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
+mod keys;
+#[cfg(feature = "std")]
 mod lint;
 #[cfg(feature = "std")]
 mod quantity;
@@ -97,6 +99,8 @@ pub use double::{Double, decimal_digits};
 pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
+#[cfg(feature = "std")]
+pub use keys::{Key, Mapping, mappings};
 #[cfg(feature = "std")]
 pub use robot::{InertiaReference, Joint, Limits, Robot};
 #[cfg(feature = "std")]

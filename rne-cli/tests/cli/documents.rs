@@ -1,0 +1,164 @@
+//! Every command that a document gives to its reader works: those of `rne` run here, in a copy of the robots; for every
+//! other it is known who runs it.
+//!
+//! What a command prints (`<!-- begin: output … -->`) is what it prints today; `RNE_WRITE_DOCUMENTS` writes it anew.
+#![cfg(unix)]
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output, Stdio};
+
+use crate::call::{ROOT, folder};
+
+/// The documents whose commands a reader types.
+const DOCUMENTS: [&str; 5] =
+    ["README.md", "CONTRIBUTING.md", "docs/command-line.md", "docs/robot-file.md", "robots/README.md"];
+
+/// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
+/// by this text.
+const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
+    ("cargo test", ".ci/run", "\nstep cargo test\n"),
+    ("RNE_EXHAUSTIVE=1 cargo test", "xtask/src/verify.rs", "\"RNE_EXHAUSTIVE\", \"1\""),
+    ("RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test", "xtask/src/verify.rs", "\"RNE_EXHAUSTIVE\", \"1\""),
+    ("RNE_WRITE_DOCUMENTS=1 cargo test", ".ci/run", "\nstep cargo test\n"),
+    ("cargo fmt", ".ci/run", "step cargo fmt --all"),
+    ("cargo clippy", ".ci/run", "step cargo clippy --workspace --all-targets -- -D warnings\n"),
+    ("cargo xtask lines", ".ci/run", "step cargo xtask lines\n"),
+    ("cargo xtask verify", ".ci/run", "step cargo xtask verify\n"),
+    ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
+    // its page is checked, and it breaks sources
+    ("cargo xtask mutate", "tests/documents.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
+    // it measures times
+    ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
+    (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
+    // `cargo add` needs a registry with this crate; examples/firmware has what it would write
+    ("cargo add rne --no-default-features", "examples/firmware/Cargo.toml", "default-features = false"),
+    ("cargo install --path rne-cli", "rne-cli/Cargo.toml", "name = \"rne\""),
+    // the search runs in rne-cli/tests/cli/search.rs
+    ("cargo run --release -- search robots/NAME.yaml --seconds 600", "rne-cli/tests/cli/search.rs", "\"search\""),
+];
+
+/// A copy of what commands read.
+fn copy(name: &str) -> std::path::PathBuf {
+    let folder = folder(name);
+    for part in ["robots", "docs"] {
+        fs::create_dir(folder.join(part)).expect("a folder");
+        for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
+            let path = entry.expect("an entry").path();
+            if path.extension().is_some_and(|extension| extension == "yaml") {
+                fs::copy(&path, folder.join(part).join(path.file_name().expect("a name"))).expect("a copy");
+            }
+        }
+    }
+    fs::copy(folder.join("docs/desk_arm.yaml"), folder.join("my_arm.yaml")).expect("a copy");
+    folder
+}
+
+/// Runs a command as a shell does, with the binary that is tested.
+pub(crate) fn typed(folder: &Path, command: &str) -> Output {
+    let binary = Path::new(env!("CARGO_BIN_EXE_rne")).parent().expect("a folder");
+    let path = std::env::var("PATH").unwrap_or_default();
+    Command::new("sh")
+        .args(["-euc", command])
+        .current_dir(folder)
+        .env("PATH", format!("{}:{path}", binary.display()))
+        .env_remove("CLICOLOR_FORCE")
+        .stdin(Stdio::null())
+        .output()
+        .expect("a shell")
+}
+
+/// A command of rne, as it is called where it is installed; `None` for any other.
+fn of_rne(command: &str) -> Option<String> {
+    if command == "cargo run" {
+        return Some("rne".to_owned());
+    }
+    let arguments = command.strip_prefix("cargo run -- ").or_else(|| command.strip_prefix("rne "))?;
+    Some(format!("rne {arguments}").replace("NAME", "puma560"))
+}
+
+/// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`.
+fn is_pattern(command: &str) -> bool {
+    command.contains(['…', '[']) || command.contains("COMMAND") || command.contains("FILE")
+}
+
+/// The file of a test that `cargo test … --test NAME` asks for.
+fn tests_are_there(document: &str, command: &str) {
+    let words: Vec<&str> = command.split(' ').collect();
+    let after = |option: &str| words.iter().position(|word| *word == option).and_then(|at| words.get(at + 1));
+    let Some(name) = after("--test") else { return };
+    let root = Path::new(ROOT).join(after("-p").unwrap_or(&"."));
+    let manifest = fs::read_to_string(root.join("Cargo.toml")).expect("a manifest");
+    let files = [format!("tests/{name}.rs"), format!("tests/{name}/main.rs")];
+    assert!(
+        files.iter().any(|file| root.join(file).exists()) || manifest.contains(&format!("name = \"{name}\"")),
+        "{document}: `{command}`: there is no test {name}"
+    );
+}
+
+/// Runs a command, or sees that somebody does; what it printed, if it is one of rne.
+fn tried(folder: &Path, document: &str, command: &str) -> Option<String> {
+    let elsewhere = RUN_ELSEWHERE.iter().filter(|(start, ..)| command.starts_with(start));
+    if let Some((_, file, text)) = elsewhere.max_by_key(|(start, ..)| start.len()) {
+        let there = fs::read_to_string(Path::new(ROOT).join(file)).expect("a file");
+        assert!(there.contains(text), "{document}: `{command}` was run by {file}, which has no `{text}`");
+        tests_are_there(document, command);
+        return None;
+    }
+    let called = of_rne(command).unwrap_or_else(|| panic!("{document}: nobody runs `{command}`"));
+    let output = typed(folder, &called);
+    let [out, err] = [output.stdout, output.stderr].map(|bytes| String::from_utf8(bytes).expect("UTF-8"));
+    assert!(output.status.success(), "{document}: `{command}`: {err}");
+    Some(out + &err)
+}
+
+/// The commands in backticks of a line of prose.
+fn in_prose(line: &str) -> impl Iterator<Item = &str> {
+    let quoted = line.split('`').skip(1).step_by(2);
+    let starts = ["cargo ", "rne ", ".ci/run", "RNE_"];
+    quoted.filter(move |words| starts.iter().any(|start| words.starts_with(start)) && !is_pattern(words))
+}
+
+#[test]
+fn commands_of_documents_work() {
+    let folder = copy("documents");
+    let mut commands = 0;
+    for document in DOCUMENTS {
+        let path = Path::new(ROOT).join(document);
+        let page = fs::read_to_string(&path).expect("a document");
+        let (mut renewed, mut printed) = (String::new(), String::new());
+        let mut lines = page.lines();
+        let mut block = None;
+        while let Some(line) = lines.next() {
+            renewed.push_str(line);
+            renewed.push('\n');
+            if let Some(language) = line.strip_prefix("```") {
+                block = if block.is_some() { None } else { Some(language) };
+                if block == Some("sh") {
+                    printed.clear();
+                }
+            } else if block == Some("sh") {
+                let command = line.split(" #").next().unwrap_or_default().trim();
+                printed += &tried(&folder, document, command).unwrap_or_default();
+                commands += 1;
+            } else if line.starts_with("<!-- begin: output, ") {
+                let _old = lines.by_ref().take_while(|line| *line != "<!-- end -->").count();
+                renewed += &format!("```text\n{printed}```\n<!-- end -->\n");
+            } else if block.is_none() {
+                for command in in_prose(line) {
+                    // `rne eval` is the name of a command
+                    if !command.starts_with("rne ") || command.split(' ').count() > 2 {
+                        tried(&folder, document, command);
+                        commands += 1;
+                    }
+                }
+            }
+        }
+        if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() && page != renewed {
+            fs::write(&path, &renewed).expect("a writable file");
+        } else {
+            assert_eq!(page, renewed, "{document}: RNE_WRITE_DOCUMENTS=1 cargo test -p rne-cli --test cli documents");
+        }
+    }
+    assert!(commands > 40, "{commands} commands");
+}

@@ -1,0 +1,73 @@
+//! `docs/robot-file.md` and `docs/every-key.yaml` have the keys that the format has, no more and no fewer. The list of
+//! keys is that of rne-model's schema.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+use rne_model::{Mapping, check, mappings};
+use serde_yaml::Value;
+
+fn read(name: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(name);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The mappings of the format: all that a file with every key opens.
+fn format() -> Vec<Mapping> {
+    mappings(&read("docs/every-key.yaml"))
+}
+
+#[test]
+fn a_file_with_every_key_is_in_order() {
+    for name in ["docs/every-key.yaml", "docs/desk_arm.yaml"] {
+        let checked = check(name, &read(name)).unwrap_or_else(|report| panic!("{report}"));
+        assert!(checked.lints.is_empty(), "{}", checked.lints);
+    }
+}
+
+/// The mappings of a document, parameters left out, with their keys.
+fn collect(value: &Value, found: &mut Vec<BTreeSet<String>>) {
+    match value {
+        Value::Mapping(entries) => {
+            let name = |key: &Value| key.as_str().expect("a word").to_owned();
+            found.push(entries.keys().map(name).collect());
+            entries
+                .iter()
+                .filter(|(key, _)| key.as_str() != Some("parameters"))
+                .for_each(|(_, value)| collect(value, found));
+        }
+        Value::Sequence(items) => items.iter().for_each(|item| collect(item, found)),
+        _ => {}
+    }
+}
+
+#[test]
+fn a_file_with_every_key_has_every_key() {
+    let mut found = Vec::new();
+    collect(&serde_yaml::from_str(&read("docs/every-key.yaml")).expect("YAML"), &mut found);
+    let format = format();
+    assert!(format.len() >= 8, "{format:?}");
+    for mapping in format {
+        let keys: BTreeSet<String> = mapping.keys.iter().map(|key| key.name.to_owned()).collect();
+        assert!(found.contains(&keys), "docs/every-key.yaml has no {} with all of {keys:?}", mapping.name);
+    }
+}
+
+#[test]
+fn the_page_explains_every_key() {
+    let page = read("docs/robot-file.md");
+    for mapping in format() {
+        let heading = format!("\n### Keys of {}\n", mapping.name);
+        let (_, section) = page.split_once(&heading).unwrap_or_else(|| panic!("docs/robot-file.md: no{heading}"));
+        let rows = section.lines().skip_while(|line| !line.starts_with("| `")).take_while(|line| line.starts_with('|'));
+        let written: Vec<(String, bool)> = rows
+            .map(|row| {
+                let cells: Vec<&str> = row.trim_matches('|').split('|').map(str::trim).collect();
+                assert!(cells.len() == 4 && !cells[3].is_empty(), "{row}");
+                (cells[0].trim_matches('`').to_owned(), cells[2] == "required")
+            })
+            .collect();
+        let keys: Vec<(String, bool)> = mapping.keys.iter().map(|key| (key.name.to_owned(), key.is_required)).collect();
+        assert_eq!(written, keys, "docs/robot-file.md,{heading}");
+    }
+}
