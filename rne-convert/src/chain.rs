@@ -380,9 +380,10 @@ impl Walk<'_> {
                     lumped.push(link.name.clone());
                 }
             }
-            for &joint in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
-                open.push((self.urdf.joints[joint].child, pose * self.across(joint)));
-            }
+            let hanging = link.children.iter().filter(|&&joint| Some(joint) != next);
+            let below: Vec<(usize, Pose)> =
+                hanging.map(|&joint| (self.urdf.joints[joint].child, pose * self.across(joint))).collect();
+            open.extend(below.into_iter().rev());
         }
         body
     }

@@ -300,8 +300,8 @@ fn fixed_links_are_lumped() {
     ]);
     let imported = plain(&split);
     let link = imported.robot.joints[0].row.link;
-    // Two points at 0 and at 0.6 below.
-    assert_eq!((link.mass, link.com), (2.0, [0.0, -0.3, 0.0]));
+    // Two points at 0 and at 0.6 below, where y of frame 0 points, for z is the axis.
+    assert_eq!((link.mass, link.com), (2.0, [0.0, 0.3, 0.0]));
     assert_eq!(link.inertia, Inertia { xx: 0.18, zz: 0.18, ..Inertia::default() });
     assert_eq!(imported.account.lumped, [("hinge".to_owned(), vec!["upper".to_owned(), "lower".to_owned()])]);
     assert_eq!(imported.account.base, "base");
