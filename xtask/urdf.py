@@ -45,8 +45,6 @@ ARMS = [
     ("romeo_description/urdf/romeo_laas_small.urdf", "--tip l_sole --lock-others --keep-unphysical"),
     ("icub_description/robots/icub.urdf", "--tip l_hand --lock-others"),
     ("kuka_description/kuka_kr210/urdf/kr210l150.urdf", "--tip tool0"),
-    ("abb_irb140_description/urdf/irb140.urdf", "--lock-others"),
-    ("lynxmotion_al5d_description/urdf/al5d_robot.urdf", "--lock-others"),
     ("double_pendulum_description/urdf/double_pendulum.urdf", ""),
 ]
 

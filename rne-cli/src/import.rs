@@ -175,8 +175,10 @@ fn told(account: &Account) -> String {
         let _ = writeln!(text, "{TITLE}note{TITLE:#}: {remark}");
     }
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
-    if !account.lints.is_empty() {
-        let _ = writeln!(text, "{}", account.lints.render(true));
+    let lints = account.lints.warnings().count();
+    if lints > 0 {
+        let lints = if lints == 1 { "1 lint".to_owned() } else { format!("{lints} lints") };
+        let _ = writeln!(text, "{lints} in the robot file; {TYPED}rne check{TYPED:#} shows where");
     }
     text
 }

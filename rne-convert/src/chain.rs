@@ -11,6 +11,9 @@ use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted};
 use crate::urdf::{Joint, Urdf};
 
+/// So many leaves are listed where the tip must be named.
+const LISTED: usize = 60;
+
 /// More joints than a robot file may have.
 const MAX_JOINTS: usize = 64;
 
@@ -136,7 +139,6 @@ fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<usize, Report>
         let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
         format!("  {} ({joints})", quoted(&urdf.links[leaf].name))
     });
-    const LISTED: usize = 60;
     let more = leaves.len().saturating_sub(LISTED);
     let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
     let listed = listed.take(LISTED).collect::<Vec<_>>().join("\n");
@@ -380,9 +382,10 @@ impl Walk<'_> {
                     lumped.push(link.name.clone());
                 }
             }
-            for &joint in link.children.iter().rev().filter(|&&joint| Some(joint) != next) {
-                open.push((self.urdf.joints[joint].child, pose * self.across(joint)));
-            }
+            let hanging = link.children.iter().filter(|&&joint| Some(joint) != next);
+            let below: Vec<(usize, Pose)> =
+                hanging.map(|&joint| (self.urdf.joints[joint].child, pose * self.across(joint))).collect();
+            open.extend(below.into_iter().rev());
         }
         body
     }

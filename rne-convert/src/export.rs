@@ -26,9 +26,11 @@ pub struct Exported {
 #[must_use]
 pub fn export(robot: &Robot) -> Exported {
     let chain = of_robot(robot);
-    let gravity = (chain.base.rotation * chain.gravity).rounded(10.0);
+    // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
+    let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
     let mut remarks = Vec::new();
-    if gravity != [0.0, 0.0, -9.81] {
+    let [x, y, z] = gravity;
+    if x != 0.0 || y != 0.0 || (z + 9.81).abs() > 1e-14 {
         let [x, y, z] = gravity.map(number);
         remarks.push(format!(
             "gravity is [{x}, {y}, {z}] m/s² in the axes of `world`; where that is not the default, set it: \
@@ -93,7 +95,6 @@ fn vector(values: [f64; 3]) -> String {
 
 fn origin(pose: Pose) -> String {
     let size = pose.translation.to_f64().into_iter().map(f64::abs).fold(1.0, f64::max);
-    // All digits: a URDF has no other word for pi/2.
     format!("<origin xyz=\"{}\" rpy=\"{}\"/>", vector(pose.translation.rounded(size)), vector(pose.rotation.to_rpy()))
 }
 

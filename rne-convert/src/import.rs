@@ -97,8 +97,8 @@ impl Urdf {
     /// </robot>"#;
     /// let imported = rne_convert::Urdf::read("pendulum.urdf", text).unwrap().import(&Default::default()).unwrap();
     /// assert_eq!(imported.robot.name, "pendulum");
-    /// assert_eq!(imported.robot.gravity, [0.0, -9.81, 0.0]);
-    /// assert_eq!(imported.robot.joints[0].row.link.com, [0.0, -0.25, 0.0]);
+    /// assert_eq!(imported.robot.gravity, [0.0, 9.81, 0.0]);
+    /// assert_eq!(imported.robot.joints[0].row.link.com, [0.0, 0.25, 0.0]);
     /// ```
     ///
     /// # Errors

@@ -209,9 +209,10 @@ impl Scanner<'_> {
         let element = ELEMENTS.iter().find(|element| element.name == name && element.parent == parent);
         if parent.is_empty() {
             if element.is_none() || self.has_robot {
-                let message = match self.has_robot {
-                    true => "a second element behind `robot`; a URDF is one robot".to_owned(),
-                    false => format!("the element {} where `robot` is needed: this is no URDF", quoted(name)),
+                let message = if self.has_robot {
+                    "a second element behind `robot`; a URDF is one robot".to_owned()
+                } else {
+                    format!("the element {} where `robot` is needed: this is no URDF", quoted(name))
                 };
                 let help = name.contains("sdf").then(|| "SDF is another format; convert it to URDF first".to_owned());
                 return Err(self.source.error(place, message, help));
@@ -300,7 +301,6 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let words: Vec<&str> = value.split_whitespace().collect();
     match kind {
         Kind::Text if value.trim().is_empty() => Some("it must not be empty"),
-        Kind::Text => None,
         Kind::Number if words.len() != 1 || !words.iter().all(|word| fine(word)) => {
             Some("it must be one number of at most 1e9")
         }

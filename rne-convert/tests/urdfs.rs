@@ -152,7 +152,7 @@ fn rounded_right_angles_are_snapped_and_the_change_is_told() {
     assert!((3.6e-6..3.8e-6).contains(&change.rotation), "{change:?}");
     assert!(change.torque > 1e-7 && change.torque < 1e-4 && change.acceleration.is_some(), "{change:?}");
     let raw = import(&text, &Options { snap: false, ..Options::default() });
-    assert_eq!(raw.robot.joints[0].row.dh.alpha.radians, 1.5708, "not a bit is lost");
+    assert_eq!(raw.robot.joints[0].row.dh.alpha.radians.to_string(), "1.5708", "not a bit is lost");
     assert!(raw.account.snapped.is_empty() && raw.account.change.is_none());
 }
 
@@ -300,8 +300,8 @@ fn fixed_links_are_lumped() {
     ]);
     let imported = plain(&split);
     let link = imported.robot.joints[0].row.link;
-    // Two points at 0 and at 0.6 below.
-    assert_eq!((link.mass, link.com), (2.0, [0.0, -0.3, 0.0]));
+    // Two points at 0 and at 0.6 below, where y of frame 0 points, for z is the axis.
+    assert_eq!((link.mass, link.com), (2.0, [0.0, 0.3, 0.0]));
     assert_eq!(link.inertia, Inertia { xx: 0.18, zz: 0.18, ..Inertia::default() });
     assert_eq!(imported.account.lumped, [("hinge".to_owned(), vec!["upper".to_owned(), "lower".to_owned()])]);
     assert_eq!(imported.account.base, "base");

@@ -337,7 +337,7 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
     }
     let place = match key {
         "theta" | "d" | "a" | "alpha" => "dh",
-        "mass" | "com" | "inertia" | "inertia_about" | "physical" => "link",
+        "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "link",
         "position" | "velocity" | "effort" => "limits",
         "gear_ratio" | "viscous" | "coulomb" => "motor",
         "xyz" | "rpy" => "base` or `tool",

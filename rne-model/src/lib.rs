@@ -18,8 +18,8 @@
 //! let report = rne_model::check("pendulum.yaml", text).unwrap_err();
 //! assert_eq!(
 //!     report.short(),
-//!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, inertia, inertia_about, \
-//!      physical"
+//!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, first_moment, \
+//!      inertia, inertia_about, physical"
 //! );
 //! assert_eq!(report.diagnostics[0].help.as_deref(), Some("did you mean `mass`?"));
 //!

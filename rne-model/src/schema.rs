@@ -10,7 +10,8 @@ use crate::expression::{Meaning, is_identifier, is_reserved};
 use crate::quantity::Quantity;
 use crate::source::{is_control, is_line_break, one_line, quoted, rounded};
 use crate::varying::{
-    entry, fixed, inertia_about_com, inertia_element, unknown_names, unknown_settings, without_effect,
+    com_of_first_moment, entry, fixed, inertia_about_com, inertia_element, unknown_names, unknown_settings,
+    without_effect,
 };
 use crate::{
     Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, Limits, Link, Motor,
@@ -278,10 +279,19 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
     read_mapping!(cx, node, "a link", {
         mass: or(0.0) "mass" |cx, node| mass(cx, node, joint),
         com: or([0.0; 3]) "com" |cx, node| centre_of_mass(cx, node, joint),
+        _moment: optional "first_moment" |_, _| Some(()),
         written: or(Inertia::default()) "inertia" |cx, node| tensor(cx, node, joint),
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
         physical: or(true) "physical" |cx, node| choice(cx, node, "answer", &[("true", true), ("false", false)]),
     });
+    let com = match (node.get("first_moment"), node.get("com")) {
+        (None, _) => com,
+        (Some(moment), None) => com_of_first_moment(cx, moment, joint, mass)?,
+        (Some(moment), Some(_)) => {
+            let message = "`first_moment` beside `com`; each says where the centre of mass is, so one must go";
+            return cx.refuse(Diagnostic::error(moment.head(), message).help("first_moment = mass * com"));
+        }
+    };
     let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
     let inertia = inertia_about_com(cx, place.clone(), joint, (written, about), (mass, com))?;
     let Some(moments) = inertia::principal_moments(&inertia) else {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::decode::{Context, quantity};
+use crate::decode::{Context, list, quantity};
 use crate::diagnostic::Diagnostic;
 use crate::document::{Content, Node};
 use crate::quantity::Quantity;
@@ -77,6 +77,36 @@ fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
     Diagnostic::error(span, message).label("zero in the file").help(format!(
         "give {} a value in the file with which this is not zero, or leave it out of the struct",
         quoted(name)
+    ))
+}
+
+/// The centre of mass of a joint's link from its first moment, kg m; the mass is read.
+pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass: f64) -> Option<[f64; 3]> {
+    let moments = std::cell::Cell::new(false);
+    let com = list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| {
+        let moment = quantity(cx, node)?;
+        if mass == 0.0 {
+            moments.set(moments.get() || moment.value != 0.0 || moment.varying().is_some());
+            return Some(0.0);
+        }
+        let mass = Quantity::known(mass, cx.run_time.borrow().formula(Entry::Mass(joint)));
+        let com = moment / mass;
+        if let Some(formula) = com.varying() {
+            if com.value == 0.0 {
+                let name = cx.parameter_name(com.first_parameter());
+                return cx.refuse(zero(node.span.clone(), &cx.shown(node, com.value), &name));
+            }
+            cx.run_time.borrow_mut().entries.push((Entry::Com(joint, axis), formula.clone()));
+        }
+        Some(com.value)
+    })?;
+    if !moments.get() {
+        return Some(com);
+    }
+    let message = "a first moment without mass: such a link has no centre of mass, which the seven steps go by";
+    cx.refuse(Diagnostic::error(node.head(), message).label("the mass is 0").help(
+        "mass on the axis of a revolute joint may count for the link before or behind it: give this link some there, and \
+         take it from the link before; torques stay the same",
     ))
 }
 

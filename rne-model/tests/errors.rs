@@ -406,6 +406,30 @@ fn a_urdf_is_told_about_import() {
 }
 
 #[test]
+fn a_first_moment_is_a_centre_of_mass() {
+    let file = |link: &str| {
+        format!("{BASE}  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}, link: {{{link}}}}}\n")
+    };
+    let com = |link: &str| check("x", &file(link)).unwrap().robot.joints.last().unwrap().row.link.com;
+    assert_eq!(com("mass: 4, first_moment: [1, m, 0]"), [0.25, 0.375, 0.0]);
+    assert_eq!(com("mass: 0, first_moment: [0, 0, 0]"), [0.0; 3]);
+    for (link, part) in [
+        ("mass: 4, com: [0, 0, 0], first_moment: [1, 0, 0]", "`first_moment` beside `com`"),
+        ("mass: 0, first_moment: [1, 0, 0]", "a first moment without mass"),
+        ("first_moment: [1, 0, 0]", "a first moment without mass"),
+        ("mass: 1, first_moment: [1, 0]", "a list of 2 where 3 numbers"),
+    ] {
+        let report = check("x", &file(link)).unwrap_err();
+        assert!(report.short().contains(part), "{report}");
+    }
+    // What depends on a parameter does so through the mass, too.
+    let text = file("mass: 1 + r, first_moment: [1, 0, 0]");
+    let robot = rne_model::check_bytes_with_run_time("x", text.as_bytes(), &["r"]).unwrap().robot;
+    let heavier = robot.with_parameters(&[7.0]).unwrap();
+    assert_eq!(heavier.joints.last().unwrap().row.link.com, [1.0 / 8.0, 0.0, 0.0]);
+}
+
+#[test]
 fn an_inertia_that_no_body_has_is_kept_where_the_file_says_so() {
     let file = |link: &str| {
         format!("{BASE}  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}, link: {{{link}}}}}\n")
