@@ -7,6 +7,7 @@ mod batch_profile;
 mod certificate;
 mod counts;
 mod features;
+mod fuzz;
 mod growth;
 mod instructions;
 mod lines;
@@ -59,6 +60,7 @@ enum Task {
     Package(package::Package),
     Tool(tool::Tool),
     Features(features::Features),
+    Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
 }
 
@@ -91,6 +93,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
+            Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
         }
