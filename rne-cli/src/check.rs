@@ -10,20 +10,25 @@ use rne_model::{Checked, Convention, JointKind, Robot, plan_of, robot_of};
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome};
 use crate::terminal::{GOOD, QUIET};
-use crate::{plan_file, robot_file};
+use crate::{physics, plan_file, robot_file};
 
 /// Check robot files and their plans: `ok` and lints, or every error with file, line and column
 #[derive(Args)]
 #[command(after_help = "\
 Example:
   rne check robots/*.yaml
+  rne check --physics my_arm.yaml
 
-A plan is compiled and proved, the one beside a robot file too. Exit status 1 when a file has errors;
+A plan is compiled and proved, the one beside a robot file too. Exit status 1 when a file has errors,
+or when an arm misses a law of physics by more than rounding;
 lints, which are warnings and notes, leave it at 0.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
+    /// Compute laws that every arm obeys, and print by how much they are missed
+    #[arg(long)]
+    physics: bool,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Outcome {
@@ -33,12 +38,16 @@ pub(crate) fn run(arguments: &Arguments) -> Outcome {
     for path in &arguments.files {
         let checked = match robot_of(path) {
             Some(robot_file) => plan(&robot_file),
-            None => robot(path, &arguments.files),
+            None => robot(path, arguments),
         };
         match checked {
-            Ok(Good { about, lints }) => {
+            Ok(Good { about, lints, laws }) => {
                 let file = left(&path.display().to_string(), widest);
                 let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{about}{QUIET:#}");
+                if let Some((laws, hold)) = laws {
+                    text.push_str(&laws);
+                    bad += usize::from(!hold);
+                }
                 if let Some(lints) = lints {
                     let _ = writeln!(text, "\n{lints}\n");
                 }
@@ -60,17 +69,20 @@ struct Good {
     /// It in a few words.
     about: String,
     lints: Option<String>,
+    /// The laws of physics, and whether all hold; where they are asked for.
+    laws: Option<(String, bool)>,
 }
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
-fn robot(path: &Path, files: &[PathBuf]) -> Result<Good, Failure> {
+fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     let Checked { robot, lints } = robot_file::read(path)?;
-    if !files.contains(&plan_of(path))
+    if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {
         plan_file::verify(&robot, &read)?;
     }
-    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.render(true)) })
+    let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.render(true)), laws })
 }
 
 /// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
@@ -91,7 +103,7 @@ fn plan(robot_file: &Path) -> Result<Good, Failure> {
         others => format!("; {others} other functions rewritten"),
     };
     let about = format!("plan of {}: inverse_dynamics {planned} operations{rewritten}{others}; proved", robot.name);
-    Ok(Good { about, lints: None })
+    Ok(Good { about, lints: None, laws: None })
 }
 
 /// The robot in a few words: `puma560, RRRRRR, standard`.

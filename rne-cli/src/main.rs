@@ -22,6 +22,7 @@ mod numbers;
 mod ops;
 mod outcome;
 mod output_file;
+mod physics;
 mod plan_file;
 mod robot_file;
 mod search;

@@ -9,7 +9,7 @@ macro_rules! compiled {
     ($($robot:ident $dof:literal $seed:literal $path:literal)*) => {
         $(
             #[derive(rne::InverseDynamics)]
-            #[robot(path = $path)]
+            #[robot(path = $path, allow_lints)]
             struct $robot;
         )*
 

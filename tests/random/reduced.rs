@@ -131,7 +131,7 @@ macro_rules! compiled {
     ($($robot:ident $dof:literal $path:literal)*) => {
         $(
             #[derive(rne::InverseDynamics)]
-            #[robot(path = $path, form = "reduced")]
+            #[robot(path = $path, form = "reduced", allow_lints)]
             struct $robot;
         )*
 

@@ -126,3 +126,13 @@ fn usage() {
     }
     assert!(fine(&["--version"]).starts_with("rne "));
 }
+
+/// Every arm obeys the laws; one whose last joint nothing resists has no inverse of its mass matrix.
+#[test]
+fn physics() {
+    let out = fine(&["check", "--physics", "robots/planar2.yaml"]);
+    assert_eq!((out.matches("  holds").count(), out.matches("  fails").count()), (5, 0), "{out}");
+    let called = rne(&["check", "--physics", "rne-cli/tests/cli/plans/singular.yaml"]);
+    assert_eq!(called.status, 1);
+    assert_eq!((called.out.matches("  holds").count(), called.out.matches("  fails").count()), (3, 2), "{called:?}");
+}

@@ -18,8 +18,8 @@ macro_rules! robots {
                 feature = "functions",
                 derive(rne::MassMatrix, rne::ForwardDynamics, rne::InverseDynamicsDerivatives)
             )]
-            #[cfg_attr(not(feature = "reduced"), robot(path = $path))]
-            #[cfg_attr(feature = "reduced", robot(path = $path, form = "reduced"))]
+            #[cfg_attr(not(feature = "reduced"), robot(path = $path, allow_lints))]
+            #[cfg_attr(feature = "reduced", robot(path = $path, form = "reduced", allow_lints))]
             pub struct $name;
         )*
 

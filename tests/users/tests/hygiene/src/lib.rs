@@ -64,7 +64,7 @@ where
         motor: {inertia: 2.0e-4, gear_ratio: -62.6, viscous: 1.5e-3, coulomb: [0.395, 0]}
       - type: revolute
         dh: {theta: 0.785398163, d: 3.14159, a: 1.414, alpha: 0}
-        link: {mass: 3.14, com: [0.318, 0.707, 1.57]}
+        link: {mass: 3.14, com: [0.318, 0.707, 1.57], inertia: {}}
 ")]
 pub struct Slides;
 
