@@ -117,7 +117,7 @@ fn power_becomes_energy() {
     }
 }
 
-/// The toolbox of P. Corke has the rotors in its mass matrix of the PUMA 560: `p560.inertia(qz)`, as its manual prints it.
+/// P. Corke's toolbox has the rotors in its mass matrix of the PUMA 560: `p560.inertia(qz)`, as its manual prints it.
 #[test]
 fn the_puma_has_its_published_mass_matrix() {
     let text = std::fs::read_to_string(format!("{ROOT}/robots/puma560.yaml")).expect("a robot file");
