@@ -47,8 +47,8 @@ pub(crate) struct Arguments {
     /// Force and moment that the last link exerts on its environment, at the tip, in tip axes: N and N m
     #[arg(long, value_name = "fx,fy,fz,nx,ny,nz", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// What is fixed to the tip, in tip axes: mass, kg, its centre from the tip, m, and the inertia about it, kg m², which
-    /// may be left out
+    /// What is fixed to the tip, in tip axes: mass, kg, its centre from the tip, m, and the inertia about it, kg m²,
+    /// which may be left out
     #[arg(long, value_name = "m,cx,cy,cz,xx,yy,zz,xy,xz,yz", allow_hyphen_values = true)]
     payload: Option<List>,
     /// Angular velocity of a moving base, in frame 0, rad/s

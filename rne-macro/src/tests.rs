@@ -56,7 +56,8 @@ fn an_expansion_is_short() {
     assert!(!expansion.to_string().contains("compile_error"));
     let tokens = tokens(expansion);
     println!("expansion of panda.yaml: {tokens} tokens");
-    assert!(tokens <= 30_000, "{tokens} tokens");
+    // six methods, three of them with the whole recursion and one with a payload on top
+    assert!(tokens <= 32_000, "{tokens} tokens");
 }
 
 #[test]

@@ -7,8 +7,8 @@ use crate::Scalar;
 /// A body that is rigidly fixed to the tip frame (`tool` included), in the axes of that frame: what a robot file would
 /// say of it if `tool` were its link frame.
 ///
-/// The torques with a payload are those of the arm whose last link has the payload's mass, first moment and inertia too.
-/// The default is no payload.
+/// The torques with a payload are those of the arm whose last link has the payload's mass, first moment and inertia
+/// too. The default is no payload.
 ///
 /// ```
 /// # #[cfg(all(feature = "arm", feature = "std"))] {

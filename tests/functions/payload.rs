@@ -1,5 +1,5 @@
-//! A payload against the table that has it: mass, centre of mass and inertia of the last link with the payload lumped in,
-//! by nalgebra.
+//! A payload against the table that has it: mass, centre of mass and inertia of the last link with the payload lumped
+//! in, by nalgebra.
 
 use std::path::PathBuf;
 

@@ -117,14 +117,14 @@ fn power_becomes_energy() {
     }
 }
 
-/// The toolbox of P. Corke has the rotors in its mass matrix of the PUMA 560: `p560.inertia(qz)`, as its manual prints it.
+/// P. Corke's toolbox has the rotors in its mass matrix of the PUMA 560: `p560.inertia(qz)`, as its manual prints it.
 #[test]
 fn the_puma_has_its_published_mass_matrix() {
     let text = std::fs::read_to_string(format!("{ROOT}/robots/puma560.yaml")).expect("a robot file");
     let robot = Robot::from_yaml(&text).expect("a robot").with_rotors();
-    let diagonal = [3.9611, 4.4566, 0.9387, 0.1924, 0.1713, 0.1941];
+    let diagonal = [3.9611_f64, 4.4566, 0.9387, 0.1924, 0.1713, 0.1941];
     for maker in Maker::ALL {
-        let matrix = Arm::by_no_choice(&robot, maker).mass_matrix(&[0.0; 6]);
+        let matrix: Vec<Vec<f64>> = Arm::by_no_choice(&robot, maker).mass_matrix(&[0.0; 6]);
         for (i, expected) in diagonal.into_iter().enumerate() {
             assert!((matrix[i][i] - expected).abs() < 5.1e-5, "{maker}: {} is not {expected}", matrix[i][i]);
         }

@@ -188,7 +188,7 @@ fn sums_of_oblique_angles_compile() {
 #[test]
 fn functions_are_chosen() {
     let all = fine(&["emit", ROBOT]);
-    assert_eq!(all.matches("pub fn ").count(), 5);
+    assert_eq!(all.matches("pub fn ").count(), 6);
     let two = fine(&["emit", ROBOT, "--function", "bias_torques", "--function", "gravity_torques"]);
     assert_eq!(two.matches("pub fn ").count(), 2);
     let twice = fine(&["emit", ROBOT, "--function", "gravity_torques", "--function", "gravity_torques"]);

@@ -123,7 +123,7 @@ fn of_last(plan: &mut Plan, change: impl Fn(&mut JointPlan)) {
     }
 }
 
-/// The best plan and algorithm for an arm with a payload that some changes of the last link lead to, one after the other.
+/// The best plan and algorithm for an arm with a payload that some changes of the last link lead to, one by one.
 fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorithm]) -> Option<(Plan, Algorithm)> {
     let mut best: Option<(usize, Plan, Algorithm)> = None;
     let mut look = |plan: &Plan, best: &mut Option<(usize, Plan, Algorithm)>| {
