@@ -17,6 +17,9 @@ const WRITE: &str = "RNE_EXHAUSTIVE=1 RNE_WRITE_DOCUMENTS=1 cargo test --test ro
 /// The page with the measured figures.
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/docs/accuracy.md");
 
+/// The head of the table, which is the last thing on the page.
+const HEADER: &str = "| robot | worst error of f32 |\n";
+
 /// (robot, worst error relative to the largest torque of the state).
 #[derive(Default)]
 pub(crate) struct SinglePrecision {
@@ -49,7 +52,8 @@ impl Visitor for SinglePrecision {
 
 /// The figures of the page, which may differ from machine to machine as far as their sine and cosine do.
 fn documented(page: &str, robot: &str) -> f64 {
-    let row = page.lines().find_map(|line| line.strip_prefix(&format!("| {robot} | ")));
+    let table = page.split_once(HEADER).map_or("", |(_, table)| table);
+    let row = table.lines().find_map(|line| line.strip_prefix(&format!("| {robot} | ")));
     let figure = row.and_then(|rest| rest.trim_end_matches(" |").parse().ok());
     figure.unwrap_or_else(|| panic!("{robot} is missing in {PAGE}: {WRITE}"))
 }
@@ -58,7 +62,7 @@ fn documented(page: &str, robot: &str) -> f64 {
 fn single_precision_is_close_to_double() {
     let mut measured = SinglePrecision::default();
     visit_all(&mut measured);
-    let mut table = String::from("| robot | worst error of f32 |\n|---|---|\n");
+    let mut table = format!("{HEADER}|---|---|\n");
     for (robot, worst) in &measured.worst {
         let _ = writeln!(table, "| {robot} | {worst:.1e} |");
     }
@@ -66,7 +70,7 @@ fn single_precision_is_close_to_double() {
     let page = std::fs::read_to_string(PAGE).expect("the page");
     // not those of a sample
     if states::is_exhaustive() && std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
-        let (head, _) = page.split_once("| robot |").expect("a table, the last thing on the page");
+        let (head, _) = page.split_once(HEADER).expect("a table, the last thing on the page");
         std::fs::write(PAGE, format!("{head}{table}")).expect("a writable page");
         return;
     }
