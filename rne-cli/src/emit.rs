@@ -19,17 +19,17 @@ use crate::{arguments, functions, robot_file};
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne emit robots/puma560.yaml                                         to the terminal
-  rne emit robots/puma560.yaml --function all -o puma.rs               everything the robot has
-  rne emit robots/puma560.yaml --function gravity_torques -o puma.rs   into a file
-  rne emit robots/puma560.yaml --check puma.rs                         is that file what rne would write?
-  rne emit robots/puma560.yaml --lang c -o puma560.c                   C99: puma560.c, and puma560.h beside it
-  rne emit robots/puma560.yaml --lang c --real double --prefix arm     arm_inverse_dynamics(const double q[6], ...
+  rne emit robots/puma560.yaml                               to the terminal
+  rne emit robots/puma560.yaml --function all -o puma.rs     all that it has
+  rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
+  rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
+  rne emit robots/puma560.yaml --lang c --real double --prefix arm
 
-The five functions of the trait InverseDynamics are written unless --function names others; all is every
-function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
---force only. --check exits with 1 when the file is stale, and says how to refresh it. C needs no library; on standard
-output header and source are one file.")]
+The five functions of the trait InverseDynamics are written unless --function
+names others; all is every function of the robot (without motors, all but
+actuator_torques). A file that rne did not generate is overwritten with --force
+only. --check exits with 1 when the file is stale, and says how to refresh it.
+C needs no library; on standard output header and source are one file.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -37,17 +37,19 @@ pub(crate) struct Arguments {
     /// Language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
-    /// Number type of C code
-    #[arg(long, value_enum, value_name = "TYPE")]
+    /// Number type of C code: float, 32 bits and the default, or double
+    #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     real: Option<Real>,
     /// What the names in C code begin with, instead of the robot's name
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// This function only; may be repeated
-    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all())]
+    /// This function only; may be repeated: `rne explain functions`
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all(),
+        hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
-    /// How it is computed
-    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name())]
+    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true)]
     form: Form,
     /// Write into this file, the header of C code beside it; - is standard output
     #[arg(short, long, value_name = "OUT")]

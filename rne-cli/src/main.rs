@@ -7,6 +7,7 @@ mod base_parameters;
 mod check;
 mod emit;
 mod eval;
+mod explain;
 mod functions;
 mod heading;
 mod highlight;
@@ -18,6 +19,7 @@ mod output_file;
 mod plan_file;
 mod robot_file;
 mod search;
+mod shell;
 mod show;
 mod state;
 mod terminal;
@@ -57,5 +59,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
+        Some(Command::Explain(arguments)) => ("rne explain", Ok(explain::run(&arguments))),
+        Some(Command::Completions(arguments)) => ("rne completions", Ok(shell::completions(&arguments))),
+        Some(Command::Man(arguments)) => ("rne man", shell::man(&arguments)),
     }
 }
