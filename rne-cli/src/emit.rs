@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::emit::{CCode, Precision, Prefix};
+use rne_codegen::emit::{CCode, Origin, Precision, Prefix};
 use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 
@@ -51,6 +51,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
+    /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
+    #[arg(long)]
+    ascii: bool,
     /// Write into this file, the header of C code beside it; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -119,18 +122,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
-    let robot = robot_file::robot(&arguments.file)?;
+    let (checked, bytes) = robot_file::read_with_bytes(&arguments.file)?;
+    let robot = checked.robot;
     let programs = programs(arguments, &robot)?;
-    let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
+    let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
+    let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
-        (Language::Rust, None, _) => return Ok(Outcome::text(emit::rust_file(&robot, &programs))),
+        (Language::Rust, None, _) => return Ok(Outcome::text(shown(emit::rust_file(&robot, &programs)))),
         (Language::Rust, Some(out), _) => vec![generated(out, emit::rust_file(&robot, &programs))],
         (Language::C, Some(out), Some(header)) => {
-            let code = c_code(arguments, &robot, &programs)?;
+            let code = c_code()?;
             let source = code.source(&header.name);
             vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
         }
-        (Language::C, ..) => return Ok(Outcome::text(c_code(arguments, &robot, &programs)?.one_file())),
+        (Language::C, ..) => return Ok(Outcome::text(shown(c_code()?.one_file()))),
     };
     match &arguments.check {
         Some(out) => check(arguments, out, &files),
@@ -206,10 +212,13 @@ fn header_beside(source: &Path) -> Result<Header, Failure> {
     }
 }
 
-fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
+fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u8]) -> Result<CCode, Failure> {
     let precision = arguments.real.map_or_else(Precision::default, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    emit::c_code(robot, programs, precision, &prefix).map_err(|error| {
+    // without its folder: the same file gives the same bytes wherever it is
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let origin = Origin::of(if name == "-" { "on standard input" } else { &name }, bytes);
+    emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
     })
@@ -355,6 +364,9 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     }
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);
+    }
+    if arguments.ascii {
+        command.push_str(" --ascii");
     }
     let _ = write!(command, " -o {}", shell(out));
     command

@@ -44,8 +44,8 @@ pub(crate) struct Arguments {
     /// What each trick of the reduced form saves in `inverse_dynamics`, with its formula
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Leave these tricks out of the reduced form: `rne explain tricks`; the other choices of its plan stay, but a graph
-    /// that was rewritten with them is left out too
+    /// Leave these tricks out of the reduced form: `rne explain tricks`; the other choices of its plan stay, but a
+    /// graph that was rewritten with them is left out too
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,

@@ -15,6 +15,11 @@ const NAMED: usize = 16;
 
 /// A valid robot with its lints. The path `-` is standard input.
 pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
+    Ok(read_with_bytes(path)?.0)
+}
+
+/// As [`read`], and the bytes of the file.
+pub(crate) fn read_with_bytes(path: &Path) -> Result<(Checked, Vec<u8>), Failure> {
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
@@ -36,7 +41,8 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    check_bytes(&name, &bytes).map_err(|report| Failure::from(&report))
+    let checked = check_bytes(&name, &bytes).map_err(|report| Failure::from(&report))?;
+    Ok((checked, bytes))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

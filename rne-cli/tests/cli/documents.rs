@@ -143,7 +143,7 @@ fn commands_of_documents_work() {
                 commands += 1;
             } else if line.starts_with("<!-- begin: output, ") {
                 let _old = lines.by_ref().take_while(|line| *line != "<!-- end -->").count();
-                renewed += &format!("```text\n{printed}```\n<!-- end -->\n");
+                renewed.extend(["```text\n", &printed, "```\n<!-- end -->\n"]);
             } else if block.is_none() {
                 for command in in_prose(line) {
                     // `rne eval` is the name of a command
