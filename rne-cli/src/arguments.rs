@@ -9,31 +9,29 @@ use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
-use crate::{check, convert, emit, eval, example, export, import, list, new, ops, search, show};
+use crate::{check, convert, emit, eval, example, explain, export, import, list, new, ops, search, shell, show};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
 #[command(name = "rne", version, styles = HELP_STYLES)]
-#[command(about = "The dynamics compiler for robot arms: a Denavit-Hartenberg table in, straight-line Rust or C out")]
+#[command(about = "The dynamics compiler for robot arms: a DH table in, straight-line code out")]
+#[command(max_term_width = 80)]
 #[command(after_help = "\
-Without a command, a tour: the PUMA 560 from its table to its torques, computed as it runs.
+Without a command, a tour: the PUMA 560 from its table to its torques, computed
+as it runs.
 
 Examples:
-  rne                                              the tour
-  rne check robots/*.yaml                          are the files in order? - is standard input
-  rne show robots/puma560.yaml --joint 2           the code of joint 2, step by step
-  rne show robots/puma560.yaml --base-parameters   what its torques can see of its links
-  rne ops robots/*.yaml                            what each function costs
+  rne check robots/*.yaml                   are the files in order?
+  rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
+  rne ops robots/*.yaml                     what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
-  rne emit robots/puma560.yaml -o puma560.rs       a file that compiles by itself
-  rne emit robots/puma560.yaml --lang c            the same in C99, without a library
-  rne new my_arm --dof 6                           a robot file of your own, to fill in
-  rne search my_arm.yaml --seconds 60              look for a form with fewer operations
-  rne import arm.urdf --tip flange -o arm.yaml     a robot file of an arm in a URDF
+  rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
+  rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
-FILE may be the name of a shipped robot, such as puma560; rne list has them.
-Exit status: 0 fine, 1 the input is at fault, 2 the command line is.
-Colours appear on terminals only; NO_COLOR turns them off. `rne COMMAND --help` says more.")]
+FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
+Exit status: 0 fine, 1 the input is at fault, 2 the command line is: `rne
+explain exit-status`. Colours appear on terminals only; NO_COLOR turns them off.
+docs/robot-file.md explains every key of a robot file.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -53,6 +51,9 @@ pub(crate) enum Command {
     Import(import::Arguments),
     Convert(convert::Arguments),
     Export(export::Arguments),
+    Explain(explain::Arguments),
+    Completions(shell::Completions),
+    Man(shell::Man),
 }
 
 /// Reads the name of a function; help and messages list them all.

@@ -20,7 +20,12 @@ pub(crate) struct Rotors {
 impl Rotors {
     /// The robot of a file.
     pub(crate) fn robot(self, path: &Path) -> Result<Robot, Failure> {
-        Ok(Robot { rotors: self.rotors, ..robot_file::robot(path)? })
+        Ok(self.of(robot_file::robot(path)?))
+    }
+
+    /// A robot that has been read.
+    pub(crate) fn of(self, robot: Robot) -> Robot {
+        Robot { rotors: self.rotors, ..robot }
     }
 }
 

@@ -7,15 +7,16 @@ use rne_model::Robot;
 
 use crate::layout::{left, width, wrap};
 use crate::numbers::{at_the_point, rounded};
-use crate::terminal::{FOUND, QUIET, TITLE};
+use crate::terminal::{self, FOUND, QUIET, TITLE};
 
-/// Columns of a line.
+/// Columns of a line, at most.
 const WIDTH: usize = 100;
 
 /// Significant digits of a coefficient.
 const DIGITS: usize = 8;
 
 pub(crate) fn text(robot: &Robot) -> String {
+    let columns = terminal::width(WIDTH);
     let base = DynArm::from_robot(robot).base_parameters();
     let mut text = String::new();
     let _ = writeln!(
@@ -36,7 +37,7 @@ pub(crate) fn text(robot: &Robot) -> String {
     for (title, parameters) in [("no effect", &base.without_effect), ("by itself", &alone)] {
         if !parameters.is_empty() {
             let indent = "             ";
-            let line = wrap(&format!("{title} {}", names(parameters)), WIDTH, indent);
+            let line = wrap(&format!("{title} {}", names(parameters)), columns, indent);
             let list = line.strip_prefix(title).unwrap_or(&line).trim_start();
             let _ = writeln!(text, "{QUIET}{title}{QUIET:#}    {list}\n");
         }
@@ -47,7 +48,8 @@ pub(crate) fn text(robot: &Robot) -> String {
     for (base, value) in base.parameters.iter().zip(&values) {
         let unit = unit(base.kept);
         let margin = widest + UNIT + 4;
-        let combination = wrap(&combination(base), WIDTH - margin, &" ".repeat(margin)).replace(TIED, " ");
+        let combination =
+            wrap(&combination(base), columns - margin.min(columns / 2), &" ".repeat(margin)).replace(TIED, " ");
         let (value, unit) = (left(value, widest), left(unit, UNIT));
         let _ = writeln!(text, "  {value} {QUIET}{unit}{QUIET:#} {FOUND}{combination}{FOUND:#}");
     }

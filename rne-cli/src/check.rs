@@ -12,16 +12,17 @@ use crate::outcome::{Failure, Outcome};
 use crate::terminal::{GOOD, QUIET};
 use crate::{physics, plan_file, robot_file};
 
-/// Check robot files and their plans: `ok` and lints, or every error with file, line and column
+/// Check robot files and plans: `ok` and lints, or every error
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne check robots/*.yaml
-  rne check --physics my_arm.yaml
+  rne check --physics robots/planar2.yaml
+  rne check robots/puma560.plan.yaml   a plan is compiled and proved
 
-A plan is compiled and proved, the one beside a robot file too. Exit status 1 when a file has errors,
-or when an arm misses a law of physics by more than rounding;
-lints, which are warnings and notes, leave it at 0.")]
+A plan beside a robot file is checked too. Exit status 1 when a file has errors,
+or when an arm misses a law of physics by more than rounding; lints, which are
+warnings and notes, leave it at 0. docs/robot-file.md explains every key.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]

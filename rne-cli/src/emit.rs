@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::emit::{CCode, Precision, Prefix};
+use rne_codegen::emit::{CCode, Origin, Precision, Prefix};
 use rne_codegen::{Form, Function, Program, emit};
 use rne_model::Robot;
 
@@ -14,23 +14,23 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
-use crate::{arguments, functions};
+use crate::{arguments, functions, robot_file};
 
 /// Write the generated code as a file that compiles by itself
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne emit robots/puma560.yaml                                         to the terminal
-  rne emit robots/puma560.yaml --function all -o puma.rs               everything the robot has
-  rne emit robots/puma560.yaml --function gravity_torques -o puma.rs   into a file
-  rne emit robots/puma560.yaml --check puma.rs                         is that file what rne would write?
-  rne emit robots/puma560.yaml --lang c -o puma560.c                   C99: puma560.c, and puma560.h beside it
-  rne emit robots/puma560.yaml --lang c --real double --prefix arm     arm_inverse_dynamics(const double q[6], ...
+  rne emit robots/puma560.yaml                               to the terminal
+  rne emit robots/puma560.yaml --function all -o puma.rs     all that it has
+  rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
+  rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
+  rne emit robots/puma560.yaml --lang c --real double --prefix arm
 
-The six functions of the trait InverseDynamics are written unless --function names others; all is every
-function of the robot (without motors, all but actuator_torques). A file that rne did not generate is overwritten with
---force only. --check exits with 1 when the file is stale, and says how to refresh it. C needs no library; on standard
-output header and source are one file.")]
+The six functions of the trait InverseDynamics are written unless --function
+names others; all is every function of the robot (without motors, all but
+actuator_torques). A file that rne did not generate is overwritten with --force
+only. --check exits with 1 when the file is stale, and says how to refresh it.
+C needs no library; on standard output header and source are one file.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -40,18 +40,23 @@ pub(crate) struct Arguments {
     /// Language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
-    /// Number type of C code
-    #[arg(long, value_enum, value_name = "TYPE")]
+    /// Number type of C code: float, 32 bits and the default, or double
+    #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     real: Option<Real>,
     /// What the names in C code begin with, instead of the robot's name
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// This function only; may be repeated
-    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all())]
+    /// This function only; may be repeated: `rne explain functions`
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all(),
+        hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
-    /// How it is computed
-    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name())]
+    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true)]
     form: Form,
+    /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
+    #[arg(long)]
+    ascii: bool,
     /// Write into this file, the header of C code beside it; - is standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
@@ -120,18 +125,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
-    let robot = arguments.rotors.robot(&arguments.file)?;
+    let (checked, bytes) = robot_file::read_with_bytes(&arguments.file, &[])?;
+    let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
-    let generated = |path: &Path, text| Generated { path: path.to_owned(), text };
+    let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
+    let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
-        (Language::Rust, None, _) => return Ok(Outcome::text(emit::rust_file(&robot, &programs))),
+        (Language::Rust, None, _) => return Ok(Outcome::text(shown(emit::rust_file(&robot, &programs)))),
         (Language::Rust, Some(out), _) => vec![generated(out, emit::rust_file(&robot, &programs))],
         (Language::C, Some(out), Some(header)) => {
-            let code = c_code(arguments, &robot, &programs)?;
+            let code = c_code()?;
             let source = code.source(&header.name);
             vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
         }
-        (Language::C, ..) => return Ok(Outcome::text(c_code(arguments, &robot, &programs)?.one_file())),
+        (Language::C, ..) => return Ok(Outcome::text(shown(c_code()?.one_file()))),
     };
     match &arguments.check {
         Some(out) => check(arguments, out, &files),
@@ -207,10 +215,13 @@ fn header_beside(source: &Path) -> Result<Header, Failure> {
     }
 }
 
-fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<CCode, Failure> {
+fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u8]) -> Result<CCode, Failure> {
     let precision = arguments.real.map_or_else(Precision::default, Real::precision);
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
-    emit::c_code(robot, programs, precision, &prefix).map_err(|error| {
+    // without its folder: the same file gives the same bytes wherever it is
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let origin = Origin::of(if name == "-" { "on standard input" } else { &name }, bytes);
+    emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
     })
@@ -359,6 +370,9 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     }
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);
+    }
+    if arguments.ascii {
+        command.push_str(" --ascii");
     }
     let _ = write!(command, " -o {}", shell(out));
     command

@@ -4,22 +4,33 @@ use std::path::PathBuf;
 
 use clap::Args;
 use rne::{DynArm, DynTrace};
-use rne_codegen::{Answer, Argument, Function, Layout, Record};
+use rne_codegen::{Answer, Function, Layout, Record};
 use rne_model::Robot;
 use serde::Serialize;
 use serde_json::Value;
 
 use crate::arm::{Rotors, Setting};
-use crate::layout::wrap;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Entry};
 use crate::{answer, arguments, arm};
 
-/// Compute a function at one state, by the runtime; --trace shows every vector of every step
+/// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
-#[command(after_help = help())]
+#[command(after_help = "\
+Examples:
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace
+  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
+  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
+      --wrench 3,-2,0,0,0,0.5 --json
+  rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 \\
+      --qd 0,0 --tau 20,4
+
+One number per joint, base to tip: rad for a revolute, m for a prismatic joint;
+pi/2 and 'deg(30)' are numbers. Every function takes exactly its arguments, and
+nothing is assumed to be zero: `rne explain arguments`. Tables are rounded for
+reading; --json has every digit, in the shape that the Rust function returns.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -30,7 +41,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
     /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
-    #[arg(long, value_name = "F", value_parser = arguments::function())]
+    #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true)]
     function: Option<Function>,
     /// Joint positions, rad or m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
@@ -44,76 +55,33 @@ pub(crate) struct Arguments {
     /// Joint torques, N m or N, of forward_dynamics
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// Force and moment that the last link exerts on its environment, at the tip, in tip axes: N and N m
-    #[arg(long, value_name = "fx,fy,fz,nx,ny,nz", allow_hyphen_values = true)]
+    /// fx,fy,fz,nx,ny,nz that the last link exerts on its environment, at the tip, in tip axes: N and N m
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// What is fixed to the tip, in tip axes: mass, kg, its centre from the tip, m, and the inertia about it, kg m²,
-    /// which may be left out
-    #[arg(long, value_name = "m,cx,cy,cz,xx,yy,zz,xy,xz,yz", allow_hyphen_values = true)]
+    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] of what is fixed to the tip, in tip axes: kg, m, kg m²
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     payload: Option<List>,
-    /// Angular velocity of a moving base, in frame 0, rad/s
-    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true)]
+    /// x,y,z of the angular velocity of a moving base, in frame 0, rad/s
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
     /// Its angular acceleration, rad/s²
-    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega_dot: Option<List>,
     /// Acceleration of its origin, without gravity, m/s²
-    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
     /// Acceleration of gravity in the frame 0 of a moving base, m/s²; the file's, unless given
-    #[arg(long, value_name = "x,y,z", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
     /// The seven-step worksheet of torques: every vector of every link
     #[arg(long)]
     trace: bool,
-    /// Axes of the worksheet
-    #[arg(long, value_enum, default_value_t = Axes::Link, requires = "trace")]
+    /// Axes of the worksheet: link, fixed to link i, the generated code's; lecture, fixed to link i-1; base, of frame 0
+    #[arg(long, value_enum, hide_possible_values = true, default_value_t = Axes::Link, requires = "trace")]
     axes: Axes,
     /// {"result": …}, with --trace also "trace": a list with an entry per link
     #[arg(long)]
     json: bool,
-}
-
-/// What stands below the options: examples, and which function takes what.
-fn help() -> String {
-    use Argument::{Positions, Rates};
-    let of_positions = functions_of("--q", &[Positions]);
-    let of_rates = functions_of("--q --qd", &[Positions, Rates]);
-    format!(
-        "\
-Examples:
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace --axes lecture
-  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --wrench 3,-2,0,0,0,0.5 --json
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 --payload 0.5,0.1,0,0
-  rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 --qd 0,0 --tau 20,4
-  rne eval robots/planar2.yaml --function jacobian --q 0.6,-1.1
-  rne eval robots/planar2.yaml --function inverse_dynamics_on_moving_base --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
-      --base-omega 0,0,0.2 --base-omega-dot 0,0,0 --base-acceleration 1,0,0
-
-One number per joint, base to tip: rad for a revolute, m for a prismatic joint; pi/2 and 'deg(30)' are numbers.
-
-Every function takes exactly its arguments, and nothing is assumed to be zero:
-{of_positions}
-{of_rates}
-  --q --qd --qdd    inverse_dynamics, inverse_dynamics_from_sin_cos (sines and cosines of --q), regressor,
-                    inverse_dynamics_derivatives, joint_wrenches;
-                    with --wrench inverse_dynamics_with_wrench,
-                    with --payload inverse_dynamics_with_payload,
-                    with the --base-… options inverse_dynamics_on_moving_base
-  --q --qd --tau    forward_dynamics
-  --qd --qdd        actuator_torques; zero where no joint has a motor
-
-Tables are rounded for reading; --json has every digit, in the shape that the Rust function returns."
-    )
-}
-
-/// The functions with exactly these arguments, on lines that begin with the options or below them.
-fn functions_of(options: &str, arguments: &[Argument]) -> String {
-    let functions = Function::ALL.iter().filter(|function| function.arguments() == arguments);
-    let names: Vec<&str> = functions.map(|function| function.name()).collect();
-    format!("  {options:<18}{}", wrap(&names.join(", "), 89, "").replace('\n', &format!("\n{:20}", "")))
 }
 
 /// The answer as JSON has it.

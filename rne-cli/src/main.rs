@@ -10,6 +10,7 @@ mod convert;
 mod emit;
 mod eval;
 mod example;
+mod explain;
 mod export;
 mod functions;
 mod heading;
@@ -26,6 +27,7 @@ mod physics;
 mod plan_file;
 mod robot_file;
 mod search;
+mod shell;
 mod show;
 mod state;
 mod terminal;
@@ -71,5 +73,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),
         Some(Command::Convert(arguments)) => ("rne convert", convert::run(&arguments)),
         Some(Command::Export(arguments)) => ("rne export", export::run(&arguments)),
+        Some(Command::Explain(arguments)) => ("rne explain", Ok(explain::run(&arguments))),
+        Some(Command::Completions(arguments)) => ("rne completions", Ok(shell::completions(&arguments))),
+        Some(Command::Man(arguments)) => ("rne man", shell::man(&arguments)),
     }
 }

@@ -16,26 +16,27 @@ use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
 use crate::{arguments, functions, plan_file};
 
-/// Count the operations of every function, before folding and in the generated code
+/// Count operations, before folding and in the generated code
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne ops robots/puma560.yaml robots/scara_cobra600.yaml
-  rne ops robots/*.yaml --json
-  rne ops robots/*.yaml --function mass_matrix,forward_dynamics
-  rne ops robots/puma560.yaml --tricks               what each trick of the reduced form saves
-  rne ops robots/puma560.yaml --without gyrostat     the reduced form without it
+  rne ops robots/*.yaml --json --function mass_matrix,forward_dynamics
+  rne ops robots/puma560.yaml --tricks             what each trick saves
+  rne ops robots/puma560.yaml --without gyrostat   the reduced form without it
 
-A subtraction counts as an addition, a negation is free, x·x is one multiplication, and sincos counts the
-angles whose sine or cosine is used; divisions have a column where there are any, and are not in the total.
-Before folding: the recursion as a loop over 3-vectors performs it. actuator_torques is listed where the robot
-has motors.")]
+A subtraction counts as an addition, a negation is free, x·x is one
+multiplication, and sincos counts the angles whose sine or cosine is used;
+divisions have a column where there are any, and are not in the total. Before
+folding: as a loop over 3-vectors performs it. actuator_torques is listed where
+the robot has motors.")]
 pub(crate) struct Arguments {
     /// Robot files
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
-    /// These functions only; may be repeated
+    /// These functions only; may be repeated: `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function(),
+        hide_possible_values = true,
         conflicts_with = "tricks")]
     functions: Vec<Function>,
     #[command(flatten)]
@@ -46,9 +47,10 @@ pub(crate) struct Arguments {
     /// What each trick of the reduced form saves in `inverse_dynamics`, with its formula
     #[arg(long, conflicts_with_all = ["json", "without"])]
     tricks: bool,
-    /// Leave these tricks out of the reduced form; the other choices of its plan stay, but a graph that was rewritten
-    /// with them is left out too
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick())]
+    /// Leave these tricks out of the reduced form: `rne explain tricks`; the other choices of its plan stay, but a
+    /// graph that was rewritten with them is left out too
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
+        hide_possible_values = true)]
     without: Vec<Trick>,
 }
 

@@ -35,6 +35,11 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
 
 /// The same with other values of the file's parameters.
 pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
+    Ok(read_with_bytes(path, settings)?.0)
+}
+
+/// As [`read_with`], and the bytes of the file.
+pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(Checked, Vec<u8>), Failure> {
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
@@ -44,8 +49,9 @@ pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked
     }
     if let Some(robot) = of_a_name(path) {
         let name = format!("{} (shipped)", robot.name);
-        return check_bytes_with_settings(&name, robot.yaml.as_bytes(), settings)
-            .map_err(|report| Failure::from(&report));
+        let bytes = robot.yaml.as_bytes();
+        let checked = check_bytes_with_settings(&name, bytes, settings).map_err(|report| Failure::from(&report))?;
+        return Ok((checked, bytes.to_vec()));
     }
     let (name, bytes) = if path == Path::new("-") {
         ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
@@ -61,7 +67,8 @@ pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    check_bytes_with_settings(&name, &bytes, settings).map_err(|report| Failure::from(&report))
+    let checked = check_bytes_with_settings(&name, &bytes, settings).map_err(|report| Failure::from(&report))?;
+    Ok((checked, bytes))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

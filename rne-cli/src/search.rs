@@ -19,18 +19,20 @@ use crate::output_file::{self, Written};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
 use crate::{arguments, plan_file, robot_file};
 
-/// Look for a reduced form with fewer operations, and write its choices beside the robot file
+/// Look for a reduced form with fewer operations; keep its plan
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne search robots/puma560.yaml --seconds 60             choices only
-  rne search robots/puma560.yaml --seconds 300 --rewrite  and rewrite the graph that they give
+  rne search robots/puma560.yaml --seconds 60              choices only
+  rne search robots/puma560.yaml --seconds 300 --rewrite   and rewrite the graph
   rne search robots/puma560.yaml --seconds 600 --rewrite --function all
 
-Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs no search. A search goes on from the
-plan that is there, and what it writes is never worse, but that a plan that has lost much precision in f32 may give
-way to a dearer one. Ctrl-C ends it and keeps the best; a second one ends it at once, with status 130. Every form
-that is found is proved identical to the seven steps before it is written.")]
+Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs
+no search. A search goes on from the plan that is there, and what it writes is
+never worse, but that a plan that has lost much precision in f32 may give way to
+a dearer one. Ctrl-C ends it and keeps the best; a second one ends it at once,
+with status 130. Every form that is found is proved identical to the seven steps
+before it is written.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -41,8 +43,10 @@ pub(crate) struct Arguments {
     /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
     #[arg(long)]
     rewrite: bool,
-    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated
+    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated:
+    /// `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all(),
+        hide_possible_values = true,
         requires = "rewrite")]
     functions: Vec<FunctionOrAll>,
     /// Seed of the random numbers

@@ -15,21 +15,21 @@ use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
 use crate::{arguments, base_parameters, heading, highlight};
 
-/// Show the generated code of a function, step by step, with what was folded and why
+/// Show the generated code step by step, what was folded, and why
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne show robots/puma560.yaml --joint 2
   rne show robots/puma560.yaml --joint 2 --step 4
   rne show robots/scara_cobra600.yaml --function gravity_torques
-  rne show robots/planar2.yaml --step 3                 the velocities, which torques do not need
+  rne show robots/planar2.yaml --step 3            what no torque needs
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
   rne show robots/puma560.yaml --form reduced --without rewriting
-  rne show robots/puma560.yaml --base-parameters        what the torques can see of the links
+  rne show robots/puma560.yaml --base-parameters   what the torques can see
 
-Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of link 2 along z, dw ω̇, dc ċ, ddc c̈,
-f1_2_x and n1_2_x what link 1 exerts on link 2. `rne emit` writes a file with the meaning of every name.")]
+Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of
+link 2 along z, dw ω̇, dc ċ, ddc c̈, f1_2_x and n1_2_x what link 1 exerts on
+link 2. `rne emit` writes a file with the meaning of every name.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -42,18 +42,22 @@ pub(crate) struct Arguments {
     /// One of the seven steps only
     #[arg(long, value_name = "S", value_parser = arguments::step)]
     step: Option<Step>,
-    /// How it is computed
-    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name())]
+    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true)]
     form: Form,
-    /// Which function of the robot
-    #[arg(long, value_name = "F", value_parser = arguments::function(),
+    /// Which function of the robot: `rne explain functions`
+    #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true,
         default_value = Function::InverseDynamics.name())]
     function: Function,
-    /// Compute these for every link, even where no torque needs them; --step 3 keeps the velocity
-    #[arg(long, value_name = "QUANTITY", value_delimiter = ',')]
+    /// Compute these for every link, even where no torque needs them: `rne explain quantities`; --step 3 keeps the
+    /// velocity
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Leave these tricks out of the reduced form; a recursion that can be read is left `--without rewriting`
-    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick())]
+    /// Leave these tricks out of the reduced form: `rne explain tricks`; a recursion that can be read is left
+    /// `--without rewriting`
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
+        hide_possible_values = true)]
     without: Vec<Trick>,
     /// Instead of code: which combinations of link parameters the torques depend on, for identification
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without"])]
@@ -63,7 +67,7 @@ pub(crate) struct Arguments {
 /// A quantity of the lecture that may be folded away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 #[value(rename_all = "snake_case")]
-enum Kept {
+pub(crate) enum Kept {
     /// Angular velocity ω
     Omega,
     /// Angular acceleration ω̇

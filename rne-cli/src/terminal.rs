@@ -39,6 +39,13 @@ pub(crate) const HELP_STYLES: Styles = Styles::plain()
     .invalid(TYPED)
     .valid(FOUND);
 
+/// Columns of prose: those of the terminal, and no more than `most`, which a pipe or a file has.
+pub(crate) fn width(most: usize) -> usize {
+    const FEWEST: usize = 40;
+    let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
+    terminal.map_or(most, |columns| columns.clamp(FEWEST, most))
+}
+
 /// Prints what a command returned.
 pub(crate) fn show(outcome: &Outcome) -> ExitCode {
     let _ = write(AutoStream::auto(io::stderr().lock()), &outcome.remark);

@@ -12,7 +12,7 @@ use crate::layout::{Align, columns, wrap};
 use crate::numbers::{at_the_point, exact};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
-use crate::terminal::{GOOD, QUIET, TITLE, TYPED};
+use crate::terminal::{self, GOOD, QUIET, TITLE, TYPED};
 use crate::{heading, highlight, ops, robot_file};
 
 /// The shipped robot of the tour.
@@ -27,7 +27,7 @@ const Q: [f64; 6] = [0.3, -0.8, 0.5, 1.1, -0.4, 0.6];
 const QD: [f64; 6] = [0.9, -0.5, 0.4, 1.2, -0.3, 0.7];
 const QDD: [f64; 6] = [-1.1, 0.6, 0.8, -0.9, 1.4, 0.35];
 
-/// Columns of the tour's sentences and rules.
+/// Columns of the tour's sentences and rules, at most.
 const WIDTH: usize = 80;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
@@ -72,13 +72,16 @@ fn opening() -> String {
                  Newton-Euler, the seven steps of the lecture, written out for this one robot: straight-line Rust \
                  without loops, branches or matrices, and without a single product by zero. All that follows is \
                  computed as you read it.";
-    format!("{TITLE}rne, the dynamics compiler for robot arms{TITLE:#}\n\n{}\n", wrap(about, WIDTH, ""))
+    format!(
+        "{TITLE}rne, the dynamics compiler for robot arms{TITLE:#}\n\n{}\n",
+        wrap(about, terminal::width(WIDTH), "")
+    )
 }
 
 fn chapter(text: &mut String, number: usize, title: &str, about: &str) {
-    let rule = "─".repeat(WIDTH.saturating_sub(title.chars().count() + "── 1   ".chars().count()));
+    let rule = "─".repeat(terminal::width(WIDTH).saturating_sub(title.chars().count() + "── 1   ".chars().count()));
     let _ = writeln!(text, "\n\n{QUIET}──{QUIET:#} {TITLE}{number}  {title}{TITLE:#} {QUIET}{rule}{QUIET:#}\n");
-    let _ = writeln!(text, "{}\n", wrap(about, WIDTH, ""));
+    let _ = writeln!(text, "{}\n", wrap(about, terminal::width(WIDTH), ""));
 }
 
 /// The code of joint 1, where nearly everything folds, and of joint 2, where the lecture's formulas remain.

@@ -39,7 +39,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 ];
 
 /// A copy of what commands read.
-fn copy(name: &str) -> std::path::PathBuf {
+pub(crate) fn copy(name: &str) -> std::path::PathBuf {
     let folder = folder(name);
     for part in ["robots", "docs"] {
         fs::create_dir(folder.join(part)).expect("a folder");
@@ -79,7 +79,7 @@ fn of_rne(command: &str) -> Option<String> {
 
 /// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`.
 fn is_pattern(command: &str) -> bool {
-    command.contains(['…', '[']) || command.contains("COMMAND") || command.contains("FILE")
+    command.contains(['…', '[']) || ["COMMAND", "FILE", "TOPIC", "SHELL"].iter().any(|word| command.contains(word))
 }
 
 /// The file of a test that `cargo test … --test NAME` asks for.
@@ -143,7 +143,7 @@ fn commands_of_documents_work() {
                 commands += 1;
             } else if line.starts_with("<!-- begin: output, ") {
                 let _old = lines.by_ref().take_while(|line| *line != "<!-- end -->").count();
-                renewed += &format!("```text\n{printed}```\n<!-- end -->\n");
+                renewed.extend(["```text\n", &printed, "```\n<!-- end -->\n"]);
             } else if block.is_none() {
                 for command in in_prose(line) {
                     // `rne eval` is the name of a command

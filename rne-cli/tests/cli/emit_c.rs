@@ -215,3 +215,61 @@ fn written(arguments: &[&str]) {
     let called = rne(arguments);
     assert_eq!(called.status, 0, "{arguments:?}: {}", called.err);
 }
+
+/// The limits of the file, as C has them, and where there is none the largest number; the heading says of which file.
+#[test]
+fn a_header_has_limits_and_origin() {
+    let folder = folder("c_limits");
+    let robot = path(&folder, "arm.yaml");
+    let text = fs::read_to_string(Path::new(ROOT).join("docs/desk_arm.yaml")).expect("a robot");
+    let text = text.replace("limits: {position: [-deg(30), deg(120)], velocity: deg(120), effort: 40}", "limits: {}");
+    fs::write(&robot, &text).expect("written");
+    let code = fine(&["emit", &robot, "--lang", "c", "--real", "double"]);
+    let heading = format!("// rne {}, of the robot file arm.yaml, FNV-1a ", env!("CARGO_PKG_VERSION"));
+    assert_eq!(code.matches(&heading).count(), 1, "{code}");
+    fs::write(&robot, text + "# a remark\n").expect("written");
+    let other = fine(&["emit", &robot, "--lang", "c", "--real", "double"]);
+    let differ: Vec<&str> = code.lines().zip(other.lines()).filter(|(a, b)| a != b).map(|(a, _)| a).collect();
+    assert!(matches!(differ[..], [line] if line.starts_with(&heading)), "{differ:?}");
+    let main = "#include <stdio.h>\nint main(void)\n{\n    const double lower[DESK_ARM_DOF] = DESK_ARM_POSITION_LOWER, \
+                upper[] = DESK_ARM_POSITION_UPPER;\n    const double speed[] = DESK_ARM_VELOCITY_LIMIT, effort[] = \
+                DESK_ARM_EFFORT_LIMIT;\n    for (unsigned i = 0; i < DESK_ARM_DOF; ++i)\n        printf(\"%.17g %.17g \
+                %.17g %.17g\\n\", lower[i], upper[i], speed[i], effort[i]);\n    return 0;\n}\n";
+    fs::write(folder.join("main.c"), code + main).expect("written");
+    let Some(printed) = printed(&folder, &["main.c"], &[]) else { return };
+    let found: Vec<f64> = printed.split_whitespace().map(|word| word.parse().expect("a number")).collect();
+    let [quick, quicker] = [120_f64, 180.0].map(f64::to_radians);
+    let expected = [
+        [-(170_f64.to_radians()), 170_f64.to_radians(), quick, 40.0],
+        [-f64::MAX, f64::MAX, f64::MAX, f64::MAX],
+        [-(150_f64.to_radians()), 150_f64.to_radians(), quicker, 15.0],
+    ];
+    for (found, expected) in found.iter().zip(expected.as_flattened()) {
+        assert!((found - expected).abs() <= 1e-15 * expected.abs(), "{found} is not {expected}");
+    }
+    assert_eq!(found.len(), 12);
+}
+
+/// `--ascii` changes comments alone, and leaves nothing but ASCII.
+#[test]
+fn comments_in_ascii() {
+    for robot in ["robots/scara_cobra600.yaml", "robots/puma560_mdh.yaml"] {
+        for lang in ["c", "rust"] {
+            let arguments = ["emit", robot, "--lang", lang, "--function", "all", "--ascii"];
+            let (plain, ascii) = (fine(&arguments[..6]), fine(&arguments));
+            assert!(ascii.is_ascii() && !plain.is_ascii());
+            let code = |text: &str| -> Vec<String> {
+                text.lines().map(|line| line.split("//").next().unwrap_or_default().trim_end().to_owned()).collect()
+            };
+            assert_eq!(code(&plain), code(&ascii), "{robot}, {lang}");
+            // what has no spelling would be one more
+            assert_eq!(plain.matches('_').count(), ascii.matches('_').count(), "{robot}, {lang}");
+        }
+    }
+    let folder = folder("c_ascii");
+    let out = path(&folder, "arm.c");
+    let emit = ["emit", ROBOT, "--lang", "c", "--ascii"];
+    assert_eq!(rne(&[&emit[..], &["-o", &out]].concat()).status, 0);
+    assert_eq!(rne(&[&emit[..], &["--check", &out]].concat()).status, 0);
+    fails(1, &["emit", ROBOT, "--lang", "c", "--check", &out], &["is stale"]);
+}

@@ -1,6 +1,7 @@
 //! Renderers of programs: tokens for the macro, text for people.
 
 mod annotated;
+mod ascii;
 mod c;
 mod evidence;
 mod expression;
@@ -16,7 +17,8 @@ mod tokens;
 mod wrap;
 
 pub use annotated::{Annotated, Part};
-pub use c::{BadPrefix, CCode, ConstantTooLarge, Prefix, c_code};
+pub use ascii::ascii;
+pub use c::{BadPrefix, CCode, ConstantTooLarge, Origin, Prefix, c_code, c_code_of_file};
 pub use evidence::evidence;
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};

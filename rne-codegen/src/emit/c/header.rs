@@ -6,7 +6,8 @@ use super::signature::{fields, head, record_type, records};
 use super::{File, comment};
 use crate::emit::evidence::evidence;
 use crate::emit::heading::Heading;
-use crate::emit::wrap::TIED;
+use crate::emit::syntax::Precision;
+use crate::emit::wrap::{TIED, WIDTH, fill};
 use crate::emit::{inert, table};
 use crate::function::Record;
 use crate::program::Program;
@@ -14,7 +15,9 @@ use crate::program::Program;
 /// How both files begin.
 pub(super) fn title(file: &File) -> String {
     let title = comment("//", &Heading::opening(&inert::title(file.robot)));
-    format!("{title}//\n// {}\n", Heading::mark(file.robot))
+    let by = concat!("rne ", env!("CARGO_PKG_VERSION"));
+    let by = file.origin.map_or(by.to_owned(), |origin| format!("{by}, of the robot file {origin}"));
+    format!("{title}//\n// {}\n{}", Heading::mark(file.robot), comment("//", &by))
 }
 
 pub(super) fn header(file: &File) -> String {
@@ -26,6 +29,7 @@ pub(super) fn header(file: &File) -> String {
     let _ = writeln!(text, "\n#ifndef {upper}_H\n#define {upper}_H\n");
     text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
     let _ = writeln!(text, "/// Number of joints.\n#define {upper}_DOF {}u", file.robot.dof());
+    text.push_str(&limits(file, &upper));
     for (record, parts) in records(file) {
         let (about, name) = (comment("///", about(record)), record_type(file, record));
         let _ = writeln!(text, "\n{about}typedef struct {{");
@@ -44,6 +48,48 @@ pub(super) fn header(file: &File) -> String {
         let _ = writeln!(text, "{};", head(file, program));
     }
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
+    text
+}
+
+/// The limits of the joints as initialisers of arrays; of what no joint has there is none.
+fn limits(file: &File, upper: &str) -> String {
+    let precision = file.precision;
+    let largest = match precision {
+        Precision::Single => f64::from(f32::MAX),
+        Precision::Double => f64::MAX,
+    };
+    let limits = || file.robot.joints.iter().map(|joint| joint.limits);
+    let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
+        ("POSITION_LOWER", "Lowest positions, rad or m", -largest, limits().map(|of| Some(of.position?.0)).collect()),
+        ("POSITION_UPPER", "Highest positions, rad or m", largest, limits().map(|of| Some(of.position?.1)).collect()),
+        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|of| of.velocity).collect()),
+        ("EFFORT_LIMIT", "Largest torques or forces, N m or N", largest, limits().map(|of| of.effort).collect()),
+    ];
+    let mut text = String::new();
+    for (name, about, none, values) in kinds {
+        if values.iter().all(Option::is_none) {
+            continue;
+        }
+        let number = |value: &Option<f64>| {
+            let value = value.unwrap_or(none).clamp(-largest, largest);
+            precision.literal(value).unwrap_or_default()
+        };
+        let unlimited =
+            if values.iter().any(Option::is_none) { "; the largest number where there is no limit" } else { "" };
+        text.push_str(&comment(
+            "///",
+            &format!("{about}{unlimited}: `const {0} x[] = {upper}_{name};`", precision.c_type()),
+        ));
+        let start = format!("#define {upper}_{name} {{");
+        let numbers = values.iter().map(number).collect::<Vec<_>>().join(", ");
+        if start.len() + numbers.len() < WIDTH {
+            let _ = writeln!(text, "{start}{numbers}}}");
+        } else {
+            // a definition goes on behind a backslash
+            let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
+            let _ = writeln!(text, "{start} \\\n{lines}}}");
+        }
+    }
     text
 }
 

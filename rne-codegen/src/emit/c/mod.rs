@@ -62,7 +62,21 @@ pub fn c_code(
     precision: Precision,
     prefix: &Prefix,
 ) -> Result<CCode, ConstantTooLarge> {
-    let file = File { robot, programs, precision, prefix: prefix.as_str() };
+    c_code_of_file(robot, programs, precision, prefix, None)
+}
+
+/// As [`c_code`], with the robot file named in the heading.
+///
+/// # Errors
+/// When a constant is too large for the number type.
+pub fn c_code_of_file(
+    robot: &Robot,
+    programs: &[Program],
+    precision: Precision,
+    prefix: &Prefix,
+    origin: Option<&Origin>,
+) -> Result<CCode, ConstantTooLarge> {
+    let file = File { robot, programs, precision, prefix: prefix.as_str(), origin };
     Ok(CCode { title: header::title(&file), header: header::header(&file), body: source::body(&file)? })
 }
 
@@ -72,6 +86,30 @@ struct File<'a> {
     programs: &'a [Program],
     precision: Precision,
     prefix: &'a str,
+    origin: Option<&'a Origin>,
+}
+
+/// The robot file of which code is made: its name, without folders, and what tells its contents from others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    file: String,
+    hash: u64,
+}
+
+impl Origin {
+    /// The origin of code that is made of these bytes.
+    #[must_use]
+    pub fn of(file: &str, bytes: &[u8]) -> Self {
+        // FNV-1a of 64 bits: no cryptography, enough to see that a file is another
+        let hash = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+        Self { file: file.to_owned(), hash: bytes.iter().fold(0xCBF2_9CE4_8422_2325, hash) }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, FNV-1a {:016x}", self.file, self.hash)
+    }
 }
 
 impl<'a> File<'a> {

@@ -1,0 +1,89 @@
+//! `rne completions` and `rne man`: what a shell and `man` know of the command line.
+
+use std::fmt::Write as _;
+use std::io;
+use std::path::PathBuf;
+
+use clap::{Args, Command, CommandFactory as _};
+use clap_complete::Shell;
+
+use crate::arguments;
+use crate::outcome::{Failure, Outcome};
+use crate::output_file::{self, Existing};
+use crate::terminal::GOOD;
+
+/// Print the script by which a shell completes commands and options
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne completions bash > ~/.local/share/bash-completion/completions/rne
+  rne completions zsh > ~/.zfunc/_rne
+  rne completions fish > ~/.config/fish/completions/rne.fish")]
+pub(crate) struct Completions {
+    /// Which shell
+    #[arg(value_enum, value_name = "SHELL")]
+    shell: Shell,
+}
+
+/// Print the manual page, or write the pages of all commands
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne man | man -l -                     read it
+  rne man eval | man -l -                that of a command
+  rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
+pub(crate) struct Man {
+    /// The command whose page it is, instead of rne itself
+    #[arg(value_name = "COMMAND", conflicts_with = "output")]
+    command: Option<String>,
+    /// Write the pages of rne and of every command into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn completions(arguments: &Completions) -> Outcome {
+    let mut script = Vec::new();
+    clap_complete::generate(arguments.shell, &mut arguments::Arguments::command(), "rne", &mut script);
+    Outcome::text(String::from_utf8_lossy(&script).into_owned())
+}
+
+pub(crate) fn man(arguments: &Man) -> Result<Outcome, Failure> {
+    let pages = pages().map_err(Failure::input)?;
+    let Some(folder) = &arguments.output else {
+        let wanted = arguments.command.as_ref().map_or("rne".to_owned(), |command| format!("rne-{command}"));
+        let page = pages.iter().find(|(name, _)| *name == wanted).map(|(_, page)| page.clone());
+        return page.map(Outcome::text).ok_or_else(|| {
+            let names: Vec<&str> = pages.iter().filter_map(|(name, _)| name.strip_prefix("rne-")).collect();
+            Failure::usage(format_args!("{wanted} has no page; the commands are {}", names.join(", ")))
+        });
+    };
+    if !matches!(output_file::existing(folder), Existing::Folder) {
+        return Err(Failure::input(format_args!("there is no folder {}; make it first", folder.display())));
+    }
+    let mut remark = String::new();
+    for (name, page) in &pages {
+        let path = folder.join(format!("{name}.1"));
+        output_file::replace(&path, page)
+            .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
+        let _ = writeln!(remark, "{GOOD}wrote{GOOD:#} {}", path.display());
+    }
+    Ok(Outcome::remark(remark))
+}
+
+/// The manual pages, rne's own first: names, and what stands in them.
+fn pages() -> io::Result<Vec<(String, String)>> {
+    let mut root = arguments::Arguments::command().disable_help_subcommand(true);
+    root.build();
+    let mut pages = vec![("rne".to_owned(), page(root.clone(), "rne")?)];
+    for command in root.get_subcommands() {
+        let name = format!("rne-{}", command.get_name());
+        pages.push((name.clone(), page(command.clone(), &name)?));
+    }
+    Ok(pages)
+}
+
+fn page(command: Command, title: &str) -> io::Result<String> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command).title(title).render(&mut page)?;
+    Ok(String::from_utf8_lossy(&page).into_owned())
+}

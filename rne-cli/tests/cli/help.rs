@@ -1,0 +1,127 @@
+//! The pages of help: as wide as any terminal, as long as one screen, and with examples that work.
+
+use std::fs;
+
+use unicode_width::UnicodeWidthStr as _;
+
+use crate::call::{fails, fine, folder};
+
+/// Every command, by the help of rne.
+fn commands() -> Vec<String> {
+    let help = fine(&["--help"]);
+    let (_, list) = help.split_once("Commands:\n").expect("a list of commands");
+    let lines = list.lines().take_while(|line| !line.is_empty());
+    let names = lines.filter_map(|line| line.split_whitespace().next()).map(str::to_owned);
+    names.filter(|name| name != "help").collect()
+}
+
+/// The help of rne and of every command.
+fn pages() -> Vec<(String, String)> {
+    let of = |command: String| {
+        let help = fine(&[&command, "--help"]);
+        (command, help)
+    };
+    let commands = commands();
+    assert!(commands.len() >= 9, "{commands:?}");
+    std::iter::once(("rne".to_owned(), fine(&["--help"]))).chain(commands.into_iter().map(of)).collect()
+}
+
+#[test]
+fn helps_fit_on_a_screen() {
+    for (command, help) in pages() {
+        for line in help.lines() {
+            assert!(line.width() <= 80, "{command}: {} columns: {line}", line.width());
+            assert_eq!(line, line.trim_end(), "{command}");
+        }
+        let lines = help.lines().count();
+        // `rne eval` has fifteen options
+        let most = if command == "eval" { 45 } else { 40 };
+        assert!(lines <= most, "{command}: {lines} lines");
+    }
+}
+
+/// What `rne explain` prints is prose of the same width.
+#[test]
+fn topics_are_explained() {
+    let help = fine(&["explain", "--help"]);
+    let topics: Vec<&str> = help.lines().filter_map(|line| line.strip_prefix("  rne explain ")).collect();
+    assert!(topics.len() >= 5, "{help}");
+    for topic in topics.iter().filter_map(|line| line.split(' ').next()) {
+        let text = fine(&["explain", topic]);
+        assert!(text.lines().count() > 3 && text.lines().all(|line| line.width() <= 80), "{topic}: {text}");
+    }
+    assert!(fine(&["explain", "functions"]).contains("\ninverse_dynamics_derivatives\n"));
+    fails(2, &["explain", "nothing"], &["exit-status"]);
+}
+
+/// The commands below `Examples:`, without the words beside them.
+#[cfg(unix)]
+fn examples(help: &str) -> Vec<String> {
+    let (_, below) = help.split_once("\nExamples:\n").unwrap_or_else(|| panic!("no example: {help}"));
+    let mut examples: Vec<String> = Vec::new();
+    for line in below.lines().take_while(|line| line.starts_with("  ")) {
+        let command = line.trim().split("  ").next().unwrap_or_default();
+        match examples.last_mut().filter(|last| last.ends_with('\\')) {
+            Some(last) => last.truncate(last.len() - 1),
+            None => examples.push(String::new()),
+        }
+        examples.last_mut().expect("one was pushed").push_str(command);
+    }
+    examples
+}
+
+#[cfg(unix)]
+#[test]
+fn examples_of_helps_work() {
+    let folder = crate::documents::copy("examples");
+    for made in
+        [".local/share/bash-completion/completions", ".zfunc", ".config/fish/completions", ".local/share/man/man1"]
+    {
+        fs::create_dir_all(folder.join(made)).expect("a folder");
+    }
+    for (command, help) in pages() {
+        let examples = examples(&help);
+        assert!(!examples.is_empty(), "{command}: no example");
+        for example in examples {
+            assert!(example.starts_with("rne ") && !example.contains("  "), "{command}: {example}");
+            if command == "search" {
+                continue; // minutes; `search.rs` has short ones
+            }
+            let typed = example.replace("~/", "./").replace("| man -l -", "| cat");
+            let output = crate::documents::typed(&folder, &typed);
+            assert!(output.status.success(), "{example}: {}", String::from_utf8_lossy(&output.stderr));
+        }
+    }
+}
+
+#[test]
+fn shells_complete_words_that_helps_leave_out() {
+    let words = ["inverse_dynamics_derivatives", "regrouping-targets", "seven_steps"];
+    // the scripts of clap for the last two complete no words
+    for (shell, words) in
+        [("bash", &words[..]), ("zsh", &words), ("fish", &words), ("elvish", &[]), ("powershell", &[])]
+    {
+        let script = fine(&["completions", shell]);
+        // fish writes an option without its dashes
+        for word in words.iter().chain(&["base-omega-dot"]) {
+            assert!(script.contains(word), "{shell}: no {word}");
+        }
+    }
+    fails(2, &["completions", "cmd"], &["bash", "fish", "zsh"]);
+}
+
+#[test]
+fn every_command_has_a_page_of_the_manual() {
+    let folder = folder("man");
+    let path = folder.to_str().expect("UTF-8");
+    let called = crate::call::rne(&["man", "-o", path]);
+    assert_eq!((called.status, called.out.as_str()), (0, ""));
+    for command in commands() {
+        let page = fs::read_to_string(folder.join(format!("rne-{command}.1"))).expect("a page");
+        assert_eq!(page, fine(&["man", &command]), "the same page, the same bytes");
+        assert!(page.contains(&format!(".TH rne-{command} 1")) && page.contains("Examples:"), "{page}");
+    }
+    assert!(fs::read_to_string(folder.join("rne.1")).expect("a page").contains("rne\\-search(1)"));
+    fails(2, &["man", "nothing"], &["rne-nothing has no page", "check, show, emit"]);
+    fails(1, &["man", "-o", "nowhere"], &["there is no folder nowhere"]);
+}
