@@ -177,7 +177,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         let link = joint.body.seen_from(frame.inverse()).to_link();
         let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
         Joint {
-            name: joint.name.clone(),
+            name: printable(&joint.name),
             row: Row { kind, dh: *dh, link },
             written_inertia: (link.inertia, InertiaReference::Com),
             limits: joint.limits,

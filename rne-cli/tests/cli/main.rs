@@ -5,6 +5,7 @@ mod check;
 mod emit;
 mod emit_c;
 mod eval;
+mod import;
 mod plans;
 mod search;
 mod show;
