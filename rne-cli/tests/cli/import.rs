@@ -43,7 +43,7 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
         assert!(called.err.contains(part), "no `{part}` in {}", called.err);
     }
     fails(1, &["import", urdf], &["`base` has 2 leaves", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
-    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", "arm.urdf:16:3"]);
+    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", "arm.urdf:14:3"]);
     fails(1, &["import", "no.urdf"], &["there is no URDF no.urdf"]);
     fails(2, &["import", urdf, "--lock", "grip"], &["JOINT=VALUE"]);
     let raw = rne(&["import", urdf, "--tip", "tip", "--lock-others", "--no-snap"]);
