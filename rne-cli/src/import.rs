@@ -190,8 +190,8 @@ fn changed(change: &Difference) -> String {
         |acceleration| format!("accelerations by {acceleration:.1e}"),
     );
     format!(
-        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the largest, \
-         {accelerations}\n",
+        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the \
+         largest, {accelerations}\n",
         change.position, change.rotation, change.absolute_torque, change.torque
     )
 }

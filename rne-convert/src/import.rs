@@ -156,8 +156,8 @@ impl Urdf {
             }
             let moment = joint.row.link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
             let message = format!(
-                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has a \
-                 negative one",
+                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has \
+                 a negative one",
                 quoted(&joint.name)
             );
             let several =

@@ -12,7 +12,8 @@ fn error(text: &str) -> String {
 fn with(old: &str, new: &str) -> String {
     let text = "<robot name=\"r\">\n\
          <link name=\"a\"/>\n\
-         <link name=\"b\"><inertial><mass value=\"1\"/><inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>\
+         <link name=\"b\"><inertial><mass value=\"1\"/>\
+         <inertia ixx=\"1\" ixy=\"0\" ixz=\"0\" iyy=\"1\" iyz=\"0\" izz=\"1\"/>\
          </inertial></link>\n\
          <joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/><origin xyz=\"0 0 1\"/>\
          <limit effort=\"1\" velocity=\"1\"/></joint>\n\
@@ -92,7 +93,8 @@ fn depth_length_and_number_are_bounded() {
         let kind = if i == 1 { "continuous" } else { "fixed" };
         let _ = write!(
             chain,
-            "<link name=\"l{i}\"/><joint name=\"j{i}\" type=\"{kind}\"><parent link=\"l{}\"/><child link=\"l{i}\"/></joint>",
+            "<link name=\"l{i}\"/><joint name=\"j{i}\" type=\"{kind}\">\
+             <parent link=\"l{}\"/><child link=\"l{i}\"/></joint>",
             i - 1
         );
     }
@@ -107,7 +109,8 @@ fn depth_length_and_number_are_bounded() {
 fn what_does_not_matter_is_passed_over_and_names_stay_words() {
     let mut text = with(
         "<link name=\"a\"/>",
-        "<link name=\"a\"><visual><geometry><torus r=\"x\"/></geometry></visual></link><gazebo><joint name=\"j\"/></gazebo>",
+        "<link name=\"a\"><visual><geometry><torus r=\"x\"/></geometry></visual></link>\
+         <gazebo><joint name=\"j\"/></gazebo>",
     );
     text = text.replace("name=\"r\"", "name=\"R 2-D2 &amp; co\"");
     let named = text.replace("name=\"j\"", "name=\"j: &quot;#&lt;{}&#10; - x\"");
