@@ -202,7 +202,7 @@ fn shipped_robots_are_written_converted_and_exported() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if !name.ends_with(".yaml") || name.ends_with(".plan.yaml") {
+        if path.extension().is_none_or(|extension| extension != "yaml") || rne_model::robot_of(&path).is_some() {
             continue;
         }
         seen += 1;
