@@ -25,6 +25,7 @@ Examples:
 What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple of pi/12 are taken for it, and what that
 changes is told; --no-snap takes them as they are. The robot file goes to standard output, the account to standard
 error, unless -o names a file.")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// The URDF; - is standard input
     #[arg(value_name = "FILE")]
