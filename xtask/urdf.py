@@ -35,7 +35,8 @@ ARMS = [
     ("kinova_description/robots/kinova.urdf", "--tip j2s6s200_end_effector --lock-others"),
     ("xarm_description/urdf/xarm7.urdf", "--tip link7 --lock-others"),
     ("talos_data/robots/talos_left_arm.urdf", "--tip wrist_left_ft_tool_link --lock-others"),
-    ("talos_data/robots/talos_reduced.urdf", "--base torso_2_link --tip arm_right_7_link --lock torso_1_joint=0.3 --lock-others"),
+    ("talos_data/robots/talos_reduced.urdf",
+     "--base torso_2_link --tip arm_right_7_link --lock torso_1_joint=0.3 --lock-others"),
     ("z1_description/urdf/z1.urdf", "--tip link06 --lock-others"),
     ("so_arm_description/urdf/so101.urdf", "--tip gripper_link --lock-others"),
     ("tiago_description/robots/tiago.urdf", "--tip arm_tool_link --lock-others"),
@@ -96,7 +97,8 @@ class Imported:
 
     def __init__(self, rne, path, options, folder, name):
         self.rne, self.file = rne, folder / f"{name}.yaml"
-        run = subprocess.run([rne, "import", path, *options, "-o", self.file, "--force"], capture_output=True, text=True)
+        command = [rne, "import", path, *options, "-o", self.file, "--force"]
+        run = subprocess.run(command, capture_output=True, text=True)
         if run.returncode != 0:
             raise RuntimeError(run.stderr)
         self.account = run.stderr
@@ -150,7 +152,7 @@ def states(joints, kinds, model):
 
 def main():
     rne = sys.argv[1]
-    print(f"Pinocchio {pin.__version__}; torques and mass matrix relative to the largest, tip in m and rotation elements")
+    print(f"Pinocchio {pin.__version__}; torques and mass matrix relative to the largest, tip in m")
     print(f"{'URDF':<28}{'tip':<26}{'n':>3}  {'without snapping':^28}  {'with it: torques, tip':^24}  {'told':^18}")
     failed, seen = [], 0
     with tempfile.TemporaryDirectory() as folder:

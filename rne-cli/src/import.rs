@@ -25,6 +25,7 @@ Examples:
 What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple of pi/12 are taken for it, and what that
 changes is told; --no-snap takes them as they are. The robot file goes to standard output, the account to standard
 error, unless -o names a file.")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// The URDF; - is standard input
     #[arg(value_name = "FILE")]
@@ -190,8 +191,8 @@ fn changed(change: &Difference) -> String {
         |acceleration| format!("accelerations by {acceleration:.1e}"),
     );
     format!(
-        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the largest, \
-         {accelerations}\n",
+        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the \
+         largest, {accelerations}\n",
         change.position, change.rotation, change.absolute_torque, change.torque
     )
 }

@@ -355,8 +355,8 @@ impl Walk<'_> {
         if let Some(mimic) = &joint.mimic {
             let message = format!("the joint {name} on the chain follows {}", quoted(&mimic.joint));
             let help = format!(
-                "its torque belongs to that joint, which no row of a table can say; end the chain before it, or hold it \
-                 still with --lock {}=VALUE",
+                "its torque belongs to that joint, which no row of a table can say; end the chain before it, or \
+                 hold it still with --lock {}=VALUE",
                 rne_model::one_line(&joint.name)
             );
             return error(message, help);

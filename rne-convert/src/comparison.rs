@@ -9,7 +9,8 @@ use crate::dynamics::{Dynamics, State};
 /// States at which arms are compared.
 pub(crate) const STATES: usize = 1000;
 
-/// The largest differences over 1,000 states within the limits, with speeds up to 2 and accelerations up to 5 (rad or m).
+/// The largest differences over 1,000 states within the limits, with speeds up to 2 and accelerations up to 5 (rad or
+/// m).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Difference {
     /// Of the tip's place, m.

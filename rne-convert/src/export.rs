@@ -122,8 +122,9 @@ fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (
     };
     let _ = writeln!(
         text,
-        "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    <child link=\"{child}\"/>\n    \
-         {}\n    <axis xyz=\"0 0 1\"/>\n    <limit {position}effort=\"{}\" velocity=\"{}\"/>\n  </joint>",
+        "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
+         <child link=\"{child}\"/>\n    {}\n    <axis xyz=\"0 0 1\"/>\n    \
+         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n  </joint>",
         origin(joint.place),
         number(limits.effort.unwrap_or(0.0)),
         number(limits.velocity.unwrap_or(0.0))
@@ -135,8 +136,9 @@ fn link(text: &mut String, name: &str, body: &Body) {
     let i = link.inertia;
     let _ = writeln!(
         text,
-        "  <link name=\"{name}\">\n    <inertial>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n      <mass value=\"{}\"/>\n      \
-         <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n  </link>",
+        "  <link name=\"{name}\">\n    <inertial>\n      <origin xyz=\"{}\" rpy=\"0 0 0\"/>\n      \
+         <mass value=\"{}\"/>\n      <inertia ixx=\"{}\" ixy=\"{}\" ixz=\"{}\" \
+         iyy=\"{}\" iyz=\"{}\" izz=\"{}\"/>\n    </inertial>\n  </link>",
         vector(link.com),
         number(rounded(body.mass, 1.0)),
         number(i.xx),

@@ -156,8 +156,8 @@ impl Urdf {
             }
             let moment = joint.row.link.inertia.principal_moments().map_or(f64::NAN, |moments| moments[0]);
             let message = format!(
-                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has a \
-                 negative one",
+                "the link that the joint {} moves has the principal moment of inertia {moment:.3e} kg m²; no body has \
+                 a negative one",
                 quoted(&joint.name)
             );
             let several =
@@ -177,7 +177,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         let link = joint.body.seen_from(frame.inverse()).to_link();
         let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
         Joint {
-            name: joint.name.clone(),
+            name: printable(&joint.name),
             row: Row { kind, dh: *dh, link },
             written_inertia: (link.inertia, InertiaReference::Com),
             limits: joint.limits,

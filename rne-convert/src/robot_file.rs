@@ -9,8 +9,8 @@ use crate::snap::angle_text;
 /// Width of a folded text.
 const WIDTH: usize = 110;
 
-/// The robot file of a robot. Reading it gives the robot again, bit for bit, but for parameters that stay free until run
-/// time: every number is written as its value.
+/// The robot file of a robot. Reading it gives the robot again, bit for bit, but for parameters that stay free until
+/// run time: every number is written as its value.
 ///
 /// Angles are written as `pi/2`, limits as `deg(170)` where that is the same number; every other number with the
 /// digits that it needs.

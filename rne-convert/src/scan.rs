@@ -165,7 +165,6 @@ struct Scanner<'a> {
 struct Open {
     /// `None` where neither it nor what it holds matters.
     element: Option<&'static Element>,
-    place: Range<usize>,
     /// The elements that matter in it.
     children: Vec<&'static str>,
 }
@@ -192,7 +191,7 @@ impl Scanner<'_> {
             }
             self.write(element, tag, &place)?;
         }
-        self.open.push(Open { element, place, children: Vec::new() });
+        self.open.push(Open { element, children: Vec::new() });
         if is_empty {
             self.close();
         }
@@ -263,7 +262,6 @@ impl Scanner<'_> {
             }
             values[index] = Some(value);
         }
-        // Shorter than it was: the pieces that are kept are those of the text.
         let text = &mut self.scanned.text;
         let _ = write!(text, "<{}", element.name);
         for (attribute, value) in element.attributes.iter().zip(&values) {
@@ -287,8 +285,7 @@ impl Scanner<'_> {
     }
 
     fn close(&mut self) {
-        if let Some(Open { element: Some(element), place, children }) = self.open.pop() {
-            let _ = (place, children);
+        if let Some(Open { element: Some(element), .. }) = self.open.pop() {
             let _ = writeln!(self.scanned.text, "</{}>", element.name);
         }
     }

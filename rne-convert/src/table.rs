@@ -170,8 +170,8 @@ impl Axes {
     }
 }
 
-/// The normal `x`, or its opposite, so that the angle from `before` about `z` is at most a right one. At exactly a right
-/// angle it stays where it `leads` to the next axis, for then a > 0; else theta is to be positive.
+/// The normal `x`, or its opposite, so that the angle from `before` about `z` is at most a right one. At exactly a
+/// right angle it stays where it `leads` to the next axis, for then a > 0; else theta is to be positive.
 fn facing(before: Vector, z: Vector, x: Vector, leads: bool) -> Vector {
     const RIGHT: f64 = 1e-20;
     let (sin, cos) = (z.dot(before.cross(x)).to_f64(), before.dot(x).to_f64());

@@ -323,7 +323,8 @@ fn joints_off_the_chain_are_held_by_name_or_refused() {
             "prismatic",
             ("arm", "thumb"),
             "",
-            "<axis xyz=\"-1 0 0\"/><limit effort=\"1\" velocity=\"1\"/><mimic joint=\"f\" multiplier=\"2\" offset=\"0.1\"/>",
+            "<axis xyz=\"-1 0 0\"/><limit effort=\"1\" velocity=\"1\"/>\
+             <mimic joint=\"f\" multiplier=\"2\" offset=\"0.1\"/>",
         ),
         // On the base nothing of it reaches the arm.
         "<link name=\"wheel\"/>".to_owned(),

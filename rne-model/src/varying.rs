@@ -105,8 +105,8 @@ pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass:
     }
     let message = "a first moment without mass: such a link has no centre of mass, which the seven steps go by";
     cx.refuse(Diagnostic::error(node.head(), message).label("the mass is 0").help(
-        "mass on the axis of a revolute joint may count for the link before or behind it: give this link some there, and \
-         take it from the link before; torques stay the same",
+        "mass on the axis of a revolute joint may count for the link before or behind it: give this link some there, \
+         and take it from the link before; torques stay the same",
     ))
 }
 

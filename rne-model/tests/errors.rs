@@ -38,7 +38,7 @@ fn keys() {
         ),
         ("name: first", "name: first\n    offset: 1", 10, 5, "offset", "unknown key `offset`; a joint has the keys"),
         ("{theta: 0, d: 0.4", "{theta: 0, d: 0.4, b: 1", 11, 28, "b", "`dh` has the keys theta, d, a, alpha"),
-        ("mass: 2.5", "mass: 2.5\n      masse: 1", 14, 7, "masse", "a link has the keys mass, com, inertia"),
+        ("mass: 2.5", "mass: 2.5\n      masse: 1", 14, 7, "masse", "a link has the keys mass, com, first_moment"),
         ("zz: 0.02}", "zz: 0.02, zx: 1}", 15, 46, "zx", "an inertia has the keys"),
         ("velocity: 2.0", "torque: 2.0", 17, 35, "torque", "`limits` has the keys position, velocity, effort"),
         ("viscous: 1.5e-3", "stiction: 1", 18, 49, "stiction", "`motor` has the keys"),

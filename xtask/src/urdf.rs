@@ -12,8 +12,8 @@ const PACKAGES: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-dat
 
 /// Imports real arms and compares them with Pinocchio
 ///
-/// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and with it
-/// by no more than the import tells. `xtask/urdf.py` has the arms and the comparison.
+/// Torques, mass matrix and tip of at least 12 arms of packages, in both conventions: to 1e-10 without snapping, and
+/// with it by no more than the import tells. `xtask/urdf.py` has the arms and the comparison.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; Pinocchio and the arms are fetched into target/urdf/venv.

@@ -7,6 +7,7 @@ mod emit;
 mod emit_c;
 mod eval;
 mod help;
+mod import;
 mod plans;
 mod search;
 mod shipped;

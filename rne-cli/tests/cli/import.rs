@@ -1,0 +1,109 @@
+//! `rne import`, `rne convert`, `rne export`.
+
+use std::fs;
+
+use crate::call::{fails, fine, folder, rne, rne_reading};
+
+/// An arm of two joints with a finger on its hand.
+const URDF: &str = r#"<robot name="Two Links">
+  <link name="base"/>
+  <link name="upper"><inertial><origin xyz="0.2 0 0"/><mass value="1.5"/>
+    <inertia ixx="0" ixy="0" ixz="0" iyy="0.02" iyz="0" izz="0.02"/></inertial></link>
+  <link name="lower"><inertial><origin xyz="0.15 0 0"/><mass value="1"/>
+    <inertia ixx="0" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link>
+  <link name="finger"/>
+  <link name="tip"/>
+  <joint name="shoulder" type="revolute"><parent link="base"/><child link="upper"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="2" effort="30" velocity="3"/></joint>
+  <joint name="elbow" type="revolute"><parent link="upper"/><child link="lower"/>
+    <origin xyz="0.4318 0 0" rpy="1.5708 0 0"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="2" effort="30" velocity="3"/></joint>
+  <joint name="grip" type="prismatic"><parent link="lower"/><child link="finger"/><axis xyz="0 1 0"/>
+    <limit lower="0" upper="0.1" effort="5" velocity="1"/></joint>
+  <joint name="flange" type="fixed"><parent link="lower"/><child link="tip"/><origin xyz="0.3 0 0"/></joint>
+</robot>
+"#;
+
+#[test]
+fn an_import_prints_the_robot_file_and_tells_what_it_did() {
+    let folder = folder("import");
+    let urdf = folder.join("arm.urdf");
+    fs::write(&urdf, URDF).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    let called = rne(&["import", urdf, "--tip", "tip", "--lock", "grip=0.05"]);
+    assert_eq!(called.status, 0, "{called:?}");
+    insta::assert_snapshot!(called.out);
+    for part in [
+        "two_links: 2 joints",
+        "from base to tip",
+        "grip is held at 0.05",
+        "joint elbow, roll: 1.5708 is pi/2",
+        "over 1,000 states",
+    ] {
+        assert!(called.err.contains(part), "no `{part}` in {}", called.err);
+    }
+    fails(1, &["import", urdf], &["`base` has 2 leaves", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
+    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", "arm.urdf:14:3"]);
+    fails(1, &["import", "no.urdf"], &["there is no URDF no.urdf"]);
+    fails(2, &["import", urdf, "--lock", "grip"], &["JOINT=VALUE"]);
+    let raw = rne(&["import", urdf, "--tip", "tip", "--lock-others", "--no-snap"]);
+    assert!(raw.out.contains("alpha: 1.5708}") && !raw.err.contains("snapped"), "{raw:?}");
+    // From a pipe too.
+    let piped = rne_reading(&["import", "-", "--tip", "tip", "--lock-others", "--name", "mine"], URDF);
+    assert!(piped.out.contains("name: mine\n"), "{piped:?}");
+}
+
+#[test]
+fn a_robot_file_that_is_there_stays() {
+    let folder = folder("import_kept");
+    let (urdf, out) = (folder.join("arm.urdf"), folder.join("arm.yaml"));
+    fs::write(&urdf, URDF).expect("written");
+    fs::write(&out, "my own").expect("written");
+    let (urdf, out) = (urdf.to_str().expect("UTF-8"), out.to_str().expect("UTF-8"));
+    let import = ["import", urdf, "--tip", "tip", "--lock-others", "-o", out];
+    fails(2, &import, &["is there already and stays as it is", "--force"]);
+    assert_eq!(fs::read_to_string(out).expect("it is there"), "my own");
+    let forced = rne(&[&import[..], &["--force"]].concat());
+    assert!(forced.err.contains("wrote"), "{forced:?}");
+    assert!(rne(&import).err.contains("up to date:"), "the same text is no conflict");
+    assert!(fine(&["check", out]).contains("two_links, RR, standard"));
+    fails(2, &["import", urdf, "--tip", "tip", "--lock-others", "-o", urdf], &["is the file that is read"]);
+}
+
+#[test]
+fn a_urdf_where_a_robot_file_is_needed_is_told_about_import() {
+    let folder = folder("import_told");
+    let urdf = folder.join("arm.urdf");
+    fs::write(&urdf, URDF).expect("written");
+    let urdf = urdf.to_str().expect("UTF-8");
+    for command in [&["eval", urdf, "--q", "0,0"][..], &["ops", urdf], &["emit", urdf]] {
+        fails(1, command, &["this is XML, as a URDF is", "rne import"]);
+    }
+    let called = rne(&["check", urdf]);
+    assert!(called.status == 1 && called.out.contains("rne import"), "{called:?}");
+}
+
+#[test]
+fn conversions_and_exports_have_the_same_torques() {
+    let folder = folder("converted");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let state = ["--q", "0.1,-0.5,1.1,0.3,-2,0.7", "--qd", "1,2,-1,0.5,1,1", "--qdd", "0.1,0.2,0.3,-1,-2,1", "--json"];
+    let torques = |file: &str| -> Vec<f64> {
+        let out = fine(&[&["eval", file][..], &state].concat());
+        out.split(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c))).filter_map(|word| word.parse().ok()).collect()
+    };
+    let expected = torques("robots/puma560.yaml");
+    assert_eq!(expected.len(), 6);
+    let (modified, urdf, back) = (path("modified.yaml"), path("puma.urdf"), path("back.yaml"));
+    let converted = rne(&["convert", "robots/puma560.yaml", "--convention", "modified", "-o", &modified]);
+    assert!(converted.status == 0 && converted.err.contains("the same arm over 1,000 states"), "{converted:?}");
+    let exported = rne(&["export", "robots/puma560.yaml", "--urdf", "-o", &urdf]);
+    assert!(exported.status == 0 && exported.err.contains("motors have no place"), "{exported:?}");
+    assert_eq!(rne(&["import", &urdf, "-o", &back]).status, 0);
+    for file in [&modified, &back] {
+        let found = torques(file);
+        assert!(expected.iter().zip(&found).all(|(a, b)| (a - b).abs() < 1e-12 * 60.0), "{expected:?} {found:?}");
+    }
+    fails(2, &["export", "robots/puma560.yaml"], &["--urdf"]);
+    fails(2, &["convert", "robots/puma560.yaml"], &["--convention"]);
+}
