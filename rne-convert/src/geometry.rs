@@ -292,6 +292,7 @@ mod tests {
     }
 
     #[test]
+    #[allow(clippy::approx_constant)] // as files have them
     fn angles_come_back_to_the_last_bit() {
         for angle in [0.0, 1.570_796_327, 1.5708, 3.1415, -0.3, 2.9, 1e-9, -1e-17, FRAC_PI_3, -FRAC_PI_4, PI, 0.1] {
             let (s, c) = sin_cos(angle);

@@ -92,6 +92,7 @@ fn fraction(twelfths: f64) -> (f64, f64) {
 }
 
 #[cfg(test)]
+#[allow(clippy::approx_constant)] // as files have them
 mod tests {
     use std::f64::consts::FRAC_PI_2;
 

@@ -14,7 +14,7 @@ use crate::expression::Names as _;
 use crate::inertia::TOLERANCE;
 use crate::resistance::{self, Unresisted};
 use crate::source::{quoted, rounded};
-use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns};
+use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
 const NEARLY: f64 = 2e-4;
@@ -69,7 +69,7 @@ fn right_angle_spelling(radians: f64) -> String {
     }
 }
 
-/// Gravity of another size than on Earth, or upwards.
+/// Gravity of another size than on Earth.
 pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
     let size = libm::sqrt(x * x + y * y + z * z);
     if size != 0.0 && !GRAVITY.contains(&size) {
@@ -86,11 +86,18 @@ pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
                 .label(label)
                 .help("gravity is an acceleration in m/s², such as `[0, 0, -9.81]`; without gravity write `[0, 0, 0]`"),
         );
-    } else if x == 0.0 && y == 0.0 && z > 0.0 {
+    }
+}
+
+/// Gravity that points up, in frame 0 and in the world: a sign, unless the arm hangs.
+pub(crate) fn gravity_upwards(cx: &Context, node: &Node, [x, y, z]: [f64; 3], base: &Transform) {
+    let [roll, pitch, _] = base.rpy;
+    let up = -pitch.sin * x + pitch.cos * (roll.sin * y + roll.cos * z);
+    if x == 0.0 && y == 0.0 && z > 0.0 && up > 0.0 {
         let message = format!("gravity {} points along the positive z axis of frame 0", quoted(cx.raw(node)));
         cx.report(Diagnostic::lint(node.span.clone(), message).label("upwards?").help(format!(
-            "the acceleration of gravity points down: is `[0, 0, {}]` meant? if z of frame 0 points down, as where the \
-             arm hangs from the ceiling, it is right as it stands",
+            "the acceleration of gravity points down: is `[0, 0, {}]` meant? where z of frame 0 points down, as in an \
+             arm that hangs from the ceiling, say so with `base: {{rpy: [pi, 0, 0]}}`",
             rounded(-z)
         )));
     }

@@ -45,6 +45,9 @@ pub(crate) fn robot(cx: &Context, node: &Node) -> Option<Robot> {
         tool: or(Transform::IDENTITY) "tool" |cx, node| transform(cx, node, Entry::ToolXyz),
         joints: required "joints" joints,
     });
+    if let Some(node) = node.get("gravity") {
+        lint::gravity_upwards(cx, node, gravity, &base);
+    }
     lint::unused_parameters(cx);
     // Where something else is wrong it may be that which has no effect.
     if !cx.has_errors() {

@@ -243,7 +243,7 @@ impl<S: Constant> DynArm<S> {
         base: &BaseMotion<T>,
         wrench: Option<&Wrench<T>>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        self.traced(self.joints(q, qd, qdd)?, base, wrench.into())
+        Ok(self.traced(self.joints(q, qd, qdd)?, base, wrench.into()))
     }
 
     /// The same on the base at rest, when `payload` is fixed to the tip.
@@ -257,20 +257,15 @@ impl<S: Constant> DynArm<S> {
         qdd: &[T],
         payload: &Payload<T>,
     ) -> Result<DynTrace<T>, WrongLength> {
-        self.traced(self.joints(q, qd, qdd)?, &self.fixed_base(), AtTip::Payload(payload))
+        Ok(self.traced(self.joints(q, qd, qdd)?, &self.fixed_base(), AtTip::Payload(payload)))
     }
 
-    fn traced<T: Scalar>(
-        &self,
-        joints: JointMotions<'_, T>,
-        base: &BaseMotion<T>,
-        tip: AtTip<'_, T>,
-    ) -> Result<DynTrace<T>, WrongLength> {
+    fn traced<T: Scalar>(&self, joints: JointMotions<'_, T>, base: &BaseMotion<T>, tip: AtTip<'_, T>) -> DynTrace<T> {
         let (motions, loads) = self.mechanism().passes(joints, base, tip);
         let mut links = vec![LinkTrace::empty(); self.dof()];
         let velocities = self.mechanism().velocities(joints, base, &motions);
         trace::record(self.mechanism().chain, joints.q, &velocities, &motions, &loads, &mut links);
-        Ok(DynTrace { links })
+        DynTrace { links }
     }
 
     /// The joint arguments, one element per joint each.

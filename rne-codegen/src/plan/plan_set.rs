@@ -135,7 +135,9 @@ fn with_payload(evaluator: &mut Evaluator, plans: &[Plan], algorithms: &[Algorit
         }
     };
     // with a payload no last link is a sphere
-    plans.iter().for_each(|plan| look(&Plan { gyrostat: false, ..plan.clone() }, &mut best));
+    for plan in plans {
+        look(&Plan { gyrostat: false, ..plan.clone() }, &mut best);
+    }
     for change in FOR_A_PAYLOAD {
         let (_, mut plan, _) = best.clone()?;
         change(&mut plan);
