@@ -105,11 +105,9 @@ pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
 
 /// Reads a convention.
 pub(crate) fn convention() -> impl TypedValueParser<Value = Convention> {
-    PossibleValuesParser::new([
-        PossibleValue::new("standard").help("Rz(theta) Tz(d) Tx(a) Rx(alpha), link frames at the far ends"),
-        PossibleValue::new("modified").help("Rx(alpha) Tx(a) Rz(theta) Tz(d), link frames on the joints"),
-    ])
-    .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
+    // docs/robot-file.md says what they are
+    PossibleValuesParser::new(["standard", "modified"])
+        .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
 }
 
 /// Reads the number of a joint; which numbers there are, the robot says.

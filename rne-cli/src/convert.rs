@@ -20,8 +20,9 @@ Examples:
   rne convert robots/panda.yaml --convention standard -o panda_standard.yaml
   rne convert robots/ur5.yaml --convention modified
 
-Torques, limits and motors stay; expressions of the file are written as their values. Where the first axis does not lie
-on z of frame 0, a standard table moves frame 0 there: base and gravity are turned with it.")]
+Torques, limits and motors stay; expressions of the file are written as their
+values. Where the first axis does not lie on z of frame 0, a standard table
+moves frame 0 there: base and gravity are turned with it.")]
 pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]
@@ -30,7 +31,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_parser = convention())]
     convention: Convention,
     /// Where to write the robot file; standard output, unless given
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite a file that is there
     #[arg(long, requires = "out")]

@@ -13,10 +13,11 @@ use crate::{output_file, robot_file};
 #[command(after_help = "\
 Examples:
   rne export robots/ur5.yaml --urdf -o ur5.urdf
-  rne export robots/puma560.yaml --urdf | less
+  rne export puma560 --urdf
 
-Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link stands on the axis of its joint. Gravity
-that is not [0, 0, -9.81] in `world` is told, for a URDF cannot say it.")]
+Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link
+stands on the axis of its joint. Gravity that is not [0, 0, -9.81] in `world`
+is told, for a URDF cannot say it.")]
 pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]
@@ -25,7 +26,7 @@ pub(crate) struct Arguments {
     #[arg(long, required = true)]
     urdf: bool,
     /// Where to write it; standard output, unless given
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite a file that is there
     #[arg(long, requires = "out")]

@@ -20,11 +20,13 @@ use crate::terminal::{QUIET, TITLE, TYPED};
 Examples:
   rne import panda.urdf --tip panda_link8 --lock-others -o panda.yaml
   rne import ur5.urdf --tip tool0 --convention modified
-  rne import tiago.urdf --base torso_lift_link --tip arm_tool_link --lock torso_lift_joint=0.1 --lock-others
+  rne import tiago.urdf --base torso_link --tip tool_link \\
+      --lock torso_lift_joint=0.1 --lock-others
 
-What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple of pi/12 are taken for it, and what that
-changes is told; --no-snap takes them as they are. The robot file goes to standard output, the account to standard
-error, unless -o names a file.")]
+What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple
+of pi/12 are taken for it, and what that changes is told; --no-snap takes them
+as they are. The robot file goes to standard output unless -o names a file; the
+account of what was done goes to standard error.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// The URDF; - is standard input
@@ -55,7 +57,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_parser = name)]
     name: Option<String>,
     /// Where to write the robot file; standard output, unless given
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite a file that is there
     #[arg(long, requires = "out")]

@@ -9,15 +9,15 @@ use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome};
 use crate::terminal::{QUIET, TYPED};
 
-/// List the robots that rne ships, which every command knows by name
+/// List the shipped robots, which every command knows by name
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne list
-  rne show panda                       a robot of the list, where no file of this name is
+  rne ops panda                        a robot of the list, by its name
   rne example panda > my_panda.yaml    its file, to change it
 
-In a crate: #[robot(builtin = \"panda\")].")]
+A file of that name comes first. In a crate: #[robot(builtin = \"panda\")].")]
 pub(crate) struct Arguments {}
 
 pub(crate) fn run() -> Result<Outcome, Failure> {

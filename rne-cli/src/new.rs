@@ -3,22 +3,24 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use rne_model::Convention;
 
+use crate::arguments::convention;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Existing, existing, replace};
 use crate::terminal::TYPED;
 
-/// Write a commented robot file with placeholders, for an arm of yours
+/// Write a robot file of your own, with placeholders to fill in
 #[derive(Args)]
 #[command(after_help = "\
-Example:
-  rne new my_arm --dof 6                          writes my_arm.yaml
-  rne new my_arm --dof 4 --prismatic 3 -o -       to the terminal; joint 3 slides
-  rne new my_arm --dof 6 --convention modified
+Examples:
+  rne new new_arm --dof 6                       writes new_arm.yaml
+  rne new my_arm --dof 4 --prismatic 3 -o -     to the terminal; joint 3 slides
+  rne new proximal --dof 6 --convention modified
 
-The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your numbers in their place.")]
+The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your
+numbers in their place; docs/robot-file.md explains every key.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = name)]
@@ -30,29 +32,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "I,…", value_delimiter = ',')]
     prismatic: Vec<u8>,
     /// Which Denavit-Hartenberg convention the table follows
-    #[arg(long, value_enum, default_value_t = Rows::Standard)]
-    convention: Rows,
+    #[arg(long, value_parser = convention(), default_value = "standard")]
+    convention: Convention,
     /// Where to write it, instead of NAME.yaml; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-}
-
-/// The conventions, as they are typed.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Rows {
-    /// Rz(theta) Tz(d) Tx(a) Rx(alpha), link frames at the far end
-    Standard,
-    /// Rx(alpha) Tx(a) Rz(theta) Tz(d), link frames on the joints
-    Modified,
-}
-
-impl From<Rows> for Convention {
-    fn from(rows: Rows) -> Self {
-        match rows {
-            Rows::Standard => Self::Standard,
-            Rows::Modified => Self::Modified,
-        }
-    }
 }
 
 fn name(text: &str) -> Result<String, String> {
@@ -70,7 +54,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             arguments.dof
         )));
     }
-    let text = text(&arguments.name, arguments.dof, &arguments.prismatic, arguments.convention.into());
+    let text = text(&arguments.name, arguments.dof, &arguments.prismatic, arguments.convention);
     let path = match &arguments.output {
         Some(path) if path == Path::new("-") => return Ok(Outcome::text(text)),
         Some(path) => path.clone(),

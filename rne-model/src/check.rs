@@ -25,16 +25,14 @@ pub fn check(name: &str, text: &str) -> Result<Checked, Report> {
 fn check_text(name: &str, text: &str, run_time: &[&str], settings: &[(&str, f64)]) -> Result<Checked, Report> {
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let problems = Problems::new();
-    if source::is_xml(text, &problems) {
-        // Its first line will do: a URDF may be long.
-        return Err(problems.finish(name, text.lines().next().unwrap_or_default()));
+    // the beginning will do: a URDF may be long
+    let beginning = urdf::head(text);
+    if let Some(other_format) = urdf::instead_of_a_robot_file(name, beginning) {
+        problems.push(other_format);
+        return Err(problems.finish(name, beginning));
     }
     if !source::size_is_fine(text.len(), &problems) {
         return Err(problems.finish(name, ""));
-    }
-    if let Some(other_format) = urdf::instead_of_a_robot_file(name, text) {
-        problems.push(other_format);
-        return Err(problems.finish(name, text));
     }
     let robot = source::is_printable(text, &problems)
         .then(|| document::parse(text, &problems))

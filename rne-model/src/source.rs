@@ -19,23 +19,6 @@ pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {
     length <= MAX_BYTES
 }
 
-/// Reports a text that is XML: a URDF, most probably, where a robot file is needed.
-pub(crate) fn is_xml(text: &str, problems: &Problems) -> bool {
-    let Some(at) = text.find(|c: char| !c.is_ascii_whitespace()) else { return false };
-    // YAML begins nothing with `<` but a merge key, which the format does not have.
-    let is_xml = ["<?xml", "<!", "<robot", "<sdf", "<mujoco", "<xacro"].iter().any(|tag| text[at..].starts_with(tag));
-    if is_xml {
-        // Within the first line, which is shown.
-        let span = if text[..at].contains('\n') { 0..0 } else { at..at + 1 };
-        problems.push(
-            Diagnostic::error(span, "this is XML, as a URDF is; a robot file is YAML with a Denavit-Hartenberg table")
-                .label("not a robot file")
-                .help("make one of a URDF: `rne import ARM.urdf --tip LINK -o ARM.yaml`"),
-        );
-    }
-    is_xml
-}
-
 /// Reports the first byte of `bytes` that is not UTF-8.
 pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, problems: &Problems) {
     let at = error.valid_up_to();

@@ -41,7 +41,7 @@ pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnost
 }
 
 /// The beginning of a text.
-fn head(text: &str) -> &str {
+pub(crate) fn head(text: &str) -> &str {
     let mut end = HEAD.min(text.len());
     while !text.is_char_boundary(end) {
         end -= 1;

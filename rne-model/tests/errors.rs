@@ -398,11 +398,11 @@ fn a_urdf_is_told_about_import() {
     {
         let report = check("arm.urdf", &text).unwrap_err();
         let [error] = &report.diagnostics[..] else { panic!("{report}") };
-        assert!(error.message.starts_with("this is XML, as a URDF is"), "{}", error.message);
-        assert!(error.help.as_ref().is_some_and(|help| help.contains("rne import ARM.urdf")), "{:?}", error.help);
+        assert!(error.message.starts_with("this is URDF"), "{}", error.message);
+        assert!(error.help.as_ref().is_some_and(|help| help.contains("rne import arm.urdf")), "{:?}", error.help);
     }
     let long = format!("<robot>{}", " ".repeat(2 << 20));
-    assert!(check("long.urdf", &long).unwrap_err().short().contains("this is XML"), "however long it is");
+    assert!(check("long.urdf", &long).unwrap_err().short().contains("this is URDF"), "however long it is");
 }
 
 #[test]

@@ -76,6 +76,20 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "robot_texts",
+        about: "the emitted text of every shipped robot, all functions",
+        variables: &[("RNE_EXHAUSTIVE", "1")],
+        command: &["cargo", "test", "--release", "--package", "rne-codegen", "--test", "emitted_text", "--test", "fma"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "editor",
+        about: "rust-analyzer finds the robot files of a user",
+        variables: &[],
+        command: &["cargo", "test", "--package", "users", "--test", "editor"],
+        needs: Needs::Nothing,
+    },
+    Step {
         name: "c_code",
         about: "the C of every shipped robot beside the derived code",
         variables: &[],

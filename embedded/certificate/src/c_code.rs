@@ -161,8 +161,9 @@ fn cases(sources: &[Source]) -> Result<String> {
 }
 
 /// As in ../robots/src/puma560.rs.
-const ARGUMENTS: [&str; 3] = [
+const ARGUMENTS: [&str; 4] = [
     "const float force[3] = {1.0f, -2.0f, 3.0f}, moment[3] = {0.5f, 0.25f, -0.125f};",
+    "const float payload[10] = {0.5f, 0.01f, -0.02f, 0.1f, 0.002f, 0.003f, 0.001f, 0.0001f, -0.0002f, 0.0003f};",
     "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
     "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
 ];
@@ -184,6 +185,7 @@ fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {
         Argument::Rates => "s.qd",
         Argument::Accelerations | Argument::Torques => "s.qdd",
         Argument::Wrench => "force, moment",
+        Argument::Payload => "payload",
         Argument::Base => "base_omega, base_zero, base_zero, base_gravity",
     });
     let arguments = arguments.collect::<Vec<_>>().join(", ");

@@ -25,6 +25,10 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo clippy", ".ci/run", "step cargo clippy --workspace --all-targets -- -D warnings\n"),
     ("cargo xtask lines", ".ci/run", "step cargo xtask lines\n"),
     ("cargo xtask verify", ".ci/run", "step cargo xtask verify\n"),
+    ("cargo xtask urdf", "xtask/src/verify.rs", "\"xtask\", \"urdf\""),
+    ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
+    ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
+    ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     // its page is checked, and it breaks sources
     ("cargo xtask mutate", "tests/documents.rs", "fn the_page_of_mutations_is_of_the_mutants()"),

@@ -77,7 +77,7 @@ fn a_urdf_where_a_robot_file_is_needed_is_told_about_import() {
     fs::write(&urdf, URDF).expect("written");
     let urdf = urdf.to_str().expect("UTF-8");
     for command in [&["eval", urdf, "--q", "0,0"][..], &["ops", urdf], &["emit", urdf]] {
-        fails(1, command, &["this is XML, as a URDF is", "rne import"]);
+        fails(1, command, &["this is URDF", "rne import"]);
     }
     let called = rne(&["check", urdf]);
     assert!(called.status == 1 && called.out.contains("rne import"), "{called:?}");

@@ -32,6 +32,9 @@ pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
     text
 }
 
+/// rustfmt breaks longer patterns of arrays.
+const PATTERN: usize = 62;
+
 /// What the generated functions ask of a number type; the body of a function refers to nothing else.
 fn scalar(programs: &[Program]) -> String {
     let divides = programs.iter().any(|program| program.operations().div > 0);
@@ -145,7 +148,12 @@ fn function(robot: &Robot, program: &Program) -> String {
         let _ = if elements.iter().all(Option::is_none) {
             writeln!(text, "    let _ = {name};")
         } else {
-            writeln!(text, "    let [{}] = *{name};", names(elements.iter().copied()))
+            let names = names(elements.iter().copied());
+            if names.len() + 2 <= PATTERN {
+                writeln!(text, "    let [{names}] = *{name};")
+            } else {
+                writeln!(text, "    let [\n        {},\n    ] = *{name};", names.replace(", ", ",\n        "))
+            }
         };
     }
     if program.returns_zero() || !program.constants.is_empty() {

@@ -2,7 +2,7 @@
 
 use rne_model::Robot;
 
-use crate::function::Function;
+use crate::function::{Argument, Function};
 use crate::ir::{Builder, Cost, Graph, Policy, Ref, number_values};
 use crate::pipeline::Formulation;
 use crate::plan::Plan;
@@ -70,6 +70,10 @@ impl FramedRobot {
 
     /// A function under a plan, every value once, with names; `None` when the plan does not apply to the robot.
     pub(crate) fn written(&self, plan: &Plan, function: Function, algorithm: Algorithm) -> Option<Formulation> {
+        if plan.gyrostat && function.takes(Argument::Payload) {
+            // with a payload no last link is a sphere
+            return None;
+        }
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
         let arm = Arm { joint_frames: &self.joint_frames, plan, parameters: &parameters };

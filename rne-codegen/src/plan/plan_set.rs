@@ -172,6 +172,8 @@ pub(crate) fn formulation(
     function: Function,
     algorithm: Algorithm,
 ) -> Result<Formulation, CompileError> {
+    let sphere = plan.gyrostat && !function.takes(Argument::Payload);
+    let plan = &Plan { gyrostat: sphere, ..plan.clone() };
     let written = cost::frame(robot, plan).and_then(|frame| frame.written(plan, function, algorithm));
     written.ok_or_else(|| {
         CompileError::Plan(format!(
