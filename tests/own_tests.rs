@@ -126,9 +126,9 @@ impl Wrong {
     fn spoil<T: Scalar>(&self, mut tau: [T; 6], qdd: &[T; 6]) -> [T; 6] {
         let of = T::from_f64;
         match self.0 {
-            Mistake::LastBits => tau[3] = tau[3] * of(1.0 + 4.0 * f64::EPSILON),
-            Mistake::SmallFactor => tau[1] = tau[1] * of(1.0 + 1e-11),
-            Mistake::Square => tau[0] = tau[0] + qdd[1] * qdd[1] * of(1e-6),
+            Mistake::LastBits => tau[3] *= of(1.0 + 4.0 * f64::EPSILON),
+            Mistake::SmallFactor => tau[1] *= of(1.0 + 1e-11),
+            Mistake::Square => tau[0] += qdd[1] * qdd[1] * of(1e-6),
             Mistake::Sign => tau[2] = -tau[2],
             Mistake::NotANumber => tau[5] = of(f64::NAN),
             Mistake::None | Mistake::Gravity | Mistake::Below => {}
@@ -184,7 +184,7 @@ impl MassMatrix<6> for Wrong {
     fn mass_matrix<T: Scalar>(&self, q: &[T; 6]) -> [[T; 6]; 6] {
         let mut mass = Puma560.mass_matrix(q);
         if self.0 == Mistake::Below {
-            mass[2][1] = mass[2][1] * T::from_f64(1.0 + 4.0 * f64::EPSILON);
+            mass[2][1] *= T::from_f64(1.0 + 4.0 * f64::EPSILON);
         }
         mass
     }
@@ -230,8 +230,10 @@ impl Kinematics<6> for Wrong {
     }
 }
 
+type Test = fn(&Wrong, &RobotFile);
+
 /// What a test says of the robot with a mistake; `None` when it passes.
-fn said(test: fn(&Wrong, &RobotFile), mistake: Mistake, file: &RobotFile) -> Option<String> {
+fn said(test: Test, mistake: Mistake, file: &RobotFile) -> Option<String> {
     let panic = catch_unwind(AssertUnwindSafe(|| test(&Wrong(mistake), file))).err()?;
     Some(*panic.downcast::<String>().expect("words"))
 }
@@ -250,7 +252,7 @@ fn wrong_code_is_noticed() {
     let kinetic = testing::kinetic_energy_is_that_of_the_mass_matrix::<6, Wrong>;
     let kinematics = testing::kinematics_are_those_of_the_runtime::<6, Wrong>;
     let orthonormal = testing::rotations_are_orthonormal::<6, Wrong>;
-    let cases: [(fn(&Wrong, &RobotFile), &[Mistake], &[Mistake]); 11] = [
+    let cases: [(Test, &[Mistake], &[Mistake]); 11] = [
         // the test, what it notices of the seven steps, what of the reduced form
         (torques, &[LastBits, SmallFactor, Square, Gravity, NotANumber], &[SmallFactor, Square, Gravity, NotANumber]),
         (linear, &[Square, NotANumber], &[Square, NotANumber]),

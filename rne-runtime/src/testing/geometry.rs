@@ -25,8 +25,9 @@ pub fn kinematics_are_those_of_the_runtime<const DOF: usize, R: Kinematics<DOF>>
             compare(what, &state, rounding, &found.translation, &expected.translation);
         };
         compare_poses("forward_kinematics", robot.forward_kinematics(q), arm.forward_kinematics(q));
-        iter::zip(robot.link_poses(q), arm.link_poses(q))
-            .for_each(|(found, expected)| compare_poses("link_poses", found, expected));
+        for (found, expected) in iter::zip(robot.link_poses(q), arm.link_poses(q)) {
+            compare_poses("link_poses", found, expected);
+        }
         let (found, expected) = (robot.jacobian(q), arm.jacobian(q));
         compare("jacobian", &state, rounding, found.as_flattened(), expected.as_flattened());
         let (found, expected) = (robot.jacobian_rate_times_velocity(q, qd), arm.jacobian_rate_times_velocity(q, qd));
