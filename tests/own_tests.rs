@@ -41,6 +41,16 @@ struct Panda;
 #[robot(builtin = "scara_cobra600", form = "reduced", tests)]
 struct Scara {}
 
+/// Small inertias at the end of a chain.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "so101", form = "reduced", tests)]
+struct So101;
+
+/// No joint turns.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "gantry_ppp", form = "reduced", tests)]
+struct Gantry;
+
 mod elsewhere {
     pub(crate) mod dynamics {
         pub(crate) use rne::*;

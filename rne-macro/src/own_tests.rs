@@ -44,8 +44,8 @@ pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Para
         errors.at_span(
             span,
             format!(
-                "`tests` are of a robot whose numbers are all known; `{name}` is a run-time parameter. Without `tests`, \
-                 compare with `rne::Arm` at the values that you use"
+                "`tests` are of a robot whose numbers are all known; `{name}` is a run-time parameter. Without \
+                 `tests`, compare with `rne::Arm` at the values that you use"
             ),
         );
     } else if !is_made_of_nothing(item) {
@@ -53,8 +53,8 @@ pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Para
         errors.at_span(
             span,
             format!(
-                "`tests` make a value of the struct, so it has neither fields nor generics: `struct {ident};`. A second \
-                 struct of the same robot, under `#[cfg(test)]`, can have the tests"
+                "`tests` make a value of the struct, so it has neither fields nor generics: `struct {ident};`. A \
+                 second struct of the same robot, under `#[cfg(test)]`, can have the tests"
             ),
         );
     }

@@ -51,9 +51,9 @@ macro_rules! __with_runtime {
 macro_rules! __with_runtime {
     ($($tests:item)*) => {
         ::core::compile_error!(
-            "the tests of `#[robot(…, tests)]` compare with `rne::Arm`, which needs the features `arm` and `std`: write \
-             `rne = { version = \"…\", features = [\"arm\", \"std\"] }` under `[dev-dependencies]`; the library itself \
-             can do without"
+            "the tests of `#[robot(…, tests)]` compare with `rne::Arm`, which needs the features `arm` and `std`: \
+             write `rne = { version = \"…\", features = [\"arm\", \"std\"] }` under `[dev-dependencies]`; the library \
+             itself can do without"
         );
     };
 }
