@@ -132,7 +132,7 @@ pub use rne_runtime::{
 };
 // Derived code names them.
 #[doc(hidden)]
-pub use rne_runtime::{RunTimeParameter, batch};
+pub use rne_runtime::{RunTimeParameter, batch, testing};
 
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]

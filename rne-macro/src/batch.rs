@@ -9,6 +9,7 @@ use crate::attribute::Attribute;
 use crate::error::Errors;
 use crate::expand::{compiler, load};
 use crate::implementation::Target;
+use crate::own_tests::{self, OF_BATCHES};
 use crate::parameters::Parameters;
 
 /// The second derive on a robot. What is wrong with the struct, its attribute or the file has been said by the first,
@@ -78,6 +79,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         };
     };
     let [dof, angle_count] = [program.dof, program.sines_and_cosines.len()].map(Literal::usize_unsuffixed);
+    let tests = own_tests::module(&item, &attribute, "BatchInverseDynamics", OF_BATCHES, program.dof, &loaded.text);
     let scalar = quote!(#krate::Scalar);
     let body = emit::Body::new(&program, &scalar);
     let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };
@@ -113,5 +115,6 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
         impl #impl_generics #krate::BatchInverseDynamics<#dof> for #ident #type_generics #where_clause {
             #method
         }
+        #tests
     }
 }

@@ -14,6 +14,7 @@ use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
 use crate::implementation::Target;
 use crate::location::{self, RobotFile};
+use crate::own_tests;
 use crate::parameters::Parameters;
 use crate::warning::warnings;
 
@@ -30,6 +31,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     is_struct(&item, &mut errors);
     let attribute = Attribute::parse(&item, &mut errors);
     let parameters = Parameters::of(&item, &mut errors);
+    own_tests::check(&item, &attribute, &parameters, &mut errors);
     let loaded = attribute.source.as_ref().map(|source| load(source, &parameters, &mut errors)).unwrap_or_default();
     let compiled = loaded.robot.and_then(|robot| {
         let robot = Robot { rotors: attribute.rotors, ..robot };
@@ -46,7 +48,10 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
             {
                 is_within(limit, program, &mut errors);
             }
-            target.robot(robot, capability, programs, &parameters)
+            let code = target.robot(robot, capability, programs, &parameters);
+            let names = own_tests::of_capability(capability);
+            let tests = own_tests::module(&item, &attribute, capability.name(), names, robot.dof(), &loaded.text);
+            quote!(#code #tests)
         }
         None => target.stub(capability, loaded.joints),
     };
@@ -93,6 +98,8 @@ fn is_within(limit: Limit, program: &Program, errors: &mut Errors) {
 pub(crate) struct Loaded {
     /// The robot, if the file is valid.
     pub(crate) robot: Option<Robot>,
+    /// An expression that is the text of a valid file.
+    pub(crate) text: TokenStream,
     /// Makes the compiler watch the file.
     watched: TokenStream,
     /// The plan file beside it.
@@ -104,14 +111,17 @@ pub(crate) struct Loaded {
 }
 
 pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
-    let (name, bytes, watched, plan) = match source {
-        Source::Yaml(text) => ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None),
+    let (name, bytes, watched, plan, text) = match source {
+        Source::Yaml(text) => {
+            ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None, quote!(#text))
+        }
         Source::Path(path) => match location::read(path) {
             Ok(file) => {
                 let plan = location::plan_beside(&file);
                 let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
                 let watched = watch(&file);
-                (file.shown, file.bytes, watched, plan)
+                let text = text(&file);
+                (file.shown, file.bytes, watched, plan, text)
             }
             Err(missing) => {
                 errors.at(path, missing);
@@ -119,7 +129,10 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
             }
         },
         Source::Builtin(name) => match location::shipped(&name.value()) {
-            Ok((file, plan)) => (file.shown, file.bytes, TokenStream::new(), plan),
+            Ok((file, plan)) => {
+                let text = text(&file);
+                (file.shown, file.bytes, TokenStream::new(), plan, text)
+            }
             Err(unknown) => {
                 errors.at(name, unknown);
                 return Loaded::default();
@@ -138,7 +151,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     });
     match checked {
         Ok(Some(Checked { robot, lints })) => {
-            Loaded { joints: robot.dof(), robot: Some(robot), watched, plan, lints: Some(lints) }
+            Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, lints: Some(lints) }
         }
         // a field is no parameter, which has been said
         Ok(None) => Loaded { watched, ..Loaded::default() },
@@ -162,6 +175,15 @@ fn watch(file: &RobotFile) -> TokenStream {
     quote!(
         const _: &[::core::primitive::u8] = ::core::include_bytes!(#file);
     )
+}
+
+/// The text of a file for code at run time: read where it is, or as it is here.
+fn text(file: &RobotFile) -> TokenStream {
+    if let Some(file) = file.absolute.as_deref().and_then(Path::to_str) {
+        return quote!(::core::include_str!(#file));
+    }
+    let text = String::from_utf8_lossy(&file.bytes);
+    quote!(#text)
 }
 
 /// A compiler with the choices of the plan file, or those that a build makes by itself.

@@ -60,6 +60,8 @@ mod scalar;
 mod seven_steps;
 mod sin_cos;
 mod smooth_sign;
+#[doc(hidden)]
+pub mod testing;
 #[cfg(feature = "arm")]
 mod trace;
 mod wrench;

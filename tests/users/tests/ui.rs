@@ -52,7 +52,7 @@ fn mistakes_that_rustc_finds_by_itself() {
         let source = package.join("tests/ui/robots").join(robot);
         fs::copy(source, folder.join("src/robots").join(robot)).expect("a robot file");
     }
-    for (name, _) in BY_RUSTC {
+    for name in BY_RUSTC.map(|(name, _)| name).into_iter().chain(["tests_without_the_runtime"]) {
         let source = package.join(format!("tests/ui/rustc/{name}.rs"));
         fs::copy(source, folder.join(format!("src/bin/{name}.rs"))).expect("a program");
     }
@@ -66,4 +66,15 @@ fn mistakes_that_rustc_finds_by_itself() {
         }
         assert_eq!(messages.matches("error[").count(), 1, "{name}: {messages}");
     }
+    // The library compiles without the runtime; its own tests say what they need.
+    let run = |command: &str, arguments: &[&str]| {
+        let mut cargo = build::cargo(command, &folder);
+        cargo.args(["--quiet", "--bin", "tests_without_the_runtime"]).args(arguments).output().expect("cargo runs")
+    };
+    let library = run("build", &[]);
+    assert!(library.status.success(), "{}", String::from_utf8_lossy(&library.stderr));
+    let tests = run("test", &["--no-run"]);
+    let messages = String::from_utf8_lossy(&tests.stderr);
+    assert!(messages.contains("needs the features `arm` and `std`"), "{messages}");
+    assert_eq!(messages.matches("error: ").count(), 2, "the message, and that it could not compile: {messages}");
 }

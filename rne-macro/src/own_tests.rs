@@ -1,0 +1,182 @@
+//! The tests that `#[robot(…, tests)]` puts into the user's crate: calls of `rne::testing`, one per test.
+
+use proc_macro2::{Ident, Literal, Span, TokenStream};
+use quote::{format_ident, quote};
+use rne_codegen::{Capability, Form};
+use syn::ext::IdentExt;
+use syn::{Data, DeriveInput, Path, PathSegment};
+
+use crate::attribute::Attribute;
+use crate::error::Errors;
+use crate::parameters::Parameters;
+
+/// The tests of a capability, named as the functions of `rne::testing` that they call.
+pub(crate) fn of_capability(capability: Capability) -> &'static [&'static str] {
+    match capability {
+        Capability::InverseDynamics => &[
+            "torques_are_those_of_the_runtime",
+            "torques_are_linear_in_accelerations",
+            "gravity_and_bias_are_torques_without_motion",
+        ],
+        Capability::MassMatrix => &["mass_matrix_is_that_of_the_runtime", "mass_matrix_is_symmetric"],
+        Capability::CoriolisMatrix => &["coriolis_matrix_is_that_of_the_runtime"],
+        Capability::ForwardDynamics => {
+            &["accelerations_are_those_of_the_runtime", "accelerations_need_the_torques_that_cause_them"]
+        }
+        Capability::Kinematics => &["kinematics_are_those_of_the_runtime", "rotations_are_orthonormal"],
+        Capability::Energy => &["energies_are_those_of_the_runtime", "kinetic_energy_is_that_of_the_mass_matrix"],
+        Capability::CentreOfMass => &["centre_of_mass_is_that_of_the_runtime"],
+        Capability::Regressor => &["regressor_is_that_of_the_runtime"],
+        Capability::InverseDynamicsDerivatives => &["derivatives_are_those_of_the_runtime"],
+        Capability::JointWrenches => &["joint_wrenches_are_those_of_the_runtime"],
+        Capability::MovingBase => &["torques_on_a_moving_base_are_those_of_the_runtime"],
+        Capability::Actuation => &["actuator_torques_are_those_of_the_runtime"],
+    }
+}
+
+/// Those of batches.
+pub(crate) const OF_BATCHES: &[&str] = &["batches_are_those_of_the_runtime"];
+
+/// Says why a struct can have no tests: they need a value of it, and all its numbers.
+pub(crate) fn check(item: &DeriveInput, attribute: &Attribute, parameters: &Parameters, errors: &mut Errors) {
+    let Some(span) = attribute.tests else { return };
+    if let Some(name) = parameters.names().first() {
+        errors.at_span(
+            span,
+            format!(
+                "`tests` are of a robot whose numbers are all known; `{name}` is a run-time parameter. Without \
+                 `tests`, compare with `rne::Arm` at the values that you use"
+            ),
+        );
+    } else if !is_made_of_nothing(item) {
+        let ident = item.ident.unraw();
+        errors.at_span(
+            span,
+            format!(
+                "`tests` make a value of the struct, so it has neither fields nor generics: `struct {ident};`. A \
+                 second struct of the same robot, under `#[cfg(test)]`, can have the tests"
+            ),
+        );
+    }
+}
+
+/// Whether `Name {}` is a value.
+fn is_made_of_nothing(item: &DeriveInput) -> bool {
+    let Data::Struct(data) = &item.data else { return true }; // which has been said
+    data.fields.is_empty() && item.generics.params.is_empty()
+}
+
+/// The module with the tests of one derive; `trait_name` is the derive, `text` the robot file.
+pub(crate) fn module(
+    item: &DeriveInput,
+    attribute: &Attribute,
+    trait_name: &str,
+    tests: &[&str],
+    dof: usize,
+    text: &TokenStream,
+) -> TokenStream {
+    if attribute.tests.is_none() || !is_made_of_nothing(item) {
+        return TokenStream::new();
+    }
+    let (ident, dof) = (&item.ident, Literal::usize_unsuffixed(dof));
+    let module = format_ident!("{}_{}_tests", snake(&ident.unraw().to_string()), snake(trait_name));
+    let (import, krate) = seen_from_inside(&attribute.krate);
+    let (rotors, seven_steps) = (attribute.rotors, attribute.form == Form::SevenSteps);
+    let tests = tests.iter().map(|name| {
+        let name = Ident::new(name, Span::call_site());
+        quote! {
+            #[::core::prelude::v1::test]
+            fn #name() {
+                #krate::testing::#name::<#dof, _>(&super::#ident {}, &ROBOT_FILE);
+            }
+        }
+    });
+    quote! {
+        #[cfg(test)]
+        mod #module {
+            #import
+            #krate::testing::with_runtime! {
+                const ROBOT_FILE: #krate::testing::RobotFile = #krate::testing::RobotFile {
+                    text: #text,
+                    rotors: #rotors,
+                    seven_steps: #seven_steps,
+                };
+                #(#tests)*
+            }
+        }
+    }
+}
+
+/// A path as a module inside the one where it was written has it, and what that module imports for it.
+fn seen_from_inside(path: &Path) -> (TokenStream, Path) {
+    let mut inner = path.clone();
+    let first = path.segments.first().map(|segment| segment.ident.to_string());
+    let outer = || PathSegment::from(Ident::new("super", Span::call_site()));
+    match first.as_deref() {
+        _ if path.leading_colon.is_some() => {}
+        Some("crate") | None => {}
+        Some("self") => inner.segments[0] = outer(),
+        Some("super") => inner.segments.insert(0, outer()),
+        // a module there, or a crate
+        Some(_) => {
+            let import = quote! {
+                #[allow(unused_imports, clippy::wildcard_imports)]
+                use super::*;
+            };
+            return (import, inner);
+        }
+    }
+    (TokenStream::new(), inner)
+}
+
+/// `InverseDynamics` as `inverse_dynamics`, `UR5e` as `ur5e`.
+fn snake(name: &str) -> String {
+    let mut snake = String::new();
+    let mut is_inside = false;
+    for character in name.chars() {
+        if is_inside && character.is_uppercase() {
+            snake.push('_');
+        }
+        is_inside = character.is_lowercase() || character.is_numeric();
+        snake.extend(character.to_lowercase());
+    }
+    snake
+}
+
+#[cfg(test)]
+mod tests {
+    use quote::quote;
+    use syn::parse_quote;
+
+    use super::{seen_from_inside, snake};
+
+    #[test]
+    fn modules_are_named_as_modules_are() {
+        for (name, expected) in [
+            ("InverseDynamics", "inverse_dynamics"),
+            ("Puma560", "puma560"),
+            ("Puma560Reduced", "puma560_reduced"),
+            ("UR5e", "ur5e"),
+        ] {
+            assert_eq!(snake(name), expected);
+        }
+    }
+
+    #[test]
+    fn a_path_leads_to_the_same_place_from_inside() {
+        let shown = |path: &syn::Path| quote!(#path).to_string();
+        for (path, expected) in [
+            (parse_quote!(::rne), parse_quote!(::rne)),
+            (parse_quote!(crate::dynamics), parse_quote!(crate::dynamics)),
+            (parse_quote!(self::dynamics), parse_quote!(super::dynamics)),
+            (parse_quote!(super::dynamics), parse_quote!(super::super::dynamics)),
+        ] {
+            let (import, inner) = seen_from_inside(&path);
+            assert!(import.is_empty());
+            assert_eq!(shown(&inner), shown(&expected));
+        }
+        let (import, inner) = seen_from_inside(&parse_quote!(dynamics));
+        assert!(!import.is_empty());
+        assert_eq!(shown(&inner), "dynamics");
+    }
+}

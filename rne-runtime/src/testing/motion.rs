@@ -1,0 +1,105 @@
+//! Mass, motion and energy.
+
+use super::RobotFile;
+use super::comparison::{Allowed, are_finite, compare, largest, product};
+use super::state::{State, states};
+use super::torques::scale;
+use crate::{CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, MassMatrix};
+
+/// Masses times heights that cancel are measured by this part of them.
+const LEAST: f64 = 1e-2;
+
+/// M(q).
+pub fn mass_matrix_is_that_of_the_runtime<const DOF: usize, R: MassMatrix<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let (found, expected) = (robot.mass_matrix(&state.q), arm.mass_matrix(&state.q));
+        compare("mass_matrix", &state, file.same_operations(0.0), found.as_flattened(), expected.as_flattened());
+    }
+}
+
+/// M = Mᵀ, to the last bit.
+pub fn mass_matrix_is_symmetric<const DOF: usize, R: MassMatrix<DOF>>(robot: &R, _: &RobotFile) {
+    for state in states() {
+        let mass: [[f64; DOF]; DOF] = robot.mass_matrix(&state.q);
+        let transposed: [[f64; DOF]; DOF] = core::array::from_fn(|i| core::array::from_fn(|j| mass[j][i]));
+        let what = "mass_matrix and its transpose";
+        compare(what, &state, Allowed::Nothing, mass.as_flattened(), transposed.as_flattened());
+    }
+}
+
+/// C(q, q̇).
+pub fn coriolis_matrix_is_that_of_the_runtime<const DOF: usize, R: CoriolisMatrix<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, .. } = &state;
+        let (found, expected) = (robot.coriolis_matrix(q, qd), arm.coriolis_matrix(q, qd));
+        // differences of masses at unit rates
+        let allowed = Allowed::Rounding { scale: largest(arm.mass_matrix(q).as_flattened()) };
+        compare("coriolis_matrix", &state, allowed, found.as_flattened(), expected.as_flattened());
+    }
+}
+
+/// The bits of the seven steps. In the reduced form accelerations are as far from the runtime as the mass matrix is
+/// from a singular one; [`accelerations_need_the_torques_that_cause_them`] measures them without it.
+pub fn accelerations_are_those_of_the_runtime<const DOF: usize, R: ForwardDynamics<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states().filter(|_| file.seven_steps) {
+        let State { q, qd, tau, .. } = &state;
+        let (found, expected) = (robot.forward_dynamics(q, qd, tau), arm.forward_dynamics(q, qd, tau));
+        if are_finite(&expected) {
+            compare("forward_dynamics", &state, Allowed::Nothing, &found, &expected);
+        }
+    }
+}
+
+/// The runtime's torques for the accelerations of τ are τ, where the accelerations are finite: those of a singular mass
+/// matrix are not.
+pub fn accelerations_need_the_torques_that_cause_them<const DOF: usize, R: ForwardDynamics<DOF>>(
+    robot: &R,
+    file: &RobotFile,
+) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        if !are_finite(&arm.forward_dynamics(q, qd, tau)) {
+            continue;
+        }
+        let accelerations = robot.forward_dynamics(q, qd, tau);
+        let found = arm.inverse_dynamics(q, qd, &accelerations);
+        // of the terms of M q̈: of an arm that is nearly singular they are larger than their sum
+        let terms = largest(arm.mass_matrix(q).as_flattened()) * largest(&accelerations);
+        let scale = terms.max(largest(&arm.bias_torques(q, qd))).max(scale(&arm, &state));
+        compare("torques of forward_dynamics", &state, Allowed::Rounding { scale }, &found, tau);
+    }
+}
+
+/// Kinetic and potential energy.
+pub fn energies_are_those_of_the_runtime<const DOF: usize, R: Energy<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    let model = arm.model();
+    let reach: f64 = model.rows.iter().map(|row| row.dh.a.abs() + row.dh.d.abs()).sum();
+    let mass: f64 = model.rows.iter().map(|row| row.link.mass).sum();
+    for state in states() {
+        let State { q, qd, .. } = &state;
+        let [found, expected] = [robot.kinetic_energy(q, qd), arm.kinetic_energy(q, qd)];
+        compare("kinetic_energy", &state, file.same_operations(0.0), &[found], &[expected]);
+        let [found, expected] = [robot.potential_energy(q), arm.potential_energy(q)];
+        let scale = LEAST * mass * largest(&model.gravity) * (reach + largest(q));
+        compare("potential_energy", &state, Allowed::Rounding { scale }, &[found], &[expected]);
+    }
+}
+
+/// T = ½ q̇ᵀ M q̇, with the runtime's M.
+pub fn kinetic_energy_is_that_of_the_mass_matrix<const DOF: usize, R: Energy<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, .. } = &state;
+        let mass = arm.mass_matrix(q);
+        let momentum = product(&mass, qd);
+        let expected: f64 = momentum.iter().zip(qd).map(|(p, v)| 0.5 * p * v).sum();
+        let scale = LEAST * largest(mass.as_flattened()) * largest(qd) * largest(qd);
+        let found = robot.kinetic_energy(q, qd);
+        compare("kinetic_energy and ½ q̇ᵀ M q̇", &state, Allowed::Rounding { scale }, &[found], &[expected]);
+    }
+}

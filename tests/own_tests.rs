@@ -1,0 +1,299 @@
+//! `#[robot(…, tests)]`: the tests that derives write are in this binary and pass, and they notice code that is wrong.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::Command;
+
+use rne::testing::{self, RobotFile};
+use rne::{
+    Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Scalar,
+    Wrench,
+};
+
+#[derive(
+    InverseDynamics,
+    BatchInverseDynamics,
+    MassMatrix,
+    CoriolisMatrix,
+    ForwardDynamics,
+    Kinematics,
+    Energy,
+    CentreOfMass,
+    Regressor,
+    InverseDynamicsDerivatives,
+    JointWrenches,
+    MovingBase,
+    Actuation,
+)]
+#[robot(path = "../robots/puma560.yaml", tests)]
+struct Puma560;
+
+#[derive(InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "puma560", form = "reduced", rotors, tests)]
+struct Puma560Reduced;
+
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass)]
+#[robot(builtin = "panda", form = "reduced", tests)]
+struct Panda;
+
+/// One joint slides, and gravity loads one joint alone.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "scara_cobra600", form = "reduced", tests)]
+struct Scara {}
+
+/// Small inertias at the end of a chain.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "so101", form = "reduced", tests)]
+struct So101;
+
+/// No joint turns.
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[robot(builtin = "gantry_ppp", form = "reduced", tests)]
+struct Gantry;
+
+mod elsewhere {
+    pub(crate) mod dynamics {
+        pub(crate) use rne::*;
+    }
+
+    use rne::InverseDynamics;
+
+    /// A rod whose last link has no inertia: no accelerations.
+    #[derive(InverseDynamics, rne::ForwardDynamics)]
+    #[robot(crate = self::dynamics, tests, yaml = "
+        format: 1
+        name: massless
+        source: own numbers
+        convention: standard
+        gravity: [0, -9.81, 0]
+        joints:
+          - {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0], inertia: {}}}
+          - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}}
+    ", allow_lints)]
+    pub(crate) struct Massless;
+
+    #[derive(InverseDynamics)]
+    #[robot(crate = dynamics, builtin = "planar2", tests)]
+    pub(crate) struct Planar;
+}
+
+#[test]
+fn each_derive_has_its_tests() {
+    let list = Command::new(std::env::current_exe().expect("this program")).arg("--list").output().expect("a list");
+    let list = String::from_utf8(list.stdout).expect("names");
+    for (module, tests) in [
+        ("puma560_inverse_dynamics_tests", 3),
+        ("puma560_batch_inverse_dynamics_tests", 1),
+        ("puma560_mass_matrix_tests", 2),
+        ("puma560_coriolis_matrix_tests", 1),
+        ("puma560_forward_dynamics_tests", 2),
+        ("puma560_kinematics_tests", 2),
+        ("puma560_energy_tests", 2),
+        ("puma560_centre_of_mass_tests", 1),
+        ("puma560_regressor_tests", 1),
+        ("puma560_inverse_dynamics_derivatives_tests", 1),
+        ("puma560_joint_wrenches_tests", 1),
+        ("puma560_moving_base_tests", 1),
+        ("puma560_actuation_tests", 1),
+        ("puma560_reduced_inverse_dynamics_tests", 3),
+        ("elsewhere::massless_forward_dynamics_tests", 2),
+        ("elsewhere::planar_inverse_dynamics_tests", 3),
+    ] {
+        let found = list.lines().filter(|line| line.starts_with(&format!("{module}::"))).count();
+        assert_eq!(found, tests, "{module} in\n{list}");
+    }
+}
+
+const TEXT: &str = include_str!("../robots/puma560.yaml");
+const SEVEN_STEPS: RobotFile = RobotFile { text: TEXT, rotors: false, seven_steps: true };
+const REDUCED: RobotFile = RobotFile { seven_steps: false, ..SEVEN_STEPS };
+
+/// A mistake of a code generator.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Mistake {
+    /// None: the derived code.
+    None,
+    /// The last bits of a torque.
+    LastBits,
+    /// One part in 10^11.
+    SmallFactor,
+    /// A term of accelerations that is not linear.
+    Square,
+    /// Gravity and bias alone.
+    Gravity,
+    /// An element below the diagonal alone.
+    Below,
+    /// A direction is the opposite.
+    Sign,
+    /// A torque that is no number.
+    NotANumber,
+}
+
+/// The PUMA 560 with a mistake.
+struct Wrong(Mistake);
+
+impl Wrong {
+    fn spoil<T: Scalar>(&self, mut tau: [T; 6], qdd: &[T; 6]) -> [T; 6] {
+        let of = T::from_f64;
+        match self.0 {
+            Mistake::LastBits => tau[3] *= of(1.0 + 4.0 * f64::EPSILON),
+            Mistake::SmallFactor => tau[1] *= of(1.0 + 1e-11),
+            Mistake::Square => tau[0] += qdd[1] * qdd[1] * of(1e-6),
+            Mistake::Sign => tau[2] = -tau[2],
+            Mistake::NotANumber => tau[5] = of(f64::NAN),
+            Mistake::None | Mistake::Gravity | Mistake::Below => {}
+        }
+        tau
+    }
+}
+
+impl InverseDynamics<6> for Wrong {
+    fn inverse_dynamics<T: Scalar>(&self, q: &[T; 6], qd: &[T; 6], qdd: &[T; 6]) -> [T; 6] {
+        self.spoil(Puma560.inverse_dynamics(q, qd, qdd), qdd)
+    }
+    fn inverse_dynamics_with_wrench<T: Scalar>(
+        &self,
+        q: &[T; 6],
+        qd: &[T; 6],
+        qdd: &[T; 6],
+        wrench: &Wrench<T>,
+    ) -> [T; 6] {
+        Puma560.inverse_dynamics_with_wrench(q, qd, qdd, wrench)
+    }
+    fn inverse_dynamics_with_payload<T: Scalar>(
+        &self,
+        q: &[T; 6],
+        qd: &[T; 6],
+        qdd: &[T; 6],
+        payload: &Payload<T>,
+    ) -> [T; 6] {
+        Puma560.inverse_dynamics_with_payload(q, qd, qdd, payload)
+    }
+    fn inverse_dynamics_from_sin_cos<T: Scalar>(
+        &self,
+        sin: &[T; 6],
+        cos: &[T; 6],
+        q: &[T; 6],
+        qd: &[T; 6],
+        qdd: &[T; 6],
+    ) -> [T; 6] {
+        Puma560.inverse_dynamics_from_sin_cos(sin, cos, q, qd, qdd)
+    }
+    fn gravity_torques<T: Scalar>(&self, q: &[T; 6]) -> [T; 6] {
+        let [first, second, rest @ ..] = Puma560.gravity_torques(q);
+        let [a, b, c, d] = rest;
+        let second = if self.0 == Mistake::Gravity { second + T::from_f64(1e-9) } else { second };
+        [first, second, a, b, c, d]
+    }
+    fn bias_torques<T: Scalar>(&self, q: &[T; 6], qd: &[T; 6]) -> [T; 6] {
+        Puma560.bias_torques(q, qd)
+    }
+}
+
+impl MassMatrix<6> for Wrong {
+    fn mass_matrix<T: Scalar>(&self, q: &[T; 6]) -> [[T; 6]; 6] {
+        let mut mass = Puma560.mass_matrix(q);
+        if self.0 == Mistake::Below {
+            mass[2][1] *= T::from_f64(1.0 + 4.0 * f64::EPSILON);
+        }
+        mass
+    }
+}
+
+impl ForwardDynamics<6> for Wrong {
+    fn forward_dynamics<T: Scalar>(&self, q: &[T; 6], qd: &[T; 6], tau: &[T; 6]) -> [T; 6] {
+        self.spoil(Puma560.forward_dynamics(q, qd, tau), tau)
+    }
+}
+
+impl Energy<6> for Wrong {
+    fn kinetic_energy<T: Scalar>(&self, q: &[T; 6], qd: &[T; 6]) -> T {
+        let energy = Puma560.kinetic_energy(q, qd);
+        if self.0 == Mistake::SmallFactor { energy * T::from_f64(1.0 + 1e-9) } else { energy }
+    }
+    fn potential_energy<T: Scalar>(&self, q: &[T; 6]) -> T {
+        let energy = Puma560.potential_energy(q);
+        if self.0 == Mistake::Sign { -energy } else { energy }
+    }
+}
+
+impl Kinematics<6> for Wrong {
+    fn forward_kinematics<T: Scalar>(&self, q: &[T; 6]) -> Pose<T> {
+        let mut pose = Puma560.forward_kinematics(q);
+        if self.0 == Mistake::SmallFactor {
+            pose.rotation[0] = pose.rotation[0].map(|x| x * T::from_f64(1.0 + 1e-9));
+        }
+        pose
+    }
+    fn link_poses<T: Scalar>(&self, q: &[T; 6]) -> [Pose<T>; 6] {
+        Puma560.link_poses(q)
+    }
+    fn jacobian<T: Scalar>(&self, q: &[T; 6]) -> [[T; 6]; 6] {
+        let mut jacobian = Puma560.jacobian(q);
+        if self.0 == Mistake::Sign {
+            jacobian[0] = jacobian[0].map(|x| -x);
+        }
+        jacobian
+    }
+    fn jacobian_rate_times_velocity<T: Scalar>(&self, q: &[T; 6], qd: &[T; 6]) -> [T; 6] {
+        Puma560.jacobian_rate_times_velocity(q, qd)
+    }
+}
+
+type Test = fn(&Wrong, &RobotFile);
+
+/// What a test says of the robot with a mistake; `None` when it passes.
+fn said(test: Test, mistake: Mistake, file: &RobotFile) -> Option<String> {
+    let panic = catch_unwind(AssertUnwindSafe(|| test(&Wrong(mistake), file))).err()?;
+    Some(*panic.downcast::<String>().expect("words"))
+}
+
+#[test]
+fn wrong_code_is_noticed() {
+    use Mistake::{Below, Gravity, LastBits, NotANumber, SmallFactor, Square};
+    let torques = testing::torques_are_those_of_the_runtime::<6, Wrong>;
+    let linear = testing::torques_are_linear_in_accelerations::<6, Wrong>;
+    let at_rest = testing::gravity_and_bias_are_torques_without_motion::<6, Wrong>;
+    let mass = testing::mass_matrix_is_that_of_the_runtime::<6, Wrong>;
+    let symmetric = testing::mass_matrix_is_symmetric::<6, Wrong>;
+    let accelerations = testing::accelerations_are_those_of_the_runtime::<6, Wrong>;
+    let caused = testing::accelerations_need_the_torques_that_cause_them::<6, Wrong>;
+    let energies = testing::energies_are_those_of_the_runtime::<6, Wrong>;
+    let kinetic = testing::kinetic_energy_is_that_of_the_mass_matrix::<6, Wrong>;
+    let kinematics = testing::kinematics_are_those_of_the_runtime::<6, Wrong>;
+    let orthonormal = testing::rotations_are_orthonormal::<6, Wrong>;
+    let cases: [(Test, &[Mistake], &[Mistake]); 11] = [
+        // the test, what it notices of the seven steps, what of the reduced form
+        (torques, &[LastBits, SmallFactor, Square, Gravity, NotANumber], &[SmallFactor, Square, Gravity, NotANumber]),
+        (linear, &[Square, NotANumber], &[Square, NotANumber]),
+        (at_rest, &[Gravity, SmallFactor, Mistake::Sign], &[Gravity, SmallFactor, Mistake::Sign]),
+        (mass, &[Below], &[]),
+        (symmetric, &[Below], &[Below]),
+        (accelerations, &[LastBits, Square, NotANumber], &[]),
+        (caused, &[Square, Mistake::Sign, NotANumber], &[Square, Mistake::Sign, NotANumber]),
+        (energies, &[SmallFactor, Mistake::Sign], &[SmallFactor, Mistake::Sign]),
+        (kinetic, &[SmallFactor], &[SmallFactor]),
+        (kinematics, &[SmallFactor, Mistake::Sign], &[SmallFactor, Mistake::Sign]),
+        (orthonormal, &[SmallFactor], &[SmallFactor]),
+    ];
+    for (index, (test, of_seven_steps, of_reduced)) in cases.into_iter().enumerate() {
+        for (file, mistakes) in [(&SEVEN_STEPS, of_seven_steps), (&REDUCED, of_reduced)] {
+            assert_eq!(said(test, Mistake::None, file), None, "test {index}");
+            for &mistake in mistakes {
+                assert!(
+                    said(test, mistake, file).is_some(),
+                    "test {index}, {mistake:?}, seven steps: {}",
+                    file.seven_steps
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_failing_test_says_where() {
+    let said = said(testing::torques_are_those_of_the_runtime::<6, Wrong>, Mistake::Sign, &REDUCED).expect("words");
+    for part in ["inverse_dynamics: number 2 is ", ", not ", "(allowed: 1e-12 of the largest)", "\n  q   = ["] {
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+}
