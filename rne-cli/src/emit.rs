@@ -355,7 +355,7 @@ fn first_difference(found: &str, expected: &str) -> String {
 
 /// The command that writes `out`.
 fn command(arguments: &Arguments, out: &Path) -> String {
-    let mut command = format!("rne emit {} --lang {}", shell(&arguments.file), arguments.lang.name());
+    let mut command = format!("rne emit {} --lang {}", robot_file::shell(&arguments.file), arguments.lang.name());
     if let Some(real) = arguments.real {
         let _ = write!(command, " --real {}", real.precision().c_type());
     }
@@ -374,13 +374,6 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if arguments.ascii {
         command.push_str(" --ascii");
     }
-    let _ = write!(command, " -o {}", shell(out));
+    let _ = write!(command, " -o {}", robot_file::shell(out));
     command
-}
-
-/// A path as a shell reads it back.
-fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);
-    if !text.is_empty() && text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }

@@ -10,7 +10,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Existing, existing, replace};
 use crate::terminal::TYPED;
 
-/// Write a commented robot file with placeholders, for an arm of yours
+/// Write a commented robot file with placeholders, for your arm
 #[derive(Args)]
 #[command(after_help = "\
 Example:
