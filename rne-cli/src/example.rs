@@ -8,7 +8,7 @@ use crate::robot_file::shipped;
 /// Print the robot file of a shipped robot, to start from
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne example puma560 > my_puma.yaml
   rne example puma560 --plan > my_puma.plan.yaml    the choices of its reduced form
 

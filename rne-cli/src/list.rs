@@ -12,7 +12,7 @@ use crate::terminal::{QUIET, TYPED};
 /// List the robots that rne ships, which every command knows by name
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne list
   rne show panda                       a robot of the list, where no file of this name is
   rne example panda > my_panda.yaml    its file, to change it

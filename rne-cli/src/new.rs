@@ -13,7 +13,7 @@ use crate::terminal::TYPED;
 /// Write a commented robot file with placeholders, for your arm
 #[derive(Args)]
 #[command(after_help = "\
-Example:
+Examples:
   rne new my_arm --dof 6                          writes my_arm.yaml
   rne new my_arm --dof 4 --prismatic 3 -o -       to the terminal; joint 3 slides
   rne new my_arm --dof 6 --convention modified
