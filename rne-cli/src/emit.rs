@@ -54,7 +54,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
-    /// Bring sine and cosine of f64 and f32 along in Rust code, as C code does; it needs no std then
+    /// Bring sine and cosine along in Rust, as C code does
     #[arg(long)]
     with_sin_cos: bool,
     /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ

@@ -14,7 +14,7 @@ use crate::terminal::{QUIET, TYPED};
 #[command(after_help = "\
 Examples:
   rne list
-  rne show panda                       a robot of the list, where no file of this name is
+  rne show panda                       a robot of the list, by its name
   rne example panda > my_panda.yaml    its file, to change it
 
 In a crate: #[robot(builtin = \"panda\")].")]

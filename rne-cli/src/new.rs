@@ -14,11 +14,12 @@ use crate::terminal::TYPED;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne new my_arm --dof 6                          writes my_arm.yaml
-  rne new my_arm --dof 4 --prismatic 3 -o -       to the terminal; joint 3 slides
-  rne new my_arm --dof 6 --convention modified
+  rne new elbow --dof 6                      writes elbow.yaml
+  rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 slides
+  rne new wrist --dof 3 --convention modified
 
-The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your numbers in their place.")]
+The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your
+numbers in their place.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = name)]
@@ -29,8 +30,9 @@ pub(crate) struct Arguments {
     /// Joints that slide, counted from 1 at the base
     #[arg(long, value_name = "I,…", value_delimiter = ',')]
     prismatic: Vec<u8>,
-    /// Which Denavit-Hartenberg convention the table follows
-    #[arg(long, value_enum, default_value_t = Rows::Standard)]
+    /// Denavit-Hartenberg convention of the table: standard, with link frames at the far end, or modified, with link
+    /// frames on the joints
+    #[arg(long, value_enum, default_value_t = Rows::Standard, hide_possible_values = true)]
     convention: Rows,
     /// Where to write it, instead of NAME.yaml; - is standard output
     #[arg(short, long, value_name = "FILE")]
