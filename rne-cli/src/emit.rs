@@ -132,10 +132,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
     let c_code = || c_code(arguments, &robot, &programs, &bytes);
-    let rust = || match arguments.with_sin_cos {
-        true => emit::rust_file_with_sin_cos(&robot, &programs),
-        false => emit::rust_file(&robot, &programs),
-    };
+    let rust_file = if arguments.with_sin_cos { emit::rust_file_with_sin_cos } else { emit::rust_file };
+    let rust = || rust_file(&robot, &programs);
     let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {

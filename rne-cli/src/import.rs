@@ -20,7 +20,7 @@ use crate::terminal::{QUIET, TITLE, TYPED};
 Examples:
   rne export puma560 --urdf -o puma.urdf         a URDF to try it on
   rne import puma.urdf --convention modified     to the terminal
-  rne import puma.urdf --name my_puma -o my_puma.yaml
+  rne import puma.urdf --name puma -o puma.yaml
 
 An arm with more than one end: --base torso_lift_link --tip arm_tool_link; with
 joints beside the chain: --lock torso_lift_joint=0.1 --lock-others.

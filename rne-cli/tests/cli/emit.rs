@@ -131,7 +131,7 @@ fn a_file_brings_its_own_sine_and_cosine() {
     let mut running = Command::new(&program);
     let mut running =
         running.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
-    let typed: String = angles.iter().map(|angle| format!("{}\n", angle.to_bits())).collect();
+    let typed = angles.iter().fold(String::new(), |text, angle| text + &angle.to_bits().to_string() + "\n");
     let mut input = running.stdin.take().expect("a pipe");
     let writer = std::thread::spawn(move || input.write_all(typed.as_bytes()));
     let output = running.wait_with_output().expect("it ends");
