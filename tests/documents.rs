@@ -57,9 +57,9 @@ fn robot_files() -> Vec<PathBuf> {
 fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
-        "torque" => format!("```rust\n{}```\n", read(&root().join("examples/firmware/src/bin/torque.rs"))),
+        "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/firmware/main.rs"))),
         "config" => {
-            let config = read(&root().join("examples/firmware/.cargo/config.toml"));
+            let config = read(&root().join("rne-cli/src/firmware/config.toml"));
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }

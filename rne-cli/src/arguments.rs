@@ -9,7 +9,9 @@ use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
-use crate::{check, convert, emit, eval, example, explain, export, import, list, new, ops, search, shell, show};
+use crate::{
+    check, convert, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell, show,
+};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -17,8 +19,7 @@ use crate::{check, convert, emit, eval, example, explain, export, import, list, 
 #[command(about = "The dynamics compiler for robot arms: a DH table in, straight-line code out")]
 #[command(max_term_width = 80)]
 #[command(after_help = "\
-Without a command, a tour: the PUMA 560 from its table to its torques, computed
-as it runs.
+Without a command, a tour: the PUMA 560 from its table to its torques.
 
 Examples:
   rne check robots/*.yaml                   are the files in order?
@@ -29,8 +30,7 @@ Examples:
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
 FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
-Exit status: 0 fine, 1 the input is at fault, 2 the command line is: `rne
-explain exit-status`. Colours appear on terminals only; NO_COLOR turns them off.
+Exit status: `rne explain exit-status`. NO_COLOR turns colours off.
 docs/robot-file.md explains every key of a robot file.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -51,6 +51,7 @@ pub(crate) enum Command {
     Import(import::Arguments),
     Convert(convert::Arguments),
     Export(export::Arguments),
+    Firmware(firmware::Arguments),
     Explain(explain::Arguments),
     Completions(shell::Completions),
     Man(shell::Man),

@@ -12,7 +12,7 @@ use crate::robot_file;
 /// Rotors belong to the arm.
 #[derive(Args, Clone, Copy, Default)]
 pub(crate) struct Rotors {
-    /// The arm with its rotors: G² Jm q̈ of the motors is in torques, mass matrix, forward dynamics and kinetic energy
+    /// The arm with its motors' rotors: G² Jm q̈
     #[arg(long)]
     pub(crate) rotors: bool,
 }

@@ -54,6 +54,9 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
+    /// Bring sine and cosine along in Rust, as C code does
+    #[arg(long)]
+    with_sin_cos: bool,
     /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
@@ -121,7 +124,7 @@ struct Generated {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    only_of_c(arguments)?;
+    only_of_one_language(arguments)?;
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
@@ -129,11 +132,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
     let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let rust_file = if arguments.with_sin_cos { emit::rust_file_with_sin_cos } else { emit::rust_file };
+    let rust = || rust_file(&robot, &programs);
     let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
-        (Language::Rust, None, _) => return Ok(Outcome::text(shown(emit::rust_file(&robot, &programs)))),
-        (Language::Rust, Some(out), _) => vec![generated(out, emit::rust_file(&robot, &programs))],
+        (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()))),
+        (Language::Rust, Some(out), _) => vec![generated(out, rust())],
         (Language::C, Some(out), Some(header)) => {
             let code = c_code()?;
             let source = code.source(&header.name);
@@ -171,7 +176,12 @@ fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
     )))
 }
 
-fn only_of_c(arguments: &Arguments) -> Result<(), Failure> {
+fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.with_sin_cos && arguments.lang == Language::C {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always brings its sine and cosine. Leave it out"
+        )));
+    }
     let options = [("--real", arguments.real.is_some()), ("--prefix", arguments.prefix.is_some())];
     match options.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
         None => Ok(()),
@@ -355,7 +365,7 @@ fn first_difference(found: &str, expected: &str) -> String {
 
 /// The command that writes `out`.
 fn command(arguments: &Arguments, out: &Path) -> String {
-    let mut command = format!("rne emit {} --lang {}", shell(&arguments.file), arguments.lang.name());
+    let mut command = format!("rne emit {} --lang {}", robot_file::shell(&arguments.file), arguments.lang.name());
     if let Some(real) = arguments.real {
         let _ = write!(command, " --real {}", real.precision().c_type());
     }
@@ -371,16 +381,12 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);
     }
+    if arguments.with_sin_cos {
+        command.push_str(" --with-sin-cos");
+    }
     if arguments.ascii {
         command.push_str(" --ascii");
     }
-    let _ = write!(command, " -o {}", shell(out));
+    let _ = write!(command, " -o {}", robot_file::shell(out));
     command
-}
-
-/// A path as a shell reads it back.
-fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);
-    if !text.is_empty() && text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }

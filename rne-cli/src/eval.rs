@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Another value of a parameter of the file; may be repeated
+    /// Another value of a parameter; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
     /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     /// Joint torques, N m or N, of forward_dynamics
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// fx,fy,fz,nx,ny,nz that the last link exerts on its environment, at the tip, in tip axes: N and N m
+    /// fx,fy,fz,nx,ny,nz on the environment, at the tip, in tip axes: N, N m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] of what is fixed to the tip, in tip axes: kg, m, kg m²
@@ -73,13 +73,13 @@ pub(crate) struct Arguments {
     /// Acceleration of gravity in the frame 0 of a moving base, m/s²; the file's, unless given
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
-    /// The seven-step worksheet of torques: every vector of every link
+    /// The seven-step worksheet: every vector
     #[arg(long)]
     trace: bool,
     /// Axes of the worksheet: link, fixed to link i, the generated code's; lecture, fixed to link i-1; base, of frame 0
     #[arg(long, value_enum, hide_possible_values = true, default_value_t = Axes::Link, requires = "trace")]
     axes: Axes,
-    /// {"result": …}, with --trace also "trace": a list with an entry per link
+    /// {"result": …}, with --trace also "trace"
     #[arg(long)]
     json: bool,
 }

@@ -10,7 +10,7 @@ use crate::robot_file::shipped;
 #[command(after_help = "\
 Examples:
   rne example puma560 > my_puma.yaml
-  rne example puma560 --plan > my_puma.plan.yaml   the choices of its reduced form
+  rne example puma560 --plan > my_puma.plan.yaml    its reduced form
 
 `rne list` has the names.")]
 pub(crate) struct Arguments {

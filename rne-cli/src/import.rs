@@ -18,15 +18,16 @@ use crate::terminal::{QUIET, TITLE, TYPED};
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne import panda.urdf --tip panda_link8 --lock-others -o panda.yaml
-  rne import ur5.urdf --tip tool0 --convention modified
-  rne import tiago.urdf --base torso_link --tip tool_link \\
-      --lock torso_lift_joint=0.1 --lock-others
+  rne export puma560 --urdf -o puma.urdf         a URDF to try it on
+  rne import puma.urdf --convention modified     to the terminal
+  rne import puma.urdf --name puma -o puma.yaml
+
+An arm with more than one end: --base torso_lift_link --tip arm_tool_link; with
+joints beside the chain: --lock torso_lift_joint=0.1 --lock-others.
 
 What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple
-of pi/12 are taken for it, and what that changes is told; --no-snap takes them
-as they are. The robot file goes to standard output unless -o names a file; the
-account of what was done goes to standard error.")]
+of pi/12 are taken for it, and what that changes is told. The robot file goes to
+standard output, the account to standard error, unless -o names a file.")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// The URDF; - is standard input
@@ -38,8 +39,8 @@ pub(crate) struct Arguments {
     /// The link at the end of the arm; needed where there are several
     #[arg(long, value_name = "LINK")]
     tip: Option<String>,
-    /// The rows of the table
-    #[arg(long, value_parser = convention(), default_value = "standard")]
+    /// The rows of the table, standard or modified
+    #[arg(long, value_name = "C", value_parser = convention(), default_value = "standard", hide_possible_values = true)]
     convention: Convention,
     /// Hold a movable joint still, at rad or m, such as finger=0.04
     #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]

@@ -14,7 +14,7 @@ use crate::terminal::{QUIET, TYPED};
 #[command(after_help = "\
 Examples:
   rne list
-  rne ops panda                        a robot of the list, by its name
+  rne show panda                       a robot of the list, by its name
   rne example panda > my_panda.yaml    its file, to change it
 
 A file of that name comes first. In a crate: #[robot(builtin = \"panda\")].")]

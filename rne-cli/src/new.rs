@@ -11,16 +11,16 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Existing, existing, replace};
 use crate::terminal::TYPED;
 
-/// Write a robot file of your own, with placeholders to fill in
+/// Write a commented robot file with placeholders, for your arm
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne new new_arm --dof 6                       writes new_arm.yaml
-  rne new my_arm --dof 4 --prismatic 3 -o -     to the terminal; joint 3 slides
-  rne new proximal --dof 6 --convention modified
+  rne new elbow --dof 6                      writes elbow.yaml
+  rne new scara --dof 4 --prismatic 3 -o -   to the terminal; joint 3 slides
+  rne new wrist --dof 3 --convention modified
 
 The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your
-numbers in their place; docs/robot-file.md explains every key.")]
+numbers in their place.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
     #[arg(value_name = "NAME", value_parser = name)]

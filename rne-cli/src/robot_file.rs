@@ -109,3 +109,10 @@ fn robots_in(folder: &Path) -> Vec<String> {
     names.sort();
     names
 }
+
+/// A path as a shell reads it back.
+pub(crate) fn shell(path: &Path) -> String {
+    let text = path.display().to_string();
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "/._-+=:,@".contains(c);
+    if !text.is_empty() && text.chars().all(is_plain) { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+}

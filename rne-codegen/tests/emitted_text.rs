@@ -168,7 +168,7 @@ fn rustfmt_has_nothing_to_change() {
     for (robot, programs) in emitted() {
         // all functions of a robot that is shipped
         if programs.len() == Function::ALL.len() {
-            let text = emit::rust_file(robot, programs);
+            let text = emit::rust_file_with_sin_cos(robot, programs);
             let mut rustfmt = Command::new("rustfmt")
                 .args(["--edition", "2024", "--check", "--config-path", "/dev/null"])
                 .stdin(Stdio::piped())
@@ -214,9 +214,12 @@ fn every_reduced_form_tells_its_proof() {
 fn emitted_files_build_alone_without_std() {
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
     let mut library = "#![no_std]\n#![deny(warnings)]\n".to_owned();
+    let files = [emit::rust_file, emit::rust_file_with_sin_cos];
     for (robot, programs) in emitted().iter().filter(|(_, programs)| programs.len() == Function::ALL.len()) {
         let module = format!("{}_{}", robot.name, programs[0].form);
-        fs::write(folder.path().join(format!("{module}.rs")), emit::rust_file(robot, programs)).expect("written");
+        let is_reduced = programs[0].form == Form::Reduced;
+        let text = files[usize::from(is_reduced)](robot, programs);
+        fs::write(folder.path().join(format!("{module}.rs")), text).expect("written");
         let _ = writeln!(library, "pub mod {module};");
     }
     assert_eq!(library.matches("pub mod ").count(), 2 * common::shipped().len(), "every robot in two forms");

@@ -1,4 +1,4 @@
-//! Sine and cosine in C against those of the runtime, at many angles.
+//! Sine and cosine in C, and the constants of those in Rust, against those of the runtime, at many angles.
 
 use std::collections::BTreeSet;
 use std::slice::from_ref;
@@ -96,8 +96,11 @@ fn the_constants_are_those_of_the_runtime() {
     for (real, parts, sums, inverse) in
         [("double", double, double_sums, "0.6366197723675814"), ("float", single, single_sums, "0.63661975")]
     {
-        let c = constants(&read(&format!("rne-codegen/src/emit/c/sin_cos_{real}.c")));
-        assert_eq!(c, constants(&format!("{parts} {sums} 0.5 1.0 {inverse}")), "{real}");
+        let rust = if real == "double" { "f64" } else { "f32" };
+        for file in [format!("c/sin_cos_{real}.c"), format!("sin_cos_{rust}.rs")] {
+            let emitted = constants(&read(&format!("rne-codegen/src/emit/{file}")));
+            assert_eq!(emitted, constants(&format!("{parts} {sums} 0.5 1.0 {inverse}")), "{file}");
+        }
     }
     assert_eq!("0.6366197723675814".parse(), Ok(std::f64::consts::FRAC_2_PI));
     assert_eq!("0.63661975".parse(), Ok(std::f32::consts::FRAC_2_PI));

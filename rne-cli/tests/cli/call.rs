@@ -26,7 +26,7 @@ pub(crate) fn rne(arguments: &[&str]) -> Called {
     called(command(arguments).output().expect("rne starts"))
 }
 
-fn called(output: Output) -> Called {
+pub(crate) fn called(output: Output) -> Called {
     let Output { status, stdout, stderr } = output;
     let text = |bytes| String::from_utf8(bytes).expect("UTF-8");
     Called { out: text(stdout), err: text(stderr), status: status.code().expect("no signal") }

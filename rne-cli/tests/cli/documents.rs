@@ -5,14 +5,20 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 5] =
-    ["README.md", "CONTRIBUTING.md", "docs/command-line.md", "docs/robot-file.md", "robots/README.md"];
+const DOCUMENTS: [&str; 6] = [
+    "README.md",
+    "CONTRIBUTING.md",
+    "docs/command-line.md",
+    "docs/firmware.md",
+    "docs/robot-file.md",
+    "robots/README.md",
+];
 
 /// Commands that take long, install something or change the repository: how they begin, and the file that has them run,
 /// by this text.
@@ -34,17 +40,23 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask mutate", "tests/documents.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
     // it measures times
     ("cargo xtask performance", "xtask/src/main.rs", "Performance(performance::Performance)"),
+    // it fetches Pinocchio
+    ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
-    // `cargo add` needs a registry with this crate; examples/firmware has what it would write
-    ("cargo add rne --no-default-features", "examples/firmware/Cargo.toml", "default-features = false"),
+    // in a firmware that rne has written
+    ("rustup target add thumbv7em-none-eabihf", "examples/firmware/run", "rustup target add $target"),
+    ("sudo apt-get install --yes qemu-system-arm", "examples/firmware/run", "packages=(qemu-system-arm)"),
+    ("cargo run --release", ".ci/run", "examples/firmware/run --install --written target/torque\n"),
+    ("examples/firmware/run", ".ci/run", "examples/firmware/run --install $board"),
     ("cargo install --path rne-cli", "rne-cli/Cargo.toml", "name = \"rne\""),
     // the search runs in rne-cli/tests/cli/search.rs
     ("cargo run --release -- search robots/NAME.yaml --seconds 600", "rne-cli/tests/cli/search.rs", "\"search\""),
 ];
 
-/// A copy of what commands read.
-pub(crate) fn copy(name: &str) -> std::path::PathBuf {
-    let folder = folder(name);
+/// A copy of what commands read, in a folder that they may leave.
+pub(crate) fn copy(name: &str) -> PathBuf {
+    let folder = folder(name).join("clone");
+    fs::create_dir(&folder).expect("a folder");
     for part in ["robots", "docs"] {
         fs::create_dir(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
@@ -54,6 +66,8 @@ pub(crate) fn copy(name: &str) -> std::path::PathBuf {
             }
         }
     }
+    // by which a clone is known
+    fs::copy(Path::new(ROOT).join("Cargo.toml"), folder.join("Cargo.toml")).expect("a copy");
     fs::copy(folder.join("docs/desk_arm.yaml"), folder.join("my_arm.yaml")).expect("a copy");
     folder
 }
@@ -125,14 +139,15 @@ fn in_prose(line: &str) -> impl Iterator<Item = &str> {
 
 #[test]
 fn commands_of_documents_work() {
-    let folder = copy("documents");
     let mut commands = 0;
     for document in DOCUMENTS {
+        let folder = copy("documents");
         let path = Path::new(ROOT).join(document);
         let page = fs::read_to_string(&path).expect("a document");
         let (mut renewed, mut printed) = (String::new(), String::new());
         let mut lines = page.lines();
         let mut block = None;
+        let mut here = folder.clone();
         while let Some(line) = lines.next() {
             renewed.push_str(line);
             renewed.push('\n');
@@ -140,10 +155,16 @@ fn commands_of_documents_work() {
                 block = if block.is_some() { None } else { Some(language) };
                 if block == Some("sh") {
                     printed.clear();
+                    here.clone_from(&folder);
                 }
             } else if block == Some("sh") {
                 let command = line.split(" #").next().unwrap_or_default().trim();
-                printed += &tried(&folder, document, command).unwrap_or_default();
+                if let Some(there) = command.strip_prefix("cd ") {
+                    here = here.join(there);
+                    assert!(here.is_dir(), "{document}: `{command}`: there is no such folder");
+                } else {
+                    printed += &tried(&here, document, command).unwrap_or_default();
+                }
                 commands += 1;
             } else if line.starts_with("<!-- begin: output, ") {
                 let _old = lines.by_ref().take_while(|line| *line != "<!-- end -->").count();

@@ -77,6 +77,86 @@ fn the_file_compiles_by_itself_and_computes_the_same() {
     close(&compiled(&folder, &code, state), &expected);
 }
 
+/// A program that reads angles and writes the bits of their sines and cosines, each as a number.
+const SINES: &str = "
+    for line in std::io::stdin().lines() {
+        let angle = f64::from_bits(line.unwrap().parse().unwrap());
+        let (sine, cosine) = Scalar::sin_cos(angle);
+        println!(\"{} {}\", sine.to_bits(), cosine.to_bits());
+        let ([sine, _], [cosine, _]) = Scalar::sin_cos_array([angle as f32, 0.0]);
+        println!(\"{} {}\", sine.to_bits(), cosine.to_bits());
+    }
+";
+
+/// Angles of every magnitude up to 1e5 rad, and those at which a quadrant ends.
+fn angles() -> Vec<f64> {
+    let mut angles = vec![0.0, -0.0, 1e5, -1e5, f64::MIN_POSITIVE, f64::from(f32::MIN_POSITIVE)];
+    for step in 1..5000_u32 {
+        // multiples of the golden ratio fill the unit interval evenly
+        let part = (f64::from(step) * 0.618_033_988_749_894_9).fract();
+        let sign = if step % 2 == 0 { 1.0 } else { -1.0 };
+        let end = f64::from(step * 25) * std::f64::consts::FRAC_PI_4;
+        angles.extend(
+            [part * 1e5, 10_f64.powf(part * 13.0 - 8.0), end, end * (1.0 + (part - 0.5) * 1e-6)].map(|x| sign * x),
+        );
+    }
+    angles
+}
+
+/// In every bit, where the runtime is compiled without fused multiply-add: the file never has it.
+#[test]
+fn a_file_brings_its_own_sine_and_cosine() {
+    use std::io::Write as _;
+    use std::process::Stdio;
+
+    let folder = folder("with_sin_cos");
+    let state = "[0.6_f64, -1.1], &[1.3, -0.4], &[-0.7, 2.1]";
+    let emit = ["emit", ROBOT, "--function", "inverse_dynamics,actuator_torques", "--with-sin-cos"];
+    let code = fine(&emit);
+    let torques = format!("for torque in inverse_dynamics(&{state}) {{ eprintln!(\"{{torque}}\"); }}");
+    let (source, program) = (path(&folder, "main.rs"), path(&folder, "main"));
+    fs::write(&source, format!("{code}fn main() {{{torques}{SINES}}}\n")).expect("written");
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    let built = Command::new(rustc)
+        .args(["--edition", "2024", "-O", "-A", "dead_code", "-D", "warnings", "-o", &program, &source])
+        .output()
+        .expect("rustc starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    if cfg!(any(target_arch = "aarch64", target_feature = "fma")) {
+        eprintln!("skipped: the runtime is compiled with fused multiply-add");
+        return;
+    }
+
+    let angles = angles();
+    let mut running = Command::new(&program);
+    let mut running =
+        running.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+    let typed = angles.iter().fold(String::new(), |text, angle| text + &angle.to_bits().to_string() + "\n");
+    let mut input = running.stdin.take().expect("a pipe");
+    let writer = std::thread::spawn(move || input.write_all(typed.as_bytes()));
+    let output = running.wait_with_output().expect("it ends");
+    writer.join().expect("no panic").expect("all was read");
+    let found = String::from_utf8(output.stdout).expect("UTF-8");
+    let mut found = found.lines();
+    for angle in &angles {
+        let (sine, cosine) = rne::Scalar::sin_cos(*angle);
+        let double = format!("{} {}", sine.to_bits(), cosine.to_bits());
+        #[allow(clippy::cast_possible_truncation)]
+        let (sine, cosine) = rne::Scalar::sin_cos(*angle as f32);
+        let single = format!("{} {}", sine.to_bits(), cosine.to_bits());
+        assert_eq!([found.next(), found.next()], [Some(&*double), Some(&*single)], "of {angle:e}");
+    }
+    assert_eq!(found.next(), None);
+    let eval = ["eval", ROBOT, "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1", "--json"];
+    let torques = String::from_utf8(output.stderr).expect("UTF-8");
+    let torques: Vec<f64> = torques.lines().map(|line| line.parse().expect("a number")).collect();
+    assert_eq!(torques, evaluated(&eval), "in every bit");
+
+    fails(2, &["emit", ROBOT, "--lang", "c", "--with-sin-cos"], &["--with-sin-cos", "always brings its sine"]);
+    let out = path(&folder, "arm.rs");
+    fails(1, &[&emit[..], &["--check", &out]].concat(), &["actuator_torques --with-sin-cos -o "]);
+}
+
 /// Every function of a robot with motors, in both forms, against the runtime.
 #[test]
 fn all_functions_compile_and_compute_the_same() {

@@ -6,6 +6,7 @@ mod documents;
 mod emit;
 mod emit_c;
 mod eval;
+mod firmware;
 mod help;
 mod import;
 mod plans;

@@ -26,7 +26,7 @@ pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing};
 pub use syntax::Precision;
 pub use table::{angle, operations_table};
-pub use text::rust_file;
+pub use text::{rust_file, rust_file_with_sin_cos};
 pub use tokens::Body;
 
 use crate::program::Program;

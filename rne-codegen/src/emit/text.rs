@@ -23,8 +23,37 @@ use crate::program::Program;
 /// A file that holds the given programs of one robot as functions, with the one trait that they need.
 #[must_use]
 pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
-    let mut text = header(robot, programs);
+    file(robot, programs, SinCos::OfCaller)
+}
+
+/// As [`rust_file`], with the trait for `f64` and `f32`: sine and cosine have the bits that rne's runtime has without
+/// fused multiply-add, for angles up to 1e5 rad. The file needs nothing then, in `no_std` neither.
+#[must_use]
+pub fn rust_file_with_sin_cos(robot: &Robot, programs: &[Program]) -> String {
+    file(robot, programs, SinCos::InFile)
+}
+
+/// Whose sine and cosine a file takes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SinCos {
+    OfCaller,
+    InFile,
+}
+
+/// The trait for `f64` and `f32`, but for its choice by a sign.
+const WITH_SIN_COS: [&str; 2] = [include_str!("sin_cos_f64.rs"), include_str!("sin_cos_f32.rs")];
+
+fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
+    let mut text = header(robot, programs, sin_cos);
     text.push_str(&scalar(programs));
+    if sin_cos == SinCos::InFile {
+        let chooses = programs.iter().any(Program::chooses_by_sign);
+        let by_sign = if chooses { format!("\n{BY_SIGN_OF_FLOAT}") } else { String::new() };
+        for implementation in WITH_SIN_COS {
+            let methods = implementation.trim_end().trim_end_matches('}');
+            let _ = write!(text, "\n{methods}{by_sign}}}\n");
+        }
+    }
     for program in programs {
         text.push('\n');
         text.push_str(&function(robot, program));
@@ -73,7 +102,7 @@ const METHODS: &str = "    /// A constant of the robot, rounded once.
     }
 ";
 
-fn header(robot: &Robot, programs: &[Program]) -> String {
+fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     let heading = Heading::of(robot);
     let mut text = format!("{}\n\n{}\n\n", Heading::opening(&markdown(&heading.title)), Heading::mark(robot));
     let _ = writeln!(text, "{}\n", verbatim(&format!("{}\n\n{}", heading.frames, heading.table)));
@@ -91,18 +120,27 @@ fn header(robot: &Robot, programs: &[Program]) -> String {
         let meaning = meaning.replace('|', "\\|").replace('[', "\\[");
         let _ = writeln!(text, "| `{pattern}` | {meaning} |");
     }
-    text.push_str("\nThe scalar, in `std`:\n\n```ignore\n");
-    text.push_str(SCALAR_OF_STD);
-    if programs.iter().any(Program::chooses_by_sign) {
-        text.push_str(BY_SIGN_OF_STD);
-    }
-    text.push_str("}\n```\n\n");
-    text.push_str(
-        "`core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take\n\
-         `inverse_dynamics_from_sin_cos`, whose sines and cosines are arguments, and which never calls it.\n",
-    );
+    text.push('\n');
+    text.push_str(&match sin_cos {
+        SinCos::OfCaller => scalar_of_caller(programs),
+        SinCos::InFile => IN_FILE.to_owned(),
+    });
     text.lines().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect()
 }
+
+/// How the trait is implemented, for who has a sine.
+fn scalar_of_caller(programs: &[Program]) -> String {
+    let by_sign = if programs.iter().any(Program::chooses_by_sign) { BY_SIGN_OF_STD } else { "" };
+    format!(
+        "The scalar, in `std`:\n\n```ignore\n{SCALAR_OF_STD}{by_sign}}}\n```\n\n\
+         `core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take\n\
+         `inverse_dynamics_from_sin_cos`, whose sines and cosines are arguments, and which never calls it.\n"
+    )
+}
+
+const IN_FILE: &str =
+    "The file needs nothing but `core`: sine and cosine of `f64` and `f32` are in it, for angles up to 1e5 rad.
+";
 
 const SCALAR_OF_STD: &str = "impl Scalar for f64 {
     fn from_f64(value: f64) -> Self { value }
@@ -111,6 +149,17 @@ const SCALAR_OF_STD: &str = "impl Scalar for f64 {
 
 const BY_SIGN_OF_STD: &str = "    fn by_sign(self, positive: Self, negative: Self) -> Self {
         if self > 0.0 { positive } else if self < 0.0 { negative } else { 0.0 }
+    }
+";
+
+const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 {
+            positive
+        } else if self < 0.0 {
+            negative
+        } else {
+            0.0
+        }
     }
 ";
 

@@ -1,20 +1,25 @@
-//! The smallest firmware: torques of the PUMA 560, printed by the debugger. cargo run --release --bin torque
+//! Torques of a robot arm, in `f32` on a Cortex-M, printed by the debugger or by QEMU: cargo run --release
 #![no_std]
 #![no_main]
+
+use core::hint::black_box;
 
 use cortex_m_semihosting::{debug, hprintln};
 use panic_semihosting as _;
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "../../../../robots/puma560.yaml", form = "reduced")]
-struct Puma560;
+#[robot(path = "../../../../robots/puma560.yaml", form = "reduced")] // relative to this source file
+struct Arm;
+
+const JOINTS: usize = 6;
 
 #[cortex_m_rt::entry]
 fn main() -> ! {
-    let q: [f32; 6] = [0.1, -0.4, 0.3, 1.2, -0.7, 0.5]; // rad
-    let tau = Puma560.inverse_dynamics(&q, &[0.5; 6], &[1.0; 6]); // N m
-    hprintln!("{tau:.3?}");
+    // Without the black box the compiler would compute the torques itself, for it knows this state.
+    let [q, qd, qdd] = black_box([[0.1_f32; JOINTS], [0.5; JOINTS], [1.0; JOINTS]]); // rad, rad/s, rad/s²
+    let tau = Arm.inverse_dynamics(&q, &qd, &qdd);
+    hprintln!("{tau:.3?} N m");
     debug::exit(debug::EXIT_SUCCESS); // ends QEMU
-    panic!("no debugger");
+    panic!("only a debugger, or QEMU, ends a firmware");
 }
