@@ -43,8 +43,8 @@ fn arm(u: &mut Unstructured<'_>) -> Result<String> {
         let (mass, inertia) = (u.choose(&MASSES)?, u.choose(&INERTIAS)?);
         let _ = writeln!(
             text,
-            "  - {{type: {kind}, dh: {{theta: {theta}, d: {}, a: {}, alpha: {alpha}}}, link: {{mass: {mass}, com: [{}, {}, \
-             {}], inertia: {inertia}}}}}",
+            "  - {{type: {kind}, dh: {{theta: {theta}, d: {}, a: {}, alpha: {alpha}}}, link: {{mass: {mass}, com: [{}, \
+             {}, {}], inertia: {inertia}}}}}",
             d?, a?, x?, y?, z?
         );
     }

@@ -90,7 +90,7 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
         ),
     };
     let mut text = format!(
-        "# A robot file with placeholders: put your numbers in their place. Lengths in m, angles in rad, masses in kg.\n\
+        "# A robot file with placeholders: put your numbers in their place. m, rad, kg.\n\
          # A number may be an expression: pi/2, deg(90), 0.4318/2, m*a^2/12.\n\
          format: 1\n\
          name: {name}\n\
@@ -135,8 +135,8 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
         };
         let _ = write!(
             text,
-            "    link:\n      mass: 1{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, xz: 0, \
-             yz: 0}}{inertia_note}\n"
+            "    link:\n      mass: 1{mass_note}\n      com: {com}{com_note}\n      inertia: {{{inertia}, xy: 0, \
+             xz: 0, yz: 0}}{inertia_note}\n"
         );
     }
     text

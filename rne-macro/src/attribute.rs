@@ -62,7 +62,11 @@ impl Attribute {
                     }
                 }
                 Meta::Path(_) | Meta::NameValue(_) => {
-                    errors.at(&attribute.meta, "write this as `#[robot(path = \"…\")]`, `#[robot(yaml = \"…\")]` or `#[robot(builtin = \"…\")]`");
+                    errors.at(
+                        &attribute.meta,
+                        "write this as `#[robot(path = \"…\")]`, `#[robot(yaml = \"…\")]` or `#[robot(builtin = \
+                         \"…\")]`",
+                    );
                 }
             }
         }

@@ -288,7 +288,7 @@ use rne_codegen::Capability;
 /// its inertia. It says file, line, column and what to write instead:
 ///
 /// ```text
-/// warning: use of deprecated constant `_::ROBOT_FILE`: robots/arm.yaml:8:45: the angle `90` rad is more than a full turn
+/// warning: use of deprecated constant `_::ROBOT_FILE`: arm.yaml:8:45: the angle `90` rad is more than a full turn
 ///          if these are degrees, write `deg(90)`
 ///   --> src/main.rs:4:16
 ///    |

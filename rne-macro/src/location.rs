@@ -222,7 +222,8 @@ mod tests {
         assert_eq!(found("../robots/x.yaml", None), ["/arm/robots/x.yaml", "/robots/x.yaml"]);
     }
 
-    /// As an editor that does not tell the source file: this crate asks for a file of another package of the repository.
+    /// As an editor that does not tell the source file: this crate asks for a file of another package of the
+    /// repository.
     #[test]
     fn a_source_file_that_is_unknown_is_in_some_folder_with_sources() {
         let repository = Path::new(env!("CARGO_MANIFEST_DIR")).parent().expect("the repository");

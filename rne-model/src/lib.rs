@@ -13,7 +13,7 @@
 //! convention: standard
 //! gravity: [0, -9.81, 0]
 //! joints:
-//!   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mas: 2, com: [-1/4, 0, 0], inertia: {yy: 1/24, zz: 1/24}}}
+//!   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mas: 2, inertia: {yy: 0.1, zz: 0.1}}}
 //! ";
 //! let report = rne_model::check("pendulum.yaml", text).unwrap_err();
 //! assert_eq!(

@@ -12,8 +12,8 @@ use crate::machine::{self, Missing};
 
 /// Runs the targets of fuzz/: readers of robot files, expressions, plans and URDFs, and arms through every function
 ///
-/// Each target starts from its corpus in fuzz/corpus. Inputs that fail are kept in fuzz/artifacts. The flags are those of
-/// cargo-fuzz without a sanitizer, which would need a nightly compiler: `unsafe` is forbidden where inputs are read.
+/// Each target starts from its corpus in fuzz/corpus. Inputs that fail are kept in fuzz/artifacts. The flags are those
+/// of cargo-fuzz without a sanitizer, which would need a nightly compiler: `unsafe` is forbidden where inputs are read.
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when an input fails.
@@ -42,8 +42,8 @@ const FLAGS: &str = "--cfg fuzzing -Cpasses=sancov-module -Cllvm-args=-sanitizer
 /// The longest input, bytes.
 const LONGEST: u32 = 4096;
 
-/// So many seconds may one input take, and so many MB the whole.
-const LIMITS: [&str; 2] = ["-timeout=10", "-rss_limit_mb=2048"];
+/// So many seconds may one input take, and so many MB the whole; few words, the same inputs every time.
+const OPTIONS: [&str; 5] = ["-timeout=10", "-rss_limit_mb=2048", "-verbosity=0", "-print_final_stats=1", "-seed=1"];
 
 impl Fuzz {
     pub(crate) fn run(&self) -> Result<Verdict> {
@@ -74,10 +74,8 @@ impl Fuzz {
             let (runs, longest) = (self.runs.to_string(), LONGEST.to_string());
             let artifacts = format!("{}/", artifacts.display());
             println!("fuzz {target}: {runs} inputs");
-            let run = cmd!(
-                shell,
-                "{program} {corpus...} -runs={runs} -max_len={longest} {LIMITS...} -artifact_prefix={artifacts} -print_final_stats=1 -verbosity=0 -seed=1"
-            );
+            let run = cmd!(shell, "{program} {corpus...} -runs={runs} -max_len={longest} {OPTIONS...}");
+            let run = run.arg(format!("-artifact_prefix={artifacts}"));
             if run.quiet().run().is_err() {
                 failed.push(target.as_str());
             }

@@ -63,7 +63,8 @@ impl Package {
         fs::write(
             user.join("Cargo.toml"),
             format!(
-                "[package]\nname = \"user\"\nedition = \"2024\"\n\n[dependencies]\nrne = \"{version}\"\n\n[workspace]\n\n\
+                "[package]\nname = \"user\"\nedition = \"2024\"\n\n[dependencies]\nrne = \"{version}\"\n\n\
+                 [workspace]\n\n\
                  {patch}"
             ),
         )?;

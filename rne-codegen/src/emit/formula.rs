@@ -49,7 +49,8 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula
     of_joint(templates, joint)
 }
 
-/// The formulas of a step for a payload, as the link behind the last; `{p}` is the last one, R turns tip axes into its own.
+/// The formulas of a step for a payload, as the link behind the last; `{p}` is the last one, R turns tip axes into its
+/// own.
 pub(super) fn payload_formulas(step: Step, joint: usize) -> Vec<Formula> {
     let templates: Templates = match step {
         Step::AngularVelocity => &[(Quantity::Omega, "ω{i} = Rᵀ ω{p}")],

@@ -1,6 +1,7 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
-//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²;   V = -Σ m_i g · c_i, with c_i from the origin of frame 0
+//! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²; V = -Σ m_i g · c_i, with c_i from the origin of
+//! frame 0
 
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;

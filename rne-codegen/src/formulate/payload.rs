@@ -1,7 +1,7 @@
 //! A payload that is fixed to the tip: one link more, whose joint does not move.
 //!
 //! ```text
-//! R, r    of the tip, from the axes and the centre of mass of the last link n      c, m, I   of the payload, in tip axes
+//! R, r    of the tip, from the axes and the centre of mass of the last link n   c, m, I   of the payload, in tip axes
 //!
 //! ω = Rᵀ ω_n      ω̇ = Rᵀ ω̇_n      g = Rᵀ g_n
 //! c̈ = Rᵀ (c̈_n + ω̇_n × r + ω_n × (ω_n × r)) + ω̇ × c + ω × (ω × c)

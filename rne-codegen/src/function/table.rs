@@ -129,7 +129,7 @@ pub(crate) const TABLE: &[Entry] = &[
             Own::names(Quantity::Mass, "mass of link i; of the payload for i = n + 1"),
             Own::names(
                 Quantity::Com,
-                "centre of mass from the link frame's origin; of the payload, from that of the tip frame, for i = n + 1",
+                "centre of mass from the link frame's origin; of the payload, from the tip frame's, for i = n + 1",
             ),
             Own::names(
                 Quantity::Inertia,
