@@ -34,6 +34,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask urdf", "xtask/src/verify.rs", "\"xtask\", \"urdf\""),
     ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
+    ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     // its page is checked, and it breaks sources
