@@ -47,10 +47,13 @@ impl Package {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let target = machine::target_folder("target")?;
-        let packaged = target.join("package");
-        // a package of before must not be taken for one of now
-        let _ = fs::remove_dir_all(&packaged);
-        machine::without_flags(cmd!(shell, "cargo package --workspace --allow-dirty --quiet")).run()?;
+        // a folder of its own, and empty: cargo takes what it built of a package of this version for this one
+        let build = target.join("packaged");
+        let _ = fs::remove_dir_all(&build);
+        let packaged = build.join("package");
+        machine::without_flags(cmd!(shell, "cargo package --workspace --allow-dirty --quiet"))
+            .env("CARGO_TARGET_DIR", &build)
+            .run()?;
 
         let folder = tempfile::tempdir()?;
         let version = version()?;
@@ -70,10 +73,9 @@ impl Package {
             ),
         )?;
         fs::write(user.join("src/main.rs"), MAIN)?;
-        let build = target.join("packaged");
-        let (build, manifest) = (build.as_path(), user.join("Cargo.toml"));
+        let manifest = user.join("Cargo.toml");
         let derived = machine::without_flags(cmd!(shell, "cargo run --quiet --manifest-path {manifest}"))
-            .env("CARGO_TARGET_DIR", build)
+            .env("CARGO_TARGET_DIR", &build)
             .read()?;
         // a packaged crate is a workspace of its own; the patches come by a file beside it
         let config = folder.path().join("patch.toml");
@@ -85,7 +87,7 @@ impl Package {
             shell,
             "cargo run --quiet --config {config} --manifest-path {command_line} -- {call...}"
         ))
-        .env("CARGO_TARGET_DIR", build)
+        .env("CARGO_TARGET_DIR", &build)
         .read()?;
         let (derived, evaluated) = (numbers(&derived)?, numbers(&evaluated)?);
         println!("packages: {} crates; a crate of them alone prints {derived:?}", CRATES.len());

@@ -48,6 +48,8 @@ enum Needs {
     OldestCompiler,
     /// A program, here or in `target/tools`.
     Program(&'static str),
+    /// Time: it is run where `CI_FULL` is set.
+    Time,
     /// A tag of this repository, to compare with.
     Tag,
 }
@@ -80,7 +82,7 @@ const STEPS: &[Step] = &[
         about: "the emitted text of every shipped robot, all functions",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne-codegen", "--test", "emitted_text", "--test", "fma"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "editor",
@@ -101,7 +103,7 @@ const STEPS: &[Step] = &[
         about: "real arms imported from URDF beside Pinocchio, which is fetched",
         variables: &[],
         command: &["cargo", "xtask", "urdf", "--install"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "no_std",
@@ -226,6 +228,7 @@ impl Needs {
                 let task = name.trim_start_matches("cargo-");
                 (!here).then(|| format!("there is no {name} (cargo xtask tool {task} --install)"))
             }
+            Self::Time => std::env::var_os("CI_FULL").is_none().then(|| "it takes long (CI_FULL=1)".to_owned()),
             Self::Tag => {
                 let tag = machine::shell()
                     .ok()
