@@ -111,6 +111,15 @@ pub(crate) fn convention() -> impl TypedValueParser<Value = Convention> {
         .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
 }
 
+/// Reads the name of a robot.
+pub(crate) fn robot_name(text: &str) -> Result<String, String> {
+    let starts_well = text.starts_with(|c: char| c.is_ascii_lowercase());
+    if starts_well && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_') {
+        return Ok(text.to_owned());
+    }
+    Err("a robot's name has small letters, digits and underscores, and starts with a letter: my_arm".to_owned())
+}
+
 /// Reads the number of a joint; which numbers there are, the robot says.
 pub(crate) fn joint(text: &str) -> Result<usize, String> {
     text.parse().map_err(|_| "a joint is given by its number, counted from 1 at the base".to_owned())

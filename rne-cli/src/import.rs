@@ -9,7 +9,7 @@ use clap::Args;
 use rne_convert::{Account, Difference, Imported, Options, Selection, Urdf};
 use rne_model::Convention;
 
-use crate::arguments::convention;
+use crate::arguments::{convention, robot_name};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
 use crate::terminal::{QUIET, TITLE, TYPED};
@@ -55,7 +55,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     keep_unphysical: bool,
     /// The name of the robot; that of the URDF, unless given
-    #[arg(long, value_parser = name)]
+    #[arg(long, value_parser = robot_name)]
     name: Option<String>,
     /// Where to write the robot file; standard output, unless given
     #[arg(short, long = "output", value_name = "FILE")]
@@ -71,17 +71,6 @@ fn lock(text: &str) -> Result<(String, f64), String> {
     let value = rne_model::number(value.trim())
         .map_err(|mistake| format!("`{value}` is no number: {}; write such as {joint}=0.04", mistake.message))?;
     Ok((joint.to_owned(), value))
-}
-
-/// Reads the name of a robot.
-fn name(text: &str) -> Result<String, String> {
-    let is_name = text.starts_with(|c: char| c.is_ascii_lowercase())
-        && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_');
-    if is_name {
-        Ok(text.to_owned())
-    } else {
-        Err("a name is lower-case letters, digits and `_`, a letter first".into())
-    }
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {

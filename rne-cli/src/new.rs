@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use rne_model::Convention;
 
-use crate::arguments::convention;
+use crate::arguments::{convention, robot_name};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Existing, existing, replace};
 use crate::terminal::TYPED;
@@ -23,7 +23,7 @@ The file is valid as it stands: slender links of 0.3 m and 1 kg. Put your
 numbers in their place.")]
 pub(crate) struct Arguments {
     /// The robot's name: small letters, digits and underscores
-    #[arg(value_name = "NAME", value_parser = name)]
+    #[arg(value_name = "NAME", value_parser = robot_name)]
     name: String,
     /// How many joints it has, 1 to 64
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=64))]
@@ -37,14 +37,6 @@ pub(crate) struct Arguments {
     /// Where to write it, instead of NAME.yaml; - is standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-}
-
-fn name(text: &str) -> Result<String, String> {
-    let starts_well = text.starts_with(|c: char| c.is_ascii_lowercase());
-    if starts_well && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_') {
-        return Ok(text.to_owned());
-    }
-    Err("a robot's name has small letters, digits and underscores, and starts with a letter: my_arm".to_owned())
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
