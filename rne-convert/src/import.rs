@@ -1,7 +1,7 @@
 //! From a URDF to a robot file, with an account of what was done.
 
 use rne_model::{
-    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Report, Robot, Row, RunTime, Transform, check,
+    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, Selection, extract};
@@ -130,7 +130,7 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let checked = check(&format!("{}, imported", self.source.file), &text)?;
+        let checked = Reader::new(&format!("{}, imported", self.source.file)).read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let account = Account {
