@@ -13,6 +13,7 @@ use crate::table::table;
 
 /// A robot in another convention.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Converted {
     /// The robot.
     pub robot: Robot,

@@ -46,6 +46,7 @@ impl Default for Options {
 
 /// A robot made of a URDF.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Imported {
     /// The robot.
     pub robot: Robot,
@@ -57,6 +58,7 @@ pub struct Imported {
 
 /// What an import did.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Account {
     /// The links at the ends of the chain.
     pub base: String,

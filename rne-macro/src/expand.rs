@@ -150,7 +150,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
         }
     });
     match checked {
-        Ok(Some(Checked { robot, lints })) => {
+        Ok(Some(Checked { robot, lints, .. })) => {
             Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, lints: Some(lints) }
         }
         // a field is no parameter, which has been said

@@ -6,6 +6,7 @@ use crate::{Robot, document, schema, source, urdf};
 
 /// A valid robot file: the robot, and what is remarkable about it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Checked {
     /// The robot.
     pub robot: Robot,

@@ -33,6 +33,7 @@
 //! them as a [`Formula`] each.
 //!
 //! The plain types of the table ([`Row`], [`Angle`], [`Link`], [`Model`], …) need neither `std` nor an allocator.
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
