@@ -7,7 +7,7 @@ use std::path::Path;
 
 use divan::Bencher;
 use rne_codegen::{Compiler, Form, Function, emit};
-use rne_model::{Robot, check_bytes_with_run_time};
+use rne_model::{Reader, Robot};
 
 fn main() {
     divan::Divan::default().sample_count(20).sample_size(1).config_with_args().main();
@@ -30,7 +30,7 @@ fn read_shared_expressions(bencher: Bencher) {
     let parameters = (0..1900).fold(String::new(), |lines, index| format!("{lines}  p{index}: *p\n"));
     let expression = format!("{}1", " ".repeat(9000));
     let text = panda() + &format!("\nparameters:\n  p: &p \"{expression}\"\n{parameters}");
-    bencher.bench_local(|| check_bytes_with_run_time("panda.yaml", text.as_bytes(), &[]).is_ok());
+    bencher.bench_local(|| Reader::new("panda.yaml").read(&text).is_ok());
 }
 
 /// What the derive of `InverseDynamics` does behind the reading.

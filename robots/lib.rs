@@ -6,6 +6,7 @@
 //! assert!(rne_robots::ROBOTS.iter().any(|robot| robot.name == "panda"));
 //! ```
 #![no_std]
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 
 /// A robot file and its plan, by the robot's name.

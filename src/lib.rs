@@ -104,6 +104,7 @@
 //! arm, where every number may be an expression (`pi/2`, `m*a^2/12`). [`robot_file`] explains every key, and leads an
 //! arm from its datasheet to its torque.
 //! `rne check FILE` reports mistakes and suspicious values, `rne show FILE` the annotated code.
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(docsrs, feature(doc_cfg))]

@@ -570,7 +570,7 @@ fn the_robot_file_of_the_readme_is_valid() {
     let document = read(&root().join("README.md"));
     let (_, rest) = document.split_once("```yaml\n").expect("a robot file");
     let (yaml, _) = rest.split_once("```").expect("its end");
-    let checked = rne_model::check("README.md", yaml).unwrap_or_else(|report| panic!("{report}"));
+    let checked = rne_model::Reader::new("README.md").read(yaml).unwrap_or_else(|report| panic!("{report}"));
     assert!(checked.lints.is_empty(), "{}", checked.lints);
 }
 

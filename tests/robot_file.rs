@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use rne_model::{Mapping, check, mappings};
+use rne_model::{Mapping, Reader, mappings};
 use serde_yaml::Value;
 
 fn read(name: &str) -> String {
@@ -20,7 +20,7 @@ fn format() -> Vec<Mapping> {
 #[test]
 fn a_file_with_every_key_is_in_order() {
     for name in ["docs/every-key.yaml", "docs/desk_arm.yaml"] {
-        let checked = check(name, &read(name)).unwrap_or_else(|report| panic!("{report}"));
+        let checked = Reader::new(name).read(&read(name)).unwrap_or_else(|report| panic!("{report}"));
         assert!(checked.lints.is_empty(), "{}", checked.lints);
     }
 }

@@ -2,11 +2,11 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use rne_model::{check_bytes, check_bytes_with_run_time};
+use rne_model::Reader;
 use rne_runtime::DynArm;
 
 fuzz_target!(|bytes: &[u8]| {
-    let checked = check_bytes("x.yaml", bytes);
+    let checked = Reader::new("x.yaml").read(bytes);
     let is_valid = checked.is_ok();
     let report = match &checked {
         Ok(checked) => &checked.lints,
@@ -19,7 +19,7 @@ fuzz_target!(|bytes: &[u8]| {
     }
     report.render(true);
     report.short();
-    let varying = check_bytes_with_run_time("x.yaml", bytes, &["m"]);
+    let varying = Reader::new("x.yaml").run_time(&["m"]).read(bytes);
     assert!(is_valid || varying.is_err(), "no error is forgiven at run time");
     if let Ok(checked) = checked {
         let zeros = vec![0.0; checked.robot.dof()];
@@ -27,7 +27,7 @@ fuzz_target!(|bytes: &[u8]| {
         assert_eq!(torques.map(|torques| torques.len()), Ok(checked.robot.dof()));
         // what is written is read again
         let text = rne_convert::robot_file::write(&checked.robot);
-        let again = check_bytes("again.yaml", text.as_bytes());
+        let again = Reader::new("again.yaml").read(&text);
         let again = again.unwrap_or_else(|report| panic!("{report}\n{text}")).robot;
         for (old, new) in checked.robot.joints.iter().zip(&again.joints) {
             assert_eq!((old.row.kind, old.row.dh), (new.row.kind, new.row.dh), "{text}");

@@ -3,7 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use rne_convert::{Options, Urdf};
-use rne_model::{Convention, check};
+use rne_model::{Convention, Reader};
 
 fuzz_target!(|text: &str| {
     let Ok(urdf) = Urdf::read("x.urdf", text) else { return };
@@ -16,7 +16,7 @@ fuzz_target!(|text: &str| {
             options.convention = convention;
             options.keep_unphysical = keep;
             if let Ok(imported) = urdf.import(&options) {
-                let again = check("x.yaml", &imported.text);
+                let again = Reader::new("x.yaml").read(&imported.text);
                 let again = again.unwrap_or_else(|report| panic!("{report}\n{}", imported.text)).robot;
                 assert_eq!(again.joints, imported.robot.joints, "{}", imported.text);
                 let _ = rne_convert::export(&again);

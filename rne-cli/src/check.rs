@@ -76,7 +76,7 @@ struct Good {
 
 /// A robot file, and its plan with it, unless that is among the files to be checked itself.
 fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
-    let Checked { robot, lints } = robot_file::read(path)?;
+    let Checked { robot, lints, .. } = robot_file::read(path)?;
     if !arguments.files.contains(&plan_of(path))
         && let Some(read) = plan_file::read(path, &robot)?
     {

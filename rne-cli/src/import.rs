@@ -89,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         name: arguments.name.clone(),
         ..Options::default()
     };
-    let Imported { robot, text, account } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
+    let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let mut remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
     match &arguments.out {
         Some(out) => {

@@ -1,7 +1,7 @@
 //! `rne list`: the robots that are shipped.
 
 use clap::Args;
-use rne_model::check;
+use rne_model::Reader;
 use rne_robots::ROBOTS;
 
 use crate::check::about;
@@ -23,7 +23,7 @@ pub(crate) struct Arguments {}
 pub(crate) fn run() -> Result<Outcome, Failure> {
     let mut rows = Vec::new();
     for file in ROBOTS {
-        let robot = check(file.name, file.yaml).map_err(|report| Failure::from(&report))?.robot;
+        let robot = Reader::new(file.name).read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
         let title = robot.title.clone().unwrap_or_default();
         let kinds = about(&robot);
         let kinds = kinds.strip_prefix(&format!("{}, ", file.name)).unwrap_or(&kinds);

@@ -136,7 +136,7 @@ fn text(name: &str, dof: u8, prismatic: &[u8], convention: Convention) -> String
 
 #[cfg(test)]
 mod tests {
-    use rne_model::{JointKind, check};
+    use rne_model::{JointKind, Reader};
 
     use super::*;
 
@@ -145,7 +145,7 @@ mod tests {
         for convention in [Convention::Standard, Convention::Modified] {
             for dof in [1, 2, 6, 7, 64] {
                 let text = text("my_arm", dof, &[2], convention);
-                let checked = check("my_arm.yaml", &text).unwrap_or_else(|report| panic!("{report}"));
+                let checked = Reader::new("my_arm.yaml").read(&text).unwrap_or_else(|report| panic!("{report}"));
                 assert!(checked.lints.is_empty(), "{}", checked.lints.render(false));
                 assert_eq!((checked.robot.dof(), checked.robot.convention), (usize::from(dof), convention));
                 for (index, joint) in checked.robot.joints.iter().enumerate() {

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Robot, check_bytes_with_settings, read_file, read_limited, robot_of};
+use rne_model::{Checked, Reader, Robot, read_file, read_limited, robot_of};
 use rne_robots::RobotFile;
 
 use crate::outcome::Failure;
@@ -50,7 +50,7 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
     if let Some(robot) = of_a_name(path) {
         let name = format!("{} (shipped)", robot.name);
         let bytes = robot.yaml.as_bytes();
-        let checked = check_bytes_with_settings(&name, bytes, settings).map_err(|report| Failure::from(&report))?;
+        let checked = reader(&name, settings).read(bytes).map_err(|report| Failure::from(&report))?;
         return Ok((checked, bytes.to_vec()));
     }
     let (name, bytes) = if path == Path::new("-") {
@@ -67,8 +67,12 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    let checked = check_bytes_with_settings(&name, &bytes, settings).map_err(|report| Failure::from(&report))?;
+    let checked = reader(&name, settings).read(&bytes).map_err(|report| Failure::from(&report))?;
     Ok((checked, bytes))
+}
+
+fn reader<'a>(name: &'a str, settings: &[(&'a str, f64)]) -> Reader<'a> {
+    settings.iter().fold(Reader::new(name), |reader, &(parameter, value)| reader.setting(parameter, value))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

@@ -6,7 +6,7 @@ use std::path::Path;
 use rne::{DynArm, InverseDynamics as _};
 use rne_codegen::emit::{self, Selection};
 use rne_codegen::{self as codegen, Form, Function, Program, Step};
-use rne_model::{Robot, check};
+use rne_model::{Reader, Robot};
 
 use crate::layout::{Align, columns, wrap};
 use crate::numbers::{at_the_point, exact};
@@ -32,7 +32,7 @@ const WIDTH: usize = 80;
 
 pub(crate) fn run() -> Result<Outcome, Failure> {
     let file = robot_file::shipped(NAME)?;
-    let robot = check(NAME, file.yaml).map_err(|report| Failure::from(&report))?.robot;
+    let robot = Reader::new(NAME).read(file.yaml).map_err(|report| Failure::from(&report))?.robot;
     let program = codegen::Compiler::new(&robot)
         .compile(Function::InverseDynamics, Form::SevenSteps)
         .map_err(|error| Failure::compile(NAME, &error))?;

@@ -9,6 +9,7 @@ use crate::ir::name::Name;
 
 /// Why a robot cannot be compiled.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum CompileError {
     /// A constant made from finite numbers of the table overflows.
     NotFinite {
@@ -66,6 +67,7 @@ pub enum CompileError {
 
 /// What may be the cause when a form is refused.
 #[derive(Clone, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Suspect {
     /// It was written by the plan of a plan file.
     pub planned: bool,

@@ -404,7 +404,7 @@ mod tests {
     #[test]
     fn the_choice_of_products_is_not_quadratic() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/dense/dense7.yaml");
-        let robot = rne_model::check_bytes("dense7", &std::fs::read(path).unwrap()).unwrap().robot;
+        let robot = rne_model::Reader::new("dense7").read(&std::fs::read(path).unwrap()).unwrap().robot;
         let program = Compiler::new(&robot).compile(Function::Regressor, Form::SevenSteps).unwrap();
         let (mut graph, _) = Graph::new(&program);
         graph.flatten(Named::Too);

@@ -36,6 +36,7 @@ pub(crate) const TURN: usize = 50;
 const SPARE: usize = 4;
 
 /// When the values of a program are there, in cycles from the call on, and how long what follows takes.
+#[derive(Debug)]
 pub(crate) struct Latency {
     known: BTreeMap<Name, usize>,
     rest: BTreeMap<Name, usize>,

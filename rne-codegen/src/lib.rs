@@ -11,6 +11,7 @@
 //! ```
 //!
 //! Data in, data out: nothing here opens a file or prints.
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]

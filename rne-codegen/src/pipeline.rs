@@ -121,7 +121,7 @@ mod tests {
     #[test]
     fn what_is_too_large_is_refused_with_what_to_do() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
-        let robot = rne_model::check_bytes("ur5", &std::fs::read(path).unwrap()).unwrap().robot;
+        let robot = rne_model::Reader::new("ur5").read(&std::fs::read(path).unwrap()).unwrap().robot;
         let function = Function::InverseDynamicsDerivatives;
         let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
         assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });

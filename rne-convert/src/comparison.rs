@@ -12,6 +12,7 @@ pub(crate) const STATES: usize = 1000;
 /// The largest differences over 1,000 states within the limits, with speeds up to 2 and accelerations up to 5 (rad or
 /// m).
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[non_exhaustive]
 pub struct Difference {
     /// Of the tip's place, m.
     pub position: f64,

@@ -1,6 +1,6 @@
 //! From one convention to the other: the same arm, the same frame 0 where its z axis lies on joint 1.
 
-use rne_model::{Convention, Double, JointKind, Report, Robot, Row, check};
+use rne_model::{Convention, Double, JointKind, Reader, Report, Robot, Row};
 
 use crate::body::Body;
 use crate::chain::{Chain, ChainJoint};
@@ -13,6 +13,7 @@ use crate::table::table;
 
 /// A robot in another convention.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Converted {
     /// The robot.
     pub robot: Robot,
@@ -44,7 +45,7 @@ pub fn convert(robot: &Robot, convention: Convention) -> Result<Converted, Repor
     let note = format!("- converted from {} to {} rows by rne", word(robot.convention), word(convention));
     result.notes = Some(robot.notes.as_ref().map_or_else(|| note.clone(), |notes| format!("{notes}\n{note}")));
     let text = robot_file::write(&result);
-    let checked = check(&format!("{}, converted", robot.name), &text)?;
+    let checked = Reader::new(&format!("{}, converted", robot.name)).read(&text)?;
     let rounding = Difference::of_table(&Dynamics::of(&chain), &checked.robot);
     Ok(Converted { remarks: remarks(&checked.robot, &table), robot: checked.robot, text, rounding })
 }

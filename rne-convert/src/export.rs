@@ -12,6 +12,7 @@ use crate::robot_file::number;
 
 /// A robot as a URDF.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Exported {
     /// The URDF.
     pub text: String,

@@ -1,7 +1,7 @@
 //! From a URDF to a robot file, with an account of what was done.
 
 use rne_model::{
-    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Report, Robot, Row, RunTime, Transform, check,
+    Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Report, Robot, Row, RunTime, Transform,
 };
 
 use crate::chain::{Chain, Extracted, Selection, extract};
@@ -46,6 +46,7 @@ impl Default for Options {
 
 /// A robot made of a URDF.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Imported {
     /// The robot.
     pub robot: Robot,
@@ -57,6 +58,7 @@ pub struct Imported {
 
 /// What an import did.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Account {
     /// The links at the ends of the chain.
     pub base: String,
@@ -130,7 +132,7 @@ impl Urdf {
         };
         robot.notes = notes(&told, change.as_ref());
         let text = robot_file::write(&robot);
-        let checked = check(&format!("{}, imported", self.source.file), &text)?;
+        let checked = Reader::new(&format!("{}, imported", self.source.file)).read(&text)?;
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let account = Account {

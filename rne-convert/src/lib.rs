@@ -6,6 +6,7 @@
 //!
 //! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
 //! table, and what is zero on paper is zero: the compiler folds it away.
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 
 mod body;

@@ -9,6 +9,7 @@ pub const TOLERANCE: f64 = 2e-4;
 
 /// An angle or an axis that was taken for the one that was meant.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Snapped {
     /// Of what: `joint shoulder, roll`.
     pub place: String,

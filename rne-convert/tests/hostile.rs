@@ -117,7 +117,7 @@ fn what_does_not_matter_is_passed_over_and_names_stay_words() {
     let imported = Urdf::read("a.urdf", &named).unwrap().import(&Options::default()).unwrap();
     assert_eq!(imported.robot.name, "r_2_d2_co");
     assert_eq!(imported.robot.joints[0].name, "j: \"#<{}  - x");
-    assert_eq!(rne_model::check("x", &imported.text).unwrap().robot, imported.robot);
+    assert_eq!(rne_model::Reader::new("x").read(&imported.text).unwrap().robot, imported.robot);
     let control = text.replace("name=\"j\"", "name=\"j\u{1b}[31m\"");
     if let Err(report) = Urdf::read("a.urdf", &control).and_then(|urdf| urdf.import(&Options::default()).map(|_| ())) {
         assert!(report.to_string().starts_with("error: "), "{report}");

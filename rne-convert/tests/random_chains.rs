@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use fastrand::Rng;
 use rne_convert::{Difference, Imported, Options, Selection, Urdf, convert, export};
-use rne_model::{Convention, Robot, check};
+use rne_model::{Convention, Reader, Robot};
 use rne_runtime::DynArm;
 
 const BOTH: [Convention; 2] = [Convention::Standard, Convention::Modified];
@@ -150,7 +150,7 @@ fn chains_of_urdfs_are_their_tables() {
             let imported = import(&text, convention, false);
             let reach = reach(&imported.robot);
             assert_small(&imported.account.rounding, reach, &format!("case {case} {convention:?}\n{text}"));
-            assert_eq!(check("written", &imported.text).unwrap().robot, imported.robot);
+            assert_eq!(Reader::new("written").read(&imported.text).unwrap().robot, imported.robot);
         }
     }
 }
@@ -206,9 +206,13 @@ fn shipped_robots_are_written_converted_and_exported() {
             continue;
         }
         seen += 1;
-        let robot = check(&name, &std::fs::read_to_string(&path).unwrap()).unwrap().robot;
+        let robot = Reader::new(&name).read(&std::fs::read_to_string(&path).unwrap()).unwrap().robot;
         let written = rne_convert::robot_file::write(&robot);
-        assert_eq!(check(&name, &written).unwrap_or_else(|report| panic!("{report}")).robot, robot, "{written}");
+        assert_eq!(
+            Reader::new(&name).read(&written).unwrap_or_else(|report| panic!("{report}")).robot,
+            robot,
+            "{written}"
+        );
         for convention in BOTH {
             let converted = convert(&robot, convention).unwrap();
             assert_same_torques(&robot, &converted.robot, 1e-12);

@@ -4,7 +4,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write as _;
 
 use rne_convert::{Imported, Options, Selection, Urdf, robot_file};
-use rne_model::{Convention, Inertia, JointKind, Robot, check};
+use rne_model::{Convention, Inertia, JointKind, Reader, Robot};
 use rne_runtime::DynArm;
 
 const GRAVITY: f64 = 9.81;
@@ -40,7 +40,7 @@ fn bare(names: &[&str]) -> String {
 
 fn converted(text: &str, options: &Options) -> Imported {
     let imported = Urdf::read("arm.urdf", text).and_then(|urdf| urdf.import(options)).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(check("written", &imported.text).unwrap().robot, imported.robot, "reading gives the robot");
+    assert_eq!(Reader::new("written").read(&imported.text).unwrap().robot, imported.robot, "reading gives the robot");
     imported
 }
 
@@ -479,7 +479,7 @@ fn all_texts_of_a_robot_come_back() {
             robot.joints[0].name = text.to_owned();
         }
         let written = robot_file::write(&robot);
-        match check("written", &written) {
+        match Reader::new("written").read(&written) {
             Ok(checked) => assert_eq!(checked.robot, robot, "{written}"),
             Err(report) => panic!("{report}\n{written}"),
         }
@@ -487,5 +487,5 @@ fn all_texts_of_a_robot_come_back() {
     robot.source = "word ".repeat(60).trim().to_owned();
     robot.notes = Some(" leading\n\nempty ".to_owned());
     let written = robot_file::write(&robot);
-    assert_eq!(check("written", &written).unwrap().robot, robot, "{written}");
+    assert_eq!(Reader::new("written").read(&written).unwrap().robot, robot, "{written}");
 }

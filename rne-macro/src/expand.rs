@@ -7,7 +7,7 @@ use proc_macro2::{Span, TokenStream};
 use quote::quote;
 use rne_codegen::plan::{self, Fingerprint, PlanFile, PlanSet};
 use rne_codegen::{Capability, Compiler, Form, Program};
-use rne_model::{Checked, Report, Robot, check_bytes, check_bytes_with_run_time};
+use rne_model::{Checked, Reader, Report, Robot};
 use syn::{Data, DeriveInput};
 
 use crate::attribute::{Attribute, Limit, Source};
@@ -141,16 +141,16 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     };
     let names = parameters.names();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let checked = check_bytes(&name, &bytes).and_then(|checked| {
+    let checked = Reader::new(&name).read(&bytes).and_then(|checked| {
         let known: Vec<&str> = checked.robot.parameters.iter().map(|(name, _)| name.as_str()).collect();
         match parameters.check(&known, errors) {
             _ if names.is_empty() => Ok(Some(checked)),
-            true => check_bytes_with_run_time(&name, &bytes, &names).map(Some),
+            true => Reader::new(&name).run_time(&names).read(&bytes).map(Some),
             false => Ok(None),
         }
     });
     match checked {
-        Ok(Some(Checked { robot, lints })) => {
+        Ok(Some(Checked { robot, lints, .. })) => {
             Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, lints: Some(lints) }
         }
         // a field is no parameter, which has been said

@@ -11,8 +11,8 @@ pub const MAX_BYTES: usize = 1 << 20;
 /// What the name of a plan file ends with, in place of the extension of its robot file.
 const PLAN: &str = "plan.yaml";
 
-/// The bytes of a robot file for [`check_bytes`](crate::check_bytes), and no more of them than tell that a file is too
-/// long: a stream without an end, or a huge file, takes neither memory nor time.
+/// The bytes of a robot file for [`Reader::read`](crate::Reader::read), and no more of them than tell that a file is
+/// too long: a stream without an end, or a huge file, takes neither memory nor time.
 ///
 /// # Errors
 ///

@@ -6,6 +6,7 @@ use crate::{document, schema, source};
 
 /// A mapping of the format, such as a link.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Mapping {
     /// What messages call it.
     pub name: &'static str,
@@ -15,6 +16,7 @@ pub struct Mapping {
 
 /// A key of a mapping.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Key {
     /// As it is written.
     pub name: &'static str,

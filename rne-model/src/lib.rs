@@ -1,6 +1,6 @@
 //! The robot file: one YAML document per robot, with its Denavit-Hartenberg table and inertial data.
 //!
-//! [`check()`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every mistake
+//! [`Reader`] reads a document and returns the validated [`Robot`] with its lints, or a [`Report`] of every mistake
 //! with line, column and what is allowed. Strings in, data out: nothing here opens a file; who does reads it with
 //! [`read_file`].
 //!
@@ -15,7 +15,7 @@
 //! joints:
 //!   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mas: 2, inertia: {yy: 0.1, zz: 0.1}}}
 //! ";
-//! let report = rne_model::check("pendulum.yaml", text).unwrap_err();
+//! let report = rne_model::Reader::new("pendulum.yaml").read(text).unwrap_err();
 //! assert_eq!(
 //!     report.short(),
 //!     "pendulum.yaml:8:69: error: unknown key `mas`; a link has the keys mass, com, first_moment, \
@@ -23,16 +23,17 @@
 //! );
 //! assert_eq!(report.diagnostics[0].help.as_deref(), Some("did you mean `mass`?"));
 //!
-//! let checked = rne_model::check("pendulum.yaml", &text.replace("mas:", "mass:")).unwrap();
+//! let checked = rne_model::Reader::new("pendulum.yaml").read(&text.replace("mas:", "mass:")).unwrap();
 //! assert_eq!(checked.robot.joints[0].row.link.mass, 2.0);
 //! assert!(checked.lints.is_empty());
 //! # }
 //! ```
 //!
-//! Parameters of the file may stay free until run time: [`check_bytes_with_run_time`] gives the numbers that depend on
+//! Parameters of the file may stay free until run time: [`Reader::run_time`] gives the numbers that depend on
 //! them as a [`Formula`] each.
 //!
 //! The plain types of the table ([`Row`], [`Angle`], [`Link`], [`Model`], …) need neither `std` nor an allocator.
+#![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 #![cfg_attr(not(feature = "std"), no_std)]
 
@@ -88,7 +89,7 @@ mod urdf;
 mod varying;
 
 #[cfg(feature = "std")]
-pub use check::{Checked, check, check_bytes, check_bytes_with_run_time, check_bytes_with_settings};
+pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
 pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]

@@ -26,7 +26,7 @@ pub struct Robot {
     /// The joints, base to tip; 1 to 64.
     pub joints: Vec<Joint>,
     /// The parameters that stay free until run time, and which numbers depend on them; empty unless asked for, by
-    /// [`check_bytes_with_run_time`](crate::check_bytes_with_run_time).
+    /// [`Reader::run_time`](crate::Reader::run_time).
     pub run_time: RunTime,
     /// Whether rotors belong to the arm; no file says so, [`Robot::with_rotors`] does.
     pub rotors: bool,

@@ -150,7 +150,7 @@ impl Robot {
     /// joints:
     ///   - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mass: 1.2 + payload, com: [-1/4, 0, 0]}}
     /// ";
-    /// let checked = rne_model::check_bytes_with_run_time("pendulum.yaml", text.as_bytes(), &["payload"]).unwrap();
+    /// let checked = rne_model::Reader::new("pendulum.yaml").run_time(&["payload"]).read(text).unwrap();
     /// assert_eq!(checked.robot.joints[0].row.link.mass, 1.2);
     /// let robot = checked.robot.with_parameters(&[0.5]).unwrap();
     /// assert_eq!(robot.joints[0].row.link.mass, 1.2 + 0.5);

@@ -1,6 +1,6 @@
 //! An independent reader of YAML, with serde's own number parsing, agrees with ours on documents of plain numbers.
 
-use rne_model::{Convention, Joint, JointKind, check};
+use rne_model::{Convention, Joint, JointKind, Reader};
 use serde_yaml::Value;
 
 const PLAIN: &str = r#"
@@ -42,7 +42,7 @@ fn or_zero(value: &Value, key: &str) -> f64 {
 
 #[test]
 fn serde_reads_the_same_document() {
-    let robot = check("plain.yaml", PLAIN).unwrap().robot;
+    let robot = Reader::new("plain.yaml").read(PLAIN).unwrap().robot;
     let value: Value = serde_yaml::from_str(PLAIN).unwrap();
     assert_eq!(robot.name, value["name"].as_str().unwrap());
     assert_eq!(robot.source, value["source"].as_str().unwrap().trim_end());

@@ -5,7 +5,7 @@ mod common;
 use std::fmt::Write as _;
 
 use common::{BASE, MOST_WORK, found, the_one, with};
-use rne_model::{Severity, check, check_bytes};
+use rne_model::{Reader, Severity};
 
 /// One replacement in the valid file, and the one error it must give: line, column, underlined text, part of message.
 type Case = (&'static str, &'static str, usize, usize, &'static str, &'static str);
@@ -276,21 +276,21 @@ fn yaml_itself() {
 
 #[test]
 fn bytes_that_are_no_text() {
-    let report = check_bytes("x.yaml", b"format: 1\nname: caf\xE9\n").unwrap_err();
+    let report = Reader::new("x.yaml").read(b"format: 1\nname: caf\xE9\n").unwrap_err();
     let error = &report.diagnostics[0];
     assert_eq!((error.line, error.column), (2, 10));
     assert_eq!(error.message, "byte 0xE9 is not UTF-8; a robot file is UTF-8 text");
     assert!(report.to_string().contains("name: caf\u{FFFD}"), "{report}");
 
-    let report = check_bytes("x.yaml", b"\xFF\xFEf\0o\0").unwrap_err();
+    let report = Reader::new("x.yaml").read(b"\xFF\xFEf\0o\0").unwrap_err();
     assert_eq!((report.diagnostics[0].line, report.diagnostics[0].column), (1, 1));
     assert!(report.to_string().contains("this looks like UTF-16"), "{report}");
 
     let mut marked = b"\xEF\xBB\xBF".to_vec();
     marked.extend_from_slice(BASE.as_bytes());
-    assert_eq!(check_bytes("x.yaml", &marked).unwrap().robot, check("x.yaml", BASE).unwrap().robot);
+    assert_eq!(Reader::new("x.yaml").read(&marked).unwrap().robot, Reader::new("x.yaml").read(BASE).unwrap().robot);
     marked.push(0xFF);
-    let report = check_bytes("x.yaml", &marked).unwrap_err();
+    let report = Reader::new("x.yaml").read(&marked).unwrap_err();
     assert_eq!((report.diagnostics[0].line, report.diagnostics[0].column), (BASE.lines().count() + 1, 1));
 }
 
@@ -314,11 +314,11 @@ fn texts() {
         assert_eq!((error.line, error.column), place, "{text}");
         assert!(error.message.contains(message), "{text}: {}", error.message);
     }
-    let block = check("x.yaml", &title("|\n  An arm\n")).expect("one line").robot;
+    let block = Reader::new("x.yaml").read(&title("|\n  An arm\n")).expect("one line").robot;
     assert_eq!(block.title.as_deref(), Some("An arm"), "the end of a block is no line break");
 
     let lines = with("source: test", "source: \"a\\n\\tb\"\nnotes: |\n  one\n  two\n");
-    let robot = check("x.yaml", &lines).expect("texts of several lines").robot;
+    let robot = Reader::new("x.yaml").read(&lines).expect("texts of several lines").robot;
     assert_eq!((robot.source.as_str(), robot.notes.as_deref()), ("a\n\tb", Some("one\ntwo")));
     for key in ["source", "notes"] {
         let text = with("source: test", "").replace("name: base\n", "name: base\nsource: a\n");
@@ -339,7 +339,7 @@ fn texts() {
 fn a_reader_without_an_end() {
     let bytes = rne_model::read_limited(std::io::repeat(b'#')).expect("it reads");
     assert_eq!(bytes.len(), (1 << 20) + 1);
-    let report = check_bytes("x.yaml", &bytes).unwrap_err();
+    let report = Reader::new("x.yaml").read(&bytes).unwrap_err();
     assert!(report.short().contains("more than 1048576 bytes"), "{report}");
     assert_eq!(rne_model::read_limited(BASE.as_bytes()).expect("it reads"), BASE.as_bytes());
 }
@@ -347,8 +347,11 @@ fn a_reader_without_an_end() {
 #[test]
 fn size() {
     let padded = |length: usize| format!("{BASE}#{}", " ".repeat(length - BASE.len() - 1));
-    assert!(check("x.yaml", &padded(1 << 20)).is_ok());
-    for report in [check("x.yaml", &padded((1 << 20) + 1)), check_bytes("x.yaml", padded((1 << 20) + 1).as_bytes())] {
+    assert!(Reader::new("x.yaml").read(&padded(1 << 20)).is_ok());
+    for report in [
+        Reader::new("x.yaml").read(&padded((1 << 20) + 1)),
+        Reader::new("x.yaml").read(padded((1 << 20) + 1).as_bytes()),
+    ] {
         let report = report.unwrap_err();
         assert!(report.short().starts_with("x.yaml:1:1: error: the file has more than 1048576 bytes (1 MiB)"));
         assert!(report.to_string().contains("--> x.yaml:1:1"), "{report}");
@@ -364,7 +367,7 @@ fn number_of_joints() {
         }
         text
     };
-    let robot = check("x.yaml", &arm(64)).unwrap().robot;
+    let robot = Reader::new("x.yaml").read(&arm(64)).unwrap().robot;
     assert_eq!((robot.dof(), robot.joints[63].name.as_str()), (64, "joint64"));
     let report = found(&arm(65));
     assert_eq!(report.short(), "robots/x.yaml:72:5: error: 65 joints; 1 to 64 joints are allowed");
@@ -396,13 +399,13 @@ fn a_urdf_is_told_about_import() {
     for text in
         [format!("<?xml version=\"1.0\"?>\n{tag}"), tag.to_owned(), format!("\n {tag}"), format!("<!-- a -->{tag}")]
     {
-        let report = check("arm.urdf", &text).unwrap_err();
+        let report = Reader::new("arm.urdf").read(&text).unwrap_err();
         let [error] = &report.diagnostics[..] else { panic!("{report}") };
         assert!(error.message.starts_with("this is URDF"), "{}", error.message);
         assert!(error.help.as_ref().is_some_and(|help| help.contains("rne import arm.urdf")), "{:?}", error.help);
     }
     let long = format!("<robot>{}", " ".repeat(2 << 20));
-    assert!(check("long.urdf", &long).unwrap_err().short().contains("this is URDF"), "however long it is");
+    assert!(Reader::new("long.urdf").read(&long).unwrap_err().short().contains("this is URDF"), "however long it is");
 }
 
 #[test]
@@ -410,7 +413,7 @@ fn a_first_moment_is_a_centre_of_mass() {
     let file = |link: &str| {
         format!("{BASE}  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}, link: {{{link}}}}}\n")
     };
-    let com = |link: &str| check("x", &file(link)).unwrap().robot.joints.last().unwrap().row.link.com;
+    let com = |link: &str| Reader::new("x").read(&file(link)).unwrap().robot.joints.last().unwrap().row.link.com;
     assert_eq!(com("mass: 4, first_moment: [1, m, 0]"), [0.25, 0.375, 0.0]);
     assert_eq!(com("mass: 0, first_moment: [0, 0, 0]"), [0.0; 3]);
     for (link, part) in [
@@ -419,12 +422,12 @@ fn a_first_moment_is_a_centre_of_mass() {
         ("first_moment: [1, 0, 0]", "a first moment without mass"),
         ("mass: 1, first_moment: [1, 0]", "a list of 2 where 3 numbers"),
     ] {
-        let report = check("x", &file(link)).unwrap_err();
+        let report = Reader::new("x").read(&file(link)).unwrap_err();
         assert!(report.short().contains(part), "{report}");
     }
     // What depends on a parameter does so through the mass, too.
     let text = file("mass: 1 + r, first_moment: [1, 0, 0]");
-    let robot = rne_model::check_bytes_with_run_time("x", text.as_bytes(), &["r"]).unwrap().robot;
+    let robot = Reader::new("x").run_time(&["r"]).read(&text).unwrap().robot;
     let heavier = robot.with_parameters(&[7.0]).unwrap();
     assert_eq!(heavier.joints.last().unwrap().row.link.com, [1.0 / 8.0, 0.0, 0.0]);
 }
@@ -434,9 +437,9 @@ fn an_inertia_that_no_body_has_is_kept_where_the_file_says_so() {
     let file = |link: &str| {
         format!("{BASE}  - {{type: revolute, dh: {{theta: 0, d: 0, a: 0, alpha: 0}}, link: {{{link}}}}}\n")
     };
-    let report = check("x", &file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}")).unwrap_err();
+    let report = Reader::new("x").read(&file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}")).unwrap_err();
     assert!(report.short().contains("not positive semidefinite"), "{report}");
-    let checked = check("x", &file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}, physical: false")).unwrap();
+    let checked = Reader::new("x").read(&file("mass: 1, inertia: {xx: -0.1, yy: 1, zz: 1}, physical: false")).unwrap();
     assert!(checked.lints.to_string().contains("as `physical: false` says"), "{}", checked.lints);
     assert!(!checked.robot.joints.last().unwrap().is_physical());
 }
@@ -512,7 +515,7 @@ fn hostile_files() {
         ("folded text", format!("a: {}", fill("b\n  ")), ""),
     ] {
         let text = text.get(..1 << 20).unwrap_or(&text);
-        let report = check("x.yaml", text).expect_err(what);
+        let report = Reader::new("x.yaml").read(text).expect_err(what);
         assert!(report.to_string().contains(message), "{what}: {report}");
         println!("{what}: {} bytes, {} steps", text.len(), report.work());
         assert!(report.work() <= MOST_WORK, "{what}: {} steps", report.work());
@@ -527,7 +530,7 @@ fn thousands_of_joints() {
     for (count, message) in
         [(65, "65 joints; 1 to 64 joints"), (10_000, "more than 64 joints; 1 to 64 joints are allowed")]
     {
-        let report = check("x.yaml", &format!("{head}{}", joint.repeat(count))).unwrap_err();
+        let report = Reader::new("x.yaml").read(&format!("{head}{}", joint.repeat(count))).unwrap_err();
         assert!(report.errors().next().unwrap().message.contains(message), "{report}");
     }
 }

@@ -4,16 +4,16 @@ mod common;
 
 use common::BASE;
 use proptest::prelude::*;
-use rne_model::{Report, check, check_bytes, check_bytes_with_run_time, is_control};
+use rne_model::{Reader, Report, is_control};
 
 /// Reads, renders every way, and checks what must hold of every report.
 fn survive(bytes: &[u8]) -> Result<(), TestCaseError> {
-    let result = check_bytes("x.yaml", bytes);
+    let result = Reader::new("x.yaml").read(bytes);
     let valid = result.is_ok();
     let report = result.map_or_else(|report| report, |checked| checked.lints);
     prop_assert_eq!(report.has_errors(), !valid, "{}", report.short());
     well_formed(&report)?;
-    let varying = check_bytes_with_run_time("x.yaml", bytes, &["m", "r"]);
+    let varying = Reader::new("x.yaml").run_time(&["m", "r"]).read(bytes);
     prop_assert!(valid || varying.is_err(), "no error is forgiven at run time");
     well_formed(&varying.map_or_else(|report| report, |checked| checked.lints))?;
     let most = 1000 + 100 * bytes.len();
@@ -153,7 +153,7 @@ proptest! {
     ) {
         let expression = tokens.concat();
         let text = BASE.replace("d: 0.4", &format!("d: \"{expression}\""));
-        match check("x.yaml", &text) {
+        match Reader::new("x.yaml").read(&text) {
             Ok(checked) => prop_assert!(checked.robot.joints[0].row.dh.d.is_finite()),
             Err(report) => {
                 prop_assert_eq!(report.diagnostics.len(), 1);
@@ -172,7 +172,8 @@ proptest! {
     ) {
         for written in [format!("{value:?}"), format!("{value:e}"), format!("{value}")] {
             let text = BASE.replace("d: 0.4", &format!("d: {written}"));
-            let robot = check("x.yaml", &text).map_err(|report| TestCaseError::fail(report.to_string()))?.robot;
+            let checked = Reader::new("x.yaml").read(&text);
+            let robot = checked.map_err(|report| TestCaseError::fail(report.to_string()))?.robot;
             prop_assert_eq!(robot.joints[0].row.dh.d, value);
         }
     }

@@ -3,14 +3,14 @@
 use std::f64::consts::FRAC_PI_2;
 
 use rne_model::{
-    Convention, Inertia, InertiaReference, JointKind, Limits, Link, QuarterTurns, Robot, Transform, check,
+    Convention, Inertia, InertiaReference, JointKind, Limits, Link, QuarterTurns, Reader, Robot, Transform,
 };
 
 const DEMO: &str = include_str!("robots/rp_demo.yaml");
 
 #[test]
 fn the_example_of_the_format() {
-    let checked = check("robots/rp_demo.yaml", DEMO).unwrap();
+    let checked = Reader::new("robots/rp_demo.yaml").read(DEMO).unwrap();
     assert_eq!(checked.lints.to_string(), "");
     let robot = checked.robot;
     assert_eq!(robot.name, "rp_demo");
@@ -95,8 +95,9 @@ fn the_robots_of_the_repository() {
         if path.extension().is_none_or(|extension| extension != "yaml") || name.ends_with(".plan.yaml") {
             continue;
         }
-        let checked =
-            check(&name, &std::fs::read_to_string(&path).unwrap()).unwrap_or_else(|report| panic!("{report}"));
+        let checked = Reader::new(&name)
+            .read(&std::fs::read_to_string(&path).unwrap())
+            .unwrap_or_else(|report| panic!("{report}"));
         assert_eq!(format!("{}.yaml", checked.robot.name), name);
         assert_eq!(checked.lints.warnings().count(), 0, "{}", checked.lints);
         noted.extend(checked.lints.notes().map(|lint| (name.clone(), lint.label.clone().unwrap_or_default())));

@@ -6,12 +6,12 @@ use std::fmt::Write as _;
 
 use common::{BASE, MOST_WORK};
 use rne_model::InertiaElement::{Xx, Xy, Xz, Yy, Yz, Zz};
-use rne_model::{Checked, Diagnostic, Entry, Formula, Report, Robot, RunTime, check, check_bytes_with_run_time};
+use rne_model::{Checked, Diagnostic, Entry, Formula, Reader, Report, Robot, RunTime};
 
 const PAYLOAD: &str = include_str!("robots/payload.yaml");
 
 fn read(text: &str, names: &[&str]) -> Result<Checked, Report> {
-    check_bytes_with_run_time("robots/x.yaml", text.as_bytes(), names)
+    Reader::new("robots/x.yaml").run_time(names).read(text)
 }
 
 fn robot(text: &str, names: &[&str]) -> Robot {
@@ -36,7 +36,7 @@ fn without_names_nothing_stays_free() {
     for text in [BASE, PAYLOAD] {
         let robot = robot(text, &[]);
         assert!(robot.run_time.is_empty());
-        assert_eq!(robot, check("robots/x.yaml", text).unwrap().robot);
+        assert_eq!(robot, Reader::new("robots/x.yaml").read(text).unwrap().robot);
         assert_eq!(robot.with_parameters(&[]).as_ref(), Some(&robot));
         assert_eq!(robot.with_parameters(&[1.0]), None);
     }
@@ -94,7 +94,7 @@ fn inertia_is_moved_to_the_centre_of_mass_as_a_formula() {
     );
     // Exact zeros stay exact zeros, and nothing else of the robot depends on it.
     assert!([Xy, Yz].iter().all(|element| robot.run_time.formula(Entry::Inertia(0, *element)).is_none()));
-    assert_eq!(numbers(&robot), numbers(&check("robots/x.yaml", PAYLOAD).unwrap().robot));
+    assert_eq!(numbers(&robot), numbers(&Reader::new("robots/x.yaml").read(PAYLOAD).unwrap().robot));
 }
 
 #[test]
@@ -123,11 +123,11 @@ fn the_robot_at_other_values_is_that_of_the_file_with_other_numbers() {
         .replace("unit: 1", "unit: 2.5");
     let moved = original.with_parameters(&values).unwrap();
     assert_eq!(format!("{moved:?}"), format!("{:?}", robot(&text, &names)));
-    assert_eq!(numbers(&moved), numbers(&check("robots/x.yaml", &text).unwrap().robot));
+    assert_eq!(numbers(&moved), numbers(&Reader::new("robots/x.yaml").read(&text).unwrap().robot));
     // A zero at run time is a zero, without a sign.
     let zero = original.with_parameters(&[0.0, 0.0, 0.0, 2e-4, 1.0]).unwrap();
     let text = PAYLOAD.replace("g: 9.81", "g: 0").replace("h: 0.3", "h: 0");
-    assert_eq!(numbers(&zero), numbers(&check("robots/x.yaml", &text).unwrap().robot));
+    assert_eq!(numbers(&zero), numbers(&Reader::new("robots/x.yaml").read(&text).unwrap().robot));
 }
 
 #[test]
@@ -314,4 +314,17 @@ fn hostile_formulas() {
     }
     let robot = robot(&BASE.replace("d: 0.4", &format!("d: \"m{}\"", "+m".repeat(124))), &["m"]);
     assert_eq!(robot.with_parameters(&[2.0]).unwrap().joints[0].row.dh.d, 250.0);
+}
+
+/// What is set and stays free has the value that was set; of two settings the last counts.
+#[test]
+fn settings_and_run_time_parameters_go_together() {
+    let reader = Reader::new("x.yaml").setting("payload", 9.0).setting("payload", 2.0);
+    let set = reader.read(PAYLOAD).unwrap().robot;
+    let free = reader.run_time(&["payload"]).read(PAYLOAD).unwrap().robot;
+    assert_eq!(set.joints[0].row.link.mass, 1.2 + 2.0);
+    assert_eq!(numbers(&set), numbers(&free));
+    assert_eq!(free.run_time.values(&free), [2.0]);
+    let other = Reader::new("x.yaml").setting("payload", 3.0).read(PAYLOAD).unwrap().robot;
+    assert_eq!(numbers(&free.with_parameters(&[3.0]).unwrap()), numbers(&other));
 }

@@ -1,7 +1,7 @@
 //! Whatever the expressions: the formulas give the numbers of the file, and those of the file with other numbers.
 
 use proptest::prelude::*;
-use rne_model::{Robot, RunTime, check_bytes_with_run_time};
+use rne_model::{Reader, Robot, RunTime};
 
 /// Arithmetic over the run-time parameters `p` and `r`, the constant `m` and numbers. Without powers: `libm::pow` may
 /// round them otherwise than products.
@@ -51,7 +51,7 @@ fn numbers(robot: &Robot) -> String {
 }
 
 fn read(text: &str, names: &[&str]) -> Option<Robot> {
-    check_bytes_with_run_time("x.yaml", text.as_bytes(), names).ok().map(|checked| checked.robot)
+    Reader::new("x.yaml").run_time(names).read(text).ok().map(|checked| checked.robot)
 }
 
 fn value() -> impl Strategy<Value = f64> {

@@ -39,6 +39,7 @@ pub struct LinkParameter {
 
 /// A combination of link parameters that the torques can see: `kept` + Σ coefficient · parameter.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BaseParameter {
     /// The parameter whose column of the regressor stands for it.
     pub kept: LinkParameter,
@@ -50,6 +51,7 @@ pub struct BaseParameter {
 
 /// What the torques of a robot can see of its links, without rotors and friction.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct BaseParameters {
     /// One per independent column, base to tip.
     pub parameters: Vec<BaseParameter>,

@@ -34,7 +34,16 @@ impl fmt::Display for LoadError {
     }
 }
 
-impl Error for LoadError {}
+impl Error for LoadError {
+    /// What the operating system says; the other two are shown as they are, without words of this error.
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Unreadable { error, .. } => Some(error),
+            Self::Invalid(report) => report.source(),
+            Self::WrongJointCount(error) => error.source(),
+        }
+    }
+}
 
 impl From<Report> for LoadError {
     fn from(report: Report) -> Self {

@@ -1,5 +1,6 @@
 //! The runtime side of `rne`: the scalar, the capability traits, and the generic recursion in nalgebra that every
 //! generated function is compared with.
+#![warn(missing_debug_implementations)]
 #![cfg_attr(not(feature = "std"), no_std)]
 #![cfg_attr(all(feature = "core_float_math", not(feature = "std")), feature(core_float_math))]
 #![allow(clippy::doc_markdown)] // formulas: R_i, f_{i-1,i}

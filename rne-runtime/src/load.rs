@@ -3,7 +3,7 @@
 use core::array;
 use std::path::Path;
 
-use rne_model::{Robot, check_bytes, read_file};
+use rne_model::{Reader, Robot, read_file};
 
 use crate::{Arm, DynArm, LoadError, WrongJointCount};
 
@@ -56,5 +56,5 @@ impl DynArm {
 fn read(path: &Path) -> Result<Robot, LoadError> {
     let bytes = read_file(path);
     let bytes = bytes.map_err(|error| LoadError::Unreadable { path: path.into(), error })?;
-    Ok(check_bytes(&path.display().to_string(), &bytes)?.robot)
+    Ok(Reader::new(&path.display().to_string()).read(&bytes)?.robot)
 }

@@ -11,6 +11,7 @@ use crate::{Constant, Scalar};
 /// The axes are those of form P when the entry comes from a [`Trace`]: fixed to link i, z along joint i. The
 /// conversions of a trace return the same quantities in other axes.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct LinkTrace<T> {
     /// sin θ_i.
     pub sin: T,
@@ -47,6 +48,7 @@ pub struct LinkTrace<T> {
 
 /// The seven steps of one state of an arm with `DOF` joints, in the axes of form P.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Trace<const DOF: usize, T> {
     /// One entry per link, base to tip.
     pub links: [LinkTrace<T>; DOF],

@@ -3,6 +3,8 @@
 
 mod common;
 
+use std::error::Error;
+
 use common::assert_close;
 use rne_model::Robot;
 use rne_runtime::{Arm, DynArm, InverseDynamics, LoadError, WrongJointCount};
@@ -54,7 +56,11 @@ fn mistakes_are_named() {
     assert!(matches!(error, LoadError::WrongJointCount(count) if count == wrong), "{error}");
     assert_eq!(error.to_string(), "the robot has 6 joints, but an `Arm<7>` was asked for");
 
+    assert!(error.source().is_none(), "shown as it is");
+
     let error = DynArm::from_file("no/such/robot.yaml").unwrap_err();
+    let cause = error.source().and_then(|cause| cause.downcast_ref::<std::io::Error>());
+    assert_eq!(cause.map(std::io::Error::kind), Some(std::io::ErrorKind::NotFound));
     assert!(error.to_string().starts_with("cannot read no/such/robot.yaml: "), "{error}");
 
     if cfg!(unix) {

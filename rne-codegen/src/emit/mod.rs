@@ -43,7 +43,7 @@ mod tests {
 
     #[test]
     fn variables_of_the_emitters_are_taken() {
-        let robot = rne_model::check("planar2", include_str!("../../../robots/planar2.yaml")).unwrap().robot;
+        let robot = rne_model::Reader::new("planar2").read(include_str!("../../../robots/planar2.yaml")).unwrap().robot;
         let program = Compiler::new(&robot).compile(Function::InverseDynamics, Form::SevenSteps).unwrap();
         let locals: Vec<_> = super::locals(&program).collect();
         for local in ["q", "qd", "qdd", "zero", "unused", "tau"] {

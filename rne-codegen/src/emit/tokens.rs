@@ -18,6 +18,7 @@ use crate::program::{Expression, Program, Statement};
 ///
 /// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
 /// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
+#[derive(Debug)]
 pub struct Body<'a> {
     program: &'a Program,
     scalar: &'a TokenStream,
@@ -27,6 +28,7 @@ pub struct Body<'a> {
 }
 
 /// Which products are added by the scalar's `mul_add`.
+#[derive(Debug)]
 enum Fusing {
     None,
     /// Those that nothing waits for, and those that are sooner there for it.

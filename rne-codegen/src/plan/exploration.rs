@@ -16,6 +16,7 @@ const DEFAULT_EVALUATIONS: usize = 240;
 
 /// How far a search has come.
 #[derive(Clone, Debug)]
+#[non_exhaustive]
 pub struct Progress {
     /// Plans counted so far.
     pub plans: usize,

@@ -3,7 +3,7 @@
 mod algorithms;
 mod unusual;
 
-use rne_model::{Robot, check_bytes};
+use rne_model::{Reader, Robot};
 
 use super::*;
 use crate::fma::{contracted, ordered_for_latency};
@@ -26,7 +26,7 @@ fn robot(name: &str) -> Robot {
         _ => "robots",
     };
     let path = format!("{}/../{folder}/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
-    check_bytes(name, &std::fs::read(path).unwrap()).unwrap().robot
+    Reader::new(name).read(&std::fs::read(path).unwrap()).unwrap().robot
 }
 
 const SEVERAL: [&str; 8] =

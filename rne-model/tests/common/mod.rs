@@ -1,7 +1,7 @@
 //! A valid file and ways to break it.
 #![allow(dead_code, unreachable_pub)] // each test uses its part
 
-use rne_model::{Diagnostic, Report, check};
+use rne_model::{Diagnostic, Reader, Report};
 
 /// A valid file; the tests count on its lines.
 pub const BASE: &str = include_str!("../robots/base.yaml");
@@ -17,7 +17,7 @@ pub fn with(old: &str, new: &str) -> String {
 
 /// Everything found in a text, be it valid or not.
 pub fn found(text: &str) -> Report {
-    match check("robots/x.yaml", text) {
+    match Reader::new("robots/x.yaml").read(text) {
         Ok(checked) => checked.lints,
         Err(report) => report,
     }

@@ -11,6 +11,7 @@ use core::f64::consts::FRAC_2_PI as FRAC_2_PI_F64;
 use super::Lanes;
 
 /// A reduced angle: `head - excess` is x - n π/2.
+#[derive(Debug)]
 pub struct Reduced<V> {
     /// n modulo 4 in the two lowest bits of its representation.
     pub(super) rounded: V,
