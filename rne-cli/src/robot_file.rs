@@ -5,7 +5,9 @@ use std::fs;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Robot, check_bytes_with_settings, read_file, read_limited, robot_of};
+use rne_model::{
+    Checked, Report, Robot, check_bytes_with_run_time, check_bytes_with_settings, read_file, read_limited, robot_of,
+};
 use rne_robots::RobotFile;
 
 use crate::outcome::Failure;
@@ -35,11 +37,16 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
 
 /// The same with other values of the file's parameters.
 pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
-    Ok(read_with_bytes(path, settings)?.0)
+    Ok(read_by(path, |name, bytes| check_bytes_with_settings(name, bytes, settings))?.0)
 }
 
-/// As [`read_with`], and the bytes of the file.
-pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(Checked, Vec<u8>), Failure> {
+/// A valid robot some of whose parameters stay free until run time, and the bytes of its file.
+pub(crate) fn read_with_run_time(path: &Path, names: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
+    read_by(path, |name, bytes| check_bytes_with_run_time(name, bytes, names))
+}
+
+/// A robot as `check` reads it from a name and bytes, and these bytes.
+fn read_by(path: &Path, check: impl Fn(&str, &[u8]) -> Result<Checked, Report>) -> Result<(Checked, Vec<u8>), Failure> {
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
@@ -50,7 +57,7 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
     if let Some(robot) = of_a_name(path) {
         let name = format!("{} (shipped)", robot.name);
         let bytes = robot.yaml.as_bytes();
-        let checked = check_bytes_with_settings(&name, bytes, settings).map_err(|report| Failure::from(&report))?;
+        let checked = check(&name, bytes).map_err(|report| Failure::from(&report))?;
         return Ok((checked, bytes.to_vec()));
     }
     let (name, bytes) = if path == Path::new("-") {
@@ -67,7 +74,7 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    let checked = check_bytes_with_settings(&name, &bytes, settings).map_err(|report| Failure::from(&report))?;
+    let checked = check(&name, &bytes).map_err(|report| Failure::from(&report))?;
     Ok((checked, bytes))
 }
 
