@@ -4,8 +4,9 @@
 use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
 use rne_codegen::emit::{Golden, Precision};
 use rne_codegen::{Function, Program};
-use rne_model::Robot;
+use rne_model::{GoldenFile, Robot};
 
+use crate::numbers::exact;
 use crate::outcome::Failure;
 use crate::state::State;
 
@@ -56,6 +57,31 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
         ("base_gravity", gravity.to_vec()),
         ("parameters", parameters),
     ]
+}
+
+/// A golden file: torques of a robot at so many states.
+pub(crate) fn file(robot: &Robot, states: u16) -> Result<String, Failure> {
+    let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));
+    let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };
+    let mut text = format!(
+        "# Torques of {}{rotors}, by the runtime of rne {}: rad, rad/s, rad/s^2, N m; m, m/s, m/s^2, N where a joint \
+         slides\n{}\n",
+        robot.name,
+        env!("CARGO_PKG_VERSION"),
+        GoldenFile::header(robot.dof()).join(",")
+    );
+    for _ in 0..states {
+        let state = random.state(robot.dof());
+        let torques = state.numbers(&arm).map_err(Failure::usage)?;
+        let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
+        let numbers: Vec<String> = numbers.copied().map(exact).collect();
+        if torques.iter().any(|torque| !torque.is_finite()) {
+            return Err(Failure::input(format_args!("a torque of {} overflows", robot.name)));
+        }
+        text.push_str(&numbers.join(","));
+        text.push('\n');
+    }
+    Ok(text)
 }
 
 /// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.

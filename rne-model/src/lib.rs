@@ -59,6 +59,8 @@ mod expression;
 #[cfg(feature = "std")]
 mod formula;
 #[cfg(feature = "std")]
+mod golden;
+#[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
 mod keys;
@@ -90,7 +92,7 @@ mod varying;
 #[cfg(feature = "std")]
 pub use check::{Checked, check, check_bytes, check_bytes_with_run_time, check_bytes_with_settings};
 #[cfg(feature = "std")]
-pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
+pub use data_file::{MAX_BYTES, golden_of, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
@@ -99,6 +101,8 @@ pub use double::{Double, decimal_digits};
 pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
+#[cfg(feature = "std")]
+pub use golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]
 pub use keys::{Key, Mapping, mappings};
 #[cfg(feature = "std")]

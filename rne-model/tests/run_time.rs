@@ -184,7 +184,8 @@ fn errors() {
             (20, 29, "payload"),
             "`payload` = 0 varies with the run-time parameter `payload`; a number that varies must not be 0 in \
              the file",
-            "give `payload` a value in the file with which this is not zero, or leave it out of the run-time parameters",
+            "give `payload` a value in the file with which this is not zero, or leave it out of the run-time \
+             parameters",
         ),
         ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
         ("h", ("0.1]}", "h-0.3]}"), (7, 21, "h-0.3"), "`h-0.3` = 0 varies with the run-time parameter `h`", ""),

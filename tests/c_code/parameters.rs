@@ -155,7 +155,8 @@ fn compare<const DOF: usize>(
     let count = names.len() + 3 * DOF;
     let _ = write!(
         source,
-        "{drivers}int main(void)\n{{\n    float floats[{count}];\n    double doubles[{count}];\n    for (;;) {{\n{called}    \
+        "{drivers}int main(void)\n{{\n    float floats[{count}];\n    double doubles[{count}];\n    for \
+         (;;) {{\n{called}    \
          }}\n}}\n"
     );
 

@@ -78,7 +78,8 @@ fn record_of_parameters(robot: &Robot) -> String {
         "\n/// Parameters of the robot file that are given at run time.\n\
          #[derive(Clone, Copy, Debug, PartialEq)]\n#[allow(non_snake_case)] // names of the file\n\
          pub struct Parameters<T> {{\n{fields}}}\n\n\
-         #[allow(clippy::all, clippy::pedantic)]\nimpl<T: Scalar> Parameters<T> {{\n    /// Their values in the file.\n    \
+         #[allow(clippy::all, clippy::pedantic)]\nimpl<T: Scalar> Parameters<T> {{\n    /// Their \
+         values in the file.\n    \
          #[must_use]\n    pub fn of_file() -> Self {{\n        Self {{\n{values}        }}\n    }}\n}}\n"
     )
 }

@@ -47,7 +47,8 @@ pub fn c_tests(
          const double x = (double)numbers[i];\n        \
          largest = (x > largest) ? x : ((-x > largest) ? -x : largest);\n    }}\n    return largest;\n}}\n\n\
          // Numbers that are to be the same, to so many parts of a scale; what is no number never is.\n\
-         static void test_compare(const char *what, unsigned state, unsigned number, double found, double expected,\n    \
+         static void test_compare(const char *what, unsigned state, unsigned number, double found, \
+         double expected,\n    \
          double allowed)\n{{\n    \
          const double error = found - expected;\n    \
          if (!((error <= allowed) && (-error <= allowed))) {{\n        \
@@ -183,7 +184,8 @@ impl Tests<'_> {
              const double scale = test_largest(&expected[0][0], {}u, 0.0);\n    \
              for (state = 0u; state < {}u; ++state) {{\n        unsigned i;\n{}        \
              for (i = 0u; i < {count}u; ++i) {{\n            \
-             test_compare(\"{function}\", state, i, (double)found[i], (double)expected[state][i], {parts} * scale);\n        \
+             test_compare(\"{function}\", state, i, (double)found[i], (double)expected[state][i], \
+             {parts} * scale);\n        \
              }}\n    }}\n}}\n",
             table.replace("\n};", "\n    };"),
             count * expected.len(),
@@ -240,9 +242,11 @@ impl Tests<'_> {
             Law::KineticEnergy => format!(
                 "        double energy = 0.0, scale = 0.0;\n{}{}        \
                  for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < {dof}u; ++j) {{\n                \
-                 const double term = 0.5 * (double)mass[{dof}u * i + j] * (double)test_qd[state][i] *\n                    \
+                 const double term = 0.5 * (double)mass[{dof}u * i + j] * (double)test_qd[state][i] \
+                 *\n                    \
                  (double)test_qd[state][j];\n                \
-                 energy += term;\n                scale += (term > 0.0) ? term : -term;\n            }}\n        }}\n        \
+                 energy += term;\n                scale += (term > 0.0) ? term : \
+                 -term;\n            }}\n        }}\n        \
                  test_compare(\"{words}\", state, 0u, (double)found[0], energy, test_tolerance * scale);\n",
                 self.call_of(Function::MassMatrix, &[], "mass")?,
                 self.call_of(Function::KineticEnergy, &[], "found")?

@@ -207,7 +207,8 @@ impl Tests<'_> {
                      let at_zero = {};\n            \
                      let found: Vec<f64> = of_sum.iter().zip(&of_b).map(|(x, y)| x - y).collect();\n            \
                      let expected: Vec<f64> = of_a.iter().zip(&at_zero).map(|(x, y)| x - y).collect();\n            \
-                     let scale = largest(&of_sum).max(largest(&of_a)).max(largest(&of_b)).max(largest(&at_zero));\n            \
+                     let scale = \
+                     largest(&of_sum).max(largest(&of_a)).max(largest(&of_b)).max(largest(&at_zero));\n            \
                      compare(\"{name}\", index, &found, &expected, 1e-9, scale);",
                     self.robot.dof(),
                     torques("sum")?,
@@ -247,11 +248,13 @@ impl Tests<'_> {
                  state.qdd[i]));\n                \
                  let qd = core::array::from_fn::<f64, {n}, _>(|i| state.qd[i] + t * state.qdd[i]);\n                \
                  {}[0] + {}[0]\n            }};\n            \
-                 let terms: Vec<f64> = {}.iter().zip(&state.qd).map(|(torque, rate)| torque * rate).collect();\n            \
+                 let terms: Vec<f64> = {}.iter().zip(&state.qd).map(|(torque, rate)| torque * \
+                 rate).collect();\n            \
                  let scale = terms.iter().map(|term| term.abs()).sum();\n            \
                  // the derivative of a polynomial through four energies\n            \
                  let h = 1e-3;\n            \
-                 let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / (12.0 * h);\n            \
+                 let rate = (8.0 * (energy(h) - energy(-h)) - (energy(2.0 * h) - energy(-2.0 * h))) / \
+                 (12.0 * h);\n            \
                  compare(\"{name}\", index, &[rate], &[terms.iter().sum()], 1e-6, scale);",
                 self.call_of(Function::KineticEnergy, &[("q", "q"), ("qd", "qd")])?,
                 self.call_of(Function::PotentialEnergy, &[("q", "q")])?,
@@ -260,7 +263,8 @@ impl Tests<'_> {
             ),
         };
         Some(format!(
-            "\n    #[test]\n    fn {name}() {{\n        for (index, state) in STATES.iter().enumerate() {{\n            \
+            "\n    #[test]\n    fn {name}() {{\n        for (index, state) in STATES.iter().enumerate() \
+             {{\n            \
              {body}\n        }}\n    }}\n"
         ))
     }
