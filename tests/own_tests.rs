@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::Command;
 
-use rne::testing::{self, RobotFile};
+use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Scalar,
@@ -51,6 +51,11 @@ struct So101;
 #[robot(builtin = "gantry_ppp", form = "reduced", tests)]
 struct Gantry;
 
+/// A golden file beside the robot file: m l²/3 q̈ + m g l/2 cos q.
+#[derive(InverseDynamics)]
+#[robot(path = "golden/rod.yaml", tests)]
+struct Rod;
+
 mod elsewhere {
     pub(crate) mod dynamics {
         pub(crate) use rne::*;
@@ -96,6 +101,9 @@ fn each_derive_has_its_tests() {
         ("puma560_moving_base_tests", 1),
         ("puma560_actuation_tests", 1),
         ("puma560_reduced_inverse_dynamics_tests", 3),
+        ("rod_inverse_dynamics_tests", 3),
+        ("rod_golden_tests", 1),
+        ("puma560_golden_tests", 0),
         ("elsewhere::massless_forward_dynamics_tests", 2),
         ("elsewhere::planar_inverse_dynamics_tests", 3),
     ] {
@@ -295,5 +303,43 @@ fn a_failing_test_says_where() {
     let said = said(testing::torques_are_those_of_the_runtime::<6, Wrong>, Mistake::Sign, &REDUCED).expect("words");
     for part in ["inverse_dynamics: number 2 is ", ", not ", "(allowed: 1e-12 of the largest)", "\n  q   = ["] {
         assert!(said.contains(part), "no `{part}` in {said}");
+    }
+}
+
+/// The states of a golden file whose second torque of the second line is this.
+fn golden(torque: f64) -> [GoldenState<6>; 2] {
+    let state = |line, qdd: f64| {
+        let (q, qd, qdd) = ([0.3, -0.8, 0.5, 1.1, -0.4, 0.6], [0.5; 6], [qdd; 6]);
+        GoldenState { line, q, qd, qdd, tau: Puma560.inverse_dynamics(&q, &qd, &qdd) }
+    };
+    let [first, mut second] = [state(4, 1.0), state(7, -2.0)];
+    second.tau[1] += torque;
+    [first, second]
+}
+
+#[test]
+fn a_golden_file_is_compared_line_by_line() {
+    let said = |robot: &Wrong, tolerance, states: &[GoldenState<6>]| {
+        let test = || {
+            let file = "robots/arm.golden.csv";
+            testing::torques_are_those_of_the_golden_file(robot, file, &Puma560::JOINT_NAMES, tolerance, states);
+        };
+        let panic = catch_unwind(AssertUnwindSafe(test)).err()?;
+        Some(*panic.downcast::<String>().expect("words"))
+    };
+    let right = Wrong(Mistake::None);
+    let [_, second] = golden(0.0);
+    let largest = golden(0.0).iter().flat_map(|state| state.tau).fold(0.0, |a: f64, b| a.max(b.abs()));
+    assert_eq!(said(&right, 1e-9, &golden(0.0)), None);
+    // within the tolerance, and beyond
+    assert_eq!(said(&right, 1e-9, &golden(0.9e-9 * largest)), None);
+    let words = said(&right, 1e-9, &golden(1.1e-9 * largest)).expect("words");
+    let joint = Puma560::JOINT_NAMES[1];
+    let start = format!("robots/arm.golden.csv:7: the torque of {joint} is {:e}, not ", second.tau[1]);
+    assert!(words.starts_with(&start) && words.contains("1e-9 of the largest torque"), "{words}");
+    assert_eq!(words.matches("the torque of").count(), 1, "{words}");
+    // wrong code
+    for mistake in [Mistake::Sign, Mistake::NotANumber, Mistake::Square] {
+        assert!(said(&Wrong(mistake), 1e-9, &golden(0.0)).is_some(), "{mistake:?}");
     }
 }

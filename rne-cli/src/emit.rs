@@ -14,7 +14,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
-use crate::{arguments, functions, robot_file};
+use crate::{arguments, functions, golden, robot_file};
 
 /// Write the generated code as a file that compiles by itself
 #[derive(Args)]
@@ -25,12 +25,12 @@ Examples:
   rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
   rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
   rne emit robots/puma560.yaml --lang c --real double --prefix arm
+  rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
 
-The six functions of the trait InverseDynamics are written unless --function
-names others; all is every function of the robot (without motors, all but
-actuator_torques). A file that rne did not generate is overwritten with --force
-only. --check exits with 1 when the file is stale, and says how to refresh it.
-C needs no library; on standard output header and source are one file.")]
+The functions of the trait InverseDynamics are written unless --function names
+others; all is every function of the robot. --check exits with 1 when the file
+is stale, and says how to refresh it. C needs no library; on standard output
+header and source are one file; -DRNE_TEST makes its tests a program.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -40,13 +40,13 @@ pub(crate) struct Arguments {
     /// Language of the code
     #[arg(long, value_enum, default_value_t = Language::Rust)]
     lang: Language,
-    /// Number type of C code: float, 32 bits and the default, or double
+    /// Number type of C code: float, the default, or double
     #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
     real: Option<Real>,
-    /// What the names in C code begin with, instead of the robot's name
+    /// Names in C code begin with it, not with the robot's name
     #[arg(long, value_name = "P")]
     prefix: Option<Prefix>,
-    /// This function only; may be repeated: `rne explain functions`
+    /// These functions only, F,F,…: `rne explain functions`
     #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = arguments::function_or_all(),
         hide_possible_values = true)]
     functions: Vec<FunctionOrAll>,
@@ -54,9 +54,15 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true)]
     form: Form,
+    /// Parameters of the file that become arguments, N,N,…; the others are folded
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    run_time: Vec<String>,
     /// Bring sine and cosine along in Rust, as C code does
     #[arg(long)]
     with_sin_cos: bool,
+    /// Tests beside the code: values of the runtime, laws of mechanics
+    #[arg(long)]
+    tests: bool,
     /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
     #[arg(long)]
     ascii: bool,
@@ -125,20 +131,22 @@ struct Generated {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     only_of_one_language(arguments)?;
+    is_named_once(&arguments.run_time)?;
     let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
-    let (checked, bytes) = robot_file::read_with_bytes(&arguments.file, &[])?;
+    let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names)?;
     let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
     let c_code = || c_code(arguments, &robot, &programs, &bytes);
     let rust_file = if arguments.with_sin_cos { emit::rust_file_with_sin_cos } else { emit::rust_file };
-    let rust = || rust_file(&robot, &programs);
+    let rust = || Ok::<_, Failure>(rust_file(&robot, &programs) + &rust_tests(arguments, &robot, &programs)?);
     let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
-        (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()))),
-        (Language::Rust, Some(out), _) => vec![generated(out, rust())],
+        (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
+        (Language::Rust, Some(out), _) => vec![generated(out, rust()?)],
         (Language::C, Some(out), Some(header)) => {
             let code = c_code()?;
             let source = code.source(&header.name);
@@ -174,6 +182,11 @@ fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
         lang.title(),
         right.display()
     )))
+}
+
+fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
+    let twice = run_time.iter().enumerate().find(|(index, name)| run_time[..*index].contains(name));
+    twice.map_or(Ok(()), |(_, name)| Err(Failure::usage(format_args!("--run-time names {name} twice"))))
 }
 
 fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
@@ -231,10 +244,24 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     // without its folder: the same file gives the same bytes wherever it is
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
     let origin = Origin::of(if name == "-" { "on standard input" } else { &name }, bytes);
-    emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
+    let code = emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
-    })
+    })?;
+    if !arguments.tests {
+        return Ok(code);
+    }
+    let golden = golden::of_programs(robot, programs, precision)?;
+    Ok(code.with_tests(&emit::c_tests(robot, programs, precision, &prefix, &golden)))
+}
+
+/// The tests of code in Rust, where they are asked for.
+fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<String, Failure> {
+    if !arguments.tests {
+        return Ok(String::new());
+    }
+    let golden = golden::of_programs(robot, programs, Precision::Double)?;
+    Ok(emit::rust_tests(robot, programs, &golden))
 }
 
 /// The functions asked for, each once, in the order of the traits.
@@ -381,8 +408,14 @@ fn command(arguments: &Arguments, out: &Path) -> String {
     if arguments.form != Form::default() {
         let _ = write!(command, " --form {}", arguments.form);
     }
+    if !arguments.run_time.is_empty() {
+        let _ = write!(command, " --run-time {}", arguments.run_time.join(","));
+    }
     if arguments.with_sin_cos {
         command.push_str(" --with-sin-cos");
+    }
+    if arguments.tests {
+        command.push_str(" --tests");
     }
     if arguments.ascii {
         command.push_str(" --ascii");

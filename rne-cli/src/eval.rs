@@ -14,18 +14,16 @@ use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Entry};
-use crate::{answer, arguments, arm};
+use crate::{answer, arguments, arm, golden};
 
 /// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace
-  rne eval robots/planar2.yaml --function gravity_torques --q 0.6,-pi/2
+  rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
       --wrench 3,-2,0,0,0,0.5 --json
-  rne eval robots/planar2.yaml --function forward_dynamics --q 0.6,-1.1 \\
-      --qd 0,0 --tau 20,4
 
 One number per joint, base to tip: rad for a revolute, m for a prismatic joint;
 pi/2 and 'deg(30)' are numbers. Every function takes exactly its arguments, and
@@ -73,6 +71,12 @@ pub(crate) struct Arguments {
     /// Acceleration of gravity in the frame 0 of a moving base, m/s²; the file's, unless given
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
+    /// A golden file instead: torques at N states, which `#[robot(…, tests)]` reads
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with_all = [
+        "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
+        "gravity", "trace", "json",
+    ])]
+    golden: Option<u16>,
     /// The seven-step worksheet: every vector
     #[arg(long)]
     trace: bool,
@@ -95,6 +99,9 @@ struct Reply<'a> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arm::with_settings(&arguments.file, &arguments.set)?;
     let robot = Robot { rotors: arguments.rotors.rotors, ..robot };
+    if let Some(states) = arguments.golden {
+        return golden::file(&robot, states).map(Outcome::text);
+    }
     let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
         (Some(_), _) => Function::InverseDynamicsWithWrench,
         (None, Some(_)) => Function::InverseDynamicsWithPayload,

@@ -14,6 +14,7 @@ mod explain;
 mod export;
 mod firmware;
 mod functions;
+mod golden;
 mod heading;
 mod highlight;
 mod import;

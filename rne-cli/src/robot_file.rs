@@ -35,11 +35,20 @@ pub(crate) fn read(path: &Path) -> Result<Checked, Failure> {
 
 /// The same with other values of the file's parameters.
 pub(crate) fn read_with(path: &Path, settings: &[(&str, f64)]) -> Result<Checked, Failure> {
-    Ok(read_with_bytes(path, settings)?.0)
+    Ok(read_by(path, settings, &[])?.0)
 }
 
-/// As [`read_with`], and the bytes of the file.
-pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(Checked, Vec<u8>), Failure> {
+/// A valid robot some of whose parameters stay free until run time, and the bytes of its file.
+pub(crate) fn read_with_run_time(path: &Path, names: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
+    read_by(path, &[], names)
+}
+
+fn read_by(path: &Path, settings: &[(&str, f64)], run_time: &[&str]) -> Result<(Checked, Vec<u8>), Failure> {
+    let read = |name: &str, bytes: &[u8]| {
+        let reader = Reader::new(name).run_time(run_time);
+        let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
+        reader.read(bytes).map_err(|report| Failure::from(&report))
+    };
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(
             "{} is a plan; its robot is {TYPED}{}{TYPED:#}",
@@ -50,7 +59,7 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
     if let Some(robot) = of_a_name(path) {
         let name = format!("{} (shipped)", robot.name);
         let bytes = robot.yaml.as_bytes();
-        let checked = reader(&name, settings).read(bytes).map_err(|report| Failure::from(&report))?;
+        let checked = read(&name, bytes)?;
         return Ok((checked, bytes.to_vec()));
     }
     let (name, bytes) = if path == Path::new("-") {
@@ -67,12 +76,8 @@ pub(crate) fn read_with_bytes(path: &Path, settings: &[(&str, f64)]) -> Result<(
         )),
         _ => Failure::input(format_args!("{name} cannot be read: {error}")),
     })?;
-    let checked = reader(&name, settings).read(&bytes).map_err(|report| Failure::from(&report))?;
+    let checked = read(&name, &bytes)?;
     Ok((checked, bytes))
-}
-
-fn reader<'a>(name: &'a str, settings: &[(&'a str, f64)]) -> Reader<'a> {
-    settings.iter().fold(Reader::new(name), |reader, &(parameter, value)| reader.setting(parameter, value))
 }
 
 /// A valid robot. `rne check` tells of its lints, the other commands do not.

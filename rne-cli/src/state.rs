@@ -22,7 +22,8 @@ pub(crate) struct Given<'a> {
     pub(crate) gravity: Option<&'a List>,
 }
 
-/// The arguments of a function. What it does not take is empty, zero, or at rest.
+/// The arguments of a function. What it does not take is empty, zero, or at rest, or is not asked for.
+#[derive(Clone)]
 pub(crate) struct State {
     pub(crate) function: Function,
     pub(crate) q: Vec<f64>,
@@ -64,6 +65,11 @@ impl State {
         };
         let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
         Ok(Self { function, q, qd, qdd, tau, wrench, payload, base })
+    }
+
+    /// The same for another function.
+    pub(crate) fn of(&self, function: Function) -> Self {
+        Self { function, ..self.clone() }
     }
 
     /// What the function returns, in the order of its layout.

@@ -42,6 +42,12 @@ impl Errors {
 pub(crate) fn describe(mut report: Report) -> String {
     report.diagnostics.retain(|found| found.severity == Severity::Error);
     // An empty line keeps the second `error:` apart from the compiler's own.
-    let what = if robot_of(Path::new(&report.name)).is_some() { "plan of this robot" } else { "robot file" };
+    let what = if robot_of(Path::new(&report.name)).is_some() {
+        "plan of this robot"
+    } else if report.name.ends_with(".golden.csv") {
+        "golden file of this robot"
+    } else {
+        "robot file"
+    };
     format!("`{}` is no valid {what}\n\n{}\n", report.name, report.render(false))
 }

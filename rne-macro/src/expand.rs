@@ -50,8 +50,14 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
             }
             let code = target.robot(robot, capability, programs, &parameters);
             let names = own_tests::of_capability(capability);
+            let golden = loaded.golden.as_ref().filter(|_| capability == Capability::InverseDynamics);
+            let golden = golden.filter(|_| attribute.tests.is_some()).map(|file| {
+                let watched = watch(file);
+                let test = own_tests::golden(&item, &attribute, file, robot.dof(), &mut errors);
+                quote!(#watched #test)
+            });
             let tests = own_tests::module(&item, &attribute, capability.name(), names, robot.dof(), &loaded.text);
-            quote!(#code #tests)
+            quote!(#code #tests #golden)
         }
         None => target.stub(capability, loaded.joints),
     };
@@ -104,6 +110,8 @@ pub(crate) struct Loaded {
     watched: TokenStream,
     /// The plan file beside it.
     pub(crate) plan: Option<RobotFile>,
+    /// The golden file beside it.
+    golden: Option<RobotFile>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
     /// What is suspicious about a valid file.
@@ -111,17 +119,19 @@ pub(crate) struct Loaded {
 }
 
 pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
-    let (name, bytes, watched, plan, text) = match source {
+    let (name, bytes, watched, plan, golden, text) = match source {
         Source::Yaml(text) => {
-            ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None, quote!(#text))
+            ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None, None, quote!(#text))
         }
         Source::Path(path) => match location::read(path) {
             Ok(file) => {
                 let plan = location::plan_beside(&file);
                 let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
+                let golden = location::golden_beside(&file);
+                let golden = golden.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
                 let watched = watch(&file);
                 let text = text(&file);
-                (file.shown, file.bytes, watched, plan, text)
+                (file.shown, file.bytes, watched, plan, golden, text)
             }
             Err(missing) => {
                 errors.at(path, missing);
@@ -131,7 +141,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
         Source::Builtin(name) => match location::shipped(&name.value()) {
             Ok((file, plan)) => {
                 let text = text(&file);
-                (file.shown, file.bytes, TokenStream::new(), plan, text)
+                (file.shown, file.bytes, TokenStream::new(), plan, None, text)
             }
             Err(unknown) => {
                 errors.at(name, unknown);
@@ -151,7 +161,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     });
     match checked {
         Ok(Some(Checked { robot, lints, .. })) => {
-            Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, lints: Some(lints) }
+            Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, golden, lints: Some(lints) }
         }
         // a field is no parameter, which has been said
         Ok(None) => Loaded { watched, ..Loaded::default() },

@@ -322,7 +322,7 @@ impl Constants {
 }
 
 /// A number that reads back as the same bits, or infinity.
-fn number(value: f64) -> TokenStream {
+pub(crate) fn number(value: f64) -> TokenStream {
     let sign = value.is_sign_negative().then(|| quote!(-));
     if value.is_infinite() {
         return quote!(#sign ::core::primitive::f64::INFINITY);

@@ -180,6 +180,9 @@ use rne_codegen::Capability;
 /// accelerations, M is symmetric, the accelerations of τ need τ, rotations are orthonormal, T = ½ q̇ᵀ M q̇. A failing
 /// test names the function, the number and the state.
 ///
+/// Torques that somebody else has computed or measured stand beside `NAME.yaml` as `NAME.golden.csv`: `InverseDynamics`
+/// reads them when your crate is compiled, and writes a test that compares them. `docs/robot-file.md` has the format.
+///
 /// The tests need the features `arm` and `std` of `rne`; under `[dev-dependencies]` they cost the library nothing. They
 /// make a value of the struct, so it has neither fields nor generics, and stands in a module, not in a function.
 ///

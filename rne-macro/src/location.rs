@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::{env, fmt, fs, io};
 
 use proc_macro2::Span;
-use rne_model::{plan_of, read_file};
+use rne_model::{golden_of, plan_of, read_file};
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -90,8 +90,17 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
 
 /// The plan file beside a robot file, if there is one.
 pub(crate) fn plan_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
-    let Some(absolute) = file.absolute.as_deref().map(plan_of) else { return Ok(None) };
-    let shown = plan_of(Path::new(&file.shown)).display().to_string();
+    beside(file, plan_of)
+}
+
+/// The golden file beside a robot file, if there is one.
+pub(crate) fn golden_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
+    beside(file, golden_of)
+}
+
+fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFile>, Missing> {
+    let Some(absolute) = file.absolute.as_deref().map(name) else { return Ok(None) };
+    let shown = name(Path::new(&file.shown)).display().to_string();
     match read_file(&absolute) {
         Ok(bytes) => Ok(Some(RobotFile { absolute: Some(absolute), shown, bytes })),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),

@@ -3,11 +3,14 @@
 use proc_macro2::{Ident, Literal, Span, TokenStream};
 use quote::{format_ident, quote};
 use rne_codegen::{Capability, Form};
+use rne_model::{GoldenFile, GoldenState};
 use syn::ext::IdentExt;
 use syn::{Data, DeriveInput, Path, PathSegment};
 
 use crate::attribute::Attribute;
-use crate::error::Errors;
+use crate::error::{Errors, describe};
+use crate::implementation::number;
+use crate::location::RobotFile;
 use crate::parameters::Parameters;
 
 /// The tests of a capability, named as the functions of `rne::testing` that they call.
@@ -102,6 +105,54 @@ pub(crate) fn module(
                     seven_steps: #seven_steps,
                 };
                 #(#tests)*
+            }
+        }
+    }
+}
+
+/// The module with the test that compares with the golden file beside the robot file.
+pub(crate) fn golden(
+    item: &DeriveInput,
+    attribute: &Attribute,
+    file: &RobotFile,
+    dof: usize,
+    errors: &mut Errors,
+) -> TokenStream {
+    let Some(span) = attribute.tests.filter(|_| is_made_of_nothing(item)) else { return TokenStream::new() };
+    let GoldenFile { tolerance, states } = match GoldenFile::read(&file.shown, &file.bytes, dof) {
+        Ok(golden) => golden,
+        Err(report) => {
+            errors.at_span(span, describe(report));
+            return TokenStream::new();
+        }
+    };
+    let (ident, shown) = (&item.ident, &file.shown);
+    let module = format_ident!("{}_golden_tests", snake(&ident.unraw().to_string()));
+    let (import, krate) = seen_from_inside(&attribute.krate);
+    let states = states.into_iter().map(|GoldenState { line, q, qd, qdd, tau }| {
+        let line = Literal::usize_unsuffixed(line);
+        let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(|numbers| numbers.into_iter().map(number).collect::<Vec<_>>());
+        quote!(#krate::testing::GoldenState {
+            line: #line, q: [#(#q),*], qd: [#(#qd),*], qdd: [#(#qdd),*], tau: [#(#tau),*]
+        })
+    });
+    let (dof, tolerance) = (Literal::usize_unsuffixed(dof), number(tolerance));
+    quote! {
+        #[cfg(test)]
+        mod #module {
+            #import
+            #krate::testing::with_runtime! {
+                #[::core::prelude::v1::test]
+                #[allow(clippy::all, clippy::pedantic)] // numbers of the file
+                fn torques_are_those_of_the_golden_file() {
+                    #krate::testing::torques_are_those_of_the_golden_file::<#dof, _>(
+                        &super::#ident {},
+                        #shown,
+                        &super::#ident::JOINT_NAMES,
+                        #tolerance,
+                        &[#(#states),*],
+                    );
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Files on disk: which are read at all, how much of them, and what the plan of a robot file is called.
+//! Files on disk: which are read at all, how much of them, and what stands beside a robot file is called.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -42,6 +42,11 @@ pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
 /// The plan of a robot file: `NAME.plan.yaml` beside `NAME.yaml`.
 pub fn plan_of(robot_file: &Path) -> PathBuf {
     robot_file.with_extension(PLAN)
+}
+
+/// The golden file of a robot file, a [`GoldenFile`](crate::GoldenFile): `NAME.golden.csv` beside `NAME.yaml`.
+pub fn golden_of(robot_file: &Path) -> PathBuf {
+    robot_file.with_extension("golden.csv")
 }
 
 /// The robot file of a plan: `NAME.yaml` beside `NAME.plan.yaml`; `None` when a path is not that of a plan.

@@ -269,7 +269,7 @@ fn what_cannot_vary_at_run_time() {
         assert_eq!((found.0, found.1), (from, to), "{text}: {}", found.2);
         assert!(found.2.contains(message), "{text}: {}", found.2);
     }
-    assert_eq!(mistake("sqrt(p)").3, "leave `p` out of the struct: it then has its value in the file");
+    assert_eq!(mistake("sqrt(p)").3, "leave `p` out of the run-time parameters: it then has its value in the file");
 }
 
 #[test]

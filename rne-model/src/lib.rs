@@ -60,6 +60,8 @@ mod expression;
 #[cfg(feature = "std")]
 mod formula;
 #[cfg(feature = "std")]
+mod golden;
+#[cfg(feature = "std")]
 mod inertia;
 #[cfg(feature = "std")]
 mod keys;
@@ -91,7 +93,7 @@ mod varying;
 #[cfg(feature = "std")]
 pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
-pub use data_file::{MAX_BYTES, plan_of, read_file, read_limited, robot_of};
+pub use data_file::{MAX_BYTES, golden_of, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
@@ -100,6 +102,8 @@ pub use double::{Double, decimal_digits};
 pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
+#[cfg(feature = "std")]
+pub use golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]
 pub use keys::{Key, Mapping, mappings};
 #[cfg(feature = "std")]

@@ -14,7 +14,7 @@ const MOST_LISTED: usize = 12;
 
 /// What to do about a number that cannot depend on a run-time parameter.
 pub(crate) fn leave_out(name: &str) -> String {
-    format!("leave {} out of the struct: it then has its value in the file", quoted(name))
+    format!("leave {} out of the run-time parameters: it then has its value in the file", quoted(name))
 }
 
 /// A number of the table.
@@ -75,7 +75,7 @@ fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
         quoted(name)
     );
     Diagnostic::error(span, message).label("zero in the file").help(format!(
-        "give {} a value in the file with which this is not zero, or leave it out of the struct",
+        "give {} a value in the file with which this is not zero, or leave it out of the run-time parameters",
         quoted(name)
     ))
 }
@@ -211,6 +211,6 @@ pub(crate) fn without_effect(cx: &Context) {
             quoted(name)
         );
         let error = Diagnostic::error(parameter.span.clone(), message).label("no effect");
-        cx.report(error.help(format!("use {0} in a number, or leave it out of the struct", quoted(name))));
+        cx.report(error.help(format!("use {0} in a number, or leave it out of the run-time parameters", quoted(name))));
     }
 }

@@ -171,7 +171,7 @@ fn errors() {
             ("unit: 1", "unit: 1"),
             (11, 47, "twist"),
             "the angle `twist` depends on the run-time parameter `twist`; angles and limits are fixed, only lengths",
-            "leave `twist` out of the struct: it then has its value in the file",
+            "leave `twist` out of the run-time parameters: it then has its value in the file",
         ),
         ("h", ("theta: 0,", "theta: h - pi,"), (11, 17, "h - pi"), "the angle `h - pi` depends on", "leave `h` out"),
         ("payload", ("pi/4]", "m]"), (6, 36, "m"), "the angle `m` depends on the run-time parameter `payload`", ""),
@@ -184,7 +184,8 @@ fn errors() {
             (20, 29, "payload"),
             "`payload` = 0 varies with the run-time parameter `payload`; a number that varies must not be 0 in \
              the file",
-            "give `payload` a value in the file with which this is not zero, or leave it out of the struct",
+            "give `payload` a value in the file with which this is not zero, or leave it out of the run-time \
+             parameters",
         ),
         ("h", ("h - 0.1", "h - 0.3"), (11, 31, "h - 0.3"), "`h - 0.3` = 0 varies with", "give `h` a value"),
         ("h", ("0.1]}", "h-0.3]}"), (7, 21, "h-0.3"), "`h-0.3` = 0 varies with the run-time parameter `h`", ""),
@@ -206,7 +207,7 @@ fn errors() {
             ("d: h/2", "d: 1 + sqrt(h)"),
             (11, 27, "sqrt(h)"),
             "`sqrt(h)` depends on the run-time parameter `h`; at run time there are + - * / and whole powers up to 16",
-            "leave `h` out of the struct",
+            "leave `h` out of the run-time parameters",
         ),
         ("h", ("d: h/2", "d: sin(2*h)"), (11, 23, "sin(2*h)"), "`sin(2*h)` depends on", ""),
         ("h", ("theta: 0,", "theta: cos(h),"), (11, 17, "cos(h)"), "`cos(h)` depends on", ""),
@@ -230,7 +231,7 @@ fn errors() {
             ("unit: 1", "unit: 1, spare: 2"),
             (8, 124, "spare"),
             "the run-time parameter `spare` has no effect; some number of the table must depend on it",
-            "use `spare` in a number, or leave it out of the struct",
+            "use `spare` in a number, or leave it out of the run-time parameters",
         ),
     ] {
         let (text, error) = the_one(old, new, &[name]);

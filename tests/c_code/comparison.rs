@@ -78,7 +78,7 @@ fn words<T>(numbers: Vec<T>, bits: impl Fn(T) -> u64) -> Vec<u64> {
 
 /// Whether two numbers have the same bits, but for the sign of a zero and what is no number.
 #[allow(clippy::cast_possible_truncation)] // the words of single precision have 32 bits
-fn is_same(precision: Precision, a: u64, b: u64) -> bool {
+pub(crate) fn is_same(precision: Precision, a: u64, b: u64) -> bool {
     match precision {
         Precision::Single => {
             let [a, b] = [a, b].map(|word| f32::from_bits(word as u32));

@@ -25,6 +25,12 @@ impl Unit {
         let functions = programs.iter().map(|program| program.function).collect();
         Self { prefix, precision, functions, code: code.one_file() }
     }
+
+    /// The emitted text.
+    #[allow(dead_code)] // not in every program of tests
+    pub(crate) fn code(&self) -> &str {
+        &self.code
+    }
 }
 
 /// The program of one robot.

@@ -9,6 +9,9 @@ use serde_json::Value;
 
 const ROBOT: &str = "robots/planar2.yaml";
 
+/// With parameters: the lengths of its links.
+const DESK: &str = "docs/desk_arm.yaml";
+
 /// A path in `folder` as text.
 fn path(folder: &std::path::Path, name: &str) -> String {
     folder.join(name).to_str().expect("UTF-8").to_owned()
@@ -18,7 +21,10 @@ fn path(folder: &std::path::Path, name: &str) -> String {
 fn printed(folder: &std::path::Path, code: &str, body: &str) -> Vec<f64> {
     let (source, program) = (path(folder, "main.rs"), path(folder, "main"));
     let by_sign = if code.contains("fn by_sign") { BY_SIGN } else { "" };
-    let scalar = format!("\nimpl Scalar for f64 {{{SCALAR}{by_sign}}}\n");
+    let mut scalar = format!("\nimpl Scalar for f64 {{{SCALAR}{by_sign}}}\n");
+    if code.contains("\nimpl Scalar for f64 {") {
+        scalar.clear();
+    }
     fs::write(&source, format!("{code}{scalar}fn main() {{{body}}}\n")).expect("written");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let compiled = Command::new(rustc).args(["--edition", "2024", "-A", "dead_code", "-o", &program, &source]).output();
@@ -48,6 +54,12 @@ fn compiled(folder: &std::path::Path, code: &str, state: &str) -> Vec<f64> {
 fn evaluated(arguments: &[&str]) -> Vec<f64> {
     let json: Value = serde_json::from_str(&fine(arguments)).expect("JSON");
     flat(&json["result"])
+}
+
+/// The same of a list or a number, to the last bit, which `serde_json` may miss.
+fn every_bit(arguments: &[&str]) -> Vec<f64> {
+    let text = fine(arguments);
+    text.split(|c: char| c.is_whitespace() || "[]{},".contains(c)).filter_map(|word| word.parse().ok()).collect()
 }
 
 fn flat(value: &Value) -> Vec<f64> {
@@ -263,6 +275,68 @@ fn sums_of_oblique_angles_compile() {
     let eval = ["eval", &robot, "--q", "0.6,-1.1,0.4", "--qd", "1.3,-0.4,0.2", "--qdd", "-0.7,2.1,0.9", "--json"];
     let expected = evaluated(&eval);
     close(&compiled(&folder, &code, "[0.6_f64, -1.1, 0.4], &[1.3, -0.4, 0.2], &[-0.7, 2.1, 0.9]"), &expected);
+}
+
+/// In every bit of `rne eval --set`, for the seven steps; the reduced form up to rounding.
+#[test]
+fn parameters_at_run_time() {
+    let folder = folder("run_time");
+    let functions = "inverse_dynamics,kinetic_energy";
+    // the sine of the runtime
+    let emit = ["emit", DESK, "--function", functions, "--run-time", "fore,upper", "--with-sin-cos"];
+    let [q, qd, qdd] = ["0.3,-0.8,0.5", "0.9,-0.5,0.4", "-1.1,0.6,0.8"];
+    let states = [("0.4", "0.3"), ("0.55", "0.125"), ("1", "0.31")];
+    let expected: Vec<f64> = states
+        .iter()
+        .flat_map(|(upper, fore)| {
+            let (upper, fore) = (format!("upper={upper}"), format!("fore={fore}"));
+            let set = ["--set", &upper, "--set", &fore, "--json", "--q", q, "--qd", qd];
+            let torques = every_bit(&[&["eval", DESK, "--qdd", qdd][..], &set].concat());
+            let energy = every_bit(&[&["eval", DESK, "--function", "kinetic_energy"][..], &set].concat());
+            [torques, energy].concat()
+        })
+        .collect();
+    let mut body = format!("let (q, qd, qdd) = (&[{q}], &[{qd}], &[{qdd}]);\n");
+    for (index, (upper, fore)) in states.into_iter().enumerate() {
+        let literal = format!("Parameters::<f64> {{ upper: {upper} as f64, fore: {fore} }}");
+        // the first are those of the file
+        let made = if index == 0 { "Parameters::<f64>::of_file()" } else { &literal };
+        let _ = writeln!(
+            body,
+            "let p = {made}; for x in inverse_dynamics(q, qd, qdd, &p) {{ println!(\"{{x}}\"); }}
+             println!(\"{{}}\", kinetic_energy(q, qd, &p));"
+        );
+    }
+    let code = fine(&emit);
+    assert_eq!(printed(&folder, &code, &body), expected, "in every bit");
+    let reduced = fine(&[&emit[..], &["--form", "reduced"]].concat());
+    assert_ne!(code, reduced);
+    close(&printed(&folder, &reduced, &body), &expected);
+
+    assert!(code.contains("\n//! parameters at run time, with their values in the file: fore = 0.3, upper = 0.4\n"));
+    let one = fine(&["emit", DESK, "--run-time", "fore"]);
+    assert!(one.contains("file: fore = 0.3\n//!\n//! parameters folded: upper = 0.4\n"), "{one}");
+    let none = fine(&["emit", DESK]);
+    assert!(none.contains("\n//! parameters folded: upper = 0.4, fore = 0.3\n") && !none.contains("Parameters"));
+    // what does not depend on them does not take them
+    let waist = fine(&["emit", DESK, "--run-time", "fore", "--function", "actuator_torques"]);
+    assert!(!waist.contains("Parameters"), "{waist}");
+}
+
+#[test]
+fn parameters_that_cannot_stay_free() {
+    let emit = |names| ["emit", DESK, "--run-time", names];
+    fails(1, &emit("uper"), &["no parameter `uper` for run time", "did you mean `upper`?"]);
+    fails(2, &emit("fore,fore"), &["--run-time names fore twice"]);
+    let folder = folder("run_time_angle");
+    let (robot, out) = (path(&folder, "arm.yaml"), path(&folder, "arm.rs"));
+    let text = fs::read_to_string(format!("{ROOT}/{DESK}")).expect("a robot");
+    fs::write(&robot, text.replace("alpha: pi/2", "alpha: pi/2 + fore")).expect("written");
+    let angle =
+        ["the angle `pi/2 + fore` depends on the run-time parameter `fore`", "arm.yaml:11:", "leave `fore` out"];
+    fails(1, &["emit", &robot, "--run-time", "fore"], &angle);
+    // the command that writes it anew has them
+    fails(1, &["emit", DESK, "--run-time", "fore,upper", "--check", &out], &["--run-time fore,upper -o"]);
 }
 
 #[test]

@@ -149,6 +149,33 @@ fn the_code_of_two_links() {
 }
 
 #[test]
+fn a_header_with_run_time_parameters() {
+    let folder = folder("c_run_time");
+    let emit = ["emit", "docs/desk_arm.yaml", "--lang", "c", "--run-time", "upper,fore"];
+    let functions = ["--function", "gravity_torques,kinetic_energy", "-o", &path(&folder, "arm.c")];
+    written(&[&emit[..], &functions].concat());
+    insta::assert_snapshot!(read(&folder, "arm.h"));
+    let main = "#include <stdio.h>\n#include \"arm.h\"\nint main(void)\n{\n    desk_arm_parameters p = \
+                DESK_ARM_PARAMETERS;\n    const float q[3] = {0.0f, 0.0f, 0.0f};\n    float tau[3];\n    \
+                p.upper = 0.5f;\n    desk_arm_gravity_torques(q, &p, tau);\n    \
+                printf(\"%.9g\\n%.9g\", (double)tau[1], (double)tau[2]);\n    return 0;\n}\n";
+    fs::write(folder.join("main.c"), main).expect("written");
+    let Some(printed) = printed(&folder, &["main.c", "arm.c"], &[]) else { return };
+    let found: Vec<f64> = printed.lines().map(|word| word.parse().expect("a number")).collect();
+    // stretched: 3 kg at 0.18 m and 1.5 kg at 0.5 m + 0.12 m
+    let expected = [9.81 * (3.0 * 0.18 + 1.5 * 0.62), 9.81 * 1.5 * 0.12];
+    for (found, expected) in found.iter().zip(expected) {
+        assert!((found - expected).abs() < 1e-5, "{found} is not {expected}");
+    }
+    let huge = path(&folder, "huge.yaml");
+    let text = fs::read_to_string(Path::new(ROOT).join("docs/desk_arm.yaml")).expect("a robot");
+    fs::write(&huge, text.replace("fore: 0.30", "fore: 1e39")).expect("written");
+    let huge = ["emit", &huge, "--lang", "c", "--run-time", "fore", "--function", "mass_matrix"];
+    fails(1, &huge, &["`mass_matrix` takes run-time parameter 1", "1e39", "--real double"]);
+    assert!(fine(&[&huge[..], &["--real", "double"]].concat()).contains("#define DESK_ARM_PARAMETERS {1e39}"));
+}
+
+#[test]
 fn a_file_of_its_own_is_written_again_however_long_the_title() {
     let folder = folder("c_again");
     let robot = fs::read_to_string(Path::new(ROOT).join(ROBOT)).expect("it is shipped");

@@ -325,3 +325,29 @@ fn functions_for_reading() {
     ];
     insta::assert_snapshot!(texts.join("\n"));
 }
+
+/// What `--golden` writes is a golden file, of the torques that `eval` computes.
+#[test]
+fn a_golden_file_is_written() {
+    let robot = "docs/desk_arm.yaml";
+    let text = fine(&["eval", robot, "--golden", "3", "--set", "fore=0.25"]);
+    let golden =
+        rne_model::GoldenFile::read("arm.golden.csv", text.as_bytes(), 3).unwrap_or_else(|why| panic!("{why}"));
+    assert_eq!(golden.states.len(), 3);
+    let list = |numbers: &[f64]| numbers.iter().map(f64::to_string).collect::<Vec<_>>().join(",");
+    for state in &golden.states {
+        let [q, qd, qdd] = [&state.q, &state.qd, &state.qdd].map(|numbers| list(numbers));
+        let motion = ["--q", &q, "--qd", &qd, "--qdd", &qdd];
+        let json = fine(&[&["eval", robot, "--json", "--set", "fore=0.25"], &motion[..]].concat());
+        let torques = json.split(|c: char| c.is_whitespace() || "[]{},".contains(c));
+        let torques: Vec<f64> = torques.filter_map(|word| word.parse().ok()).collect();
+        assert_eq!(torques, state.tau, "in every bit");
+    }
+    let longer = fine(&["eval", robot, "--golden", "5", "--set", "fore=0.25"]);
+    assert!(longer.starts_with(&text), "the same states in each run");
+    fails(2, &["eval", robot, "--golden", "0"], &["--golden"]);
+    fails(2, &["eval", robot, "--golden", "3", "--q", "0,0,0"], &["cannot be used with"]);
+    let rotors = fine(&["eval", "robots/puma560.yaml", "--golden", "1", "--rotors"]);
+    assert_ne!(rotors.lines().last(), fine(&["eval", "robots/puma560.yaml", "--golden", "1"]).lines().last());
+    assert!(rotors.starts_with("# Torques of puma560, with its rotors"), "{rotors}");
+}

@@ -5,6 +5,7 @@ mod check;
 mod documents;
 mod emit;
 mod emit_c;
+mod emit_tests;
 mod eval;
 mod firmware;
 mod help;

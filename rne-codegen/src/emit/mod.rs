@@ -9,6 +9,8 @@ mod formula;
 mod heading;
 mod inert;
 mod listing;
+mod own_tests;
+mod parameters;
 mod signature;
 mod syntax;
 mod table;
@@ -24,6 +26,7 @@ pub use formula::Formula;
 pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing};
+pub use own_tests::{Golden, c_tests, rust_tests};
 pub use syntax::Precision;
 pub use table::{angle, operations_table};
 pub use text::{rust_file, rust_file_with_sin_cos};
@@ -34,7 +37,7 @@ use crate::program::Program;
 /// The variables that stand in the code of a program beside its own, in Rust or in C.
 pub(crate) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
     let arrays = signature::arguments(program).into_iter().map(|array| array.name);
-    arrays.chain(["zero"]).chain(c::locals(program))
+    arrays.chain(["parameters", "zero"]).chain(c::locals(program))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ pub(super) struct ArgumentArray {
     pub(super) elements: Vec<Option<Name>>,
 }
 
-/// The argument arrays of a program's function, in order.
+/// The argument arrays of a program's function, in order, without run-time parameters.
 pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
     let used = |name: Name| program.arguments.contains(&name).then_some(name);
     let joints = |name, quantity| ArgumentArray {
@@ -47,9 +47,12 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
             }
         }
     }
-    if program.parameters > 0 {
-        let elements = (1..=program.parameters).map(|index| used(Name::scalar(Quantity::Parameter, index))).collect();
-        arrays.push(ArgumentArray { name: "parameters", elements });
-    }
     arrays
+}
+
+/// The array of the run-time parameters, where the robot has some.
+pub(super) fn parameters(program: &Program) -> Option<ArgumentArray> {
+    let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
+    let elements = names.map(|name| program.arguments.contains(&name).then_some(name)).collect();
+    (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements })
 }

@@ -12,10 +12,11 @@ use super::expression::line;
 use super::heading::Heading;
 use super::inert::{markdown, verbatim};
 use super::listing::{Line, Selection, listing};
+use super::parameters::{self, Parameter};
 use super::signature::{ArgumentArray, arguments};
 use super::syntax::Syntax;
 use super::table::operations_table;
-use super::wrap::WIDTH;
+use super::wrap::{WIDTH, fill};
 use crate::function::Layout;
 use crate::ir::name::Name;
 use crate::program::Program;
@@ -54,11 +55,33 @@ fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
             let _ = write!(text, "\n{methods}{by_sign}}}\n");
         }
     }
+    if programs.iter().any(parameters::are_used) {
+        text.push_str(&record_of_parameters(robot));
+    }
     for program in programs {
         text.push('\n');
         text.push_str(&function(robot, program));
     }
     text
+}
+
+/// The type of the last argument of what depends on run-time parameters.
+fn record_of_parameters(robot: &Robot) -> String {
+    let parameters = Parameter::of(robot, parameters::OF_RUST);
+    let (mut fields, mut values) = (String::new(), String::new());
+    for parameter in &parameters {
+        let documentation = fill(&markdown(&parameter.about()), WIDTH, "    /// ", "    /// ");
+        let _ = writeln!(fields, "{documentation}\n    pub {}: T,", parameter.member);
+        let _ = writeln!(values, "            {}: Scalar::from_f64({:?}),", parameter.member, parameter.value);
+    }
+    format!(
+        "\n/// Parameters of the robot file that are given at run time.\n\
+         #[derive(Clone, Copy, Debug, PartialEq)]\n#[allow(non_snake_case)] // names of the file\n\
+         pub struct Parameters<T> {{\n{fields}}}\n\n\
+         #[allow(clippy::all, clippy::pedantic)]\nimpl<T: Scalar> Parameters<T> {{\n    /// Their \
+         values in the file.\n    \
+         #[must_use]\n    pub fn of_file() -> Self {{\n        Self {{\n{values}        }}\n    }}\n}}\n"
+    )
 }
 
 /// rustfmt breaks longer patterns of arrays.
@@ -106,6 +129,9 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     let heading = Heading::of(robot);
     let mut text = format!("{}\n\n{}\n\n", Heading::opening(&markdown(&heading.title)), Heading::mark(robot));
     let _ = writeln!(text, "{}\n", verbatim(&format!("{}\n\n{}", heading.frames, heading.table)));
+    for line in parameters::heading(robot) {
+        let _ = writeln!(text, "{}\n", fill(&markdown(&line), WIDTH - 4, "", ""));
+    }
     if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
         let _ = writeln!(text, "{}\n", verbatim(&evidence(program, proof).join("\n")));
     }
@@ -183,8 +209,11 @@ fn function(robot: &Robot, program: &Program) -> String {
     let arrays = arguments(program);
     let mut text = format!("/// {}\n", program.function.summary());
     text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
-    let parameters: Vec<String> =
+    let mut parameters: Vec<String> =
         arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
+    if parameters::are_used(program) {
+        parameters.push("parameters: &Parameters<T>".to_owned());
+    }
     let start = format!("pub fn {}<T: Scalar>(", program.function);
     let end = format!(") -> {} {{", returned_type(&program.function.layout(program.dof)));
     let line = format!("{start}{}{end}\n", parameters.join(", "));
@@ -204,6 +233,10 @@ fn function(robot: &Robot, program: &Program) -> String {
                 writeln!(text, "    let [\n        {},\n    ] = *{name};", names.replace(", ", ",\n        "))
             }
         };
+    }
+    for (index, name) in parameters::used(program) {
+        let members = Parameter::of(robot, parameters::OF_RUST);
+        let _ = writeln!(text, "    let {name} = parameters.{};", members[index].member);
     }
     if program.returns_zero() || !program.constants.is_empty() {
         text.push_str("\n    // constants\n");

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
-use super::signature::{ArgumentArray, arguments};
+use super::signature::{ArgumentArray, arguments, parameters};
 use super::syntax::Syntax;
 use crate::fma::{Contraction, Negated};
 use crate::function::Record;
@@ -105,8 +105,9 @@ impl<'a> Body<'a> {
     }
 
     fn arguments(&self, is_asked: impl Fn(&str) -> bool, is_used: impl Fn(Name) -> bool) -> TokenStream {
-        let arrays = arguments(self.program).into_iter().filter(|array| is_asked(array.name));
+        let arrays = arguments(self.program).into_iter().chain(parameters(self.program));
         arrays
+            .filter(|array| is_asked(array.name))
             .map(|ArgumentArray { name, elements }| {
                 let array = ident(name);
                 let elements: Vec<_> = elements.into_iter().map(|name| name.filter(|name| is_used(*name))).collect();

@@ -8,6 +8,8 @@ mod comparison;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod geometry;
 #[cfg(all(feature = "arm", feature = "std"))]
+mod golden;
+#[cfg(all(feature = "arm", feature = "std"))]
 mod motion;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod robot_file;
@@ -20,6 +22,8 @@ mod torques;
 pub use geometry::{
     centre_of_mass_is_that_of_the_runtime, kinematics_are_those_of_the_runtime, rotations_are_orthonormal,
 };
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use golden::{GoldenState, torques_are_those_of_the_golden_file};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use motion::{
     accelerations_are_those_of_the_runtime, accelerations_need_the_torques_that_cause_them,

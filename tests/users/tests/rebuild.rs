@@ -22,7 +22,7 @@ const PROGRAM: &str = r#"
 use rne::InverseDynamics;
 
 #[derive(InverseDynamics)]
-#[robot(path = "../robots/slide.yaml")]
+#[robot(path = "../robots/slide.yaml", tests)]
 struct Slide;
 
 fn main() {
@@ -51,6 +51,8 @@ struct Program {
 impl Program {
     fn new() -> Self {
         let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("rebuild");
+        // of a run that failed
+        let _ = fs::remove_file(folder.join("robots/slide.golden.csv"));
         fs::create_dir_all(folder.join("src")).expect("a folder for sources");
         fs::create_dir_all(folder.join("robots")).expect("a folder for robots");
         let manifest = MANIFEST.replace("<rne>", &build::root().display().to_string());
@@ -93,4 +95,19 @@ fn a_changed_robot_file_is_compiled_again() {
 
     program.write_robot("0.5");
     assert_eq!(program.printed(), "5");
+
+    // and so is the golden file beside it, whether its tests run or not
+    let golden = program.folder.join("robots/slide.golden.csv");
+    let header = "q1,qd1,qdd1,tau1\n";
+    fs::write(&golden, format!("{header}0, 0, 2, 6\n")).expect("the golden file");
+    program.write_robot("0.50");
+    assert_eq!(program.printed(), "5");
+    fs::write(&golden, format!("{header}0, 0, 2, six\n")).expect("the golden file");
+    let output = program.run();
+    let messages = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success());
+    assert!(messages.contains("--> robots/slide.golden.csv:2:10"), "{messages}");
+    fs::write(&golden, format!("{header}0, 0, 2, 6.0\n")).expect("the golden file");
+    assert_eq!(program.printed(), "5");
+    fs::remove_file(&golden).expect("it was there");
 }

@@ -2,14 +2,17 @@
 
 use std::fmt::Write;
 
-use super::signature::{fields, head, record_type, records};
-use super::{File, comment};
+use super::signature::{fields, head, parameters_type, record_type, records};
+use super::{ConstantTooLarge, File, comment};
 use crate::emit::evidence::evidence;
 use crate::emit::heading::Heading;
+use crate::emit::parameters::{self, Parameter};
 use crate::emit::syntax::Precision;
 use crate::emit::wrap::{TIED, WIDTH, fill};
 use crate::emit::{inert, table};
 use crate::function::Record;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
 use crate::program::Program;
 
 /// How both files begin.
@@ -20,7 +23,7 @@ pub(super) fn title(file: &File) -> String {
     format!("{title}//\n// {}\n{}", Heading::mark(file.robot), comment("//", &by))
 }
 
-pub(super) fn header(file: &File) -> String {
+pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
     let upper = file.prefix.to_ascii_uppercase();
     let mut text = title(file);
     text.push_str(&robot(file));
@@ -30,6 +33,7 @@ pub(super) fn header(file: &File) -> String {
     text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
     let _ = writeln!(text, "/// Number of joints.\n#define {upper}_DOF {}u", file.robot.dof());
     text.push_str(&limits(file, &upper));
+    text.push_str(&parameters(file, &upper)?);
     for (record, parts) in records(file) {
         let (about, name) = (comment("///", about(record)), record_type(file, record));
         let _ = writeln!(text, "\n{about}typedef struct {{");
@@ -48,7 +52,46 @@ pub(super) fn header(file: &File) -> String {
         let _ = writeln!(text, "{};", head(file, program));
     }
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
-    text
+    Ok(text)
+}
+
+/// The struct of the run-time parameters, and an initialiser with the values of the file.
+fn parameters(file: &File, upper: &str) -> Result<String, ConstantTooLarge> {
+    let Some(program) = file.programs.iter().find(|program| parameters::are_used(program)) else {
+        return Ok(String::new());
+    };
+    let (real, name) = (file.precision.c_type(), parameters_type(file));
+    let parameters = Parameter::of(file.robot, parameters::OF_C);
+    let mut text = "\n/// Parameters of the robot file that are given at run time.\ntypedef struct {\n".to_owned();
+    let mut values = Vec::new();
+    for (index, parameter) in parameters.iter().enumerate() {
+        for line in comment("///", &parameter.about()).lines() {
+            let _ = writeln!(text, "    {line}");
+        }
+        let _ = writeln!(text, "    {real} {};", parameter.member);
+        let value = file.precision.literal(parameter.value);
+        values.push(value.ok_or(ConstantTooLarge {
+            name: Name::scalar(Quantity::Parameter, index + 1),
+            value: parameter.value,
+            function: program.function,
+        })?);
+    }
+    let _ = writeln!(text, "}} {name};\n");
+    text.push_str(&comment("///", &format!("Their values in the file: `const {name} x = {upper}_PARAMETERS;`")));
+    text.push_str(&initialiser(&format!("{upper}_PARAMETERS"), &values));
+    Ok(text)
+}
+
+/// Numbers that an array or a struct is initialised with.
+fn initialiser(name: &str, numbers: &[String]) -> String {
+    let start = format!("#define {name} {{");
+    let numbers = numbers.join(", ");
+    if start.len() + numbers.len() < WIDTH {
+        return format!("{start}{numbers}}}\n");
+    }
+    // a definition goes on behind a backslash
+    let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
+    format!("{start} \\\n{lines}}}\n")
 }
 
 /// The limits of the joints as initialisers of arrays; of what no joint has there is none.
@@ -80,15 +123,8 @@ fn limits(file: &File, upper: &str) -> String {
             "///",
             &format!("{about}{unlimited}: `const {0} x[] = {upper}_{name};`", precision.c_type()),
         ));
-        let start = format!("#define {upper}_{name} {{");
-        let numbers = values.iter().map(number).collect::<Vec<_>>().join(", ");
-        if start.len() + numbers.len() < WIDTH {
-            let _ = writeln!(text, "{start}{numbers}}}");
-        } else {
-            // a definition goes on behind a backslash
-            let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
-            let _ = writeln!(text, "{start} \\\n{lines}}}");
-        }
+        let numbers: Vec<String> = values.iter().map(number).collect();
+        text.push_str(&initialiser(&format!("{upper}_{name}"), &numbers));
     }
     text
 }
@@ -109,6 +145,11 @@ fn robot(file: &File) -> String {
     let mut text = "//\n".to_owned();
     for line in frames.lines().chain([""]).chain(table.lines()) {
         let _ = writeln!(text, "{}", format!("//   {}", inert::c_comment(line)).trim_end());
+    }
+    let parameters = parameters::heading(file.robot);
+    if !parameters.is_empty() {
+        text.push_str("//\n");
+        parameters.iter().for_each(|line| text.push_str(&comment("//", line)));
     }
     let proved = file.programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)));
     if let Some((program, proof)) = proved {

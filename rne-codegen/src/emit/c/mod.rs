@@ -14,9 +14,11 @@ use super::syntax::{Precision, Syntax};
 use super::wrap::{WIDTH, fill};
 use crate::function::Function;
 use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
 use crate::program::Program;
 
 pub use prefix::{BadPrefix, Prefix};
+pub(super) use signature::{inputs, record_name, result_elements};
 
 /// The variables of a function beside those of its program.
 pub(super) fn locals(program: &Program) -> impl Iterator<Item = &'static str> {
@@ -33,6 +35,12 @@ pub struct CCode {
 }
 
 impl CCode {
+    /// The same with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
+    #[must_use]
+    pub fn with_tests(self, tests: &str) -> Self {
+        Self { body: self.body + tests, ..self }
+    }
+
     /// The header.
     #[must_use]
     pub fn header(&self) -> &str {
@@ -77,7 +85,7 @@ pub fn c_code_of_file(
     origin: Option<&Origin>,
 ) -> Result<CCode, ConstantTooLarge> {
     let file = File { robot, programs, precision, prefix: prefix.as_str(), origin };
-    Ok(CCode { title: header::title(&file), header: header::header(&file), body: source::body(&file)? })
+    Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
 }
 
 /// What is written, and how.
@@ -141,6 +149,11 @@ pub struct ConstantTooLarge {
 impl fmt::Display for ConstantTooLarge {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { name, value, function } = self;
+        if name.quantity == Quantity::Parameter {
+            let number = name.joint;
+            write!(f, "`{function}` takes run-time parameter {number}, whose value in the file is {value:e}")?;
+            return write!(f, ": too large for `float`, whose largest number is {:e}", f32::MAX);
+        }
         write!(f, "`{function}` needs the constant {name} ({}", name.quantity.meaning())?;
         if name.joint > 0 {
             write!(f, ", of link {}", name.joint)?;

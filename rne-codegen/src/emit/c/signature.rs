@@ -3,13 +3,14 @@
 use std::fmt::Write;
 
 use super::File;
+use crate::emit::parameters;
 use crate::emit::signature::{ArgumentArray, arguments};
 use crate::emit::wrap::{TIED, WIDTH, fill};
 use crate::function::{Layout, Record};
 use crate::program::Program;
 
 /// The argument arrays of a function, by names that are no functions of the C library.
-pub(super) fn inputs(program: &Program) -> Vec<ArgumentArray> {
+pub(in crate::emit) fn inputs(program: &Program) -> Vec<ArgumentArray> {
     let mut arrays = arguments(program);
     for array in &mut arrays {
         array.name = match array.name {
@@ -25,22 +26,25 @@ pub(super) fn inputs(program: &Program) -> Vec<ArgumentArray> {
 pub(super) fn head(file: &File, program: &Program) -> String {
     let real = file.precision.c_type();
     let layout = program.function.layout(program.dof);
-    let mut parameters: Vec<String> = inputs(program)
+    let mut arguments: Vec<String> = inputs(program)
         .iter()
         .map(|ArgumentArray { name, elements }| format!("const {real} {name}[{}]", elements.len()))
         .collect();
+    if parameters::are_used(program) {
+        arguments.push(format!("const {} *parameters", parameters_type(file)));
+    }
     let returned = if layout == Layout::Number { real } else { "void" };
     if layout != Layout::Number {
-        parameters.push(declared(file, &layout, program.function.entry().output));
+        arguments.push(declared(file, &layout, program.function.entry().output));
     }
     let start = format!("{returned} {}_{}(", file.prefix, program.function);
-    let line = format!("{start}{})", parameters.join(", "));
+    let line = format!("{start}{})", arguments.join(", "));
     // one column is for the semicolon
     if line.len() < WIDTH {
         return line;
     }
-    let parameters: Vec<String> = parameters.iter().map(|parameter| parameter.replace(' ', TIED)).collect();
-    start + "\n" + &fill(&(parameters.join(", ") + ")"), WIDTH, "    ", "    ")
+    let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
+    start + "\n" + &fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ")
 }
 
 /// A parameter through which a result is written: a record by its address, arrays as what they are.
@@ -60,12 +64,22 @@ fn declared(file: &File, layout: &Layout, name: &str) -> String {
 
 /// The name of a record's type.
 pub(super) fn record_type(file: &File, record: Record) -> String {
+    record_name(file.prefix, record)
+}
+
+/// The same, behind a prefix.
+pub(in crate::emit) fn record_name(prefix: &str, record: Record) -> String {
     let name = match record {
         Record::Pose => "pose",
         Record::Wrench => "wrench",
         Record::TorqueDerivatives => "torque_derivatives",
     };
-    format!("{}_{name}", file.prefix)
+    format!("{prefix}_{name}")
+}
+
+/// The type of the run-time parameters.
+pub(super) fn parameters_type(file: &File) -> String {
+    format!("{}_parameters", file.prefix)
 }
 
 /// The fields of a record as they are declared.
@@ -95,6 +109,13 @@ pub(super) fn places(program: &Program) -> Vec<String> {
     let mut places = Vec::new();
     // a record is written by its address
     elements(&program.function.layout(program.dof), program.function.entry().output, "->", &mut places);
+    places
+}
+
+/// The numbers of a result that is a variable.
+pub(in crate::emit) fn result_elements(program: &Program, variable: &str) -> Vec<String> {
+    let mut places = Vec::new();
+    elements(&program.function.layout(program.dof), variable, ".", &mut places);
     places
 }
 

@@ -7,6 +7,7 @@ use super::signature::{head, inputs, places};
 use super::{ConstantTooLarge, File};
 use crate::emit::expression::{line, statement};
 use crate::emit::listing::{Line, Selection, listing};
+use crate::emit::parameters::{self, Parameter};
 use crate::emit::signature::ArgumentArray;
 use crate::emit::syntax::Precision;
 use crate::emit::text::legend;
@@ -96,6 +97,10 @@ fn arguments(file: &File, program: &Program) -> String {
                 let _ = writeln!(text, "    {declaration} {name} = {array}[{index}];");
             }
         }
+    }
+    let members = Parameter::of(file.robot, parameters::OF_C);
+    for (index, name) in parameters::used(program) {
+        let _ = writeln!(text, "    {declaration} {name} = parameters->{};", members[index].member);
     }
     text
 }

@@ -1,0 +1,145 @@
+//! `rne emit --tests`: code passes the tests that are written beside it, and code that is wrong does not.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::call::{fails, fine, folder};
+
+/// Motors that choose by a sign; a joint that slides, a modified table and accelerations that are divided; parameters.
+const ROBOTS: [&[&str]; 4] = [
+    &["robots/puma560.yaml", "--rotors"],
+    &["robots/stanford.yaml"],
+    &["robots/puma560_mdh.yaml", "--form", "reduced"],
+    &["docs/desk_arm.yaml", "--run-time", "upper,fore"],
+];
+
+/// What the tests of a file of Rust say.
+fn tested_rust(folder: &Path, code: &str, options: &[&str]) -> Output {
+    fs::write(folder.join("arm.rs"), code).expect("written");
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    let warnings = ["-D", "warnings", "-A", "dead_code"];
+    let built = Command::new(rustc)
+        .current_dir(folder)
+        .args(["--edition", "2024", "--test", "arm.rs", "-o", "arm_rs"].iter().chain(&warnings).chain(options))
+        .output()
+        .expect("rustc starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    Command::new(folder.join("arm_rs")).output().expect("it starts")
+}
+
+/// What the tests of a file of C say; `None` where there is no compiler.
+fn tested_c(folder: &Path, code: &str) -> Option<Output> {
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_owned());
+    if Command::new(&compiler).arg("--version").output().is_err() {
+        println!("not compiled: there is no compiler of C called `{compiler}`; CC names another");
+        return None;
+    }
+    fs::write(folder.join("arm.c"), code).expect("written");
+    let flags = "-std=c99 -O1 -Wall -Wextra -Wconversion -Wdouble-promotion -Wfloat-conversion -Wshadow \
+                 -Wmissing-prototypes -pedantic -Werror -DRNE_TEST arm.c -o arm_c";
+    let built = Command::new(compiler).current_dir(folder).args(flags.split_whitespace()).output().expect("it starts");
+    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
+    Some(Command::new(folder.join("arm_c")).output().expect("it starts"))
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// The code with a constant of its own that is a hundredth off, of so many that it has.
+fn broken(code: &str, start: &str, end: &str) -> Vec<String> {
+    let is_constant = |line: &str| line.trim_start().starts_with(start) && line.ends_with(end);
+    let lines: Vec<&str> =
+        code.lines().take_while(|line| !line.contains("cfg(test)") && !line.contains("RNE_TEST")).collect();
+    let number = |line: &str| -> Option<(String, f64)> {
+        let text = line.rsplit(['(', ' ']).next()?.trim_end_matches(end).trim_end_matches('f');
+        Some((text.to_owned(), text.parse().ok()?))
+    };
+    let mut copies = Vec::new();
+    for (at, line) in lines.iter().enumerate().filter(|(_, line)| is_constant(line)) {
+        let Some((text, value)) = number(line) else { continue };
+        let wrong = line.replacen(&text, &format!("{:?}", value * 1.01), 1);
+        let changed: Vec<&str> =
+            code.lines().enumerate().map(|(i, other)| if i == at { &wrong } else { other }).collect();
+        copies.push(changed.join("\n") + "\n");
+    }
+    copies
+}
+
+#[test]
+fn rust_passes_its_tests() {
+    let folder = folder("tests_rust");
+    for robot in ROBOTS {
+        for options in [&[][..], &["--with-sin-cos", "--ascii"]] {
+            let code = fine(&[&["emit", "--tests", "--function", "all"], robot, options].concat());
+            let output = tested_rust(&folder, &code, &[]);
+            assert!(output.status.success(), "{robot:?}: {}", said(&output));
+            let tests = code.matches("#[test]").count();
+            assert!(tests >= 27 && said(&output).contains(&format!("{tests} passed; 0 failed")), "{}", said(&output));
+        }
+    }
+    // tests change nothing else, and those of a crate without `std` have it
+    let plain = fine(&["emit", "robots/planar2.yaml"]);
+    let code = fine(&["emit", "robots/planar2.yaml", "--tests"]);
+    assert!(code.starts_with(&plain) && !plain.contains("cfg(test)"));
+    let output = tested_rust(&folder, &format!("#![no_std]\n{code}"), &[]);
+    assert!(output.status.success() && said(&output).contains("9 passed"), "{}", said(&output));
+}
+
+#[test]
+fn c_passes_its_tests() {
+    let folder = folder("tests_c");
+    for robot in ROBOTS {
+        for options in [&[][..], &["--real", "double", "--prefix", "arm"]] {
+            let code = fine(&[&["emit", "--tests", "--lang", "c", "--function", "all"], robot, options].concat());
+            let Some(output) = tested_c(&folder, &code) else { return };
+            assert!(
+                output.status.success() && said(&output).contains(" tests, 0 wrong"),
+                "{robot:?}: {}",
+                said(&output)
+            );
+        }
+    }
+    let plain = fine(&["emit", "robots/planar2.yaml", "--lang", "c"]);
+    assert!(fine(&["emit", "robots/planar2.yaml", "--lang", "c", "--tests"]).starts_with(&plain));
+    let out = folder.join("none.c");
+    let check = ["emit", "robots/planar2.yaml", "--lang", "c", "--tests", "--check", out.to_str().expect("UTF-8")];
+    fails(1, &check, &["--lang c --tests -o"]);
+}
+
+#[test]
+fn a_wrong_constant_is_noticed() {
+    let folder = folder("tests_broken");
+    let emit = ["emit", "robots/planar2.yaml", "--tests", "--function", "inverse_dynamics,mass_matrix"];
+    let copies = broken(&fine(&emit), "let ", ");");
+    assert!(copies.len() > 4, "{}", copies.len());
+    for code in &copies {
+        let output = tested_rust(&folder, code, &[]);
+        assert!(!output.status.success(), "{code}");
+        assert!(said(&output).contains("_has_the_values_of_the_runtime ... FAILED"), "{}", said(&output));
+    }
+    for real in ["float", "double"] {
+        let copies = broken(&fine(&[&emit[..], &["--lang", "c", "--real", real]].concat()), "const ", ";");
+        assert!(copies.len() > 4, "{}", copies.len());
+        for code in &copies {
+            let Some(output) = tested_c(&folder, code) else { return };
+            assert_eq!(output.status.code(), Some(1), "{code}");
+            assert!(said(&output).contains(", number "), "{}", said(&output));
+        }
+    }
+    // laws alone notice what breaks them
+    let code =
+        fine(&["emit", "robots/planar2.yaml", "--tests", "--function", "mass_matrix,kinetic_energy", "--lang", "c"]);
+    let (before, function) = code.split_once("planar2_mass_matrix(const float q[2], float mass[2][2])\n{").expect("it");
+    let wrong = function.replacen("    mass[0][1] = ", "    mass[0][1] = 1.5f * ", 1);
+    assert_ne!(wrong, function);
+    let Some(output) =
+        tested_c(&folder, &format!("{before}planar2_mass_matrix(const float q[2], float mass[2][2])\n{{{wrong}"))
+    else {
+        return;
+    };
+    for law in ["mass matrix is symmetric", "kinetic energy is that of the mass matrix"] {
+        assert!(said(&output).contains(&format!("{law}, state 0")), "{}", said(&output));
+    }
+}
