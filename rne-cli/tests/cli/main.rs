@@ -8,6 +8,8 @@ mod emit_c;
 mod eval;
 mod firmware;
 mod help;
+#[cfg(unix)]
+mod hostile;
 mod import;
 mod plans;
 mod search;
