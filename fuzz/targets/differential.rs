@@ -160,7 +160,7 @@ fn operators_of_c(robot: &Robot, program: &Program) {
     let prefix = "arm".parse().expect("a prefix");
     let code = emit::c_code(robot, std::slice::from_ref(program), Precision::Double, &prefix).expect("C");
     let code = code.one_file();
-    let (_, body) = code.rsplit_once(&format!("void arm_{}(", program.function)).expect("the function");
+    let (_, body) = code.rsplit_once(&format!(" arm_{}(", program.function)).expect("the function");
     let (_, body) = body.split_once("\n{").expect("its body");
     let words = body.lines().filter_map(|line| line.split("//").next()).flat_map(str::split_whitespace);
     let words: Vec<&str> = words.collect();
