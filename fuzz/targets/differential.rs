@@ -1,4 +1,5 @@
-//! A random arm, one function in one form: the interpreted program is the runtime, and C is written of it.
+//! A random arm, one function in one form: the interpreted program is the runtime, and C of as many operators is
+//! written of it.
 #![no_main]
 
 use std::fmt::Write as _;
@@ -6,9 +7,9 @@ use std::fmt::Write as _;
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
 use rne_codegen::emit::{self, Precision};
-use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program};
 use rne_model::Robot;
-use rne_runtime::{DynArm, Scalar};
+use rne_runtime::{BaseMotion, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
 
 fuzz_target!(|bytes: &[u8]| {
     let _ = compare(&mut Unstructured::new(bytes));
@@ -27,6 +28,58 @@ const INERTIAS: [&str; 6] = [
     "{zz: 0.4}",
 ];
 
+/// Motors of joints; friction has a sign for each direction.
+const MOTORS: [&str; 4] = [
+    "",
+    "",
+    ", motor: {inertia: 2.0e-4, gear_ratio: -62.5}",
+    ", motor: {inertia: 3.3e-5, gear_ratio: 100, viscous: 1.2e-4, coulomb: [0.012, -0.015]}",
+];
+
+/// Arguments of every function, in the order of their fields.
+struct State {
+    q: Vec<f64>,
+    qd: Vec<f64>,
+    qdd: Vec<f64>,
+    tau: Vec<f64>,
+    wrench: Wrench<f64>,
+    payload: [f64; 10],
+    base: BaseMotion<f64>,
+}
+
+impl State {
+    fn new(u: &mut Unstructured<'_>, dof: usize) -> Result<Self> {
+        let mut number = |scale: f64| Ok(f64::from(u.arbitrary::<i8>()?) / 128.0 * scale);
+        let mut list = |count: usize, scale: f64| (0..count).map(|_| number(scale)).collect::<Result<Vec<f64>>>();
+        let (q, qd, qdd, tau) = (list(dof, 3.0)?, list(dof, 2.0)?, list(dof, 5.0)?, list(dof, 20.0)?);
+        let mut triple = |scale| list(3, scale).map(|list| [list[0], list[1], list[2]]);
+        let wrench = Wrench { force: triple(10.0)?, moment: triple(5.0)? };
+        let (centre, inertia, products) = (triple(0.3)?, triple(0.1)?, triple(0.02)?);
+        let base = BaseMotion {
+            omega: triple(1.0)?,
+            omega_dot: triple(2.0)?,
+            velocity: [0.0; 3],
+            acceleration: triple(3.0)?,
+            gravity: triple(9.81)?,
+        };
+        let mut payload = [3.0; 10];
+        payload[1..].iter_mut().zip([centre, inertia, products].concat()).for_each(|(to, from)| *to = from);
+        Ok(Self { q, qd, qdd, tau, wrench, payload, base })
+    }
+
+    fn arguments(&self) -> Arguments<'_, f64> {
+        let Self { q, qd, qdd, tau, wrench, payload, base } = self;
+        Arguments {
+            tau,
+            force: wrench.force,
+            moment: wrench.moment,
+            payload: *payload,
+            base: [base.omega, base.omega_dot, base.acceleration, base.gravity],
+            ..Arguments::of_joints(q, qd, qdd, 0.0)
+        }
+    }
+}
+
 fn arm(u: &mut Unstructured<'_>) -> Result<String> {
     let convention = *u.choose(&["standard", "modified"])?;
     let gravity = *u.choose(&["[0, 0, -9.81]", "[0, -9.81, 0]", "[0, 0, 0]", "[1, -2, 9]"])?;
@@ -40,11 +93,11 @@ fn arm(u: &mut Unstructured<'_>) -> Result<String> {
         let kind = *u.choose(&["revolute", "revolute", "revolute", "prismatic"])?;
         let [theta, alpha] = [u.choose(&ANGLES)?, u.choose(&ANGLES)?];
         let [d, a, x, y, z] = [(); 5].map(|()| u.choose(&LENGTHS));
-        let (mass, inertia) = (u.choose(&MASSES)?, u.choose(&INERTIAS)?);
+        let (mass, inertia, motor) = (u.choose(&MASSES)?, u.choose(&INERTIAS)?, u.choose(&MOTORS)?);
         let _ = writeln!(
             text,
             "  - {{type: {kind}, dh: {{theta: {theta}, d: {}, a: {}, alpha: {alpha}}}, link: {{mass: {mass}, com: [{}, \
-             {}, {}], inertia: {inertia}}}}}",
+             {}, {}], inertia: {inertia}}}{motor}}}",
             d?, a?, x?, y?, z?
         );
     }
@@ -54,50 +107,109 @@ fn arm(u: &mut Unstructured<'_>) -> Result<String> {
 fn compare(u: &mut Unstructured<'_>) -> Result<()> {
     let text = arm(u)?;
     let robot = Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}\n{text}"));
+    let robot = Robot { rotors: u.arbitrary()?, ..robot };
     let function = *u.choose(&Function::ALL)?;
     let form = *u.choose(&Form::ALL)?;
-    let dof = robot.dof();
-    let mut numbers = |scale: f64| -> Result<Vec<f64>> {
-        (0..dof).map(|_| Ok(f64::from(u.arbitrary::<i8>()?) / 128.0 * scale)).collect()
-    };
-    let (q, qd, qdd) = (numbers(3.0)?, numbers(2.0)?, numbers(5.0)?);
+    let state = State::new(u, robot.dof())?;
     // without the plans of a build: they take longer than all the rest
     let Ok(program) = Compiler::new(&robot).compile(function, form) else { return Ok(()) };
-    let interpreted = Interpreter::new(&program).run(
-        &Arguments { tau: &qdd, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) },
-        |value| value,
-        Scalar::sin_cos,
-    );
+    let interpreted = Interpreter::new(&program).run(&state.arguments(), |value| value, Scalar::sin_cos);
     let interpreted = interpreted.expect("arrays of the right length");
-    let one = std::slice::from_ref(&program);
-    let c = emit::c_code(&robot, one, Precision::Double, &"arm".parse().expect("a prefix")).map(|code| code.one_file());
-    assert!(c.is_ok_and(|c| c.contains(function.name())), "{text}");
-    let Some(expected) = runtime(&DynArm::from_robot(&robot), function, &q, &qd, &qdd) else { return Ok(()) };
+    operators_of_c(&robot, &program);
+    let arm = DynArm::from_robot(&robot);
+    let expected = runtime(&arm, function, &state).expect("arrays of the right length");
     assert_eq!(interpreted.len(), expected.len(), "{function} of\n{text}");
-    let largest = expected.iter().fold(1.0, |largest: f64, value| largest.max(value.abs()));
-    for (a, b) in interpreted.iter().zip(&expected) {
-        let is_equal = (a - b).abs() <= 1e-11 * largest || !a.is_finite() || !b.is_finite();
-        assert!(is_equal, "{function}, {form:?}: {interpreted:?} {expected:?} of\n{text}");
-    }
+    let is_equal = if function == Function::ForwardDynamics {
+        accelerate(&arm, &state, &interpreted).expect("arrays of the right length")
+    } else {
+        let scale = scale(&expected);
+        // an arm without mass has no centre
+        let is_close = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-11 * scale || !(a.is_finite() || b.is_finite());
+        interpreted.iter().zip(&expected).all(is_close)
+    };
+    assert!(is_equal, "{function}, {form:?}, rotors {}: {interpreted:?} {expected:?} of\n{text}", robot.rotors);
     Ok(())
 }
 
-/// What the runtime says, in the order of a program's outputs; `None` of functions with arguments of their own.
-fn runtime(arm: &DynArm, function: Function, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<Vec<f64>> {
-    let values = match function {
-        Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd),
-        Function::GravityTorques => arm.gravity_torques(q),
-        Function::BiasTorques => arm.bias_torques(q, qd),
-        Function::MassMatrix => arm.mass_matrix(q).map(|rows| rows.concat()),
-        Function::CoriolisMatrix => arm.coriolis_matrix(q, qd).map(|rows| rows.concat()),
-        // the joint accelerations stand for torques; singular arms have no answer
-        Function::ForwardDynamics => return None,
-        Function::Jacobian => arm.jacobian(q).map(|rows| rows.concat()),
-        Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd).map(Vec::from),
-        Function::KineticEnergy => arm.kinetic_energy(q, qd).map(|energy| vec![energy]),
-        Function::PotentialEnergy => arm.potential_energy(q).map(|energy| vec![energy]),
-        Function::Regressor => arm.regressor(q, qd, qdd).map(|rows| rows.concat().concat()),
-        _ => return None,
-    };
-    Some(values.expect("arrays of the right length"))
+/// The largest of some numbers, and at least 1: these arms have numbers around it.
+fn scale(numbers: &[f64]) -> f64 {
+    numbers.iter().filter(|number| number.is_finite()).fold(1.0, |largest: f64, number| largest.max(number.abs()))
+}
+
+/// Whether accelerations are those of the torques.
+///
+/// They are not compared with those of the runtime, from which they may differ by as much as M is badly conditioned,
+/// which is without bound where a last link is light. But elimination of a positive definite matrix is backward stable:
+/// what it returns solves a system that differs from M q̈ = τ - h by rounding, so M q̈ + h, of the runtime's M and h,
+/// gives τ to rounding of the largest product that stands in it, however large q̈ is. A singular M has no answer.
+fn accelerate(arm: &DynArm, State { q, qd, tau, .. }: &State, qdd: &[f64]) -> std::result::Result<bool, WrongLength> {
+    if !qdd.iter().all(|acceleration| acceleration.is_finite()) {
+        return Ok(true);
+    }
+    let (mass, bias) = (arm.mass_matrix(q)?, arm.bias_torques(q, qd)?);
+    let largest = scale(&mass.concat()) * scale(qdd) + scale(&bias) + scale(tau);
+    let misses = mass.iter().zip(&bias).zip(tau).map(|((row, bias), tau)| {
+        let torque: f64 = row.iter().zip(qdd).map(|(m, qdd)| m * qdd).sum();
+        (torque + bias - tau).abs()
+    });
+    Ok(misses.fold(0.0, f64::max) <= 1e-11 * largest)
+}
+
+/// The C text has the operators that the program counts: between blanks, behind the head of the last function.
+fn operators_of_c(robot: &Robot, program: &Program) {
+    let prefix = "arm".parse().expect("a prefix");
+    let code = emit::c_code(robot, std::slice::from_ref(program), Precision::Double, &prefix).expect("C");
+    let code = code.one_file();
+    let (_, body) = code.rsplit_once(&format!(" arm_{}(", program.function)).expect("the function");
+    let (_, body) = body.split_once("\n{").expect("its body");
+    let words = body.lines().filter_map(|line| line.split("//").next()).flat_map(str::split_whitespace);
+    let words: Vec<&str> = words.collect();
+    let count = |operators: &[&str]| words.iter().filter(|word| operators.contains(word)).count();
+    let counted = program.operations();
+    assert_eq!((count(&["*"]), count(&["+", "-"]), count(&["/"])), (counted.mul, counted.add, counted.div), "{}", body);
+}
+
+/// What the runtime says, in the order of a program's outputs.
+fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Result<Vec<f64>, WrongLength> {
+    let State { q, qd, qdd, tau, wrench, payload, base } = state;
+    Ok(match function {
+        Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
+        Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench)?,
+        Function::InverseDynamicsWithPayload => {
+            arm.inverse_dynamics_with_payload(q, qd, qdd, &Payload::from_array(*payload))?
+        }
+        Function::InverseDynamicsFromSinCos => {
+            let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+            arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)?
+        }
+        Function::GravityTorques => arm.gravity_torques(q)?,
+        Function::BiasTorques => arm.bias_torques(q, qd)?,
+        Function::MassMatrix => arm.mass_matrix(q)?.concat(),
+        Function::CoriolisMatrix => arm.coriolis_matrix(q, qd)?.concat(),
+        Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau)?,
+        Function::ForwardKinematics => pose(&arm.forward_kinematics(q)?).collect(),
+        Function::LinkPoses => arm.link_poses(q)?.iter().flat_map(pose).collect(),
+        Function::Jacobian => arm.jacobian(q)?.concat(),
+        Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
+        Function::KineticEnergy => vec![arm.kinetic_energy(q, qd)?],
+        Function::PotentialEnergy => vec![arm.potential_energy(q)?],
+        Function::CentreOfMass => arm.centre_of_mass(q)?.to_vec(),
+        Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q)?.concat(),
+        Function::Regressor => arm.regressor(q, qd, qdd)?.into_iter().flatten().flatten().collect(),
+        Function::InverseDynamicsDerivatives => {
+            let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
+            [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
+        }
+        Function::JointWrenches => {
+            let wrenches = arm.joint_wrenches(q, qd, qdd)?;
+            wrenches.iter().flat_map(|Wrench { force, moment }| [*force, *moment]).flatten().collect()
+        }
+        Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
+        Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
+    })
+}
+
+fn pose(pose: &Pose<f64>) -> impl Iterator<Item = f64> + use<> {
+    let Pose { rotation, translation } = *pose;
+    rotation.into_iter().chain([translation]).flatten()
 }

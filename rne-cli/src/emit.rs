@@ -10,6 +10,7 @@ use rne_model::Robot;
 
 use crate::arguments::FunctionOrAll;
 use crate::arm::Rotors;
+use crate::input_file::is_stream;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, Written};
 use crate::plan_file::Compiler;
@@ -243,7 +244,7 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
     // without its folder: the same file gives the same bytes wherever it is
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
-    let origin = Origin::of(if name == "-" { "on standard input" } else { &name }, bytes);
+    let origin = Origin::of(if is_stream(&arguments.file) { "on standard input" } else { &name }, bytes);
     let code = emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))

@@ -1,8 +1,7 @@
 //! `rne import`: a robot file of an arm in a URDF, and an account of what was done.
 
 use std::fmt::Write as _;
-use std::fs::File;
-use std::io::{self, ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -10,6 +9,7 @@ use rne_convert::{Account, Difference, Imported, Options, Selection, Urdf};
 use rne_model::Convention;
 
 use crate::arguments::{convention, robot_name};
+use crate::input_file::{self, is_standard_input};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
 use crate::terminal::{QUIET, TITLE, TYPED};
@@ -102,28 +102,16 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 /// The text, and the name of its file without folders: it becomes part of the source.
 fn read(path: &Path) -> Result<(String, String), Failure> {
-    const LONGEST: u64 = 16 << 20;
-    let mut bytes = Vec::new();
-    let (name, read) = if path == Path::new("-") {
-        ("<standard input>".to_owned(), io::stdin().lock().take(LONGEST + 1).read_to_end(&mut bytes))
-    } else {
-        let name =
-            path.file_name().map_or_else(|| path.display().to_string(), |name| name.to_string_lossy().into_owned());
-        let is_file = std::fs::metadata(path).map(|metadata| metadata.is_file());
-        let read = match is_file {
-            Ok(true) => File::open(path).and_then(|file| file.take(LONGEST + 1).read_to_end(&mut bytes)),
-            Ok(false) => Err(io::Error::new(ErrorKind::InvalidInput, "it is no regular file")),
-            Err(error) => Err(error),
-        };
-        (name, read)
-    };
-    match read {
-        Ok(_) => {}
+    const LONGEST: usize = 16 << 20;
+    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
+    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { name.into_owned() };
+    let bytes = match input_file::read(path, LONGEST) {
+        Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => {
             return Err(Failure::input(format_args!("there is no URDF {}", path.display())));
         }
         Err(error) => return Err(Failure::input(format_args!("{} cannot be read: {error}", path.display()))),
-    }
+    };
     let text = String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
         Failure::input(format_args!("{}: byte {at} is not UTF-8; save the file as UTF-8", path.display()))

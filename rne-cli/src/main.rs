@@ -18,6 +18,7 @@ mod golden;
 mod heading;
 mod highlight;
 mod import;
+mod input_file;
 mod layout;
 mod list;
 mod new;
@@ -46,11 +47,7 @@ use crate::outcome::{Failure, Outcome};
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => {
-            // A reader that has gone away needs no help.
-            let _ = error.print();
-            return if error.use_stderr() { outcome::USAGE.into() } else { ExitCode::SUCCESS };
-        }
+        Err(error) => return terminal::usage(&error),
     };
     let (name, outcome) = run(arguments.command);
     match outcome {

@@ -10,6 +10,7 @@ use rne_codegen::plan::{PlanFile, PlanSet, Trick};
 use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
 use rne_model::{Robot, plan_of, read_file, robot_of};
 
+use crate::input_file::is_stream;
 use crate::outcome::Failure;
 use crate::output_file::{self, Existing};
 use crate::robot_file::of_a_name;
@@ -31,7 +32,7 @@ pub(crate) struct Read {
 
 /// The plan file of a robot file, if there is one.
 pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Failure> {
-    if robot_file == Path::new("-") {
+    if is_stream(robot_file) {
         return Ok(None);
     }
     if let Some(shipped) = of_a_name(robot_file) {

@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, Reader, Robot, read_file, read_limited, robot_of};
+use rne_model::{Checked, MAX_BYTES, Reader, Robot, robot_of};
 use rne_robots::RobotFile;
 
+use crate::input_file::{self, is_standard_input};
 use crate::outcome::Failure;
 use crate::terminal::TYPED;
 
@@ -62,12 +63,8 @@ fn read_by(path: &Path, settings: &[(&str, f64)], run_time: &[&str]) -> Result<(
         let checked = read(&name, bytes)?;
         return Ok((checked, bytes.to_vec()));
     }
-    let (name, bytes) = if path == Path::new("-") {
-        ("<standard input>".to_owned(), read_limited(io::stdin().lock()))
-    } else {
-        (path.display().to_string(), read_file(path))
-    };
-    let bytes = bytes.map_err(|error| match error.kind() {
+    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
+    let bytes = input_file::read(path, MAX_BYTES).map_err(|error| match error.kind() {
         ErrorKind::NotFound => Failure::input(missing(path)),
         ErrorKind::IsADirectory => Failure::input(format_args!(
             "{0} is a folder; name the robot files in it, such as {TYPED}{1}{TYPED:#}",

@@ -14,6 +14,7 @@ use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions}
 use rne_model::plan_of;
 
 use crate::arguments::FunctionOrAll;
+use crate::input_file::is_stream;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
@@ -69,7 +70,7 @@ fn seconds(text: &str) -> Result<f64, String> {
 static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    if arguments.file == Path::new("-") {
+    if is_stream(&arguments.file) {
         return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
     }
     if let Some(shipped) = robot_file::of_a_name(&arguments.file) {

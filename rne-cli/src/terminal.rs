@@ -73,6 +73,18 @@ pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
     failure.status.into()
 }
 
+/// Prints what clap says: help, or what is wrong with the command line, which may be quoted.
+pub(crate) fn usage(error: &clap::Error) -> ExitCode {
+    let text = error.render().ansi().to_string();
+    // A reader that has gone away needs no help.
+    if error.use_stderr() {
+        let _ = write(AutoStream::auto(io::stderr().lock()), &text);
+        return USAGE.into();
+    }
+    let _ = write(AutoStream::auto(io::stdout().lock()), &text);
+    ExitCode::SUCCESS
+}
+
 fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.write_all(inert(text).as_bytes())?;
     stream.flush()

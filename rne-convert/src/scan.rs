@@ -44,11 +44,16 @@ struct Attribute {
 #[derive(Clone, Copy, PartialEq)]
 enum Kind {
     Text,
+    /// What a joint can be.
+    Joint,
     Number,
     /// A number that may be infinite.
     Limit,
     Vector,
 }
+
+/// The types of joints that `urdf-rs` reads.
+const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 const fn text(name: &'static str) -> Attribute {
     Attribute { name, kind: Kind::Text, required: true }
@@ -61,6 +66,8 @@ const fn number(name: &'static str) -> Attribute {
 const fn optional(name: &'static str, kind: Kind) -> Attribute {
     Attribute { name, kind, required: false }
 }
+
+const TYPE: Attribute = Attribute { name: "type", kind: Kind::Joint, required: true };
 
 const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Vector)];
 
@@ -75,7 +82,7 @@ const ELEMENTS: &[Element] = &[
         parent: "inertial",
         attributes: &[number("ixx"), number("ixy"), number("ixz"), number("iyy"), number("iyz"), number("izz")],
     },
-    Element { name: "joint", parent: "robot", attributes: &[text("name"), text("type")] },
+    Element { name: "joint", parent: "robot", attributes: &[text("name"), TYPE] },
     Element { name: "origin", parent: "joint", attributes: ORIGIN },
     Element { name: "parent", parent: "joint", attributes: &[text("link")] },
     Element { name: "child", parent: "joint", attributes: &[text("link")] },
@@ -135,6 +142,12 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
                 let message = "a document type; its entities are not read";
                 let help = "delete the line: a URDF needs none".to_owned();
                 return Err(source.error(&place, message, help));
+            }
+            Ok(Event::Text(words))
+                if scanner.has_robot && scanner.open.is_empty() && !words.trim_ascii().is_empty() =>
+            {
+                let message = "text behind the element `robot`; a URDF ends with </robot>";
+                return Err(source.error(&place, message, None));
             }
             Ok(Event::Eof) => break,
             Ok(_) => {}
@@ -241,7 +254,8 @@ impl Scanner<'_> {
     /// Writes the tag with the attributes that matter.
     fn write(&mut self, element: &Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
         let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
-        for attribute in tag.attributes() {
+        // whether one of thousands stands twice takes long to find out; those that matter are few
+        for attribute in tag.attributes().with_checks(false) {
             let attribute =
                 attribute.map_err(|error| self.source.error(place, format!("this is not XML: {error}"), None))?;
             let key = String::from_utf8_lossy(attribute.key.as_ref()).into_owned();
@@ -260,7 +274,10 @@ impl Scanner<'_> {
                 let span = found.map_or(place.clone(), |at| place.start + at..place.start + at + raw.len());
                 return Err(self.source.error(&span, message, None));
             }
-            values[index] = Some(value);
+            if values[index].replace(value).is_some() {
+                let message = format!("this is not XML: the attribute `{key}` stands there twice");
+                return Err(self.source.error(place, message, None));
+            }
         }
         let text = &mut self.scanned.text;
         let _ = write!(text, "<{}", element.name);
@@ -298,6 +315,12 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let words: Vec<&str> = value.split_whitespace().collect();
     match kind {
         Kind::Text if value.trim().is_empty() => Some("it must not be empty"),
+        Kind::Text if value.chars().any(|c| c.is_ascii_control() && !c.is_ascii_whitespace()) => {
+            Some("it must have no control characters")
+        }
+        Kind::Joint if !JOINTS.contains(&value) => {
+            Some("it must be revolute, continuous, prismatic, fixed, floating, planar or spherical")
+        }
         Kind::Number if words.len() != 1 || !words.iter().all(|word| fine(word)) => {
             Some("it must be one number of at most 1e9")
         }

@@ -23,20 +23,29 @@ pub fn read_limited(reader: impl Read) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The bytes of a robot file or a plan, [limited](read_limited). What is no regular file is not opened: a pipe would
-/// keep its reader waiting, a device may have no end.
+/// The bytes of a robot file or a plan, [limited](read_limited).
 ///
 /// # Errors
 ///
-/// As [`fs::read`]; a file that is not regular.
+/// As [`open_file`] and [`Read::read_to_end`].
 pub fn read_file(path: &Path) -> io::Result<Vec<u8>> {
+    open_file(path).and_then(read_limited)
+}
+
+/// A file to read. What is no regular file is not opened: a pipe would keep its reader waiting, a device may have no
+/// end.
+///
+/// # Errors
+///
+/// As [`File::open`]; a file that is not regular.
+pub fn open_file(path: &Path) -> io::Result<File> {
     let metadata = fs::metadata(path)?;
     // of a folder, reading says best what is wrong
     if !metadata.is_file() && !metadata.is_dir() {
         let message = "it is a pipe, a socket or a device, not a regular file";
         return Err(io::Error::new(ErrorKind::InvalidInput, message));
     }
-    File::open(path).and_then(read_limited)
+    File::open(path)
 }
 
 /// The plan of a robot file: `NAME.plan.yaml` beside `NAME.yaml`.

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use saphyr_parser::{Event, Parser, ScalarStyle};
 
-use crate::diagnostic::{Diagnostic, Problems};
+use crate::diagnostic::{Diagnostic, Problems, Report};
 use crate::schema::MAX_JOINTS;
 use crate::source::quoted;
 
@@ -101,7 +101,41 @@ impl Node {
 
 /// Reads the one document of a text. Mistakes of YAML itself end the reading; a repeated key does not.
 pub(crate) fn parse(text: &str, problems: &Problems) -> Option<Rc<Node>> {
-    Builder::new(text, problems).run().map_err(|mistake| problems.push(mistake)).ok()
+    let root = has_few_commas(text).and_then(|()| Builder::new(text, problems).run());
+    root.map_err(|mistake| problems.push(mistake)).ok()
+}
+
+/// The parser gives nothing of `{…` before it knows whether that is the key of a mapping, and keeps it in memory until
+/// then: a hundred times the text. So the commas of what could be one value are counted first; a dash that begins a
+/// line begins a value.
+fn has_few_commas(text: &str) -> Result<(), Diagnostic> {
+    let (mut commas, mut start) = (0, 0);
+    for line in text.split_inclusive('\n') {
+        if line.trim_start().starts_with("- ") {
+            commas = 0;
+        }
+        let here = line.matches(',').count();
+        if commas + here > MAX_NODES {
+            let at = start + line.match_indices(',').nth(MAX_NODES - commas).map_or(0, |(at, _)| at);
+            let message = format!("more than {MAX_NODES} commas in one value; a robot file has fewer");
+            return Err(Diagnostic::error(at..at + 1, message).help("write each joint out once"));
+        }
+        commas += here;
+        start += line.len();
+    }
+    Ok(())
+}
+
+/// Whether a text is one document of YAML, no deeper and no larger than that of a robot: for readers that do not bound
+/// what a text costs them.
+///
+/// # Errors
+/// The mistake of YAML, or the limit that is passed, at its place.
+pub fn check_yaml(name: &str, text: &str) -> Result<(), Report> {
+    let problems = Problems::new();
+    let root = parse(text, &problems);
+    let report = problems.finish(name, text);
+    root.map(drop).ok_or(report)
 }
 
 /// A mapping or sequence that is not closed yet.
@@ -354,7 +388,7 @@ fn line(breaks: &[usize], offset: usize) -> usize {
 }
 
 fn too_deep(span: Range<usize>) -> Diagnostic {
-    Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; a robot file has six levels"))
+    Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; six are enough for a robot file"))
 }
 
 fn not_a_key(span: Range<usize>) -> Diagnostic {

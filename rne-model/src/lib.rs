@@ -93,9 +93,11 @@ mod varying;
 #[cfg(feature = "std")]
 pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
-pub use data_file::{MAX_BYTES, golden_of, plan_of, read_file, read_limited, robot_of};
+pub use data_file::{MAX_BYTES, golden_of, open_file, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
+#[cfg(feature = "std")]
+pub use document::check_yaml;
 #[cfg(feature = "std")]
 pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]

@@ -7,7 +7,8 @@ use crate::{BaseMotion, Payload, Pose, Scalar, Wrench};
 
 /// Torques from motion: recursive Newton-Euler inverse dynamics, τ(q, q̇, q̈).
 ///
-/// τ is what the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q). No friction, no rotor inertia.
+/// τ is what the actuators must deliver: τ = M(q) q̈ + C(q, q̇) q̇ + g(q). No friction, and no rotor inertia
+/// unless the arm is taken with its rotors: `#[robot(rotors)]`, `with_rotors`.
 #[diagnostic::on_unimplemented(
     note = "`InverseDynamics` belongs into the same `derive`, for a number of joints that the robot file decides: \
             `#[derive(InverseDynamics)]`, and with batches `#[derive(InverseDynamics, BatchInverseDynamics)]`"
@@ -65,7 +66,8 @@ pub trait MassMatrix<const DOF: usize> {
     /// M(q): element (i, j) is the torque at joint i for a unit acceleration of joint j, from rest and without gravity.
     /// In kg m², kg m or kg, as the kinds of joints i and j have it.
     ///
-    /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia.
+    /// Symmetric to the last bit, positive semidefinite; definite unless links are massless. No rotor inertia,
+    /// unless the arm is taken with its rotors (`#[robot(rotors)]`, `with_rotors`): then G² Jm stands on the diagonal.
     #[must_use]
     fn mass_matrix<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; DOF];
 }
@@ -124,7 +126,8 @@ pub trait CentreOfMass<const DOF: usize> {
     fn centre_of_mass_jacobian<T: Scalar>(&self, q: &[T; DOF]) -> [[T; DOF]; 3];
 }
 
-/// Kinetic and potential energy of the links, J. Rotors are not included.
+/// Kinetic and potential energy of the links, J. The kinetic energy of rotors, ½ G² Jm q̇², is included where the arm is
+/// taken with them: `#[robot(rotors)]`, `with_rotors`.
 pub trait Energy<const DOF: usize> {
     /// ½ q̇ᵀ M(q) q̇, as ½ Σ (m ċ·ċ + ω·Iω).
     #[must_use]

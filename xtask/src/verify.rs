@@ -64,6 +64,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "hostile",
+        about: "hundreds of hostile inputs within 200 MB and 2 s each",
+        variables: &[],
+        command: &["cargo", "test", "--release", "--package", "rne-cli", "--test", "cli", "--", "hostile"],
+        needs: Needs::Nothing,
+    },
+    Step {
         name: "random_arms",
         about: "random arms by the hundred, every function in both forms, and the C of some",
         variables: &[("RNE_EXHAUSTIVE", "3")],

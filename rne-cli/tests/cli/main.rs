@@ -9,6 +9,8 @@ mod emit_tests;
 mod eval;
 mod firmware;
 mod help;
+#[cfg(unix)]
+mod hostile;
 mod import;
 mod plans;
 mod search;

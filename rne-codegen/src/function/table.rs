@@ -107,7 +107,8 @@ const WITHOUT_MASS: &str = "the centre of mass is not finite: the arm has no mas
 pub(crate) const TABLE: &[Entry] = &[
     Entry {
         summary: "Torques for positions `q`, velocities `qd` and accelerations `qdd`, with a free tip.",
-        details: "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction, no rotor inertia.",
+        details: "tau: what the actuators must deliver, M(q) q̈ + C(q, q̇) q̇ + g(q). No friction; rotor \
+            inertia in an arm with its rotors only.",
         arguments: &[Positions, Rates, Accelerations],
         ..Entry::torques(Function::InverseDynamics, Capability::InverseDynamics)
     },
@@ -160,7 +161,7 @@ pub(crate) const TABLE: &[Entry] = &[
     Entry {
         summary: "The mass matrix M(q), symmetric: column j holds the torques for q̈ = e_j of an arm at rest.",
         details: "mass[i][j]: torque of joint i for a unit acceleration of joint j, from rest and without gravity; kg \
-            m², kg m or kg, as the kinds of joints i and j have it. No rotor inertia.",
+            m², kg m or kg, as the kinds of joints i and j have it. Rotor inertia in an arm with its rotors only.",
         arguments: &[Positions],
         shape: MATRIX,
         output: "mass",
@@ -255,7 +256,7 @@ pub(crate) const TABLE: &[Entry] = &[
     },
     Entry {
         summary: "Kinetic energy, J.",
-        details: "½ q̇ᵀ M(q) q̇ of the links; rotors are not included.",
+        details: "½ q̇ᵀ M(q) q̇ of the links, and of the rotors in an arm with its rotors.",
         arguments: &[Positions, Rates],
         shape: Shape::Number,
         output: "energy",

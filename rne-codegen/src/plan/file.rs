@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot, robot_of};
+use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot, check_yaml, robot_of};
 use serde::de::{self, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -102,11 +102,23 @@ pub struct Rewritten {
 #[serde(deny_unknown_fields)]
 pub struct Accuracy {
     /// In double precision.
+    #[serde(deserialize_with = "measured")]
     pub double: f64,
     /// In single precision.
+    #[serde(deserialize_with = "measured")]
     pub single: f64,
     /// Of the seven steps themselves in single precision.
+    #[serde(deserialize_with = "measured")]
     pub single_of_seven_steps: f64,
+}
+
+/// A difference: finite, and not negative.
+fn measured<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    let difference = f64::deserialize(deserializer)?;
+    if difference.is_finite() && difference >= 0.0 {
+        return Ok(difference);
+    }
+    Err(de::Error::custom(format_args!("`{difference}` is no accuracy, which is a number from 0 on")))
 }
 
 impl From<&Proof> for Accuracy {
@@ -201,9 +213,14 @@ impl PlanFile {
             let message = format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a plan may have");
             return Err(Report::of_error(name, "", 0..0, message, Some(&refresh(name))));
         }
-        if text.trim().is_empty() {
+        if text.lines().map(str::trim_start).all(|line| line.is_empty() || line.starts_with('#')) {
             return Err(refused(&[], "the plan file is empty".to_owned()));
         }
+        // serde reads without limits
+        check_yaml(name, text).map_err(|mut report| {
+            report.diagnostics.iter_mut().for_each(|found| found.help = Some(refresh(name)));
+            report
+        })?;
         let invalid = |error: serde_yaml::Error| invalid(name, text, &error);
         // a plan of another version, or of another robot, may have other keys
         let heading: Heading = serde_yaml::from_str(text).map_err(invalid)?;
