@@ -19,7 +19,7 @@ use crate::terminal::{self, ERROR, FOUND, GOOD, QUIET, TITLE};
 
 /// Name the slips that explain another tool's torques
 #[derive(Args)]
-#[command(override_usage = "rne diagnose [OPTIONS] --q <LIST> --qd <LIST> --qdd <LIST> --tau <LIST> FILE")]
+#[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
 #[command(after_help = "\
 Exit status: 1 when the torques differ and no slip explains them.
 
