@@ -10,7 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell, show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell,
+    show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -24,7 +25,6 @@ Without a command, a tour: the PUMA 560 from its table to its torques.
 Examples:
   rne check robots/*.yaml                   are the files in order?
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
-  rne ops robots/*.yaml                     what each function costs
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
@@ -44,6 +44,7 @@ pub(crate) enum Command {
     Emit(emit::Arguments),
     Ops(ops::Arguments),
     Eval(eval::Arguments),
+    Diagnose(diagnose::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

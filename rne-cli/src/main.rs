@@ -7,6 +7,7 @@ mod arm;
 mod base_parameters;
 mod check;
 mod convert;
+mod diagnose;
 mod emit;
 mod eval;
 mod example;
@@ -65,6 +66,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Emit(arguments)) => ("rne emit", emit::run(&arguments)),
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
+        Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

@@ -8,7 +8,7 @@ use rne::{DynArm, Wrench};
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Model, Row, Transform};
 
-use crate::lecture::State;
+use rne_diagnose::lecture::State;
 
 /// An arm with a standard table. Its own gravity is not used: a [`State`] brings one.
 fn arm<const DOF: usize>(rows: [Row; DOF]) -> DynArm {

@@ -28,8 +28,17 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 8] =
-    ["rne-model", "rne-robots", "rne-runtime", "rne-codegen", "rne-macro", "rne", "rne-convert", "rne-cli"];
+const CRATES: [&str; 9] = [
+    "rne-model",
+    "rne-robots",
+    "rne-runtime",
+    "rne-codegen",
+    "rne-macro",
+    "rne-diagnose",
+    "rne",
+    "rne-convert",
+    "rne-cli",
+];
 
 const MAIN: &str = r#"use rne::InverseDynamics;
 

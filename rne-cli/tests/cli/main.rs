@@ -2,6 +2,7 @@
 
 mod call;
 mod check;
+mod diagnose;
 mod documents;
 mod emit;
 mod emit_c;

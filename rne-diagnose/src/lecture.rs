@@ -11,13 +11,14 @@
 //! What the table gives is constant in frame i+1: [r_i]_{i+1} and [I_i]_{i+1}.
 
 use nalgebra::{Matrix3, Vector3};
-use rne::Wrench;
 use rne_model::JointKind::{Prismatic, Revolute};
 use rne_model::Row;
+use rne_runtime::Wrench;
 
 /// A formula as it was printed or spoken; its number in the list of errata comes first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Slip {
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Misprint {
     /// Step 1: third column (0, -1, -1) in Q_{i-1}ᵀ.
     E1ThirdColumn,
     /// Step 1: Q of frame i with respect to frame i+1.
@@ -54,66 +55,89 @@ pub(crate) enum Slip {
     NoGyroscopicMoment,
 }
 
+impl Misprint {
+    /// Those that change torques; step 3, the velocity, is used by none.
+    pub const IN_TORQUES: [Self; 15] = [
+        Self::NoGyroscopicMoment,
+        Self::CoriolisOnce,
+        Self::E1ThirdColumn,
+        Self::E2WrongQ,
+        Self::E3LeftSide,
+        Self::E4TurnedTwice,
+        Self::E7ConstantR,
+        Self::E8OffsetForD,
+        Self::E9FramesBefore,
+        Self::E10ForceNotTurned,
+        Self::E10MomentNotTurned,
+        Self::E11InertiaNotTurned,
+        Self::E13GroundFrame,
+        Self::E17AxisX,
+        Self::E22NoJointRate,
+    ];
+}
+
 /// What moves and pulls at an arm.
 #[derive(Clone, Debug)]
-pub(crate) struct State {
+pub struct State {
     /// θ_i or b_i, without the constant of the table.
-    pub(crate) q: Vec<f64>,
-    pub(crate) qd: Vec<f64>,
-    pub(crate) qdd: Vec<f64>,
+    pub q: Vec<f64>,
+    /// θ̇_i or ḃ_i
+    pub qd: Vec<f64>,
+    /// θ̈_i or b̈_i
+    pub qdd: Vec<f64>,
     /// [g]_1
-    pub(crate) gravity: [f64; 3],
+    pub gravity: [f64; 3],
     /// f_{n,n+1}, n_{n,n+1} in frame n+1.
-    pub(crate) wrench: Wrench<f64>,
+    pub wrench: Wrench<f64>,
 }
 
 /// What the seven steps find for link i, in frame i.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct ResolvedAs {
+pub struct LinkVectors {
     /// ω_i
-    pub(crate) omega: Vector3<f64>,
+    pub omega: Vector3<f64>,
     /// ω̇_i
-    pub(crate) omega_dot: Vector3<f64>,
+    pub omega_dot: Vector3<f64>,
     /// ċ_i
-    pub(crate) velocity: Vector3<f64>,
+    pub velocity: Vector3<f64>,
     /// c̈_i
-    pub(crate) acceleration: Vector3<f64>,
+    pub acceleration: Vector3<f64>,
     /// g_i
-    pub(crate) gravity: Vector3<f64>,
+    pub gravity: Vector3<f64>,
     /// f_i
-    pub(crate) inertia_force: Vector3<f64>,
+    pub inertia_force: Vector3<f64>,
     /// n_i
-    pub(crate) inertia_moment: Vector3<f64>,
+    pub inertia_moment: Vector3<f64>,
     /// f_{i-1,i}
-    pub(crate) joint_force: Vector3<f64>,
+    pub joint_force: Vector3<f64>,
     /// n_{i-1,i}
-    pub(crate) joint_moment: Vector3<f64>,
+    pub joint_moment: Vector3<f64>,
     /// τ_i
-    pub(crate) tau: f64,
+    pub tau: f64,
 }
 
 /// Link i at the present angle.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Placed {
+pub struct Placed {
     /// Q_i
-    pub(crate) turn: Matrix3<f64>,
+    pub turn: Matrix3<f64>,
     /// Q_iᵀ
     turn_back: Matrix3<f64>,
     /// [a_i]_i
-    pub(crate) a: Vector3<f64>,
+    pub a: Vector3<f64>,
     /// [d_i]_i
-    pub(crate) d: Vector3<f64>,
+    pub d: Vector3<f64>,
     /// [r_i]_i
-    pub(crate) r: Vector3<f64>,
+    pub r: Vector3<f64>,
     /// [I_i]_i
-    pub(crate) inertia: Matrix3<f64>,
+    pub inertia: Matrix3<f64>,
     /// b_i
     offset: f64,
 }
 
 /// Q_i: columns are the axes of frame i+1 in frame i.
 #[rustfmt::skip]
-pub(crate) fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
+pub fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
     let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
     Matrix3::new(
         c,   -s * ca, s * sa,
@@ -124,9 +148,9 @@ pub(crate) fn turn(theta: f64, alpha: f64) -> Matrix3<f64> {
 
 /// Q_iᵀ, what step 1 multiplies with.
 #[rustfmt::skip]
-pub(crate) fn turn_back(theta: f64, alpha: f64, slip: Option<Slip>) -> Matrix3<f64> {
+pub fn turn_back(theta: f64, alpha: f64, misprints: &[Misprint]) -> Matrix3<f64> {
     let ((s, c), (sa, ca)) = (theta.sin_cos(), alpha.sin_cos());
-    let third = if slip == Some(Slip::E1ThirdColumn) { [0.0, -1.0, -1.0] } else { [0.0, sa, ca] };
+    let third = if misprints.contains(&Misprint::E1ThirdColumn) { [0.0, -1.0, -1.0] } else { [0.0, sa, ca] };
     Matrix3::new(
         c,       s,       third[0],
         -s * ca, c * ca,  third[1],
@@ -135,7 +159,7 @@ pub(crate) fn turn_back(theta: f64, alpha: f64, slip: Option<Slip>) -> Matrix3<f
 }
 
 /// a_i, d_i, r_i and I_i of every link at the joint positions `q`.
-pub(crate) fn place(rows: &[Row], q: &[f64], slip: Option<Slip>) -> Vec<Placed> {
+pub fn place(rows: &[Row], q: &[f64], misprints: &[Misprint]) -> Vec<Placed> {
     let mut placed = Vec::new();
     let mut frames_before = Vector3::zeros(); // O_{i-1} → O_i
     for (row, &q) in rows.iter().zip(q) {
@@ -145,20 +169,20 @@ pub(crate) fn place(rows: &[Row], q: &[f64], slip: Option<Slip>) -> Vec<Placed> 
             Prismatic => (row.dh.theta.radians, row.dh.d + q),
         };
         let alpha = row.dh.alpha.radians;
-        let (turn, turn_back) = (turn(theta, alpha), turn_back(theta, alpha, slip));
+        let (turn, turn_back) = (turn(theta, alpha), turn_back(theta, alpha, misprints));
 
         let frames = Vector3::new(row.dh.a * theta.cos(), row.dh.a * theta.sin(), b); // O_i → O_{i+1}
-        let a = if slip == Some(Slip::E9FramesBefore) { frames_before } else { frames };
+        let a = if misprints.contains(&Misprint::E9FramesBefore) { frames_before } else { frames };
         frames_before = turn.transpose() * frames;
 
         let constant_r = -Vector3::from(row.link.com);
-        let r = if slip == Some(Slip::E7ConstantR) { constant_r } else { turn * constant_r };
+        let r = if misprints.contains(&Misprint::E7ConstantR) { constant_r } else { turn * constant_r };
 
         let slides = row.kind == Prismatic;
-        let d = if slip == Some(Slip::E8OffsetForD) && slides { Vector3::new(0.0, 0.0, b) } else { a - r };
+        let d = if misprints.contains(&Misprint::E8OffsetForD) && slides { Vector3::new(0.0, 0.0, b) } else { a - r };
 
         let constant_inertia = Matrix3::from(row.link.inertia.rows());
-        let inertia = if slip == Some(Slip::E11InertiaNotTurned) {
+        let inertia = if misprints.contains(&Misprint::E11InertiaNotTurned) {
             constant_inertia
         } else {
             turn * constant_inertia * turn.transpose()
@@ -168,55 +192,58 @@ pub(crate) fn place(rows: &[Row], q: &[f64], slip: Option<Slip>) -> Vec<Placed> 
     placed
 }
 
-/// The seven steps for the standard table `rows`, correct when `slip` is `None`.
-pub(crate) fn seven_steps(rows: &[Row], state: &State, slip: Option<Slip>) -> Vec<ResolvedAs> {
-    let links = place(rows, &state.q, slip);
-    let mut found = forward(rows, &links, state, slip);
-    backward(rows, &links, state, slip, &mut found);
+/// The seven steps for the standard table `rows`, correct without misprints.
+pub fn seven_steps(rows: &[Row], state: &State, misprints: &[Misprint]) -> Vec<LinkVectors> {
+    let links = place(rows, &state.q, misprints);
+    let mut found = forward(rows, &links, state, misprints);
+    backward(rows, &links, state, misprints, &mut found);
     found
 }
 
 /// Steps 1 to 5.
-fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) -> Vec<ResolvedAs> {
-    let e = axis(slip);
+fn forward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint]) -> Vec<LinkVectors> {
+    let e = axis(misprints);
     let mut all = Vec::new();
     // Link 0 rests in frame 1.
-    let mut prev = ResolvedAs { gravity: state.gravity.into(), ..ResolvedAs::default() };
-    if slip == Some(Slip::E13GroundFrame) {
+    let mut prev = LinkVectors { gravity: state.gravity.into(), ..LinkVectors::default() };
+    if misprints.contains(&Misprint::E13GroundFrame) {
         prev.gravity = links[0].turn.transpose() * prev.gravity;
     }
     let mut r_prev = Vector3::zeros();
     for (i, (row, link)) in rows.iter().zip(links).enumerate() {
         let (rate, rate_dot) = (state.qd[i], state.qdd[i]);
         let qt = match i {
-            _ if slip == Some(Slip::E2WrongQ) => link.turn.transpose(),
+            _ if misprints.contains(&Misprint::E2WrongQ) => link.turn.transpose(),
             0 => Matrix3::identity(), // Q_0
             _ => links[i - 1].turn_back,
         };
 
         // Step 1, R: ω_i = Q_{i-1}ᵀ ω_{i-1} + θ̇_i e_i   P: without θ̇_i e_i
         let omega = match row.kind {
-            Revolute if slip == Some(Slip::E22NoJointRate) => qt * prev.omega,
+            Revolute if misprints.contains(&Misprint::E22NoJointRate) => qt * prev.omega,
             Revolute => qt * prev.omega + rate * e,
             Prismatic => qt * prev.omega,
         };
-        let mut this = ResolvedAs { omega, ..ResolvedAs::default() };
+        let mut this = LinkVectors { omega, ..LinkVectors::default() };
 
         // Step 2, R: ω̇_i = Q_{i-1}ᵀ ω̇_{i-1} + θ̈_i e_i + θ̇_i ω_i × e_i   P: the first term
         let right_side = match row.kind {
             Revolute => qt * prev.omega_dot + rate_dot * e + rate * this.omega.cross(&e),
-            Prismatic if slip == Some(Slip::E4TurnedTwice) => qt * (qt * prev.omega_dot),
+            Prismatic if misprints.contains(&Misprint::E4TurnedTwice) => qt * (qt * prev.omega_dot),
             Prismatic => qt * prev.omega_dot,
         };
-        let left_side = if slip == Some(Slip::E3LeftSide) { &mut this.omega } else { &mut this.omega_dot };
+        let left_side = if misprints.contains(&Misprint::E3LeftSide) { &mut this.omega } else { &mut this.omega_dot };
         *left_side = right_side;
 
         // Step 3: ċ_i = Q_{i-1}ᵀ (ċ_{i-1} + ω_{i-1} × r_{i-1}) + ω_i × d_i   P: + ḃ_i e_i
-        let lever =
-            if slip == Some(Slip::E6FactorsSwapped) { r_prev.cross(&prev.omega) } else { prev.omega.cross(&r_prev) };
+        let lever = if misprints.contains(&Misprint::E6FactorsSwapped) {
+            r_prev.cross(&prev.omega)
+        } else {
+            prev.omega.cross(&r_prev)
+        };
         this.velocity = qt * (prev.velocity + lever) + this.omega.cross(&link.d);
         if row.kind == Prismatic {
-            this.velocity += if slip == Some(Slip::E5NoDot) { link.offset } else { rate } * e;
+            this.velocity += if misprints.contains(&Misprint::E5NoDot) { link.offset } else { rate } * e;
         }
 
         // Step 4: c̈_i = Q_{i-1}ᵀ (c̈_{i-1} + ω̇_{i-1} × r_{i-1} + ω_{i-1} × (ω_{i-1} × r_{i-1}))
@@ -226,7 +253,7 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) ->
         this.acceleration =
             qt * joint_origin + this.omega_dot.cross(&link.d) + this.omega.cross(&this.omega.cross(&link.d));
         if row.kind == Prismatic {
-            let factor = if slip == Some(Slip::CoriolisOnce) { 1.0 } else { 2.0 };
+            let factor = if misprints.contains(&Misprint::CoriolisOnce) { 1.0 } else { 2.0 };
             this.acceleration += rate_dot * e + factor * rate * this.omega.cross(&e);
         }
 
@@ -240,18 +267,18 @@ fn forward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>) ->
 }
 
 /// Steps 6 and 7.
-fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, found: &mut [ResolvedAs]) {
-    let e = axis(slip);
+fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint], found: &mut [LinkVectors]) {
+    let e = axis(misprints);
     // f_{i,i+1} and n_{i,i+1}, in frame i+1
     let (mut force, mut moment) = state.wrench.vectors();
     for ((row, link), this) in rows.iter().zip(links).zip(found).rev() {
         let mass = row.link.mass;
 
         // [f_{i,i+1}]_i = Q_i [f_{i,i+1}]_{i+1}, n as well
-        if slip != Some(Slip::E10ForceNotTurned) {
+        if !misprints.contains(&Misprint::E10ForceNotTurned) {
             force = link.turn * force;
         }
-        if slip != Some(Slip::E10MomentNotTurned) {
+        if !misprints.contains(&Misprint::E10MomentNotTurned) {
             moment = link.turn * moment;
         }
 
@@ -261,7 +288,7 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, f
         //         n_{i-1,i} = n_i + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
         this.inertia_force = mass * this.acceleration;
         this.inertia_moment = link.inertia * this.omega_dot;
-        if slip != Some(Slip::NoGyroscopicMoment) {
+        if !misprints.contains(&Misprint::NoGyroscopicMoment) {
             this.inertia_moment += this.omega.cross(&(link.inertia * this.omega));
         }
         this.joint_force = this.inertia_force + force - mass * this.gravity;
@@ -277,6 +304,6 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, slip: Option<Slip>, f
 }
 
 /// e_i, the axis of joint i in frame i.
-fn axis(slip: Option<Slip>) -> Vector3<f64> {
-    if slip == Some(Slip::E17AxisX) { Vector3::x() } else { Vector3::z() }
+fn axis(misprints: &[Misprint]) -> Vector3<f64> {
+    if misprints.contains(&Misprint::E17AxisX) { Vector3::x() } else { Vector3::z() }
 }

@@ -1,0 +1,73 @@
+//! `rne diagnose`: slips that were made by editing a robot file.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::call::{ROOT, fails, fine, folder, rne};
+
+const STATE: [&str; 6] = ["--q", "0.1,0.3,-0.5,0.1,0.2,0.4", "--qd", "1,0.5,-1,2,1,1", "--qdd=1,2,3,1,0.3,1", "--json"];
+
+/// The torques of the PUMA from a copy of its file in which something was replaced, as another tool would print them.
+fn torques_with(name: &str, from: &str, to: &str) -> String {
+    let text = fs::read_to_string(format!("{ROOT}/robots/puma560.yaml")).expect("the robot file");
+    assert!(text.contains(from), "{from}");
+    let file = folder(name).join("arm.yaml");
+    fs::write(&file, text.replace(from, to)).expect("a copy");
+    let path = file.to_str().expect("UTF-8");
+    let reply: Value = serde_json::from_str(&rne(&[&["eval", path][..], &STATE].concat()).out).expect("JSON");
+    let torques = reply["result"].as_array().expect("torques").iter();
+    torques.map(|tau| format!("{:.7}", tau.as_f64().expect("a number"))).collect::<Vec<_>>().join(",")
+}
+
+fn names(tau: &str) -> Vec<Vec<String>> {
+    let tau = format!("--tau={tau}");
+    let called = rne(&[&["diagnose", "robots/puma560.yaml", &tau][..], &STATE].concat());
+    assert_eq!(called.status, 0, "{called:?}");
+    let reply: Value = serde_json::from_str(&called.out).expect("JSON");
+    let explanations = reply["explanations"].as_array().expect("a list").iter();
+    let names = explanations.map(|one| {
+        let slips = one["slips"].as_array().expect("slips").iter();
+        slips.map(|slip| slip["name"].as_str().expect("a name").to_owned()).collect()
+    });
+    names.collect()
+}
+
+#[test]
+fn a_slip_in_the_file_is_named() {
+    for (name, from, to, slip) in [
+        ("slip_convention", "convention: standard", "convention: modified", "other_convention"),
+        ("slip_gravity", "gravity: [0, 0, -9.81]", "gravity: [0, 0, 9.81]", "gravity_reversed"),
+        ("slip_frame", "gravity: [0, 0, -9.81]", "gravity: [0, -9.81, 0]", "gravity_along_another_axis"),
+    ] {
+        assert_eq!(names(&torques_with(name, from, to)).first(), Some(&vec![slip.to_owned()]), "{name}");
+    }
+}
+
+#[test]
+fn torques_that_agree_have_no_slip() {
+    assert!(names(&torques_with("slip_none", "name: puma560", "name: puma560")).is_empty());
+    let text = fine(&["diagnose", "planar1", "--q", "0.3", "--qd", "0.5", "--qdd=-1", "--tau", "4.5193"]);
+    assert!(text.starts_with("ok the torques are those of planar1"), "{text}");
+}
+
+#[test]
+fn the_answer_reads_well() {
+    let (q, qd, qdd) = (["--q", "0.3,0.5"], ["--qd", "1,2"], ["--qdd", "0.5,-1"]);
+    let call = |tau| rne(&[&["diagnose", "robots/planar2.yaml", tau][..], &q, &qd, &qdd].concat());
+    let (explained, unexplained) = (call("--tau=-14.1097,-1.95268"), call("--tau=3.5,17.25"));
+    assert_eq!(unexplained.status, 1);
+    insta::assert_snapshot!(format!("{}----\n{}", explained.out, unexplained.out));
+}
+
+#[test]
+fn mistakes_in_the_call() {
+    let state = ["--q", "0.3", "--qd", "0", "--qdd", "0"];
+    let call = |more: &[&str], parts: &[&str]| {
+        fails(2, &[&["diagnose", "robots/planar1.yaml"][..], &state, more].concat(), parts);
+    };
+    call(&["--tau", "1,2"], &["--tau needs 1 number", "not 2"]);
+    call(&[], &["--tau"]);
+    call(&["--tau", "x"], &["number 1, `x`, is none"]);
+    call(&["--tau", "1", "--tolerance", "2"], &["from 0 to below 1"]);
+}

@@ -1,0 +1,125 @@
+//! A computation of torques, into which slips are made.
+
+use rne_model::{Convention, JointKind, Robot};
+use rne_runtime::{DynArm, Wrench, WrongLength};
+
+use crate::lecture::{self, Misprint};
+use crate::observation::Observation;
+use crate::slip::{Slip, rotation};
+
+/// What another tool might compute: the arm as it understands it, and what it does with a state.
+#[derive(Clone, Debug)]
+pub(crate) struct Computation {
+    pub(crate) robot: Robot,
+    pub(crate) misprints: Vec<Misprint>,
+    pub(crate) reversed: Vec<usize>,
+    /// For revolute joints: of the positions, of the velocities and accelerations.
+    scales: [f64; 2],
+    /// So many times the constant part is added to a joint variable.
+    offsets: f64,
+    pub(crate) velocity_factor: f64,
+    pub(crate) acceleration_factor: f64,
+    /// Of the acceleration of the first joint.
+    pub(crate) first_factor: f64,
+    pub(crate) motor_torques: bool,
+    pub(crate) wrench_factor: f64,
+    pub(crate) torque_factor: f64,
+}
+
+impl Computation {
+    /// The right one.
+    pub(crate) fn right(robot: &Robot) -> Self {
+        Self {
+            robot: robot.clone(),
+            misprints: Vec::new(),
+            reversed: Vec::new(),
+            scales: [1.0; 2],
+            offsets: 0.0,
+            velocity_factor: 1.0,
+            acceleration_factor: 1.0,
+            first_factor: 1.0,
+            motor_torques: false,
+            wrench_factor: 1.0,
+            torque_factor: 1.0,
+        }
+    }
+
+    /// One with slips, made in the order of [`Slip`]; `None` where they make nothing that could be computed: the
+    /// lecture's formulas are of standard tables.
+    pub(crate) fn with(robot: &Robot, slips: &[Slip]) -> Option<Self> {
+        let mut this = Self::right(robot);
+        let mut slips = slips.to_vec();
+        slips.sort_unstable();
+        for slip in slips {
+            slip.make(&mut this);
+        }
+        (this.misprints.is_empty() || this.robot.convention == Convention::Standard).then_some(this)
+    }
+
+    /// Takes the angles, and if `all` speeds and accelerations too, for another unit.
+    pub(crate) fn scale(&mut self, factor: f64, all: bool) {
+        self.scales = [factor, if all { factor } else { 1.0 }];
+    }
+
+    /// Adds the constant part of each joint's variable so many times.
+    pub(crate) fn offset(&mut self, times: f64) {
+        self.offsets = times;
+    }
+
+    /// The torques at the state of an observation.
+    ///
+    /// # Errors
+    /// When a list of the observation does not have one number per joint.
+    pub(crate) fn torques(&self, arm: &DynArm, at: &Observation) -> Result<Vec<f64>, WrongLength> {
+        let (mut q, mut qd, mut qdd) = (at.q.clone(), at.qd.clone(), at.qdd.clone());
+        let joints = self.robot.rows().zip(&mut q).zip(qd.iter_mut().zip(&mut qdd)).enumerate();
+        for (index, ((row, q), (qd, qdd))) in joints {
+            let revolute = row.kind == JointKind::Revolute;
+            if revolute {
+                let [position, rate] = self.scales;
+                (*q, *qd, *qdd) = (*q * position, *qd * rate, *qdd * rate);
+            }
+            *q += self.offsets * if revolute { row.dh.theta.radians } else { row.dh.d };
+            if self.reversed.contains(&index) {
+                (*q, *qd, *qdd) = (-*q, -*qd, -*qdd);
+            }
+            *qd *= self.velocity_factor;
+            *qdd *= self.acceleration_factor * if index == 0 { self.first_factor } else { 1.0 };
+        }
+        let scaled = |v: [f64; 3]| v.map(|x| x * self.wrench_factor);
+        let wrench = at.wrench.map(|Wrench { force, moment }| Wrench { force: scaled(force), moment: scaled(moment) });
+        let mut tau = if self.misprints.is_empty() {
+            arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench.unwrap_or_else(Wrench::zero))?
+        } else {
+            self.by_the_lecture(&q, &qd, &qdd, wrench)
+        };
+        if self.motor_torques {
+            let motors = arm.actuator_torques(&qd, &qdd)?;
+            tau.iter_mut().zip(motors).for_each(|(tau, motor)| *tau += motor);
+        }
+        for (index, tau) in tau.iter_mut().enumerate() {
+            *tau *= if self.reversed.contains(&index) { -self.torque_factor } else { self.torque_factor };
+        }
+        Ok(tau)
+    }
+
+    fn by_the_lecture(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> Vec<f64> {
+        let Robot { tool, gravity, .. } = &self.robot;
+        // the lecture's wrench stands in frame n+1, where rne has the tool
+        let Wrench { force, moment } = wrench.unwrap_or_else(Wrench::zero);
+        let turn = rotation(tool);
+        let force = turn * nalgebra::Vector3::from(force);
+        let moment = turn * nalgebra::Vector3::from(moment) + nalgebra::Vector3::from(tool.xyz).cross(&force);
+        let wrench = Wrench { force: force.into(), moment: moment.into() };
+        let state = lecture::State { q: q.to_vec(), qd: qd.to_vec(), qdd: qdd.to_vec(), gravity: *gravity, wrench };
+        let rows: Vec<_> = self.robot.rows().copied().collect();
+        let mut tau: Vec<f64> =
+            lecture::seven_steps(&rows, &state, &self.misprints).into_iter().map(|link| link.tau).collect();
+        if self.robot.rotors {
+            for ((tau, joint), qdd) in tau.iter_mut().zip(&self.robot.joints).zip(qdd) {
+                *tau += joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia * qdd);
+            }
+        }
+        tau
+    }
+}

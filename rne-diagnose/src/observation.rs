@@ -1,0 +1,46 @@
+//! What somebody else's computation printed.
+
+use rne_runtime::Wrench;
+
+/// A state of an arm, and the torques that another tool, or a hand, found for it.
+///
+/// Lists run from base to tip. Revolute joints: rad, rad/s, rad/s², N m; prismatic joints: m, m/s, m/s², N.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Observation {
+    /// Joint positions.
+    pub q: Vec<f64>,
+    /// Joint velocities.
+    pub qd: Vec<f64>,
+    /// Joint accelerations.
+    pub qdd: Vec<f64>,
+    /// What the last link exerts on its environment, at the tip, in tip axes; `None` for a free tip.
+    pub wrench: Option<Wrench<f64>>,
+    /// The torques in question.
+    pub tau: Vec<f64>,
+    /// How far a torque may be off for it to count as the same: half of its last digit, at least. Rounding, 1e-9 of the
+    /// largest torque, is added to it.
+    pub resolution: Vec<f64>,
+}
+
+impl Observation {
+    /// Whether torques are those of the observation, as far as it can tell.
+    pub(crate) fn shows(&self, tau: &[f64]) -> bool {
+        let rounding = ROUNDING * largest(&self.tau).max(largest(tau));
+        let pairs = self.tau.iter().zip(tau).zip(&self.resolution);
+        tau.len() == self.tau.len() && pairs.map(|((a, b), own)| (a - b).abs() - own).all(|excess| excess <= rounding)
+    }
+
+    /// The largest difference from the torques, relative to the largest torque.
+    pub(crate) fn error(&self, tau: &[f64]) -> f64 {
+        let size = largest(&self.tau).max(largest(tau));
+        let differences: Vec<f64> = self.tau.iter().zip(tau).map(|(a, b)| a - b).collect();
+        if size == 0.0 { 0.0 } else { largest(&differences) / size }
+    }
+}
+
+/// What two right computations differ by, in parts of the largest torque.
+const ROUNDING: f64 = 1e-9;
+
+pub(crate) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()))
+}

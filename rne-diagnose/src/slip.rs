@@ -1,0 +1,418 @@
+//! The usual slips, and what each makes of a computation.
+
+use std::f64::consts::PI;
+
+use nalgebra::{Matrix3, Rotation3, Vector3};
+use rne_model::{Convention, Inertia, InertiaReference, JointKind, Link, Robot, Transform};
+
+use crate::computation::Computation;
+use crate::lecture::Misprint;
+
+/// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum Slip {
+    /// The rows are read in the other Denavit-Hartenberg convention.
+    OtherConvention,
+    /// Gravity points up.
+    GravityReversed,
+    /// There is no gravity.
+    NoGravity,
+    /// Gravity points along another axis: 0 to 2, and whether the other way.
+    GravityAlong(usize, bool),
+    /// Gravity is given in the world's axes and turned by the base.
+    GravityInWorld,
+    /// The inertia as it is written is taken for one about the origin of the link frame.
+    InertiaAboutOrigin,
+    /// The inertia gets m (c² 1 - c cᵀ) once more.
+    InertiaShifted,
+    /// xy, xz and yz have the other sign.
+    ProductsOfInertia,
+    /// The centres of mass are on the other side.
+    ComReversed,
+    /// The centres of mass count from the frame at the other end of the link.
+    ComFromOtherEnd,
+    /// The centres of mass are given from the other end of the link and count from this one.
+    ComOfOtherEnd,
+    /// The angles are taken for degrees.
+    PositionsAsDegrees,
+    /// Degrees are taken for radians.
+    PositionsInDegrees,
+    /// Angles, speeds and accelerations of revolute joints are taken for degrees.
+    StateAsDegrees,
+    /// Degrees are taken for radians in angles, speeds and accelerations.
+    StateInDegrees,
+    /// The constant parts of the joint variables are left out.
+    NoOffsets,
+    /// The constant parts of the joint variables are subtracted.
+    OffsetsReversed,
+    /// A joint, counted from 0, turns or slides the other way.
+    JointReversed(usize),
+    /// The velocities do not count.
+    NoVelocities,
+    /// The accelerations do not count.
+    NoAccelerations,
+    /// The acceleration of a first joint that slides is dropped in modified tables, as in the C code of the Robotics
+    /// Toolbox for MATLAB.
+    NoFirstSlide,
+    /// The rotors' inertia G² Jm belongs to the arm.
+    RotorInertia,
+    /// The motors' inertia and friction are added.
+    MotorTorques,
+    /// The wrench is that of the environment on the arm.
+    WrenchReversed,
+    /// The wrench is left out.
+    NoWrench,
+    /// The wrench acts at the last frame instead of the tip.
+    NoTool,
+    /// The torques are those of the arm on its motors.
+    TorquesReversed,
+    /// A formula of the lecture as it was printed, or a common mistake in one.
+    Misprint(Misprint),
+}
+
+/// Which slips exclude each other: they change the same thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Subject {
+    Convention,
+    Gravity,
+    Inertia,
+    Products,
+    Com,
+    Units,
+    Offsets,
+    Joint(usize),
+    Velocities,
+    Accelerations,
+    Motors,
+    Wrench,
+    Torques,
+    Formula(Misprint),
+}
+
+impl Slip {
+    /// All that could be made with a robot.
+    #[must_use]
+    pub fn all_of(robot: &Robot) -> Vec<Self> {
+        let mut all = vec![Self::OtherConvention, Self::GravityReversed, Self::NoGravity];
+        let turned = (0..3).flat_map(|axis| [Self::GravityAlong(axis, false), Self::GravityAlong(axis, true)]);
+        let mut known = vec![robot.gravity, robot.gravity.map(|g| -g)];
+        for slip in turned.chain([Self::GravityInWorld]) {
+            let mut of = Computation::right(robot);
+            slip.make(&mut of);
+            // the same under another name
+            if !known.iter().any(|known| close(known, &of.robot.gravity)) {
+                known.push(of.robot.gravity);
+                all.push(slip);
+            }
+        }
+        all.extend([
+            Self::InertiaAboutOrigin,
+            Self::InertiaShifted,
+            Self::ProductsOfInertia,
+            Self::ComReversed,
+            Self::ComFromOtherEnd,
+            Self::ComOfOtherEnd,
+            Self::PositionsAsDegrees,
+            Self::PositionsInDegrees,
+            Self::StateAsDegrees,
+            Self::StateInDegrees,
+            Self::NoOffsets,
+            Self::OffsetsReversed,
+        ]);
+        all.extend((0..robot.dof()).map(Self::JointReversed));
+        all.extend([
+            Self::NoVelocities,
+            Self::NoAccelerations,
+            Self::NoFirstSlide,
+            Self::RotorInertia,
+            Self::MotorTorques,
+            Self::WrenchReversed,
+            Self::NoWrench,
+            Self::NoTool,
+            Self::TorquesReversed,
+        ]);
+        all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
+        all
+    }
+
+    fn subject(self) -> Subject {
+        match self {
+            Self::OtherConvention => Subject::Convention,
+            Self::GravityReversed | Self::NoGravity | Self::GravityAlong(..) | Self::GravityInWorld => Subject::Gravity,
+            Self::InertiaAboutOrigin | Self::InertiaShifted => Subject::Inertia,
+            Self::ProductsOfInertia => Subject::Products,
+            Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => Subject::Com,
+            Self::PositionsAsDegrees | Self::PositionsInDegrees | Self::StateAsDegrees | Self::StateInDegrees => {
+                Subject::Units
+            }
+            Self::NoOffsets | Self::OffsetsReversed => Subject::Offsets,
+            Self::JointReversed(joint) => Subject::Joint(joint),
+            Self::NoVelocities => Subject::Velocities,
+            Self::NoAccelerations | Self::NoFirstSlide => Subject::Accelerations,
+            Self::RotorInertia | Self::MotorTorques => Subject::Motors,
+            Self::WrenchReversed | Self::NoWrench | Self::NoTool => Subject::Wrench,
+            Self::TorquesReversed => Subject::Torques,
+            Self::Misprint(misprint) => Subject::Formula(misprint),
+        }
+    }
+
+    /// Whether both can be made at once.
+    #[must_use]
+    pub fn goes_with(self, other: Self) -> bool {
+        self.subject() != other.subject()
+    }
+
+    /// Makes the slip.
+    pub(crate) fn make(self, of: &mut Computation) {
+        let robot = &mut of.robot;
+        match self {
+            Self::OtherConvention => {
+                robot.convention = match robot.convention {
+                    Convention::Standard => Convention::Modified,
+                    Convention::Modified => Convention::Standard,
+                }
+            }
+            Self::GravityReversed => robot.gravity = robot.gravity.map(|g| -g),
+            Self::NoGravity => robot.gravity = [0.0; 3],
+            Self::GravityAlong(axis, reversed) => {
+                let size = Vector3::from(robot.gravity).norm();
+                robot.gravity = [0.0; 3];
+                robot.gravity[axis] = if reversed { -size } else { size };
+            }
+            Self::GravityInWorld => {
+                robot.gravity = rotation(&robot.base).inverse_transform_vector(&robot.gravity.into()).into();
+            }
+            Self::InertiaAboutOrigin => each_link(robot, |link| link.inertia = shifted(link, -1.0)),
+            Self::InertiaShifted => each_link(robot, |link| link.inertia = shifted(link, 1.0)),
+            Self::ProductsOfInertia => each_link(robot, |link| {
+                let Inertia { xy, xz, yz, .. } = link.inertia;
+                link.inertia = Inertia { xy: -xy, xz: -xz, yz: -yz, ..link.inertia };
+            }),
+            Self::ComReversed => each_link(robot, |link| link.com = link.com.map(|c| -c)),
+            Self::ComFromOtherEnd => move_com(robot, 1.0),
+            Self::ComOfOtherEnd => move_com(robot, -1.0),
+            Self::PositionsAsDegrees => of.scale(PI / 180.0, false),
+            Self::PositionsInDegrees => of.scale(180.0 / PI, false),
+            Self::StateAsDegrees => of.scale(PI / 180.0, true),
+            Self::StateInDegrees => of.scale(180.0 / PI, true),
+            Self::NoOffsets => of.offset(-1.0),
+            Self::OffsetsReversed => of.offset(-2.0),
+            Self::JointReversed(joint) => of.reversed.push(joint),
+            Self::NoVelocities => of.velocity_factor = 0.0,
+            Self::NoAccelerations => of.acceleration_factor = 0.0,
+            Self::NoFirstSlide => {
+                let slides = robot.rows().next().is_some_and(|row| row.kind == JointKind::Prismatic);
+                if slides && robot.convention == Convention::Modified {
+                    of.first_factor = 0.0;
+                }
+            }
+            Self::RotorInertia => robot.rotors = true,
+            Self::MotorTorques => of.motor_torques = true,
+            Self::WrenchReversed => of.wrench_factor = -1.0,
+            Self::NoWrench => of.wrench_factor = 0.0,
+            Self::NoTool => robot.tool = Transform::IDENTITY,
+            Self::TorquesReversed => of.torque_factor = -1.0,
+            Self::Misprint(misprint) => of.misprints.push(misprint),
+        }
+    }
+}
+
+fn close(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    (Vector3::from(*a) - Vector3::from(*b)).norm() <= 1e-9 * Vector3::from(*a).norm()
+}
+
+pub(crate) fn rotation(transform: &Transform) -> Rotation3<f64> {
+    let [roll, pitch, yaw] = transform.rpy.map(|angle| angle.radians);
+    Rotation3::from_euler_angles(roll, pitch, yaw)
+}
+
+fn each_link(robot: &mut Robot, change: impl Fn(&mut Link)) {
+    robot.joints.iter_mut().for_each(|joint| change(&mut joint.row.link));
+}
+
+/// The inertia with m (c² 1 - c cᵀ) added, so many times.
+fn shifted(link: &Link, times: f64) -> Inertia {
+    let (c, own) = (Vector3::from(link.com), Matrix3::from(link.inertia.rows()));
+    let j = own + (Matrix3::identity() * c.norm_squared() - c * c.transpose()) * (link.mass * times);
+    Inertia { xx: j[(0, 0)], yy: j[(1, 1)], zz: j[(2, 2)], xy: j[(0, 1)], xz: j[(0, 2)], yz: j[(1, 2)] }
+}
+
+/// Moves each centre of mass by the way to the other end of its link, so many times. Where a joint slides there, or
+/// there is no joint, the link has no other end.
+fn move_com(robot: &mut Robot, times: f64) {
+    let rows: Vec<_> = robot.rows().map(|row| (row.kind, row.dh)).collect();
+    let far = robot.convention == Convention::Modified;
+    for (index, joint) in robot.joints.iter_mut().enumerate() {
+        let Some((JointKind::Revolute, dh)) = rows.get(index + usize::from(far)) else { continue };
+        // from frame i-1 to frame i: in frame i in a standard table, in frame i-1 in a modified one
+        let (s, c) = (dh.alpha.sin, dh.alpha.cos);
+        let way = if far { [dh.a, -dh.d * s, dh.d * c] } else { [-dh.a, -dh.d * s, -dh.d * c] };
+        let com = &mut joint.row.link.com;
+        (0..3).for_each(|axis| com[axis] += times * way[axis]);
+    }
+}
+
+impl Slip {
+    /// A word for programs: `gravity_reversed`, `joint_reversed`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::OtherConvention => "other_convention",
+            Self::GravityReversed => "gravity_reversed",
+            Self::NoGravity => "no_gravity",
+            Self::GravityAlong(..) => "gravity_along_another_axis",
+            Self::GravityInWorld => "gravity_in_world",
+            Self::InertiaAboutOrigin => "inertia_about_origin",
+            Self::InertiaShifted => "inertia_shifted",
+            Self::ProductsOfInertia => "products_of_inertia",
+            Self::ComReversed => "com_reversed",
+            Self::ComFromOtherEnd => "com_from_other_end",
+            Self::ComOfOtherEnd => "com_of_other_end",
+            Self::PositionsAsDegrees => "positions_as_degrees",
+            Self::PositionsInDegrees => "positions_in_degrees",
+            Self::StateAsDegrees => "state_as_degrees",
+            Self::StateInDegrees => "state_in_degrees",
+            Self::NoOffsets => "no_offsets",
+            Self::OffsetsReversed => "offsets_reversed",
+            Self::JointReversed(_) => "joint_reversed",
+            Self::NoVelocities => "no_velocities",
+            Self::NoAccelerations => "no_accelerations",
+            Self::NoFirstSlide => "no_first_slide",
+            Self::RotorInertia => "rotor_inertia",
+            Self::MotorTorques => "motor_torques",
+            Self::WrenchReversed => "wrench_reversed",
+            Self::NoWrench => "no_wrench",
+            Self::NoTool => "no_tool",
+            Self::TorquesReversed => "torques_reversed",
+            Self::Misprint(_) => "misprint",
+        }
+    }
+
+    /// What the other computation does, in a clause: "gravity points the other way".
+    #[must_use]
+    pub fn says(self, robot: &Robot) -> String {
+        let (this, other) = match robot.convention {
+            Convention::Standard => ("standard", "modified"),
+            Convention::Modified => ("modified", "standard"),
+        };
+        let [near, far] = match robot.convention {
+            Convention::Standard => ["far", "near"],
+            Convention::Modified => ["near", "far"],
+        };
+        match self {
+            Self::OtherConvention => format!("the rows are read as {other} ones; in the file they are {this}"),
+            Self::GravityReversed => "gravity points the other way".to_owned(),
+            Self::NoGravity => "there is no gravity".to_owned(),
+            Self::GravityAlong(axis, reversed) => {
+                let sign = if reversed { "-" } else { "" };
+                format!("gravity points along {sign}{} of frame 0", ["x", "y", "z"][axis.min(2)])
+            }
+            Self::GravityInWorld => "gravity stands in the axes of the world, and the base turns it".to_owned(),
+            Self::InertiaAboutOrigin => match reference(robot) {
+                InertiaReference::Com => {
+                    "inertias about the centre of mass are taken for those about the frame's origin"
+                }
+                InertiaReference::Origin => "the parallel axis term is subtracted from the inertias twice",
+            }
+            .to_owned(),
+            Self::InertiaShifted => match reference(robot) {
+                InertiaReference::Com => {
+                    "inertias about the frame's origin stand where those about the centre of mass belong"
+                }
+                InertiaReference::Origin => {
+                    "inertias about the frame's origin are taken for those about the centre of mass"
+                }
+            }
+            .to_owned(),
+            Self::ProductsOfInertia => "xy, xz and yz of the inertias have the other sign".to_owned(),
+            Self::ComReversed => "the centres of mass have the other sign".to_owned(),
+            Self::ComFromOtherEnd => {
+                format!(
+                    "the file's centres of mass are measured from the {far} end of the link, not from its {near} end"
+                )
+            }
+            Self::ComOfOtherEnd => {
+                format!("centres of mass from the {far} end of the link stand where those from its {near} end belong")
+            }
+            Self::PositionsAsDegrees => "the angles, which are radians, are taken for degrees".to_owned(),
+            Self::PositionsInDegrees => "the angles are taken for radians and multiplied by 180/π".to_owned(),
+            Self::StateAsDegrees => {
+                "angles, speeds and accelerations, which are of radians, are taken for those of degrees".to_owned()
+            }
+            Self::StateInDegrees => "angles, speeds and accelerations are multiplied by 180/π".to_owned(),
+            Self::NoOffsets => "the constant `theta` (or `d`) of the joints' rows is left out".to_owned(),
+            Self::OffsetsReversed => "the constant `theta` (or `d`) of the joints' rows has the other sign".to_owned(),
+            Self::JointReversed(joint) => {
+                let name = robot.joints.get(joint).map_or("", |joint| &joint.name);
+                format!("joint {} ({name}) counts the other way", joint + 1)
+            }
+            Self::NoVelocities => "the velocities are zero: no Coriolis and centrifugal terms".to_owned(),
+            Self::NoAccelerations => "the accelerations are zero: no inertia terms".to_owned(),
+            Self::NoFirstSlide => "the acceleration of a first joint that slides is dropped".to_owned(),
+            Self::RotorInertia => "the rotors' inertia G² Jm is part of the arm".to_owned(),
+            Self::MotorTorques => "the motors' inertia and friction are in the torques".to_owned(),
+            Self::WrenchReversed => "the wrench is what the environment exerts on the arm".to_owned(),
+            Self::NoWrench => "the wrench is left out".to_owned(),
+            Self::NoTool => "the wrench acts at the last frame: the tool is left out".to_owned(),
+            Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
+            Self::Misprint(misprint) => misprint.says().to_owned(),
+        }
+    }
+
+    /// The line that is right, or what to write where: "`gravity: [0, 0, -9.81]` is its acceleration, downwards".
+    #[must_use]
+    pub fn right(self, robot: &Robot) -> String {
+        let [x, y, z] = robot.gravity;
+        let com = match robot.convention {
+            Convention::Standard => "`com` is measured from frame i, at the far end of link i",
+            Convention::Modified => "`com` is measured from frame i, on the axis of joint i",
+        };
+        match self {
+            Self::OtherConvention => match robot.convention {
+                Convention::Standard => {
+                    "`convention: standard`: Rz(theta) Tz(d) Tx(a) Rx(alpha), frame i at the far end"
+                }
+                Convention::Modified => {
+                    "`convention: modified`: Rx(alpha) Tx(a) Rz(theta) Tz(d), a and alpha of link i-1"
+                }
+            }
+            .to_owned(),
+            Self::GravityReversed | Self::NoGravity | Self::GravityAlong(..) => format!(
+                "`gravity: [{x}, {y}, {z}]`: the acceleration of a falling body in frame 0 (Pinocchio's sign; the \
+                 Robotics Toolbox has the other)"
+            ),
+            Self::GravityInWorld => format!("`gravity: [{x}, {y}, {z}]` is in frame 0; `base` never turns it"),
+            Self::InertiaAboutOrigin | Self::InertiaShifted => {
+                let about = if reference(robot) == InertiaReference::Com { "com" } else { "origin" };
+                format!("the file's inertias are about `{about}`; I_origin = I_com + m (c² 1 - c cᵀ)")
+            }
+            Self::ProductsOfInertia => "`xy` is the element of the tensor, -∫ x y dm".to_owned(),
+            Self::ComReversed | Self::ComFromOtherEnd | Self::ComOfOtherEnd => com.to_owned(),
+            Self::PositionsAsDegrees | Self::PositionsInDegrees => "q in rad: deg(30) is pi/6".to_owned(),
+            Self::StateAsDegrees | Self::StateInDegrees => "q, q̇ and q̈ in rad, rad/s and rad/s²".to_owned(),
+            Self::NoOffsets | Self::OffsetsReversed => {
+                "the joint's angle is theta + q, its offset d + q where it slides".to_owned()
+            }
+            Self::JointReversed(_) => "q, q̇, q̈ and τ count about +z of the joint's axis".to_owned(),
+            Self::NoVelocities => "n = I ω̇ + ω × I ω, and c̈ with its ω × (ω × …)".to_owned(),
+            Self::NoAccelerations => "the torques of M(q) q̈ belong to it".to_owned(),
+            Self::NoFirstSlide => {
+                "known of the C code of the Robotics Toolbox for MATLAB; its MATLAB code is right".to_owned()
+            }
+            Self::RotorInertia => "the file's links alone; with rotors: `--rotors`, `#[robot(rotors)]`".to_owned(),
+            Self::MotorTorques => "the joints' torques alone; the motors' are `actuator_torques`".to_owned(),
+            Self::WrenchReversed => {
+                "the wrench is what the last link exerts on its environment: τ = τ_free + Jᵀ w".to_owned()
+            }
+            Self::NoWrench => "τ = τ_free + Jᵀ w".to_owned(),
+            Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
+            Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
+            Self::Misprint(misprint) => misprint.right().to_owned(),
+        }
+    }
+}
+
+fn reference(robot: &Robot) -> InertiaReference {
+    robot.joints.first().map_or(InertiaReference::Com, |joint| joint.written_inertia.1)
+}
