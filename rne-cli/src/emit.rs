@@ -32,6 +32,7 @@ The functions of the trait InverseDynamics are written unless --function names
 others; all is every function of the robot. --check exits with 1 when the file
 is stale, and says how to refresh it. C needs no library; on standard output
 header and source are one file; -DRNE_TEST makes its tests a program.")]
+#[allow(clippy::struct_excessive_bools)] // options of a command
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]

@@ -153,9 +153,10 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
     let number = |((cell, place), name): (&(&str, Range<usize>), &String)| {
         let value = cell.parse::<f64>().ok().filter(|value| value.is_finite());
         if value.is_none() {
-            let message = match cell.is_empty() {
-                true => format!("the number of {name} is missing"),
-                false => format!("{} of {name} is no number", quoted(cell)),
+            let message = if cell.is_empty() {
+                format!("the number of {name} is missing")
+            } else {
+                format!("{} of {name} is no number", quoted(cell))
             };
             problems.push(Diagnostic::error(place.clone(), message).help("a finite decimal, such as -1.5 or 2e-3"));
         }

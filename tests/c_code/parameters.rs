@@ -144,7 +144,7 @@ fn compare<const DOF: usize>(
     let (mut called, mut drivers) = (String::new(), Precision::ALL.map(words).concat());
     for precision in Precision::ALL {
         let real = precision.c_type();
-        let _ = write!(called, "        if (!read_{real}({real}s, {}u)) {{ return 0; }}\n", names.len() + 3 * DOF);
+        let _ = writeln!(called, "        if (!read_{real}({real}s, {}u)) {{ return 0; }}", names.len() + 3 * DOF);
         for (form, programs) in &forms {
             let prefix = format!("{form}_{real}");
             source.push_str(Unit::new(&robot, programs, precision, prefix.clone()).code());
@@ -236,8 +236,8 @@ fn lengths_at_run_time() {
     fn of<T: Scalar>(form: Form, parameters: &[f64], function: Function, joints: [&[T]; 3]) -> Vec<T> {
         let &[upper, fore] = parameters else { panic!("two parameters") };
         match form {
-            Form::SevenSteps => derived::<3, T, _>(&Desk { upper, fore }, function, joints),
-            Form::Reduced => derived::<3, T, _>(&DeskReduced { upper, fore }, function, joints),
+            Form::SevenSteps => derived::<3, T, _>(&Desk { fore, upper }, function, joints),
+            Form::Reduced => derived::<3, T, _>(&DeskReduced { fore, upper }, function, joints),
         }
     }
     let names = ["upper", "fore"];

@@ -43,10 +43,10 @@ impl Parameter {
 
     /// What it is, for the documentation of its member: its value in the file, its unit, what depends on it.
     pub(super) fn about(&self) -> String {
-        let mut text = match self.name == self.member {
-            true => String::new(),
-            false => format!("The parameter {}. ", self.name),
-        };
+        let mut text = String::new();
+        if self.name != self.member {
+            let _ = write!(text, "The parameter {}. ", self.name);
+        }
         let unit = self.unit.map_or(String::new(), |unit| format!(" {unit}"));
         let _ = write!(text, "In the file {}{unit}; ", self.value);
         let named = if self.entries.len() > MOST_NAMED + 1 { MOST_NAMED } else { self.entries.len() };

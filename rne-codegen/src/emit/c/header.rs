@@ -149,7 +149,9 @@ fn robot(file: &File) -> String {
     let parameters = parameters::heading(file.robot);
     if !parameters.is_empty() {
         text.push_str("//\n");
-        parameters.iter().for_each(|line| text.push_str(&comment("//", line)));
+        for line in &parameters {
+            text.push_str(&comment("//", line));
+        }
     }
     let proved = file.programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)));
     if let Some((program, proof)) = proved {

@@ -26,9 +26,12 @@ pub fn c_tests(
     let tests = Tests { robot, programs, precision, prefix: prefix.as_str(), golden };
     let mut functions: Vec<(String, String)> = (0..programs.len()).filter_map(|index| tests.values(index)).collect();
     functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
-    let bodies: String = functions.iter().map(|(_, body)| format!("\n{body}")).collect();
+    let (mut bodies, mut calls) = (String::new(), String::new());
+    for (name, body) in &functions {
+        let _ = write!(bodies, "\n{body}");
+        let _ = writeln!(calls, "    {name}();");
+    }
     let (upper, states) = (tests.prefix.to_ascii_uppercase(), tests.states(&bodies));
-    let calls: String = functions.iter().map(|(name, _)| format!("    {name}();\n")).collect();
     let tests_are = functions.len();
     let (real, tolerance) = (precision.c_type(), tests.tolerance());
     let zeros = if bodies.contains("test_zero") {
@@ -136,11 +139,10 @@ impl Tests<'_> {
             return format!("        const {real} {name}[1] = {{{prefix}_{function}({given})}};\n");
         }
         let (declared, address) = self.declared(program, "result");
-        let copies: String = elements
-            .iter()
-            .enumerate()
-            .map(|(index, element)| format!("            {name}[{index}] = {element};\n"))
-            .collect();
+        let mut copies = String::new();
+        for (index, element) in elements.iter().enumerate() {
+            let _ = writeln!(copies, "            {name}[{index}] = {element};");
+        }
         format!(
             "        {real} {name}[{count}];\n        {{\n            {declared};\n            \
              {prefix}_{function}({given}, {address});\n{copies}        }}\n"

@@ -174,7 +174,10 @@ impl Tests<'_> {
     fn values(&self, index: usize) -> Option<String> {
         let (program, expected) = (self.programs.get(index)?, results(self.golden, index)?);
         let name = program.function.name();
-        let rows: String = expected.iter().map(|numbers| format!("            {},\n", list(numbers, 12))).collect();
+        let mut rows = String::new();
+        for numbers in &expected {
+            let _ = writeln!(rows, "            {},", list(numbers, 12));
+        }
         Some(format!(
             "\n    #[test]\n    fn {name}_has_the_values_of_the_runtime() {{\n        \
              let expected: [[f64; {}]; {}] = [\n{rows}        ];\n        \
