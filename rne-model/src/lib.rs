@@ -52,7 +52,7 @@ mod decode;
 #[cfg(feature = "std")]
 mod diagnostic;
 #[cfg(feature = "std")]
-mod document;
+pub mod document;
 #[cfg(feature = "std")]
 mod double;
 #[cfg(feature = "std")]
@@ -108,5 +108,7 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::{is_control, one_line};
+#[cfg(feature = "std")]
+pub use spelling::did_you_mean;
 #[cfg(feature = "std")]
 pub use urdf::is_urdf;
