@@ -2,9 +2,10 @@
 //! crate of its own.
 //!
 //! `cargo test --test compile_time -- --nocapture` prints the figures. Times are for reading; what is asserted is
-//! counted: operations written on the sheet, which the compiler works through, and statements, which rustc works
-//! through.
+//! counted: operations written on the sheet, which the compiler works through, statements, which rustc works through,
+//! and crates.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -49,6 +50,50 @@ fn user(name: &str, robot: &str, program: &str) -> PathBuf {
     // The versions that are at hand, since they built this test: the build below needs no network.
     fs::copy(package.join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
     folder
+}
+
+/// Other people's crates that a crate compiles which only derives. Each costs every user: a new one needs a reason.
+const CRATES: [&str; 18] = [
+    // the macro
+    "proc-macro2",
+    "quote",
+    "syn",
+    "unicode-ident",
+    // robot files and plan files, with their messages
+    "annotate-snippets",
+    "anstyle",
+    "arraydeque",
+    "saphyr-parser",
+    "strsim",
+    "thiserror",
+    "thiserror-impl",
+    "unicode-width",
+    // the compiler: random states of its proof, tables of its graph, lines of its comments
+    "fastrand",
+    "hashbrown",
+    "textwrap",
+    // the scalar
+    "autocfg",
+    "libm",
+    "num-traits",
+];
+
+#[test]
+fn a_crate_that_only_derives_compiles_few_crates() {
+    let output = Command::new(env!("CARGO"))
+        .args(["tree", "--offline", "--locked", "--package", "rne", "--no-default-features"])
+        .args(["--edges", "normal,build", "--prefix", "none", "--format", "{lib}"])
+        .current_dir(env!("CARGO_MANIFEST_DIR"))
+        .output()
+        .expect("cargo");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let tree = String::from_utf8(output.stdout).expect("text");
+    let crates: BTreeSet<String> = tree
+        .lines()
+        .map(|line| line.trim_end_matches(" (*)").replace('_', "-"))
+        .filter(|name| name != "rne" && !name.starts_with("rne-"))
+        .collect();
+    assert_eq!(crates, CRATES.map(str::to_owned).into());
 }
 
 fn cargo(folder: &Path, command: &str) -> String {

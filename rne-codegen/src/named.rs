@@ -8,8 +8,7 @@ macro_rules! named {
         $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)?
     }) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize)]
-        #[serde(into = "&str", try_from = "String")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum $type { $($(#[$variant_doc])* $variant),* }
 
         impl $type {
@@ -26,20 +25,6 @@ macro_rules! named {
         impl std::fmt::Display for $type {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
                 f.write_str(self.name())
-            }
-        }
-
-        impl From<$type> for &str {
-            fn from(one: $type) -> Self {
-                one.name()
-            }
-        }
-
-        impl TryFrom<String> for $type {
-            type Error = $crate::UnknownName;
-
-            fn try_from(text: String) -> Result<Self, $crate::UnknownName> {
-                text.parse()
             }
         }
 

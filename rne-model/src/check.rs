@@ -93,7 +93,9 @@ impl<'a> Reader<'a> {
         let problems = Problems::new();
         match std::str::from_utf8(bytes) {
             Ok(text) => self.read_text(text, problems),
-            Err(_) if !source::size_is_fine(bytes.len(), &problems) => Err(problems.finish(self.name, "")),
+            Err(_) if !source::size_is_fine(bytes.len(), document::ROBOT_FILE.name, &problems) => {
+                Err(problems.finish(self.name, ""))
+            }
             Err(error) => {
                 source::not_utf8(bytes, error, &problems);
                 Err(problems.finish(self.name, &String::from_utf8_lossy(bytes)))
@@ -108,15 +110,16 @@ impl<'a> Reader<'a> {
             problems.push(other_format);
             return Err(problems.finish(self.name, beginning));
         }
-        if !source::size_is_fine(text.len(), &problems) {
+        if !source::size_is_fine(text.len(), document::ROBOT_FILE.name, &problems) {
             return Err(problems.finish(self.name, ""));
         }
-        let robot = source::is_printable(text, &problems).then(|| document::parse(text, &problems)).flatten().and_then(
-            |root| {
+        let robot = source::is_printable(text, &problems)
+            .then(|| document::parse(text, document::ROBOT_FILE, &problems))
+            .flatten()
+            .and_then(|root| {
                 let context = Context::new(text, &problems, &self.run_time).with_settings(&self.settings);
                 schema::robot(&context, &root)
-            },
-        );
+            });
         let report = problems.finish(self.name, text);
         match robot {
             Some(robot) if !report.has_errors() => Ok(Checked { robot, lints: report }),

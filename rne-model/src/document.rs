@@ -1,4 +1,5 @@
-//! A YAML document as a tree in which every key and every value knows its place in the text.
+//! A YAML document as a tree in which every key and every value knows its place in the text: what reads robot files,
+//! and plan files in the compiler.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -8,9 +9,20 @@ use saphyr_parser::{Event, Parser, ScalarStyle};
 
 use crate::diagnostic::{Diagnostic, Problems, Report};
 use crate::schema::MAX_JOINTS;
-use crate::source::quoted;
+use crate::source::{self, quoted};
 
-/// A robot file is six levels deep.
+/// What messages say of a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kind {
+    /// What it is: `a robot file`.
+    pub name: &'static str,
+    /// The number that it begins with: `format: 1`.
+    pub format: u32,
+}
+
+pub(crate) const ROBOT_FILE: Kind = Kind { name: "a robot file", format: 1 };
+
+/// A robot file is six levels deep, a plan file seven.
 const MAX_DEPTH: usize = 16;
 
 /// Nodes of a document with every alias written out. The longest table, 64 joints, has a fifth of it.
@@ -18,42 +30,58 @@ const MAX_NODES: usize = 50_000;
 
 /// A value and the bytes of the text it stands in.
 #[derive(Debug)]
-pub(crate) struct Node {
-    pub(crate) span: Range<usize>,
-    pub(crate) content: Content,
+pub struct Node {
+    /// The bytes.
+    pub span: Range<usize>,
+    /// The value.
+    pub content: Content,
     /// Number of nodes in this subtree, aliases written out.
     size: usize,
     /// Number of levels of this subtree.
     height: usize,
 }
 
+/// The three kinds of values.
 #[derive(Debug)]
-pub(crate) enum Content {
+pub enum Content {
+    /// A word, a number or a text.
     Scalar(Scalar),
     // Shared, not copied: an alias costs no memory, however large its target.
+    /// A list.
     Sequence(Vec<Rc<Node>>),
+    /// Keys with their values, in the order of the text.
     Mapping(Vec<Entry>),
 }
 
 /// A scalar, unresolved: whether `1` is a number or a text is for the reader of the key to say.
 #[derive(Debug)]
-pub(crate) struct Scalar {
-    pub(crate) text: String,
-    pub(crate) style: Style,
+pub struct Scalar {
+    /// Without quotation marks, its escapes resolved.
+    pub text: String,
+    /// How it is written.
+    pub style: Style,
 }
 
+/// How a scalar is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Style {
+pub enum Style {
+    /// As it is.
     Plain,
+    /// In quotation marks, single or double.
     Quoted,
+    /// In lines of its own, behind `|` or `>`.
     Block,
 }
 
+/// A key of a mapping, with its value.
 #[derive(Debug)]
-pub(crate) struct Entry {
-    pub(crate) key: String,
-    pub(crate) key_span: Range<usize>,
-    pub(crate) value: Rc<Node>,
+pub struct Entry {
+    /// The key.
+    pub key: String,
+    /// The bytes it stands in.
+    pub key_span: Range<usize>,
+    /// The value.
+    pub value: Rc<Node>,
 }
 
 impl Node {
@@ -72,13 +100,15 @@ impl Node {
     }
 
     /// The value of a key, if this is a mapping that has it.
-    pub(crate) fn get(&self, key: &str) -> Option<&Node> {
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Node> {
         let Content::Mapping(entries) = &self.content else { return None };
         entries.iter().find(|entry| entry.key == key).map(|entry| &*entry.value)
     }
 
     /// Where to point when the whole value is meant: a block mapping or list is represented by its first line.
-    pub(crate) fn head(&self) -> Range<usize> {
+    #[must_use]
+    pub fn head(&self) -> Range<usize> {
         match &self.content {
             Content::Mapping(entries) => match entries.first() {
                 Some(first) if first.key_span.start == self.span.start => first.key_span.clone(),
@@ -89,7 +119,8 @@ impl Node {
     }
 
     /// The value in a few words, for "found …".
-    pub(crate) fn described(&self) -> String {
+    #[must_use]
+    pub fn described(&self) -> String {
         match &self.content {
             Content::Scalar(scalar) if scalar.text.is_empty() => "nothing".to_owned(),
             Content::Scalar(scalar) => quoted(&scalar.text),
@@ -99,16 +130,38 @@ impl Node {
     }
 }
 
+/// Reads the one document of a text in another format than that of robot files: `name` is the file's in messages,
+/// `kind` is what it is.
+///
+/// # Errors
+///
+/// What is no YAML, or of a kind that no file of ours has: tags, several documents, a key that stands twice, control
+/// characters, more than 1 MiB.
+pub fn read(name: &str, text: &str, kind: Kind) -> Result<Rc<Node>, Report> {
+    let problems = Problems::new();
+    if !source::size_is_fine(text.len(), kind.name, &problems) {
+        return Err(problems.finish(name, ""));
+    }
+    let root = if source::is_printable(text, &problems) { parse(text, kind, &problems) } else { None };
+    match root {
+        Some(root) if !problems.has_errors() => {
+            let _ = problems.finish(name, "");
+            Ok(root)
+        }
+        _ => Err(problems.finish(name, text)),
+    }
+}
+
 /// Reads the one document of a text. Mistakes of YAML itself end the reading; a repeated key does not.
-pub(crate) fn parse(text: &str, problems: &Problems) -> Option<Rc<Node>> {
-    let root = has_few_commas(text).and_then(|()| Builder::new(text, problems).run());
+pub(crate) fn parse(text: &str, kind: Kind, problems: &Problems) -> Option<Rc<Node>> {
+    let root = has_few_commas(text, kind).and_then(|()| Builder::new(text, kind, problems).run());
     root.map_err(|mistake| problems.push(mistake)).ok()
 }
 
 /// The parser gives nothing of `{…` before it knows whether that is the key of a mapping, and keeps it in memory until
 /// then: a hundred times the text. So the commas of what could be one value are counted first; a dash that begins a
 /// line begins a value.
-fn has_few_commas(text: &str) -> Result<(), Diagnostic> {
+fn has_few_commas(text: &str, kind: Kind) -> Result<(), Diagnostic> {
     let (mut commas, mut start) = (0, 0);
     for line in text.split_inclusive('\n') {
         if line.trim_start().starts_with("- ") {
@@ -117,25 +170,13 @@ fn has_few_commas(text: &str) -> Result<(), Diagnostic> {
         let here = line.matches(',').count();
         if commas + here > MAX_NODES {
             let at = start + line.match_indices(',').nth(MAX_NODES - commas).map_or(0, |(at, _)| at);
-            let message = format!("more than {MAX_NODES} commas in one value; a robot file has fewer");
+            let message = format!("more than {MAX_NODES} commas in one value; {} has fewer", kind.name);
             return Err(Diagnostic::error(at..at + 1, message).help("write each joint out once"));
         }
         commas += here;
         start += line.len();
     }
     Ok(())
-}
-
-/// Whether a text is one document of YAML, no deeper and no larger than that of a robot: for readers that do not bound
-/// what a text costs them.
-///
-/// # Errors
-/// The mistake of YAML, or the limit that is passed, at its place.
-pub fn check_yaml(name: &str, text: &str) -> Result<(), Report> {
-    let problems = Problems::new();
-    let root = parse(text, &problems);
-    let report = problems.finish(name, text);
-    root.map(drop).ok_or(report)
 }
 
 /// A mapping or sequence that is not closed yet.
@@ -158,6 +199,7 @@ enum Children {
 
 struct Builder<'t> {
     text: &'t str,
+    kind: Kind,
     /// Byte offset of every character: the parser counts characters.
     offsets: Vec<usize>,
     /// Byte offset of every line break.
@@ -171,10 +213,11 @@ struct Builder<'t> {
 }
 
 impl<'t> Builder<'t> {
-    fn new(text: &'t str, problems: &'t Problems) -> Self {
+    fn new(text: &'t str, kind: Kind, problems: &'t Problems) -> Self {
         let offsets = text.char_indices().map(|(offset, _)| offset).chain([text.len()]).collect();
         let breaks = text.match_indices('\n').map(|(offset, _)| offset).collect();
-        Self { text, offsets, breaks, problems, stack: Vec::new(), anchors: HashMap::new(), nodes: 0, root: None }
+        let (stack, anchors) = (Vec::new(), HashMap::new());
+        Self { text, kind, offsets, breaks, problems, stack, anchors, nodes: 0, root: None }
     }
 
     fn run(mut self) -> Result<Rc<Node>, Diagnostic> {
@@ -184,15 +227,16 @@ impl<'t> Builder<'t> {
             self.problems.count(1);
             let (event, span) = event.map_err(|error| {
                 let at = self.offset(error.marker().index());
-                syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
+                self.syntax_error(at, error.info()).maybe_help(self.open_bracket().or_else(|| self.around(at)))
             })?;
             let span = self.offset(span.start.index())..self.offset(span.end.index());
             match event {
                 Event::DocumentStart(_) => {
                     documents += 1;
                     if documents > 1 {
-                        return Err(Diagnostic::error(span, "a second document begins; a robot file has exactly one")
-                            .help("write one file per robot, without a second `---`"));
+                        let message = format!("a second document begins; {} has exactly one", self.kind.name);
+                        let help = "write one file per robot, without a second `---`";
+                        return Err(Diagnostic::error(span, message).help(help));
                     }
                 }
                 Event::Alias(anchor) => self.alias(anchor, span)?,
@@ -214,7 +258,9 @@ impl<'t> Builder<'t> {
             }
         }
         self.root.ok_or_else(|| {
-            Diagnostic::error(0..0, "the file is empty; a robot file is a YAML mapping that begins with `format: 1`")
+            let Kind { name, format } = self.kind;
+            let message = format!("the file is empty; {name} is a YAML mapping that begins with `format: {format}`");
+            Diagnostic::error(0..0, message)
         })
     }
 
@@ -257,7 +303,7 @@ impl<'t> Builder<'t> {
         let raw = self.text.get(span.clone()).unwrap_or_default();
         if tagged {
             return Err(Diagnostic::error(span, format!("YAML tag in {}; tags are not allowed", quoted(raw)))
-                .help("delete the tag: each key of a robot file knows what it holds"));
+                .help(format!("delete the tag: each key of {} knows what it holds", self.kind.name)));
         }
         let value = match raw.strip_prefix('&') {
             Some(anchor) => anchor.trim_start_matches(|c: char| !c.is_whitespace()).trim_start(),
@@ -304,7 +350,7 @@ impl<'t> Builder<'t> {
 
     fn open(&mut self, span: Range<usize>, anchor: usize, children: Children) -> Result<(), Diagnostic> {
         if self.stack.len() + 1 >= MAX_DEPTH {
-            return Err(too_deep(span));
+            return Err(self.too_deep(span));
         }
         if let Some(Open { children: Children::Mapping { pending: None, .. }, .. }) = self.stack.last() {
             return Err(not_a_key(span));
@@ -334,7 +380,7 @@ impl<'t> Builder<'t> {
             return Err(Diagnostic::error(span, message).help("write the value out"));
         };
         if self.stack.len() + target.height > MAX_DEPTH {
-            return Err(too_deep(span));
+            return Err(self.too_deep(span));
         }
         self.count(target.size, &span)?;
         self.attach(target);
@@ -365,7 +411,8 @@ impl<'t> Builder<'t> {
             let message = format!("more than {MAX_JOINTS} joints; 1 to {MAX_JOINTS} joints are allowed");
             return Err(Diagnostic::error(place.clone(), message).help("one file describes one robot"));
         }
-        let message = format!("more than {MAX_NODES} values, aliases (`*name`) written out; a robot file has fewer");
+        let message =
+            format!("more than {MAX_NODES} values, aliases (`*name`) written out; {} has fewer", self.kind.name);
         Err(Diagnostic::error(span.clone(), message).help("write each joint out once"))
     }
 
@@ -380,6 +427,27 @@ impl<'t> Builder<'t> {
             }
         }
     }
+
+    fn too_deep(&self, span: Range<usize>) -> Diagnostic {
+        Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; {} has fewer", self.kind.name))
+    }
+
+    fn syntax_error(&self, at: usize, info: &str) -> Diagnostic {
+        // The parser reads ahead and may meet its own limit, 255, before ours.
+        if info.contains("recursion limit") {
+            return self.too_deep(at..at + 1);
+        }
+        let help = if info.contains(" tab") {
+            Some("indent with spaces; YAML does not allow tabs there")
+        } else if info.contains("':'") || info.contains("mapping values") {
+            Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
+        } else if info.contains("unknown anchor") {
+            Some("an alias `*name` needs a value marked `&name` before it")
+        } else {
+            None
+        };
+        Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
+    }
 }
 
 /// The line of a byte, given the places of the line breaks.
@@ -387,27 +455,6 @@ fn line(breaks: &[usize], offset: usize) -> usize {
     1 + breaks.partition_point(|at| *at < offset)
 }
 
-fn too_deep(span: Range<usize>) -> Diagnostic {
-    Diagnostic::error(span, format!("nested more than {MAX_DEPTH} levels deep; six are enough for a robot file"))
-}
-
 fn not_a_key(span: Range<usize>) -> Diagnostic {
     Diagnostic::error(span, "a key must be a plain word; lists, mappings and aliases are not allowed as keys")
-}
-
-fn syntax_error(at: usize, info: &str) -> Diagnostic {
-    // The parser reads ahead and may meet its own limit, 255, before ours.
-    if info.contains("recursion limit") {
-        return too_deep(at..at + 1);
-    }
-    let help = if info.contains(" tab") {
-        Some("indent with spaces; YAML does not allow tabs there")
-    } else if info.contains("':'") || info.contains("mapping values") {
-        Some("put a text that contains `: ` into quotes; check the brackets and the indentation of this line")
-    } else if info.contains("unknown anchor") {
-        Some("an alias `*name` needs a value marked `&name` before it")
-    } else {
-        None
-    };
-    Diagnostic::error(at..at + 1, format!("this is not YAML: {info}")).maybe_help(help.map(str::to_owned))
 }

@@ -37,8 +37,8 @@ pub struct Key {
 pub fn mappings(text: &str) -> Vec<Mapping> {
     let problems = Problems::new();
     let mut mappings = Vec::new();
-    if source::size_is_fine(text.len(), &problems)
-        && let Some(root) = document::parse(text, &problems)
+    if source::size_is_fine(text.len(), document::ROBOT_FILE.name, &problems)
+        && let Some(root) = document::parse(text, document::ROBOT_FILE, &problems)
     {
         let cx = Context::new(text, &problems, &[]);
         let _ = schema::robot(&cx, &root);

@@ -52,7 +52,7 @@ mod decode;
 #[cfg(feature = "std")]
 mod diagnostic;
 #[cfg(feature = "std")]
-mod document;
+pub mod document;
 #[cfg(feature = "std")]
 mod double;
 #[cfg(feature = "std")]
@@ -97,8 +97,6 @@ pub use data_file::{MAX_BYTES, golden_of, open_file, plan_of, read_file, read_li
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]
-pub use document::check_yaml;
-#[cfg(feature = "std")]
 pub use double::{Double, decimal_digits};
 #[cfg(feature = "std")]
 pub use expression::number;
@@ -114,5 +112,7 @@ pub use robot::{InertiaReference, Joint, Limits, Robot};
 pub use run_time::{Entry, InertiaElement, RunTime};
 #[cfg(feature = "std")]
 pub use source::{is_control, one_line};
+#[cfg(feature = "std")]
+pub use spelling::did_you_mean;
 #[cfg(feature = "std")]
 pub use urdf::is_urdf;

@@ -5,13 +5,13 @@ use std::ops::Range;
 use crate::data_file::MAX_BYTES;
 use crate::diagnostic::{Diagnostic, Problems};
 
-/// Whether a file of `length` bytes is read at all.
-pub(crate) fn size_is_fine(length: usize, problems: &Problems) -> bool {
+/// Whether a file of `length` bytes is read at all; `what` it is.
+pub(crate) fn size_is_fine(length: usize, what: &str, problems: &Problems) -> bool {
     if length > MAX_BYTES {
         problems.push(
             Diagnostic::error(
                 0..0,
-                format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a robot file may have"),
+                format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that {what} may have"),
             )
             .help("one file describes one robot of at most 64 joints; is this the right file?"),
         );

@@ -6,8 +6,8 @@ pub(crate) const LONGEST_WORD: usize = 32;
 /// A word with more slips than these is another word.
 const MOST: usize = 2;
 
-/// The candidate that `word` was probably meant to be.
-pub(crate) fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
+/// The candidate that `word` was probably meant to be, if it is a slip or two away.
+pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.is_empty() || word.chars().count() > LONGEST_WORD {
         return None;
     }

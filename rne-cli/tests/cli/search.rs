@@ -107,7 +107,7 @@ fn a_stale_plan_is_refused_and_stays_as_it_is() {
     fs::write(&robot, format!("# a comment\n{heavier}")).expect("written");
     fine(&["show", &robot, "--form", "reduced"]);
 
-    fs::write(&plan, "format: 2\nrobot: arm\n").expect("written");
+    fs::write(&plan, "format: 2\nrobot: scara_cobra600\n").expect("written");
     fails(1, &["search", &robot, "--seconds", "0"], &["arm.plan.yaml:", "fingerprint"]);
     fails(1, &["show", &robot, "--form", "reduced"], &["arm.plan.yaml:", "fingerprint"]);
     let older = written.replacen("format: 2", "format: 1", 1);
@@ -154,7 +154,7 @@ fn any_function_is_rewritten_where_it_pays() {
     };
     let replaced = |from: &str, to: &str| written.replacen(from, to, 1);
     refused(&replaced("  mass_matrix:", "  joint_wrenches:"), &["`joint_wrenches` has no reduced form"]);
-    refused(&replaced("  mass_matrix:", "  forward_dynamics:"), &["duplicate function `forward_dynamics`"]);
+    refused(&replaced("  mass_matrix:", "  forward_dynamics:"), &["repeated key `forward_dynamics`"]);
     refused(&replaced("  mass_matrix:", "  jacobian:"), &["the choices of a plan do not touch `jacobian`"]);
     let (before, graph) = written.split_at(at("  mass_matrix:"));
     let wrong = graph.replacen("    algorithm: ", "    algorithm: aba_by_joints # ", 1);

@@ -3,8 +3,7 @@
 use super::{Graph, Op, Ref, mark_live};
 
 /// Products, sums and angles of a graph.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default, PartialOrd, Ord)]
 pub struct Cost {
     /// Products.
     pub mul: usize,

@@ -1,106 +1,54 @@
 //! Every discrete choice of the reduced form, as data.
 
 use std::fmt;
-use std::marker::PhantomData;
 use std::str::FromStr;
-
-use serde::{Deserialize, Deserializer, Serialize, de};
 
 use crate::reduced::joint_frames::FrameChoice;
 use crate::reduced::link_parameters::Entry;
 
 /// All choices for one robot. The default makes none: regrouped parameters, and nothing else.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 #[allow(clippy::struct_excessive_bools)] // independent choices
 pub struct Plan {
     /// Matter on joint axes is given to the link before (section 4). No plan file leaves that out.
-    #[serde(skip, default = "yes")]
     pub regrouped: bool,
     /// The last link is a spinning sphere without mass (section 5.6).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub gyrostat: bool,
     /// The last frame is turned so that h_y vanishes (section 5.8).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub turned_last_frame: bool,
     /// Prismatic links keep the axes of the revolute link before (section 5.9).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub carried_prismatics: bool,
     /// λ is one over this (section 3.5).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub length_scale: Scale,
     /// μ is one over this.
-    #[serde(default, skip_serializing_if = "is_default")]
     pub force_scale: Scale,
     /// The choices of each joint, base to tip.
     pub joints: Vec<JointPlan>,
 }
 
 /// What one joint chooses.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Default)]
 pub struct JointPlan {
     /// Which three parameters the rods on this axis annul (section 4.5).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub targets: [RegroupingTarget; 3],
     /// Where on its axis the frame's origin sits (section 5.4).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub origin_shift: OriginShift,
     /// Where the offset along the axis acts on the way out (section 5.2).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub outward_offset: Side,
     /// Where it acts on the way back.
-    #[serde(default, skip_serializing_if = "is_default", deserialize_with = "inward_offset")]
     pub inward_offset: Side,
     /// The moment of the link (section 3.3).
-    #[serde(default, skip_serializing_if = "is_default")]
     pub moment: Moment,
     /// Everything that is on or off.
-    #[serde(default, skip_serializing_if = "is_default", rename = "on")]
     pub switches: Switches,
-}
-
-const fn yes() -> bool {
-    true
-}
-
-/// A choice that is not made is not written.
-fn is_default<T: Default + PartialEq>(value: &T) -> bool {
-    *value == T::default()
-}
-
-fn inward_offset<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Side, D::Error> {
-    match Side::deserialize(deserializer)? {
-        Side::Joint => Err(de::Error::custom("on the way back an offset acts in `link` or `parent`")),
-        side => Ok(side),
-    }
 }
 
 macro_rules! switches {
     ($($(#[$doc:meta])* $name:ident),* $(,)?) => {
         /// The choices of a joint that are on or off.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-        #[serde(from = "Vec<Switch>", into = "Vec<Switch>")]
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
         #[allow(clippy::struct_excessive_bools)] // independent choices
         pub struct Switches { $($(#[$doc])* pub $name: bool),* }
-
-        /// One of the [switches](Switches), as a plan file names those that are on.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-        #[allow(non_camel_case_types)] // the names in a plan file
-        enum Switch { $($name),* }
-
-        impl From<Vec<Switch>> for Switches {
-            fn from(on: Vec<Switch>) -> Self {
-                Self { $($name: on.contains(&Switch::$name)),* }
-            }
-        }
-
-        impl From<Switches> for Vec<Switch> {
-            fn from(switches: Switches) -> Self {
-                let all = [$((switches.$name, Switch::$name)),*];
-                all.into_iter().filter(|(on, _)| *on).map(|(_, switch)| switch).collect()
-            }
-        }
 
         impl Switches {
             /// Their names in a plan file.
@@ -149,8 +97,8 @@ switches! {
 macro_rules! named {
     ($(#[$doc:meta])* $type:ident { $($(#[$variant_doc:meta])* $variant:ident = $name:literal),* $(,)? }) => {
         $(#[$doc])*
-        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-        pub enum $type { $($(#[$variant_doc])* #[serde(rename = $name)] $variant),* }
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default)]
+        pub enum $type { $($(#[$variant_doc])* $variant),* }
 
         impl $type {
             /// All of them.
@@ -268,8 +216,7 @@ named! {
 }
 
 /// What a scale of lengths or forces is taken from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord, Serialize)]
-#[serde(into = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Default, PartialOrd, Ord)]
 pub enum Scale {
     /// For lengths: none. For forces: that of lengths.
     #[default]
@@ -297,37 +244,6 @@ impl fmt::Display for Scale {
             Self::Mass(link) => write!(f, "m{link}"),
         }
     }
-}
-
-impl From<Scale> for String {
-    fn from(scale: Scale) -> Self {
-        scale.to_string()
-    }
-}
-
-impl<'de> Deserialize<'de> for Scale {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        parsed(deserializer)
-    }
-}
-
-/// A text that is parsed while it is read, so that an error stands at its place.
-pub(super) fn parsed<'de, T: FromStr<Err = String>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
-    struct Parsed<T>(PhantomData<T>);
-
-    impl<T: FromStr<Err = String>> de::Visitor<'_> for Parsed<T> {
-        type Value = T;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("a text")
-        }
-
-        fn visit_str<E: de::Error>(self, text: &str) -> Result<T, E> {
-            text.parse().map_err(E::custom)
-        }
-    }
-
-    deserializer.deserialize_str(Parsed(PhantomData))
 }
 
 /// A number of digits alone: no sign, which the standard library would take.

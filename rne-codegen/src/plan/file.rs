@@ -6,12 +6,13 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-use rne_model::{Convention, JointKind, MAX_BYTES, Report, Robot, check_yaml, robot_of};
-use serde::de::{self, MapAccess, Visitor};
-use serde::{Deserialize, Deserializer, Serialize};
+use rne_model::document::{self, Content, Node, Style};
+use rne_model::{Convention, JointKind, Report, Robot, robot_of};
 
-use super::choices::{Plan, parsed};
+use super::choices::Plan;
 use super::plan_set::PlanSet;
+use super::schema;
+use super::shapes::Mistake;
 use crate::ir::Cost;
 use crate::program::{Program, Proof};
 use crate::prove;
@@ -19,10 +20,8 @@ use crate::reduced::algorithm::Algorithm;
 use crate::{CompileError, Function};
 
 /// A plan file, as it stands on disk.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PlanFile {
-    format: u32,
     /// The robot's name.
     pub robot: String,
     /// Fingerprint of the robot's numbers.
@@ -30,46 +29,11 @@ pub struct PlanFile {
     /// The reduced form.
     pub reduced: Reduced,
     /// The graphs that have been rewritten, each with the plan of the graph that it was made from.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty", deserialize_with = "each_once")]
     pub rewritten: BTreeMap<Function, Rewritten>,
 }
 
-/// A mapping in which no key stands twice.
-fn each_once<'de, D: Deserializer<'de>>(deserializer: D) -> Result<BTreeMap<Function, Rewritten>, D::Error> {
-    struct EachOnce;
-
-    impl<'de> Visitor<'de> for EachOnce {
-        type Value = BTreeMap<Function, Rewritten>;
-
-        fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-            f.write_str("a rewritten graph per function")
-        }
-
-        fn visit_map<M: MapAccess<'de>>(self, mut map: M) -> Result<Self::Value, M::Error> {
-            let mut all = BTreeMap::new();
-            while let Some((function, rewritten)) = map.next_entry()? {
-                if all.insert(function, rewritten).is_some() {
-                    return Err(de::Error::custom(format_args!("duplicate function `{function}`")));
-                }
-            }
-            Ok(all)
-        }
-    }
-
-    deserializer.deserialize_map(EachOnce)
-}
-
-/// What decides whether the rest of a plan file is to be read at all.
-#[derive(Deserialize)]
-struct Heading {
-    format: u32,
-    robot: String,
-    fingerprint: Fingerprint,
-}
-
 /// The choices of the reduced form.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Reduced {
     /// Operations of `inverse_dynamics`.
     pub operations: Cost,
@@ -80,45 +44,29 @@ pub struct Reduced {
 }
 
 /// The rewritten graph of a function.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rewritten {
     /// Operations of the function.
     pub operations: Cost,
     /// How precise it is.
     pub accuracy: Accuracy,
     /// How the function was written under the plan.
-    #[serde(default, skip_serializing_if = "Algorithm::is_rnea")]
     pub(crate) algorithm: Algorithm,
     /// The plan that gives the graph its numbers; none for a function that the choices of a plan do not touch.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub plan: Option<Plan>,
     /// One operation per line.
     pub graph: String,
 }
 
 /// Largest differences from the seven steps, in parts of the largest torque, with two digits: for people.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Accuracy {
     /// In double precision.
-    #[serde(deserialize_with = "measured")]
     pub double: f64,
     /// In single precision.
-    #[serde(deserialize_with = "measured")]
     pub single: f64,
     /// Of the seven steps themselves in single precision.
-    #[serde(deserialize_with = "measured")]
     pub single_of_seven_steps: f64,
-}
-
-/// A difference: finite, and not negative.
-fn measured<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    let difference = f64::deserialize(deserializer)?;
-    if difference.is_finite() && difference >= 0.0 {
-        return Ok(difference);
-    }
-    Err(de::Error::custom(format_args!("`{difference}` is no accuracy, which is a number from 0 on")))
 }
 
 impl From<&Proof> for Accuracy {
@@ -133,19 +81,12 @@ impl From<&Proof> for Accuracy {
 }
 
 /// A number that stands for all numbers of a robot that its torques depend on: 16 hexadecimal digits in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(into = "String")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Fingerprint(u64);
 
-impl From<Fingerprint> for String {
-    fn from(Fingerprint(number): Fingerprint) -> Self {
-        format!("{number:016x}")
-    }
-}
-
-impl<'de> Deserialize<'de> for Fingerprint {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        parsed(deserializer)
+impl fmt::Display for Fingerprint {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:016x}", self.0)
     }
 }
 
@@ -156,13 +97,15 @@ impl FromStr for Fingerprint {
         let number = u64::from_str_radix(text, 16).ok().map(Self);
         // the same digits, and nothing else: no sign, no capitals
         number
-            .filter(|&number| String::from(number) == text)
+            .filter(|number| number.to_string() == text)
             .ok_or_else(|| format!("`{}` is no fingerprint, which has 16 hexadecimal digits", text.escape_debug()))
     }
 }
 
 /// The format of plan files.
-const FORMAT: u32 = 2;
+pub(super) const FORMAT: u32 = 2;
+
+const KIND: document::Kind = document::Kind { name: "a plan file", format: FORMAT };
 
 /// A fingerprint of all numbers of a robot that its torques depend on.
 #[must_use]
@@ -197,7 +140,7 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
 impl PlanFile {
     /// What a search found for a robot.
     pub(super) fn new(robot: &Robot, reduced: Reduced, rewritten: BTreeMap<Function, Rewritten>) -> Self {
-        Self { format: FORMAT, robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
+        Self { robot: robot.name.clone(), fingerprint: fingerprint(robot), reduced, rewritten }
     }
 
     /// Reads a plan file and checks that it belongs to `robot`; `name` is what messages call it.
@@ -206,71 +149,53 @@ impl PlanFile {
     /// What is wrong with it, with line and column.
     pub fn read(name: &str, text: &str, robot: &Robot) -> Result<Self, Report> {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
-        let refused = |keys: &[&str], message: String| {
-            Report::of_error(name, text, value_of(text, keys), message, Some(&refresh(name)))
+        let refused = |Mistake { place, message, help }: Mistake| {
+            Report::of_error(name, text, place, message, Some(&helping(help, name)))
         };
-        if text.len() > MAX_BYTES {
-            let message = format!("the file has more than {MAX_BYTES} bytes (1 MiB), the most that a plan may have");
-            return Err(Report::of_error(name, "", 0..0, message, Some(&refresh(name))));
+        if text.trim().is_empty() {
+            return Err(refused(Mistake::new(0..0, "the plan file is empty")));
         }
-        if text.lines().map(str::trim_start).all(|line| line.is_empty() || line.starts_with('#')) {
-            return Err(refused(&[], "the plan file is empty".to_owned()));
-        }
-        // serde reads without limits
-        check_yaml(name, text).map_err(|mut report| {
-            report.diagnostics.iter_mut().for_each(|found| found.help = Some(refresh(name)));
-            report
-        })?;
-        let invalid = |error: serde_yaml::Error| invalid(name, text, &error);
-        // a plan of another version, or of another robot, may have other keys
-        let heading: Heading = serde_yaml::from_str(text).map_err(invalid)?;
-        if heading.format != FORMAT {
-            let message = format!("a plan file of this version of rne has `format: {FORMAT}`");
-            return Err(refused(&["format"], message));
-        }
-        if heading.robot != robot.name {
-            let message = format!("this plan is of `{}`, not of `{}`", heading.robot.escape_debug(), robot.name);
-            return Err(refused(&["robot"], message));
-        }
-        if heading.fingerprint != fingerprint(robot) {
-            let message = format!(
-                "this plan is not of `{}` as it is now: the numbers of its robot file have changed",
-                robot.name
-            );
-            return Err(refused(&["fingerprint"], message));
-        }
-        let file: Self = serde_yaml::from_str(text).map_err(invalid)?;
-        let rewritten = file.rewritten.iter();
+        let root = document::read(name, text, KIND).map_err(|report| with_help(report, name))?;
+        let file = schema::read(&root, robot).map_err(refused)?;
+        file.fits(&root, robot).map_err(refused)?;
+        Ok(file)
+    }
+
+    /// Checks that the choices and the graphs are for such a robot.
+    fn fits(&self, root: &Node, robot: &Robot) -> Result<(), Mistake> {
+        let rewritten = self.rewritten.iter();
         let rewritten =
             rewritten.filter_map(|(function, of)| Some((vec!["rewritten", function.name()], of.plan.as_ref()?)));
-        for (mut keys, plan) in std::iter::once((vec!["reduced"], &file.reduced.plan)).chain(rewritten) {
+        for (mut keys, plan) in std::iter::once((vec!["reduced"], &self.reduced.plan)).chain(rewritten) {
             let count = plan.joints.len();
             if count != robot.dof() {
                 let message = format!("this plan has {count} joints, `{}` has {}", robot.name, robot.dof());
-                keys.push("joints");
-                return Err(refused(&keys, message));
+                keys.extend(["plan", "joints"]);
+                return Err(Mistake::new(place(root, &keys), message));
             }
         }
-        for (function, rewritten) in &file.rewritten {
+        for (function, rewritten) in &self.rewritten {
             let known = Algorithm::of(*function);
             let (key, message) = match rewritten.plan {
                 _ if function.entry().is_irreducible => {
-                    ("operations", format!("`{function}` has no reduced form that could be rewritten"))
+                    (None, format!("`{function}` has no reduced form that could be rewritten"))
                 }
                 _ if function.divides().is_some() && prove::divides_by_zero(robot, *function) => {
-                    ("operations", format!("`{function}` divides by zero for every q: it has the seven steps only"))
+                    (None, format!("`{function}` divides by zero for every q: it has the seven steps only"))
                 }
-                Some(_) if known.is_empty() => ("plan", format!("the choices of a plan do not touch `{function}`")),
+                Some(_) if known.is_empty() => {
+                    (Some("plan"), format!("the choices of a plan do not touch `{function}`"))
+                }
                 Some(_) if !known.contains(&rewritten.algorithm) => {
-                    let names: Vec<String> = known.iter().map(|&one| format!("`{}`", String::from(one))).collect();
-                    ("algorithm", format!("`{function}` is written by {}", names.join(", ")))
+                    let names: Vec<String> = known.iter().map(|one| format!("`{}`", one.name())).collect();
+                    (Some("algorithm"), format!("`{function}` is written by {}", names.join(", ")))
                 }
                 _ => continue,
             };
-            let keys = ["rewritten", function.name(), key];
-            return Err(refused(if key == "operations" { &keys[..2] } else { &keys }, message));
+            let keys: Vec<&str> = ["rewritten", function.name()].into_iter().chain(key).collect();
+            return Err(Mistake::new(place(root, &keys), message));
         }
-        Ok(file)
+        Ok(())
     }
 
     /// The functions whose programs the file describes, as a compiler takes them from it: the torques by the plan, and
@@ -337,9 +262,7 @@ impl PlanFile {
     /// The text of the file.
     #[must_use]
     pub fn to_yaml(&self) -> String {
-        // names, numbers and lists of them: nothing that YAML has no form for
-        let plan = serde_yaml::to_string(self).unwrap_or_default();
-        format!("{}{plan}", HEADING.replace("ROBOT", &self.robot))
+        format!("{}{}", HEADING.replace("ROBOT", &self.robot), schema::written(self).document())
     }
 }
 
@@ -360,62 +283,50 @@ fn refresh(name: &str) -> String {
     )
 }
 
-/// What the reader of YAML says, at its place.
-fn invalid(name: &str, text: &str, error: &serde_yaml::Error) -> Report {
-    let (at, message) = match error.location() {
-        Some(location) => {
-            let suffix = format!(" at line {} column {}", location.line(), location.column());
-            let message = error.to_string();
-            (
-                byte(text, location.line(), location.column()),
-                message.strip_suffix(&suffix).unwrap_or(&message).to_owned(),
-            )
-        }
-        None => (0, error.to_string()),
-    };
-    // the word that begins there
-    let rest = text.get(at..).unwrap_or_default();
-    let length = rest.find(|c: char| c.is_whitespace() || ",:]}".contains(c)).unwrap_or(rest.len());
-    let message: String = message.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    Report::of_error(name, text, at..at + length, message, Some(&refresh(name)))
+/// What helps with a mistake, and what helps with each.
+fn helping(help: Option<String>, name: &str) -> String {
+    let otherwise = refresh(name);
+    match help {
+        Some(question) if question.ends_with('?') => format!("{question} {otherwise}"),
+        Some(help) => format!("{help}; {otherwise}"),
+        None => otherwise,
+    }
 }
 
-/// The byte at a line and a column, both counted from 1.
-fn byte(text: &str, line: usize, column: usize) -> usize {
-    let start: usize = text.split_inclusive('\n').take(line.saturating_sub(1)).map(str::len).sum();
-    let rest = text.get(start..).unwrap_or_default();
-    start + rest.char_indices().nth(column.saturating_sub(1)).map_or(rest.len(), |(at, _)| at)
+/// A report of mistakes of YAML, each with what helps.
+fn with_help(mut report: Report, name: &str) -> Report {
+    for mistake in &mut report.diagnostics {
+        mistake.help = Some(helping(mistake.help.take(), name));
+    }
+    report
 }
 
-/// The value of a key in a key …, each on a line of its own, as far as the keys are found.
-fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
-    let mut found = 0..0;
-    let mut at = 0;
-    let mut keys = keys.iter().peekable();
-    for line in text.split_inclusive('\n') {
-        let Some(key) = keys.peek() else { break };
-        if let Some(value) = line.trim_start().strip_prefix(**key).and_then(|rest| rest.strip_prefix(':')) {
-            keys.next();
-            let value = value.split(" #").next().unwrap_or_default().trim();
-            let key = at + line.len() - line.trim_start().len();
-            let start = if value.is_empty() { key } else { at + line.find(": ").map_or(0, |colon| colon + 2) };
-            let blank = text.get(start..).map_or(0, |rest| rest.len() - rest.trim_start_matches(' ').len());
-            found = if value.is_empty() {
-                key..at + line.trim_end().len()
-            } else {
-                start + blank..start + blank + value.len()
-            };
-        }
-        at += line.len();
+/// The value of a key in a key …, or the key itself where the value stands below it, as far as the keys are found.
+pub(super) fn place(root: &Node, keys: &[&str]) -> Range<usize> {
+    let (mut found, mut node) = (0..0, root);
+    for key in keys {
+        let Content::Mapping(entries) = &node.content else { break };
+        let Some(entry) = entries.iter().find(|entry| entry.key == *key) else { break };
+        let is_beside = matches!(&entry.value.content, Content::Scalar(scalar) if scalar.style != Style::Block);
+        found = if is_beside { entry.value.span.clone() } else { entry.key_span.clone() };
+        node = &entry.value;
     }
     found
+}
+
+/// The same in a text that has been read before.
+fn value_of(text: &str, keys: &[&str]) -> Range<usize> {
+    document::read("", text, KIND).map_or(0..0, |root| place(&root, keys))
 }
 
 /// A line of the graph of a function, counted from 1.
 fn line_of_graph(text: &str, function: Function, line: usize) -> Range<usize> {
     let graph = value_of(text, &["rewritten", function.name(), "graph"]);
-    let before = text.get(..graph.start).map_or(0, |before| before.matches('\n').count());
-    let start = byte(text, before + 1 + line, 1);
+    let Some((before, below)) = text.split_at_checked(graph.start) else { return graph };
+    let mut start = before.len();
+    for content in below.split_inclusive('\n').take(line) {
+        start += content.len();
+    }
     let content = text.get(start..).and_then(|rest| rest.lines().next()).unwrap_or_default();
     let blank = content.len() - content.trim_start().len();
     start + blank..start + content.len()

@@ -9,10 +9,13 @@ mod graph_text;
 mod neighbourhood;
 mod plan_set;
 mod rewriting;
+mod schema;
 mod search;
+mod shapes;
 #[cfg(test)]
 mod tests;
 mod trick;
+mod yaml;
 
 pub use crate::ir::Cost;
 pub use choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};

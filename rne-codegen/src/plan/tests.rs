@@ -1,6 +1,7 @@
 //! Whatever a search may find is the function of the seven steps, and what is not is refused.
 
 mod algorithms;
+mod files;
 mod unusual;
 
 use rne_model::{Reader, Robot};
@@ -264,89 +265,6 @@ fn prismatic_links_are_carried_and_last_frames_turned() {
     assert!(turned < carried, "{turned} of {carried}");
     for function in Function::TORQUES {
         assert!(is_identical(&robot, &unproved(&robot, &plan, function).unwrap()), "{function}");
-    }
-}
-
-#[test]
-fn plans_survive_as_files_and_belong_to_one_robot() {
-    let robot = robot("ur5");
-    let mut clock = |progress: &Progress| (progress.plans < 600).then_some(0.0);
-    let found = search(&robot, None, &SearchOptions::default(), &mut clock).unwrap();
-    let text = found.to_yaml();
-    let read = PlanFile::read("ur5.plan.yaml", &text, &robot).unwrap();
-    assert_eq!(read, found);
-    let again = search(&robot, Some(&read), &SearchOptions::default(), &mut |_| None).unwrap();
-    assert!(again.reduced.operations.weight() <= found.reduced.operations.weight(), "never worse");
-
-    // kinematics depend on where the arm stands
-    let mut elsewhere = robot.clone();
-    elsewhere.base.xyz[2] = 0.4;
-    assert_ne!(fingerprint(&elsewhere), fingerprint(&robot));
-
-    let mut other = robot.clone();
-    other.joints[2].row.link.mass += 1.0;
-    let report = PlanFile::read("ur5.plan.yaml", &text, &other).unwrap_err();
-    let error = report.errors().next().unwrap();
-    assert_eq!((error.line, error.column), (7, 14));
-    assert!(error.message.contains("numbers of its robot file have changed"), "{}", error.message);
-    assert!(error.help.as_ref().unwrap().contains("rne search"), "{report}");
-    for (from, to, what, line) in [
-        ("format: 2", "format: 1", "format: 2", "format: 1"),
-        ("format: 2", "format: one", "invalid type: string \"one\", expected u32", "format: one"),
-        ("robot: ur5", "robot: ur6", "this plan is of `ur6`, not of `ur5`", "robot: ur6"),
-        ("robot:", "robt:", "missing field `robot`", "format: 2"),
-        ("fingerprint: ", "fingerprint: +", "is no fingerprint", "fingerprint: +"),
-        ("fingerprint: ", "fingerprint: 0", "is no fingerprint", "fingerprint: 0"),
-        ("    mul: ", "    mull: ", "unknown field `mull`, expected one of `mul`, `add`, `sincos`", "mull"),
-        ("    mul: ", "    mul: -", "invalid type: integer `-", "mul: -"),
-        ("    double: ", "    double: about ", "expected f64", "double: about"),
-        ("    double: ", "    double: -", "is no accuracy", "double: -"),
-        ("  plan:\n", "  plam:\n", "unknown field `plam`", "plam"),
-        ("    joints:\n", "    jonts:\n", "unknown field `jonts`", "jonts"),
-        ("    joints:\n", "    joints:\n    - {}\n", "7 joints", "    joints:"),
-        ("    joints:\n", "    joints:\n    - 3\n", "invalid type: integer `3`, expected struct JointPlan", "- 3"),
-        ("length_scale: ", "length_scale: zz", "is no scale", "length_scale: zz"),
-        ("length_scale: a", "length_scale: a+", "is no scale", "length_scale: a+"),
-        ("    joints:\n", "    turned_last_frame: up\n    joints:\n", "expected a boolean", "turned_last_frame: up"),
-        (
-            "    joints:\n",
-            "    joints:\n    - origin_shift: up\n",
-            "unknown variant `up`, expected one of `none`",
-            "origin_shift: up",
-        ),
-        (
-            "    joints:\n",
-            "    joints:\n    - on: [light]\n",
-            "unknown variant `light`, expected one of `axis_column`",
-            "light",
-        ),
-        ("    joints:\n", "    joints:\n    - inward_offset: joint\n", "acts in `link` or `parent`", "inward_offset"),
-        ("    joints:\n", "    joints:\n    - targets: [own]\n", "expected an array of length 3", "targets: [own]"),
-    ] {
-        let wrong = text.replacen(from, to, 1);
-        assert_ne!(wrong, text, "{from}");
-        let report = PlanFile::read("ur5.plan.yaml", &wrong, &robot).unwrap_err();
-        let error = report.errors().next().unwrap();
-        assert!(error.message.contains(what), "{report}");
-        let shown = wrong.lines().nth(error.line - 1).unwrap();
-        assert!(shown.contains(line), "`{shown}` is not at fault, `{line}` is: {report}");
-    }
-    for (wrong, what) in [
-        ("", "the plan file is empty"),
-        ("\n \n", "the plan file is empty"),
-        ("# nothing\n", "the plan file is empty"),
-        ("3", "invalid type: integer `3`"),
-        ("- 3", "invalid type: sequence"),
-        ("reduced: {plan: [\n", "did not find expected"),
-        (&"[".repeat(1 << 20), "nested more than 16 levels deep"),
-        (&"{a: ".repeat(1 << 18), "nested more than 16 levels deep"),
-        ("format: 2\nformat: 2\n", "duplicate"),
-        (&format!("{text}---\n{text}"), "a second document begins"),
-        (&format!("{text}reduced: {{}}\n"), "duplicate"),
-        (&format!("{text}# {}\n", "x".repeat(1 << 20)), "more than 1048576 bytes"),
-    ] {
-        let report = PlanFile::read("ur5.plan.yaml", wrong, &robot).unwrap_err();
-        assert!(report.errors().next().unwrap().message.contains(what), "{report}");
     }
 }
 

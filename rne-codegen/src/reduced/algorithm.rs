@@ -8,8 +8,6 @@ use crate::reduced::joint_frames::JointFrames;
 use crate::reduced::payload::Load;
 use crate::reduced::rnea_derivatives::sensitivity;
 
-use serde::{Deserialize, Serialize};
-
 use crate::formulate::ldlt;
 use crate::formulate::payload::Payload;
 use crate::formulate::square;
@@ -19,8 +17,7 @@ use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol};
 
 /// How a function is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Algorithm {
     /// The recursion, out and back, and what follows from its torques.
     #[default]
@@ -37,7 +34,7 @@ pub enum Algorithm {
 
 impl Algorithm {
     /// All of them, with their names in plan files.
-    const NAMES: [(Self, &'static str); 7] = [
+    pub(crate) const NAMES: [(Self, &'static str); 7] = [
         (Self::Rnea, "rnea"),
         (Self::Crba(BodiesPer::Group), "crba_by_groups"),
         (Self::Crba(BodiesPer::Joint), "crba_by_joints"),
@@ -47,9 +44,10 @@ impl Algorithm {
         (Self::UnturnedPayload, "unturned_payload"),
     ];
 
-    #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
-    pub(crate) fn is_rnea(&self) -> bool {
-        *self == Self::Rnea
+    /// Its name in plan files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        Self::NAMES.into_iter().find(|(other, _)| *other == self).map_or("", |(_, name)| name)
     }
 
     /// The ways of a function; none for what has no reduced recursion.
@@ -99,24 +97,6 @@ impl Algorithm {
             Self::Aba(BodiesPer::Joint) => Some("articulated bodies, gathered joint by joint"),
             Self::UnturnedPayload => Some("the payload in frame N of the last joint (13)"),
         }
-    }
-}
-
-impl From<Algorithm> for String {
-    fn from(algorithm: Algorithm) -> Self {
-        Algorithm::NAMES.into_iter().find(|(other, _)| *other == algorithm).map_or("", |(_, name)| name).to_owned()
-    }
-}
-
-impl TryFrom<String> for Algorithm {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        let known = Self::NAMES.into_iter().find(|(_, name)| *name == text);
-        known.map(|(algorithm, _)| algorithm).ok_or_else(|| {
-            let names = Self::NAMES.map(|(_, name)| name).join("`, `");
-            format!("`{}` is no algorithm; expected one of `{names}`", text.escape_debug())
-        })
     }
 }
 
