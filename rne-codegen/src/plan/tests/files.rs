@@ -39,6 +39,7 @@ fn plans_survive_as_files_and_belong_to_one_robot() {
         ("    mul: ", "    mull: ", "unknown key `mull`; `operations` has the keys mul, add, sincos", "mull"),
         ("    mul: ", "    mul: -", "where a whole number is needed", "mul: -"),
         ("    double: ", "    double: about ", "where a number is needed", "double: about"),
+        ("    double: ", "    double: inf # ", "found `inf` where a number is needed", "double: inf"),
         ("  plan:\n", "  plam:\n", "unknown key `plam`", "plam"),
         ("    joints:\n", "    jonts:\n", "unknown key `jonts`", "jonts"),
         ("    joints:\n", "    joints:\n    - {}\n", "7 joints", "    joints:"),
