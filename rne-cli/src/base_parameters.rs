@@ -15,22 +15,23 @@ const WIDTH: usize = 100;
 /// Significant digits of a coefficient.
 const DIGITS: usize = 8;
 
+/// How to read what is listed.
+const ABOUT: &str = "mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in \
+    its axes. A parameter of which the regressor shows no more than of those before it (J, m c, m; base to tip) is \
+    regrouped into them (Gautier and Khalil, 1990). Numerically, at random states that are always the same.";
+
 pub(crate) fn text(robot: &Robot) -> String {
     let columns = terminal::width(WIDTH);
     let base = DynArm::from_robot(robot).base_parameters();
     let mut text = String::new();
-    let _ = writeln!(
-        text,
-        "{TITLE}{} base parameters{TITLE:#}: so many combinations of the {} inertial parameters of the links enter \
-        the torques\n\
-         {QUIET}mcx2 is the mass of link 2 times x of its centre of mass; J is about the link frame's origin, in its \
-         axes.\n\
-         A parameter of which the regressor shows no more than of those before it (J, m c, m; base to tip) is\n\
-         regrouped into them (Gautier and Khalil, 1990). Numerically, at random states that are always the \
-         same.{QUIET:#}\n",
+    let heading = format!(
+        "{TITLE}{} base parameters{TITLE:#}: so many combinations of the {} inertial parameters of the links enter the \
+         torques",
         base.rank(),
         10 * robot.dof()
     );
+    let about = wrap(ABOUT, columns, "");
+    let _ = writeln!(text, "{heading}\n{QUIET}{about}{QUIET:#}\n");
     let names =
         |parameters: &[LinkParameter]| parameters.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
     let alone: Vec<LinkParameter> = base.alone().map(|base| base.kept).collect();

@@ -1,23 +1,10 @@
 //! What an editor sees: rust-analyzer expands the derives by itself, and may not tell them their source file.
 
-#[allow(dead_code)] // the builds are other tests'
 mod build;
 
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-
-const MANIFEST: &str = r#"
-[package]
-name = "editor"
-version = "0.0.0"
-edition = "2024"
-
-[dependencies]
-rne = { path = '<rne>', default-features = false }
-
-[workspace]
-"#;
 
 const ROBOT: &str = "
 format: 1
@@ -57,7 +44,7 @@ fn rust_analyzer_finds_the_robot_file() {
         fs::create_dir_all(path.parent().expect("a folder")).expect("a folder");
         fs::write(path, text).expect("a file");
     };
-    write("Cargo.toml", &MANIFEST.replace("<rne>", &build::root().display().to_string()));
+    write("Cargo.toml", &build::manifest("editor"));
     fs::copy(build::root().join("Cargo.lock"), folder.join("Cargo.lock")).expect("the workspace's lock file");
     write("robots/slide.yaml", ROBOT);
     write("src/arms/small/slide.yaml", ROBOT);

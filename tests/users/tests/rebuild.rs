@@ -6,18 +6,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-const MANIFEST: &str = r#"
-[package]
-name = "rebuild"
-version = "0.0.0"
-edition = "2024"
-
-[dependencies]
-rne = { path = '<rne>', default-features = false }
-
-[workspace]
-"#;
-
 const PROGRAM: &str = r#"
 use rne::InverseDynamics;
 
@@ -55,8 +43,7 @@ impl Program {
         let _ = fs::remove_file(folder.join("robots/slide.golden.csv"));
         fs::create_dir_all(folder.join("src")).expect("a folder for sources");
         fs::create_dir_all(folder.join("robots")).expect("a folder for robots");
-        let manifest = MANIFEST.replace("<rne>", &build::root().display().to_string());
-        fs::write(folder.join("Cargo.toml"), manifest).expect("the manifest");
+        fs::write(folder.join("Cargo.toml"), build::manifest("rebuild")).expect("the manifest");
         fs::write(folder.join("src/main.rs"), PROGRAM).expect("the program");
         Self { folder }
     }

@@ -1,4 +1,5 @@
 //! Builds of users. All share a target folder, so that what the derive is made of is built once for them.
+#![allow(dead_code)] // each test uses its part
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -11,6 +12,15 @@ pub(crate) fn root() -> &'static Path {
 /// The target folder: that of trybuild, which nobody can choose.
 fn target() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("tests").join("trybuild")
+}
+
+/// The manifest of a user's package that needs `rne` alone.
+pub(crate) fn manifest(name: &str) -> String {
+    let rne = root().display();
+    format!(
+        "[package]\nname = \"{name}\"\nversion = \"0.0.0\"\nedition = \"2024\"\n\n[dependencies]\n\
+         rne = {{ path = '{rne}', default-features = false }}\n\n[workspace]\n"
+    )
 }
 
 /// Cargo in a folder, without the network: the versions are those that built this test.
