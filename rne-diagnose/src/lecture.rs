@@ -4,11 +4,11 @@
 //! always (0, 0, 1), and a_i, d_i, r_i and I_i are computed again at every angle:
 //!
 //! ```text
-//! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation [a_i]_i
+//! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation \[a_i\]_i
 //! a_i   O_i → O_{i+1}       d_i   O_i → C_i (centre of mass)       r_i   C_i → O_{i+1}       I_i   about C_i
 //! ```
 //!
-//! What the table gives is constant in frame i+1: [r_i]_{i+1} and [I_i]_{i+1}.
+//! What the table gives is constant in frame i+1: \[r_i\]_{i+1} and \[I_i\]_{i+1}.
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::JointKind::{Prismatic, Revolute};
@@ -25,13 +25,13 @@ pub enum Misprint {
     E2WrongQ,
     /// Step 2: ω_i on the left side.
     E3LeftSide,
-    /// Step 2, P: [ω̇_{i-1}]_i is turned, although it stands in frame i already.
+    /// Step 2, P: \[ω̇_{i-1}\]_i is turned, although it stands in frame i already.
     E4TurnedTwice,
     /// Step 3, P: b_i without its dot.
     E5NoDot,
     /// Step 3: the factors of the cross product the other way round.
     E6FactorsSwapped,
-    /// Step 3: [r_i]_i is constant.
+    /// Step 3: \[r_i\]_i is constant.
     E7ConstantR,
     /// Step 3: d_i is the joint offset.
     E8OffsetForD,
@@ -85,7 +85,7 @@ pub struct State {
     pub qd: Vec<f64>,
     /// θ̈_i or b̈_i
     pub qdd: Vec<f64>,
-    /// [g]_1
+    /// \[g\]_1
     pub gravity: [f64; 3],
     /// f_{n,n+1}, n_{n,n+1} in frame n+1.
     pub wrench: Wrench<f64>,
@@ -123,13 +123,13 @@ pub struct Placed {
     pub turn: Matrix3<f64>,
     /// Q_iᵀ
     turn_back: Matrix3<f64>,
-    /// [a_i]_i
+    /// \[a_i\]_i
     pub a: Vector3<f64>,
-    /// [d_i]_i
+    /// \[d_i\]_i
     pub d: Vector3<f64>,
-    /// [r_i]_i
+    /// \[r_i\]_i
     pub r: Vector3<f64>,
-    /// [I_i]_i
+    /// \[I_i\]_i
     pub inertia: Matrix3<f64>,
     /// b_i
     offset: f64,

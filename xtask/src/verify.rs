@@ -68,7 +68,7 @@ const STEPS: &[Step] = &[
         about: "hundreds of hostile inputs within 200 MB and 2 s each",
         variables: &[],
         command: &["cargo", "test", "--release", "--package", "rne-cli", "--test", "cli", "--", "hostile"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "random_arms",
