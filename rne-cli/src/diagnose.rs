@@ -11,6 +11,7 @@ use rne_model::Robot;
 use serde::Serialize;
 
 use crate::arm::{self, Rotors, Setting};
+use crate::eval::not_finite;
 use crate::layout::{Align, columns, wrap};
 use crate::numbers::{List, rounded};
 use crate::outcome::{Failure, Outcome};
@@ -170,6 +171,9 @@ fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec
     };
     let state = State::new(function, given, robot)?;
     let right = state.numbers(&DynArm::from_robot(robot)).map_err(Failure::usage)?;
+    if let Some(index) = right.iter().position(|number| !number.is_finite()) {
+        return Err(Failure::input(not_finite(robot, function, index)));
+    }
     let largest = tau.iter().chain(&right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
     let resolution = match arguments.tolerance {
         Some(tolerance) => vec![tolerance * largest; tau.len()],
@@ -196,6 +200,11 @@ fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
     Reply { agrees, error, explanations }
 }
 
+/// How well slips explain torques.
+fn closeness(error: f64) -> String {
+    if error < 1e-15 { "exactly".to_owned() } else { format!("to {error:.0e} of the largest") }
+}
+
 /// Torques beside the right ones.
 fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
     let mut cells = vec![["  joint", "yours", "of the file", "difference"].map(str::to_owned)];
@@ -216,10 +225,7 @@ fn explained(robot: &Robot, all: &[Explanation]) -> String {
     for (index, Explanation { slips, error }) in all.iter().take(SHOWN).enumerate() {
         let together = if slips.len() > 1 { " together" } else { "" };
         let _ = match index {
-            0 => writeln!(
-                text,
-                "{TITLE}your torques{TITLE:#} are those of this{together}, to {error:.0e} of the largest:"
-            ),
+            0 => writeln!(text, "{TITLE}your torques{TITLE:#} are those of this{together}, {}:", closeness(*error)),
             _ => writeln!(text, "{QUIET}or, the same at this state:{QUIET:#}"),
         };
         for slip in slips {

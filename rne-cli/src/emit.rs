@@ -187,6 +187,9 @@ fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
 }
 
 fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
+    if run_time.iter().any(String::is_empty) {
+        return Err(Failure::usage("--run-time names no parameter; write --run-time NAME,NAME"));
+    }
     let twice = run_time.iter().enumerate().find(|(index, name)| run_time[..*index].contains(name));
     twice.map_or(Ok(()), |(_, name)| Err(Failure::usage(format_args!("--run-time names {name} twice"))))
 }

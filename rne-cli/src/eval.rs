@@ -100,7 +100,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arm::with_settings(&arguments.file, &arguments.set)?;
     let robot = Robot { rotors: arguments.rotors.rotors, ..robot };
     if let Some(states) = arguments.golden {
-        return golden::file(&robot, states).map(Outcome::text);
+        let settings: Vec<String> =
+            arguments.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
+        return golden::file(&robot, states, &settings).map(Outcome::text);
     }
     let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
         (Some(_), _) => Function::InverseDynamicsWithWrench,
@@ -178,7 +180,7 @@ fn grouped(layout: &Layout, numbers: &[f64]) -> Value {
 }
 
 /// Why a number is none.
-fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
+pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
     let joint = |index: usize| {
         let name = robot.joints.get(index).map_or("", |joint| &joint.name);
         format!("joint {} ({name})", index + 1)

@@ -135,7 +135,7 @@ fn relative(off: f64, size: f64) -> f64 {
 
 /// The smallest pivot of M = Lᵀ L from tip to base, each relative to the diagonal element: what resists a joint while
 /// those behind it move freely. Zero or less where M is not positive definite.
-fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
+pub(crate) fn smallest_pivot(mut matrix: Vec<Vec<f64>>) -> f64 {
     let diagonal: Vec<f64> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
     let mut smallest = f64::INFINITY;
     for joint in (0..matrix.len()).rev() {

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use rne_model::{Checked, MAX_BYTES, Reader, Robot, robot_of};
+use rne_model::{Checked, MAX_BYTES, Reader, Robot, did_you_mean, robot_of};
 use rne_robots::RobotFile;
 
 use crate::input_file::{self, is_standard_input};
@@ -25,8 +25,15 @@ pub(crate) fn of_a_name(path: &Path) -> Option<&'static RobotFile> {
 pub(crate) fn shipped(name: &str) -> Result<&'static RobotFile, Failure> {
     rne_robots::find(name).ok_or_else(|| {
         let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
-        Failure::input(format_args!("there is no shipped robot {name}; there are {}", names.join(", ")))
+        let meant = near(name).map_or_else(String::new, |near| format!("; did you mean {TYPED}{near}{TYPED:#}?"));
+        Failure::input(format_args!("there is no shipped robot {name}{meant}; there are {}", names.join(", ")))
     })
+}
+
+/// The shipped robot whose name is meant by another.
+fn near(name: &str) -> Option<&'static str> {
+    let mut names = rne_robots::ROBOTS.iter().map(|robot| robot.name);
+    did_you_mean(name, names.clone()).or_else(|| names.find(|known| known.starts_with(name) && !name.is_empty()))
 }
 
 /// A valid robot with its lints. The path `-` is standard input.
@@ -88,6 +95,8 @@ fn missing(path: &Path) -> String {
     let probably = candidates(path).into_iter().find(|candidate| candidate.is_file());
     if let Some(probably) = probably {
         let _ = write!(text, "; did you mean {TYPED}{}{TYPED:#}?", probably.display());
+    } else if let Some(near) = path.to_str().and_then(near) {
+        let _ = write!(text, "; did you mean the shipped robot {TYPED}{near}{TYPED:#}?");
     } else if let Some(names) = folder.map(robots_in).filter(|names| !names.is_empty()) {
         let more = if names.len() > NAMED { ", …" } else { "" };
         let shown = names.iter().take(NAMED).map(String::as_str).collect::<Vec<_>>().join(", ");

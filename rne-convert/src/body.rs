@@ -54,12 +54,24 @@ impl Body {
         if self.mass.high == 0.0 { Vector::ZERO } else { self.moment * (Double::new(1.0) / self.mass) }
     }
 
+    /// The link of a table whose frame has this body's frame at `place`. Both ways may be long and end at the centre of
+    /// mass: what is left of a point's inertia then is rounding of what they added.
+    pub(crate) fn to_link_at(self, place: Pose) -> Link {
+        let way = place.translation;
+        let moved = self.mass.to_f64() * way.dot(way).to_f64();
+        self.seen_from(place).link(size(&self.inertia).max(moved))
+    }
+
     /// The link of a table: rounded once, what cancels exactly zero.
     pub(crate) fn to_link(self) -> Link {
+        self.link(0.0)
+    }
+
+    /// What is nothing beside `added` counts as zero.
+    fn link(self, added: f64) -> Link {
         let centre = self.centre();
         let back = Self { moment: Vector::ZERO, ..self.about_centre(centre) };
-        let size = |tensor: &[Vector; 3]| tensor.iter().flat_map(|row| row.to_f64()).map(f64::abs).fold(0.0, f64::max);
-        let scale = size(&self.inertia).max(size(&back.inertia));
+        let scale = size(&self.inertia).max(size(&back.inertia)).max(added);
         let element = |i: usize, j: usize| rounded(back.inertia[i].0[j], scale);
         let reach = centre.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max);
         Link {
@@ -81,6 +93,10 @@ impl Body {
         place.translation = -centre;
         self.seen_from(place)
     }
+}
+
+fn size(tensor: &[Vector; 3]) -> f64 {
+    tensor.iter().flat_map(|row| row.to_f64()).map(f64::abs).fold(0.0, f64::max)
 }
 
 impl Add for Body {
@@ -111,6 +127,17 @@ mod tests {
         let place = Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0]);
         let back = Body::of_link(&link).seen_from(place).seen_from(place.inverse());
         assert_eq!(back.to_link(), link);
+    }
+
+    /// Its frame comes to stand at the point, after a long way: nothing is left, not even rounding.
+    #[test]
+    fn a_point_has_no_inertia_of_its_own() {
+        let link = Link { mass: 231.7, com: [17.3, -4.91, 8.37], inertia: Inertia::default() };
+        let own = Pose::new(link.com, [0.3, 1.1, -2.0]);
+        for place in [Pose::identity(), Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0])] {
+            let found = Body::of_link(&link).seen_from(place).to_link_at((place * own).inverse());
+            assert_eq!(found.inertia, Inertia::default(), "{place:?}");
+        }
     }
 
     #[test]

@@ -39,7 +39,7 @@ pub fn export(robot: &Robot) -> Exported {
         ));
     }
     if robot.joints.iter().any(|joint| joint.motor.is_some()) {
-        remarks.push("motors have no place in a URDF".to_owned());
+        remarks.push("motors are left out: a URDF has no place for gears and rotors".to_owned());
     }
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     if let Some(title) = &robot.title {

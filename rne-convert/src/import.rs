@@ -11,7 +11,7 @@ use crate::geometry::{Pose, Vector};
 use crate::robot_file;
 use crate::snap::Snapped;
 use crate::source::quoted;
-use crate::table::{FAR, Table, table};
+use crate::table::{FAR, NEARLY_PARALLEL, Table, table};
 use crate::urdf::Urdf;
 
 /// How a URDF becomes a table.
@@ -136,7 +136,7 @@ impl Urdf {
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let account = Account {
-            remarks: remarks(&robot, &table),
+            remarks: [self.suspicious_numbers(), remarks(&robot, &table)].concat(),
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
@@ -176,7 +176,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
     let start = chain.base * table.start;
     let gravity = start.rotation.transpose() * (chain.base.rotation * chain.gravity);
     let joints = chain.joints.iter().zip(&table.rows).zip(&table.frames).map(|((joint, dh), frame)| {
-        let link = joint.body.seen_from(frame.inverse()).to_link();
+        let link = joint.body.to_link_at(frame.inverse());
         let kind = if joint.is_prismatic { JointKind::Prismatic } else { JointKind::Revolute };
         Joint {
             name: printable(&joint.name),
@@ -250,6 +250,28 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     (!notes.is_empty()).then(|| notes.join("\n"))
 }
 
+impl Urdf {
+    /// Origins that were probably meant in other units.
+    fn suspicious_numbers(&self) -> Vec<String> {
+        let joints = self.joints.iter().map(|joint| ("joint", &joint.name, joint.xyz, joint.rpy));
+        let links = self.links.iter().map(|link| ("the inertia of", &link.name, link.xyz, link.rpy));
+        let mut remarks = Vec::new();
+        for (what, name, xyz, rpy) in joints.chain(links) {
+            let name = printable(name);
+            if let Some(angle) = rpy.into_iter().find(|angle| angle.abs() > 2.0 * std::f64::consts::PI + 1e-6) {
+                let radians = angle.to_radians();
+                remarks.push(format!(
+                    "{what} {name} has the angle {angle} rad in its rpy, more than a turn: {angle}° is {radians:.4} rad"
+                ));
+            }
+            if let Some(length) = xyz.into_iter().find(|length| length.abs() > FAR) {
+                remarks.push(format!("{what} {name} stands {length} m away: lengths in a URDF are metres"));
+            }
+        }
+        remarks
+    }
+}
+
 /// What is remarkable about a table.
 pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     let mut remarks = Vec::new();
@@ -262,12 +284,11 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
     }
     for (index, row) in robot.rows().enumerate() {
         if row.dh.d.abs() > FAR || row.dh.a.abs() > FAR {
-            remarks.push(format!(
-                "row {} has d = {:.0} m and a = {:.0} m, since two axes are nearly parallel; digits are lost there",
-                index + 1,
-                row.dh.d,
-                row.dh.a
-            ));
+            let (row, d, a, tilt) = (index + 1, row.dh.d, row.dh.a, row.dh.alpha.sin.abs());
+            let is_nearly_parallel = tilt != 0.0 && tilt < NEARLY_PARALLEL;
+            let why =
+                if is_nearly_parallel { ", since two axes are nearly parallel; digits are lost there" } else { "" };
+            remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
         }
     }
     let has_mass = |joint: &Joint| joint.row.link.mass != 0.0 || joint.row.link.inertia != Inertia::default();

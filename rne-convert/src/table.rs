@@ -25,6 +25,9 @@ const ROUNDING: f64 = 1e-15;
 /// More than this is unlike any arm, m: two axes are nearly parallel.
 pub(crate) const FAR: f64 = 100.0;
 
+/// The sine of the angle below which two axes make a table long.
+pub(crate) const NEARLY_PARALLEL: f64 = 0.05;
+
 /// The rows of a table and the frames they lead to.
 pub(crate) struct Table {
     /// Base → frame 0.

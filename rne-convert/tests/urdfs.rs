@@ -170,6 +170,20 @@ fn nearly_parallel_axes_are_told_or_snapped() {
     assert!(near.account.remarks.is_empty(), "{:?}", near.account.remarks);
 }
 
+/// Degrees and millimetres are told, by the name of their joint.
+#[test]
+fn other_units_are_told() {
+    for (origin, told) in [
+        ("xyz=\"0.4 0.1 0\" rpy=\"90 0 0\"", "has the angle 90 rad in its rpy, more than a turn: 90° is 1.5708 rad"),
+        ("xyz=\"400 100 0\" rpy=\"1.5 0 0\"", "stands 400 m away: lengths in a URDF are metres"),
+    ] {
+        let remarks = plain(&planar(origin)).account.remarks;
+        assert!(remarks.iter().any(|remark| remark.contains(told)), "{remarks:?}");
+        assert!(!remarks.iter().any(|remark| remark.contains("nearly parallel")), "{remarks:?}");
+    }
+    assert!(plain(&planar("xyz=\"0.4 0.1 0\" rpy=\"-6.28 0 0\"")).account.remarks.is_empty());
+}
+
 /// A tilt that a table can say is in the table; one that it cannot say is told.
 #[test]
 fn no_tilt_is_dropped_in_silence() {

@@ -22,6 +22,10 @@ pub(crate) struct Computation {
     /// Of the acceleration of the first joint.
     pub(crate) first_factor: f64,
     pub(crate) motor_torques: bool,
+    pub(crate) rates_exchanged: bool,
+    pub(crate) from_the_tip: bool,
+    /// Of the torques of revolute joints.
+    pub(crate) moment_factor: f64,
     pub(crate) wrench_factor: f64,
     pub(crate) torque_factor: f64,
 }
@@ -39,6 +43,9 @@ impl Computation {
             acceleration_factor: 1.0,
             first_factor: 1.0,
             motor_torques: false,
+            rates_exchanged: false,
+            from_the_tip: false,
+            moment_factor: 1.0,
             wrench_factor: 1.0,
             torque_factor: 1.0,
         }
@@ -72,6 +79,9 @@ impl Computation {
     /// When a list of the observation does not have one number per joint.
     pub(crate) fn torques(&self, arm: &DynArm, at: &Observation) -> Result<Vec<f64>, WrongLength> {
         let (mut q, mut qd, mut qdd) = (at.q.clone(), at.qd.clone(), at.qdd.clone());
+        if self.rates_exchanged {
+            std::mem::swap(&mut qd, &mut qdd);
+        }
         let joints = self.robot.rows().zip(&mut q).zip(qd.iter_mut().zip(&mut qdd)).enumerate();
         for (index, ((row, q), (qd, qdd))) in joints {
             let revolute = row.kind == JointKind::Revolute;
@@ -97,8 +107,12 @@ impl Computation {
             let motors = arm.actuator_torques(&qd, &qdd)?;
             tau.iter_mut().zip(motors).for_each(|(tau, motor)| *tau += motor);
         }
-        for (index, tau) in tau.iter_mut().enumerate() {
+        for (index, (tau, row)) in tau.iter_mut().zip(self.robot.rows()).enumerate() {
             *tau *= if self.reversed.contains(&index) { -self.torque_factor } else { self.torque_factor };
+            *tau *= if row.kind == JointKind::Revolute { self.moment_factor } else { 1.0 };
+        }
+        if self.from_the_tip {
+            tau.reverse();
         }
         Ok(tau)
     }

@@ -25,13 +25,19 @@ pub struct Observation {
 impl Observation {
     /// Whether torques are those of the observation, as far as it can tell.
     pub(crate) fn shows(&self, tau: &[f64]) -> bool {
+        if tau.len() != self.tau.len() || tau.iter().any(|tau| !tau.is_finite()) {
+            return false;
+        }
         let rounding = ROUNDING * largest(&self.tau).max(largest(tau));
         let pairs = self.tau.iter().zip(tau).zip(&self.resolution);
-        tau.len() == self.tau.len() && pairs.map(|((a, b), own)| (a - b).abs() - own).all(|excess| excess <= rounding)
+        pairs.map(|((a, b), own)| (a - b).abs() - own).all(|excess| excess <= rounding)
     }
 
-    /// The largest difference from the torques, relative to the largest torque.
+    /// The largest difference from the torques, relative to the largest torque; infinite where a torque is none.
     pub(crate) fn error(&self, tau: &[f64]) -> f64 {
+        if tau.iter().any(|tau| !tau.is_finite()) {
+            return f64::INFINITY;
+        }
         let size = largest(&self.tau).max(largest(tau));
         let differences: Vec<f64> = self.tau.iter().zip(tau).map(|(a, b)| a - b).collect();
         if size == 0.0 { 0.0 } else { largest(&differences) / size }

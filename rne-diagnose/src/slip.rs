@@ -67,6 +67,12 @@ pub enum Slip {
     NoTool,
     /// The torques are those of the arm on its motors.
     TorquesReversed,
+    /// The torques stand from tip to base.
+    TorquesFromTheTip,
+    /// The torques of revolute joints are N mm.
+    TorquesInNmm,
+    /// Velocities and accelerations are exchanged.
+    RatesExchanged,
     /// A formula of the lecture as it was printed, or a common mistake in one.
     Misprint(Misprint),
 }
@@ -87,6 +93,9 @@ enum Subject {
     Motors,
     Wrench,
     Torques,
+    Order,
+    UnitOfTorque,
+    Rates,
     Formula(Misprint),
 }
 
@@ -131,6 +140,9 @@ impl Slip {
             Self::NoWrench,
             Self::NoTool,
             Self::TorquesReversed,
+            Self::TorquesFromTheTip,
+            Self::TorquesInNmm,
+            Self::RatesExchanged,
         ]);
         all.extend(Misprint::IN_TORQUES.map(Self::Misprint));
         all
@@ -153,6 +165,9 @@ impl Slip {
             Self::RotorInertia | Self::MotorTorques => Subject::Motors,
             Self::WrenchReversed | Self::NoWrench | Self::NoTool => Subject::Wrench,
             Self::TorquesReversed => Subject::Torques,
+            Self::TorquesFromTheTip => Subject::Order,
+            Self::TorquesInNmm => Subject::UnitOfTorque,
+            Self::RatesExchanged => Subject::Rates,
             Self::Misprint(misprint) => Subject::Formula(misprint),
         }
     }
@@ -213,6 +228,9 @@ impl Slip {
             Self::NoWrench => of.wrench_factor = 0.0,
             Self::NoTool => robot.tool = Transform::IDENTITY,
             Self::TorquesReversed => of.torque_factor = -1.0,
+            Self::TorquesFromTheTip => of.from_the_tip = true,
+            Self::TorquesInNmm => of.moment_factor = 1e3,
+            Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
         }
     }
@@ -285,6 +303,9 @@ impl Slip {
             Self::NoWrench => "no_wrench",
             Self::NoTool => "no_tool",
             Self::TorquesReversed => "torques_reversed",
+            Self::TorquesFromTheTip => "torques_from_the_tip",
+            Self::TorquesInNmm => "torques_in_nmm",
+            Self::RatesExchanged => "rates_exchanged",
             Self::Misprint(_) => "misprint",
         }
     }
@@ -356,6 +377,9 @@ impl Slip {
             Self::NoWrench => "the wrench is left out".to_owned(),
             Self::NoTool => "the wrench acts at the last frame: the tool is left out".to_owned(),
             Self::TorquesReversed => "the torques are what the arm exerts on its motors".to_owned(),
+            Self::TorquesFromTheTip => "the torques stand from tip to base".to_owned(),
+            Self::TorquesInNmm => "the torques of turning joints are in N mm".to_owned(),
+            Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
             Self::Misprint(misprint) => misprint.says().to_owned(),
         }
     }
@@ -408,6 +432,9 @@ impl Slip {
             Self::NoWrench => "τ = τ_free + Jᵀ w".to_owned(),
             Self::NoTool => "the wrench acts at the tip frame, in its axes: frame n, then `tool`".to_owned(),
             Self::TorquesReversed => "τ is what the motor exerts on the arm: positive lifts".to_owned(),
+            Self::TorquesFromTheTip => "lists run from base to tip".to_owned(),
+            Self::TorquesInNmm => "N m where a joint turns, N where it slides".to_owned(),
+            Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
             Self::Misprint(misprint) => misprint.right().to_owned(),
         }
     }

@@ -191,3 +191,37 @@ fn inertias_about_another_point() {
     by_hand(&com, &about("origin"), Slip::InertiaAboutOrigin);
     by_hand(&origin, &about("com"), Slip::InertiaShifted);
 }
+
+/// A state in which numbers overflow explains nothing, and nothing explains it.
+#[test]
+fn what_overflows_is_no_explanation() {
+    let robot = Robot::from_yaml(rne_robots::find("planar2").unwrap().yaml).unwrap();
+    let resolution = vec![0.0; 2];
+    let seen = Observation {
+        q: vec![0.5, 0.3],
+        qd: vec![1e155, 0.5],
+        qdd: vec![2.0, 1.0],
+        wrench: None,
+        tau: vec![1.0, 2.0],
+        resolution,
+    };
+    assert_eq!(diagnose(&robot, &[seen]).unwrap(), Diagnosis::Unexplained(f64::INFINITY));
+}
+
+/// The order, the unit, and the order of arguments.
+#[test]
+fn slips_of_lists() {
+    let robot = Robot::from_yaml(rne_robots::find("puma560").unwrap().yaml).unwrap();
+    let states = states(&mut Rng::with_seed(4), robot.dof());
+    let right = torques(&robot, &[], &states).unwrap();
+    let explained = |seen: &[Observation]| match diagnose(&robot, seen).unwrap() {
+        Diagnosis::Explained(all) => all[0].slips.clone(),
+        other => panic!("{other:?}"),
+    };
+    let reversed: Vec<Vec<f64>> = right.iter().map(|tau| tau.iter().rev().copied().collect()).collect();
+    assert_eq!(explained(&printed(&states, &reversed)), [Slip::TorquesFromTheTip]);
+    let in_nmm: Vec<Vec<f64>> = right.iter().map(|tau| tau.iter().map(|tau| tau * 1e3).collect()).collect();
+    assert_eq!(explained(&printed(&states, &in_nmm)), [Slip::TorquesInNmm]);
+    let exchanged = states.map(|at| Observation { qd: at.qdd.clone(), qdd: at.qd.clone(), ..at });
+    assert_eq!(explained(&printed(&exchanged, &right)), [Slip::RatesExchanged]);
+}

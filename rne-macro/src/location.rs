@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::{env, fmt, fs, io};
 
 use proc_macro2::Span;
-use rne_model::{golden_of, plan_of, read_file};
+use rne_model::{did_you_mean, golden_of, plan_of, read_file};
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -56,6 +56,9 @@ impl fmt::Display for Missing {
                 }
                 f.write_str("\n")
             }
+            Self::Unreadable { shown, error } if error.kind() == io::ErrorKind::IsADirectory => {
+                write!(f, "`{shown}` is a folder; name a robot file in it")
+            }
             Self::Unreadable { shown, error } => write!(f, "the robot file `{shown}` cannot be read: {error}"),
         }
     }
@@ -72,7 +75,12 @@ pub(crate) fn read(literal: &LitStr) -> Result<RobotFile, Missing> {
     let guessed = package.as_deref().filter(|_| source_file.is_none());
     let guessed = guessed.into_iter().flat_map(|package| guesses(Path::new(&written), package));
     for file in places.iter().map(|place| place.file.clone()).chain(guessed) {
-        let shown = || short(&file).map_or_else(|| written.clone(), |file| file.display().to_string());
+        let shown = || {
+            short(&file)
+                .map(|file| file.display().to_string())
+                .filter(|shown| !shown.is_empty())
+                .unwrap_or_else(|| written.clone())
+        };
         match read_file(&file) {
             Ok(bytes) => return Ok(RobotFile { absolute: Some(working_directory.join(&file)), shown: shown(), bytes }),
             Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -112,7 +120,8 @@ fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFi
 pub(crate) fn shipped(name: &str) -> Result<(RobotFile, Option<RobotFile>), String> {
     let Some(robot) = rne_robots::find(name) else {
         let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
-        let near = names.iter().find(|known| known.starts_with(name) && !name.is_empty());
+        let near = names.iter().find(|known| known.starts_with(name) && !name.is_empty()).copied();
+        let near = near.or_else(|| did_you_mean(name, names.iter().copied()));
         let meant = near.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
         return Err(format!("there is no shipped robot `{name}`{meant}\nthere are {}", names.join(", ")));
     };

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, Problems, Report};
 use crate::source::{not_utf8, quoted};
+use crate::spelling::did_you_mean;
 
 /// Parts of the largest torque by which torques may differ where the file does not say so.
 const TOLERANCE: f64 = 1e-9;
@@ -88,6 +89,11 @@ fn read(text: &str, joints: usize, problems: &Problems) -> Option<GoldenFile> {
         if let Some(value) = comment.trim_start().strip_prefix(TOLERANCE_KEY) {
             let at = place + comment.len() - value.len();
             tolerance = tolerance_of(value, at, problems).unwrap_or(tolerance);
+        } else if is_nearly_a_tolerance(comment) {
+            let from = place + comment.len() - comment.trim_start().len();
+            let message = format!("{} sets no tolerance", quoted(comment.trim()));
+            let help = "write `# tolerance: 1e-6`";
+            problems.push(Diagnostic::error(from..from + comment.trim().len(), message).help(help));
         }
         if !data.trim().is_empty() {
             let cells = cells(data, start);
@@ -146,8 +152,9 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
     if cells.len() != names.len() {
         // the first that is too many, or the last that is there
         let place = cells.get(names.len()).or(cells.last()).map_or(0..0, |(_, place)| place.clone());
-        let message = format!("{} columns, and the header has {}", cells.len(), names.len());
-        problems.push(Diagnostic::error(place, message));
+        let columns = if cells.len() == 1 { "column" } else { "columns" };
+        let message = format!("{} {columns}, and the header has {}", cells.len(), names.len());
+        problems.push(Diagnostic::error(place, message).help("one number per column, with commas between them"));
         return None;
     }
     let number = |((cell, place), name): (&(&str, Range<usize>), &String)| {
@@ -165,6 +172,14 @@ fn numbers(cells: &[(&str, Range<usize>)], names: &[String], problems: &Problems
     // every mistake of the line
     let values: Vec<Option<f64>> = cells.iter().zip(names).map(number).collect();
     values.into_iter().collect()
+}
+
+/// Whether a comment begins with the word, or with one like it, and a number behind it.
+fn is_nearly_a_tolerance(comment: &str) -> bool {
+    let mut words = comment.trim_start().split([':', '=', ' ']).filter(|word| !word.is_empty());
+    let word = words.next().unwrap_or_default().to_lowercase();
+    let is_meant = did_you_mean(&word, ["tolerance"]).is_some() || word == "tolerance";
+    is_meant && words.next().is_some_and(|value| value.starts_with(|c: char| c.is_ascii_digit() || c == '.'))
 }
 
 fn tolerance_of(value: &str, at: usize, problems: &Problems) -> Option<f64> {
@@ -208,6 +223,9 @@ mod tests {
     fn mistakes_have_a_place() {
         let state = |line: &str| said(&format!("# é\n{HEADER}{line}\n"));
         for (found, expected) in [
+            (said(&format!("# tolerence: 1e-1\n{HEADER}")), "1:3: error: `tolerence: 1e-1` sets no tolerance"),
+            (said(&format!("# Tolerance = 1e-1\n{HEADER}")), "1:3: error: `Tolerance = 1e-1` sets no tolerance"),
+            (state("1;2;3;4;5;6;7;8"), "3:1: error: 1 column, and the header has 8"),
             (state("1,2,3,4,5,6,7"), "3:13: error: 7 columns, and the header has 8"),
             (state("1,2,3,4,5,6,7,8, 9"), "3:18: error: 9 columns, and the header has 8"),
             (state("1,2,3,4,5,6,7,8x"), "3:15: error: `8x` of tau2 is no number"),

@@ -70,4 +70,6 @@ fn mistakes_in_the_call() {
     call(&[], &["--tau"]);
     call(&["--tau", "x"], &["number 1, `x`, is none"]);
     call(&["--tau", "1", "--tolerance", "2"], &["from 0 to below 1"]);
+    let state = ["--q", "0.5,0.3", "--qd", "1e155,0.5", "--qdd", "2,1", "--tau", "1,2"];
+    fails(1, &[&["diagnose", "planar2"][..], &state].concat(), &["overflows: the state is too large"]);
 }

@@ -7,11 +7,13 @@ use std::process::{Command, Output};
 use crate::call::{fails, fine, folder};
 
 /// Motors that choose by a sign; a joint that slides, a modified table and accelerations that are divided; parameters.
-const ROBOTS: [&[&str]; 4] = [
+const ROBOTS: [&[&str]; 5] = [
     &["robots/puma560.yaml", "--rotors"],
     &["robots/stanford.yaml"],
     &["robots/puma560_mdh.yaml", "--form", "reduced"],
     &["docs/desk_arm.yaml", "--run-time", "upper,fore"],
+    // numbers of the table that several steps need
+    &["docs/every-key.yaml", "--run-time", "upper,rod"],
 ];
 
 /// What the tests of a file of Rust say.

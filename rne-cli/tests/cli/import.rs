@@ -98,7 +98,7 @@ fn conversions_and_exports_have_the_same_torques() {
     let converted = rne(&["convert", "robots/puma560.yaml", "--convention", "modified", "-o", &modified]);
     assert!(converted.status == 0 && converted.err.contains("the same arm over 1,000 states"), "{converted:?}");
     let exported = rne(&["export", "robots/puma560.yaml", "--urdf", "-o", &urdf]);
-    assert!(exported.status == 0 && exported.err.contains("motors have no place"), "{exported:?}");
+    assert!(exported.status == 0 && exported.err.contains("motors are left out"), "{exported:?}");
     assert_eq!(rne(&["import", &urdf, "-o", &back]).status, 0);
     for file in [&modified, &back] {
         let found = torques(file);

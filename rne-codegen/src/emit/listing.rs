@@ -1,7 +1,7 @@
 //! The annotated code of a program as data: each step's formulas, its statements, what each component became, and what
 //! folded. Text, colour and whatever else shows it are renderers.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fmt;
 
 use rne_model::{JointKind, Robot};
@@ -209,13 +209,22 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     let outward = (1..=last).flat_map(|joint| Step::ALL[..5].iter().map(move |&step| (joint, step)));
     let inward = (1..=last).rev().flat_map(|joint| Step::ALL[5..].iter().map(move |&step| (joint, step)));
     let mut sections = Vec::new();
+    // several steps use them, and not the first one first
+    let of_parameters = of_parameters(program);
+    if what.joint.is_none() && what.step.is_none() && !of_parameters.is_empty() {
+        let heading = Line::Heading("numbers of the table, from the parameters".to_owned());
+        let statements = program.statements.iter().filter(|statement| of_parameters.contains(&statement.name));
+        let lines = std::iter::once(heading).chain(statements.map(Line::Statement)).collect();
+        sections.push(Section { of: None, lines });
+    }
     // its joint does not move
     let is_of_links = |joint, step| joint <= program.dof || !matches!(step, Step::Velocity | Step::Torque);
     let places = outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step) && is_of_links(joint, step));
     for (joint, step) in places {
         let here = |place: &Place| place.joint == joint && place.step == step;
         let turns = program.sines_and_cosines.iter().filter(|turn| here(&turn.place)).map(Line::SineCosine);
-        let statements = program.statements.iter().filter(|statement| here(&statement.place)).map(Line::Statement);
+        let is_here = |statement: &&Statement| here(&statement.place) && !of_parameters.contains(&statement.name);
+        let statements = program.statements.iter().filter(is_here).map(Line::Statement);
         let code: Vec<Line> = turns.chain(statements).collect();
         if code.is_empty() && !what.explain {
             continue;
@@ -229,6 +238,20 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
         sections.push(Section { of: Some((joint, step, None)), lines });
     }
     sections
+}
+
+/// The statements that depend on run-time parameters alone.
+fn of_parameters(program: &Program) -> HashSet<Name> {
+    let mut known: HashSet<Name> = program.constants.iter().map(|constant| constant.name).collect();
+    known.extend(program.arguments.iter().filter(|name| name.quantity == Quantity::Parameter));
+    let mut found = HashSet::new();
+    for Statement { name, value, .. } in &program.statements {
+        if value.names().all(|name| known.contains(&name)) {
+            known.insert(*name);
+            found.insert(*name);
+        }
+    }
+    found
 }
 
 /// A program whose statements do not keep to joints and steps, in the order in which they are computed.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rne_model::Robot;
 
-use super::{Golden, Law, program, results};
+use super::{Golden, Law, floor, program, results};
 use crate::emit::Precision;
 use crate::emit::c::{Prefix, inputs, result_elements};
 use crate::emit::parameters::{self};
@@ -183,7 +183,7 @@ impl Tests<'_> {
         let name = format!("test_{function}");
         let text = format!(
             "static void {name}(void)\n{{\n{}    unsigned state;\n    \
-             const double scale = test_largest(&expected[0][0], {}u, 0.0);\n    \
+             const double scale = test_largest(&expected[0][0], {}u, {:?});\n    \
              for (state = 0u; state < {}u; ++state) {{\n        unsigned i;\n{}        \
              for (i = 0u; i < {count}u; ++i) {{\n            \
              test_compare(\"{function}\", state, i, (double)found[i], (double)expected[state][i], \
@@ -191,6 +191,7 @@ impl Tests<'_> {
              }}\n    }}\n}}\n",
             table.replace("\n};", "\n    };"),
             count * expected.len(),
+            floor(self.golden, index, if self.precision == Precision::Single { 1e-2 } else { 1e-4 }),
             expected.len(),
             self.call(program, &[], "found"),
         );

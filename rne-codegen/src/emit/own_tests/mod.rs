@@ -20,6 +20,9 @@ pub struct Golden {
     /// What each program returns, in the order of its layout, as computed by who knows nothing of the compiler. Empty
     /// where there is nothing to compare with: accelerations of a singular mass matrix are not finite.
     pub results: Vec<Vec<f64>>,
+    /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
+    /// of them.
+    pub sizes: Vec<f64>,
 }
 
 impl Golden {
@@ -88,6 +91,12 @@ impl Law {
 fn results(golden: &[Golden], program: usize) -> Option<Vec<&[f64]>> {
     let results = golden.iter().map(|state| state.results.get(program).map_or(&[][..], Vec::as_slice));
     results.map(|numbers| (!numbers.is_empty()).then_some(numbers)).collect()
+}
+
+/// What counts as nothing in the numbers of a program, in parts of their tolerance: rounding of terms that cancel.
+fn floor(golden: &[Golden], program: usize, part: f64) -> f64 {
+    let sizes = golden.iter().filter_map(|state| state.sizes.get(program));
+    part * sizes.fold(0.0, |largest: f64, size| largest.max(*size))
 }
 
 /// The program of a function.

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use rne_model::Robot;
 
-use super::{Golden, Law, MOTION, program, results};
+use super::{Golden, Law, MOTION, floor, program, results};
 use crate::emit::parameters::{self, OF_RUST, Parameter};
 use crate::emit::signature::arguments;
 use crate::emit::wrap::{WIDTH, fill};
@@ -181,12 +181,13 @@ impl Tests<'_> {
         Some(format!(
             "\n    #[test]\n    fn {name}_has_the_values_of_the_runtime() {{\n        \
              let expected: [[f64; {}]; {}] = [\n{rows}        ];\n        \
-             let scale = largest(expected.as_flattened());\n        \
+             let scale = largest(expected.as_flattened()).max({:?});\n        \
              for (index, (state, expected)) in STATES.iter().zip(&expected).enumerate() {{\n            \
              let found = {};\n            \
              compare(\"{name}\", index, &found, expected, 1e-9, scale);\n        }}\n    }}\n",
             expected.first()?.len(),
             expected.len(),
+            floor(self.golden, index, 1e-4),
             self.call(program, &[]),
         ))
     }
