@@ -242,12 +242,12 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
 
 /// The statements that depend on run-time parameters alone.
 fn of_parameters(program: &Program) -> HashSet<Name> {
-    let mut known: HashSet<Name> = program.constants.iter().map(|constant| constant.name).collect();
-    known.extend(program.arguments.iter().filter(|name| name.quantity == Quantity::Parameter));
-    let mut found = HashSet::new();
+    let constants: HashSet<Name> = program.constants.iter().map(|constant| constant.name).collect();
+    let mut found: HashSet<Name> = HashSet::new();
+    let is_known = |name: &Name, found: &HashSet<Name>| name.quantity == Quantity::Parameter || found.contains(name);
     for Statement { name, value, .. } in &program.statements {
-        if value.names().all(|name| known.contains(&name)) {
-            known.insert(*name);
+        let depends = value.names().any(|name| is_known(&name, &found));
+        if depends && value.names().all(|name| is_known(&name, &found) || constants.contains(&name)) {
             found.insert(*name);
         }
     }
