@@ -361,10 +361,7 @@ impl<'t> Builder<'t> {
 
     fn close(&mut self, end: &Range<usize>) -> Result<(), Diagnostic> {
         let Some(open) = self.stack.pop() else { return Ok(()) };
-        // the parser ends what is in brackets where the next value begins
-        let is_bracket = self.text.get(end.start..).is_some_and(|rest| rest.starts_with([']', '}']));
-        let end = if is_bracket { end.start + 1 } else { end.end };
-        let text = self.text.get(open.start..end).unwrap_or_default();
+        let text = self.text.get(open.start..end.end).unwrap_or_default();
         let span = open.start..open.start + text.trim_end().len();
         let content = match open.children {
             Children::Sequence(items) => Content::Sequence(items),
