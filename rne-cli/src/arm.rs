@@ -1,6 +1,6 @@
 //! Which arm a command is about: that of the file, or with its rotors, or with other values of its parameters.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use clap::Args;
@@ -56,8 +56,27 @@ impl FromStr for Setting {
     }
 }
 
+/// The arm whose numbers a command computes.
+#[derive(Args)]
+pub(crate) struct ChosenArm {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
+    /// Another value of a parameter; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(crate) set: Vec<Setting>,
+}
+
+impl ChosenArm {
+    pub(crate) fn robot(&self) -> Result<Robot, Failure> {
+        Ok(self.rotors.of(with_settings(&self.file, &self.set)?))
+    }
+}
+
 /// The robot of a file with other values of its parameters.
-pub(crate) fn with_settings(path: &Path, settings: &[Setting]) -> Result<Robot, Failure> {
+fn with_settings(path: &Path, settings: &[Setting]) -> Result<Robot, Failure> {
     for (index, Setting { name, .. }) in settings.iter().enumerate() {
         if settings[..index].iter().any(|other| other.name == *name) {
             return Err(Failure::usage(format_args!("--set gives {name} twice")));

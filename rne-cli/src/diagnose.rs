@@ -1,7 +1,6 @@
 //! `rne diagnose`: why another tool's torques are others.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
 
 use clap::Args;
 use rne::{DynArm, Wrench};
@@ -10,7 +9,7 @@ use rne_diagnose::{Diagnosis, Explanation, Observation};
 use rne_model::Robot;
 use serde::Serialize;
 
-use crate::arm::{self, Rotors, Setting};
+use crate::arm::ChosenArm;
 use crate::eval::not_finite;
 use crate::layout::{Align, columns, wrap};
 use crate::numbers::{List, rounded};
@@ -34,14 +33,8 @@ inertia and centre of mass from another point, units, offsets, signs, motors,
 wrench, and the misprints of the lecture. A state with speeds and accelerations
 of all joints tells the most apart.")]
 pub(crate) struct Arguments {
-    /// Robot file
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
     #[command(flatten)]
-    rotors: Rotors,
-    /// Another value of a parameter; may be repeated
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<Setting>,
+    arm: ChosenArm,
     /// Joint positions, rad or m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     q: List,
@@ -126,8 +119,7 @@ const COARSEST: f64 = 1e-3;
 const SHOWN: usize = 5;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arm::with_settings(&arguments.file, &arguments.set)?;
-    let robot = Robot { rotors: arguments.rotors.rotors, ..robot };
+    let robot = arguments.arm.robot()?;
     let (seen, right) = observation(arguments, &robot)?;
     let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
     let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));

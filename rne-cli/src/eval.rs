@@ -1,7 +1,5 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
-use std::path::PathBuf;
-
 use clap::Args;
 use rne::{DynArm, DynTrace};
 use rne_codegen::{Answer, Function, Layout, Record};
@@ -9,12 +7,12 @@ use rne_model::Robot;
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::arm::{Rotors, Setting};
+use crate::arm::{ChosenArm, Setting};
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Entry};
-use crate::{answer, arguments, arm, golden};
+use crate::{answer, arguments, golden};
 
 /// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
@@ -30,14 +28,8 @@ pi/2 and 'deg(30)' are numbers. Every function takes exactly its arguments, and
 nothing is assumed to be zero: `rne explain arguments`. Tables are rounded for
 reading; --json has every digit, in the shape that the Rust function returns.")]
 pub(crate) struct Arguments {
-    /// Robot file
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
     #[command(flatten)]
-    rotors: Rotors,
-    /// Another value of a parameter; may be repeated
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<Setting>,
+    arm: ChosenArm,
     /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
     #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true)]
     function: Option<Function>,
@@ -97,11 +89,10 @@ struct Reply<'a> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
-    let robot = arm::with_settings(&arguments.file, &arguments.set)?;
-    let robot = Robot { rotors: arguments.rotors.rotors, ..robot };
+    let robot = arguments.arm.robot()?;
     if let Some(states) = arguments.golden {
         let settings: Vec<String> =
-            arguments.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
+            arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
         return golden::file(&robot, states, &settings).map(Outcome::text);
     }
     let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {

@@ -4,7 +4,7 @@
 //! always (0, 0, 1), and a_i, d_i, r_i and I_i are computed again at every angle:
 //!
 //! ```text
-//! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation \[a_i\]_i
+//! T_i = Rz(θ_i) Tz(b_i) Tx(a_i) Rx(α_i)    frame i+1 from frame i; its rotation is Q_i, its translation [a_i]_i
 //! a_i   O_i → O_{i+1}       d_i   O_i → C_i (centre of mass)       r_i   C_i → O_{i+1}       I_i   about C_i
 //! ```
 //!
