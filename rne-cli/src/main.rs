@@ -9,6 +9,7 @@ mod check;
 mod convert;
 mod diagnose;
 mod emit;
+mod equations;
 mod eval;
 mod example;
 mod explain;

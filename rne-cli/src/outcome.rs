@@ -33,6 +33,12 @@ impl Outcome {
         Ok(Self::text(text + "\n"))
     }
 
+    /// JSON without blanks: of what is nested deeply, lines of one bracket each are no help to a reader.
+    pub(crate) fn json_line(value: &impl Serialize) -> Result<Self, Failure> {
+        let text = serde_json::to_string(value).map_err(Failure::input)?;
+        Ok(Self::text(text + "\n"))
+    }
+
     pub(crate) fn remark(remark: String) -> Self {
         Self { remark, ..Self::default() }
     }

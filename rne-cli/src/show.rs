@@ -7,13 +7,14 @@ use clap::{Args, ValueEnum};
 use rne_codegen::emit::{self, Selection};
 use rne_codegen::plan::Trick;
 use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
+use rne_inspection::Inspection;
 use rne_model::Robot;
 
 use crate::arm::Rotors;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
-use crate::{arguments, base_parameters, heading, highlight};
+use crate::{arguments, base_parameters, equations, heading, highlight};
 
 /// Show the generated code step by step, what was folded, and why
 #[derive(Args)]
@@ -26,6 +27,8 @@ Examples:
   rne show robots/puma560.yaml --function mass_matrix --form reduced
   rne show robots/puma560.yaml --form reduced --without rewriting
   rne show robots/puma560.yaml --base-parameters   what the torques can see
+  rne show puma560 --joint 2 --step 1 --equations  of what the code is left
+  rne show puma560 --json                          all of it, for programs
 
 Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of
 link 2 along z, dw ω̇, dc ċ, ddc c̈, f1_2_x and n1_2_x what link 1 exerts on
@@ -59,8 +62,16 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,
+    /// Component by component: the equation in general, with this robot's numbers, what folded away and why, and the
+    /// code that is left
+    #[arg(long, conflicts_with_all = ["keep", "without"])]
+    equations: bool,
+    /// The same as JSON, with units, frames and counts: docs/inspection.md
+    #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
+    json: bool,
     /// Instead of code: which combinations of link parameters the torques depend on, for identification
-    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without"])]
+    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
+        "json"])]
     base_parameters: bool,
 }
 
@@ -126,6 +137,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Ok(Outcome::text(heading::robot(&robot) + "\n" + &base_parameters::text(&robot)));
     }
     check_joint(&robot, arguments.joint)?;
+    if arguments.json || arguments.equations {
+        return inspected(arguments, &robot);
+    }
 
     let mut keep = arguments.keep.clone();
     if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
@@ -182,6 +196,32 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
     }
     text.push_str(&highlight::listing(&listing));
+    Ok(Outcome::text(text))
+}
+
+/// The inspection, as JSON or as lines.
+fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
+    let file = arguments.file.display().to_string();
+    let (function, form) = (arguments.function, arguments.form);
+    let program = match form {
+        Form::SevenSteps => codegen::Compiler::new(robot)
+            .with_equations()
+            .compile(function, form)
+            .map_err(|error| Failure::compile(&file, &error))?,
+        Form::Reduced if arguments.json => Compiler::new(&arguments.file, robot).compile(function, form)?,
+        Form::Reduced => {
+            return Err(Failure::usage(format_args!(
+                "only the seven steps have equations to fold; `rne explain tricks` tells what the form {form} does"
+            )));
+        }
+    };
+    let inspection = Inspection::new(robot, &program);
+    if arguments.json {
+        return Outcome::json_line(&inspection);
+    }
+    let mut text = heading::robot(robot);
+    let _ = writeln!(text, "\n{}\n", heading::counts(&program));
+    text.push_str(&equations::text(&inspection, arguments.joint, arguments.step.map(Step::number)));
     Ok(Outcome::text(text))
 }
 

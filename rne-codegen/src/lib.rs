@@ -17,6 +17,7 @@
 #![allow(clippy::large_types_passed_by_value)]
 
 pub mod emit;
+mod equation;
 mod error;
 pub mod fma;
 mod formulate;
@@ -36,6 +37,7 @@ use std::sync::OnceLock;
 
 use rne_model::Robot;
 
+pub use equation::{Equation, Operation as TermOperation, Term};
 pub use error::{CompileError, Extreme, Suspect};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
@@ -76,13 +78,14 @@ pub struct Compiler<'r> {
     plans: OnceLock<PlanSet>,
     target: Target,
     intermediates: Vec<Quantity>,
+    explains: bool,
 }
 
 impl<'r> Compiler<'r> {
     /// With the choices that a build makes by itself.
     #[must_use]
     pub const fn new(robot: &'r Robot) -> Self {
-        Self { robot, plans: OnceLock::new(), target: Target::Latency, intermediates: Vec::new() }
+        Self { robot, plans: OnceLock::new(), target: Target::Latency, intermediates: Vec::new(), explains: false }
     }
 
     /// With these choices, such as those of a plan file.
@@ -104,6 +107,13 @@ impl<'r> Compiler<'r> {
         Self { intermediates: quantities.to_vec(), ..self }
     }
 
+    /// Programs of the seven steps tell the formula of every component as it is before anything folds
+    /// ([`Program::equations`]).
+    #[must_use]
+    pub fn with_equations(self) -> Self {
+        Self { explains: true, ..self }
+    }
+
     /// The choices of the reduced form.
     pub fn plans(&self) -> &PlanSet {
         self.plans.get_or_init(|| PlanSet::default_of(self.robot))
@@ -122,7 +132,8 @@ impl<'r> Compiler<'r> {
             || form == Form::Reduced && function.divides().is_some() && prove::divides_by_zero(robot, function);
         if form == Form::SevenSteps || is_irreducible {
             let keep: &[Quantity] = if form == Form::SevenSteps { &self.intermediates } else { &[] };
-            return seven_steps_within(LARGEST, robot, function, keep);
+            let explains = self.explains && form == Form::SevenSteps;
+            return seven_steps_within(LARGEST, robot, function, keep, explains);
         }
         let reference = reference(robot, function)?;
         // numbers that are not known cannot be regrouped

@@ -1,5 +1,7 @@
 //! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
 
+mod equations;
+
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use rne_model::Robot;
@@ -56,6 +58,7 @@ pub(crate) fn lower(
         statements,
         outputs,
         resolutions: lowering.resolutions(),
+        equations: lowering.equations(),
         fold_report: written.trace.fold_report,
         algorithm: Algorithm::default(),
         is_rewritten: false,

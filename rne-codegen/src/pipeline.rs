@@ -46,7 +46,15 @@ pub(crate) struct Formulation {
 impl Formulation {
     /// The plain formulas of a function.
     pub(crate) fn plain(policy: Policy, robot: &Robot, function: Function) -> Self {
-        let builder = Builder::traced(policy, Embedding::default(), function);
+        Self::on(Builder::traced(policy, Embedding::default(), function), robot, function)
+    }
+
+    /// The seven steps with the formulas as they are before anything folds.
+    fn explained(robot: &Robot, function: Function) -> Self {
+        Self::on(Builder::explained(Policy::Structure, Embedding::default(), function), robot, function)
+    }
+
+    fn on(builder: Builder, robot: &Robot, function: Function) -> Self {
         let (names, outputs) = formulate::outputs(&builder, robot, function).into_iter().unzip();
         Self { names, traced: builder.finish(outputs) }
     }
@@ -89,14 +97,19 @@ impl Formulation {
 }
 
 /// A function by the seven steps, if they are not more than `most` operations; behind its own outputs stands every
-/// component of the quantities in `keep`.
+/// component of the quantities in `keep`. With `explains` it tells its formulas before folding, too.
 pub(crate) fn seven_steps_within(
     most: usize,
     robot: &Robot,
     function: Function,
     keep: &[Quantity],
+    explains: bool,
 ) -> Result<Program, CompileError> {
-    let Formulation { mut names, mut traced } = Formulation::plain(Policy::Structure, robot, function);
+    let Formulation { mut names, mut traced } = if explains {
+        Formulation::explained(robot, function)
+    } else {
+        Formulation::plain(Policy::Structure, robot, function)
+    };
     if traced.graph.operations() > most {
         return Err(CompileError::TooLarge { function, dof: robot.dof(), most });
     }
@@ -111,7 +124,7 @@ pub(crate) fn seven_steps_within(
 
 /// A function by the seven steps, to be held against.
 pub(crate) fn reference(robot: &Robot, function: Function) -> Result<Reference<'_>, CompileError> {
-    Reference::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[]))
+    Reference::new(robot, function, |function| seven_steps_within(LARGEST, robot, function, &[], false))
 }
 
 #[cfg(test)]
@@ -123,10 +136,10 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots/ur5.yaml");
         let robot = rne_model::Reader::new("ur5").read(&std::fs::read(path).unwrap()).unwrap().robot;
         let function = Function::InverseDynamicsDerivatives;
-        let error = seven_steps_within(1_000, &robot, function, &[]).unwrap_err();
+        let error = seven_steps_within(1_000, &robot, function, &[], false).unwrap_err();
         assert_eq!(error, CompileError::TooLarge { function, dof: 6, most: 1_000 });
         let message = error.to_string();
         assert!(message.contains("more than 1000 operations") && message.contains("rne::DynArm"), "{message}");
-        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[]).is_ok());
+        assert!(seven_steps_within(1_000, &robot, Function::InverseDynamics, &[], false).is_ok());
     }
 }

@@ -6,6 +6,7 @@ use std::collections::{HashMap, HashSet};
 
 use crate::CompileError;
 use crate::emit;
+use crate::equation::Equation;
 use crate::function::{Form, Function};
 use crate::ir::fold_report::{Causes, FoldReport, Place};
 use crate::ir::name::Name;
@@ -41,6 +42,9 @@ pub struct Program {
     pub resolutions: Vec<Resolution>,
     /// What became of every operation of the recursion.
     pub fold_report: FoldReport,
+    /// Its formulas before folding, component by component in the order in which they are computed; only of the seven
+    /// steps, and only when they were asked for ([`crate::Compiler::with_equations`]).
+    pub equations: Vec<Equation>,
     /// By which algorithm it is written.
     pub algorithm: Algorithm,
     /// Whether the graph of its formulas was made smaller by algebra: it resembles no recursion any more.

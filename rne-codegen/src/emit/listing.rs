@@ -403,7 +403,7 @@ fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
             let sign = if *sign == Sign::Minus { "-" } else { "" };
             return Some(Annotated::default() + " = " + sign + *other);
         }
-        ResolvedAs::Constant(0.0, causes) => format!(" = 0: {}", why(robot, causes, 0)),
+        ResolvedAs::Constant(0.0, causes) => format!(" = 0: {}", reason(robot, causes, 0)),
         ResolvedAs::Constant(value, causes)
             if causes.iter().any(|cause| matches!(cause, Cause::GravityDirection(_))) =>
         {
@@ -444,7 +444,8 @@ fn folds(robot: &Robot, fold_report: &FoldReport, here: impl Fn(&Place) -> bool,
 
 /// Causes in the words of the table; `magnitude` is what they made of a number, 0 or 1. Likes are told in one breath:
 /// d1_x = d1_y = 0.
-fn why(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
+#[must_use]
+pub fn reason(robot: &Robot, causes: &Causes, magnitude: u8) -> String {
     let mut words: Vec<String> = causes.iter().map(|cause| one_cause(robot, cause, magnitude)).collect();
     words.dedup();
     for (likeness, joint) in [(" = 0", " = "), (" in frame 0", ", ")] {

@@ -25,7 +25,7 @@ pub use evidence::evidence;
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
-pub use listing::{Folds, Line, Listing, Section, Selection, listing};
+pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
 pub use own_tests::{Golden, c_tests, rust_tests};
 pub use syntax::Precision;
 pub use table::{angle, operations_table};

@@ -126,8 +126,8 @@ pub(crate) fn forward<'s>(arm: &Arm<'s>, states: &[JointState<'s>], base: &Motio
         // 3   ċ_i = R_iᵀ (ċ_p + ω_p × r_i) + ω_i × d_i (+ q̇_i e: prismatic)
         let omega_cross_r = joint.lines_of_parent().vector(Quantity::OmegaCrossR, || parent.turning.omega.cross(r));
         let omega_cross_d = line.vector(Quantity::OmegaCrossD, || omega.cross(d));
-        let c_dot =
-            line.vector(Quantity::Velocity, || joint.velocity(back * (parent.c_dot + omega_cross_r) + omega_cross_d));
+        let joint_point = line.vector(Quantity::JointPointVelocity, || parent.c_dot + omega_cross_r);
+        let c_dot = line.vector(Quantity::Velocity, || joint.velocity(back * joint_point + omega_cross_d));
 
         // 4   c̈_i = R_iᵀ (c̈_p + ω̇_p × r_i + ω_p × (ω_p × r_i))
         //           + ω̇_i × d_i + ω_i × (ω_i × d_i) (+ q̈_i e + 2 q̇_i ω_i × e: prismatic)

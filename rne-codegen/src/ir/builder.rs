@@ -5,11 +5,15 @@ use std::cell::{Cell, RefCell};
 use rne_model::{Angle, Joint};
 
 use super::trace::{Birth, Definition, Trace, Traced};
-use super::{CausesId, Embedding, ExactAngle, Graph, Input, Matrix, Number, Outcome, Policy, Ref, Symbol, Vector};
+use super::{
+    CausesId, Embedding, ExactAngle, Graph, Input, Matrix, Number, Outcome, Policy, Ref, Symbol, TermId, Vector,
+    Written, WrittenTerms,
+};
 use crate::function::Function;
 use crate::ir::fold_report::{Cause, Operation, Place};
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
+use crate::program::Operator;
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
 pub(crate) struct Builder {
@@ -28,6 +32,13 @@ impl Builder {
     /// An empty graph with a trace.
     pub(crate) fn traced(policy: Policy, embedding: Embedding, function: Function) -> Self {
         Self { trace: Some(RefCell::default()), ..Self::untraced(policy, embedding, function) }
+    }
+
+    /// The same, and formulas are kept as they are written, before anything folds.
+    pub(crate) fn explained(policy: Policy, embedding: Embedding, function: Function) -> Self {
+        let mut trace = Trace::default();
+        trace.terms = Some(WrittenTerms::default());
+        Self { trace: Some(RefCell::new(trace)), ..Self::untraced(policy, embedding, function) }
     }
 
     /// An empty graph that nobody reads.
@@ -57,12 +68,23 @@ impl Builder {
 
     /// A value without a cause as a symbol.
     pub(crate) fn symbol(&self, at: Ref) -> Symbol<'_> {
-        Symbol { builder: self, at, causes: CausesId::ARITHMETIC }
+        Symbol { builder: self, at, causes: CausesId::ARITHMETIC, term: TermId::NONE }
     }
 
     fn caused(&self, at: Ref, cause: Cause) -> Symbol<'_> {
         let causes = self.trace.as_ref().map_or(CausesId::ARITHMETIC, |trace| trace.borrow_mut().causes.one(cause));
-        Symbol { builder: self, at, causes }
+        Symbol { builder: self, at, causes, term: TermId::NONE }
+    }
+
+    /// Keeps a term, where formulas are kept.
+    fn written(&self, term: Written) -> TermId {
+        let Some(trace) = &self.trace else { return TermId::NONE };
+        trace.borrow_mut().terms.as_mut().map_or(TermId::NONE, |terms| terms.push(term))
+    }
+
+    /// The negative of a term. That of a leaf is a leaf.
+    pub(super) fn negative(&self, term: TermId) -> TermId {
+        if term == TermId::NONE { term } else { self.written(Written::Negative(term)) }
     }
 
     /// An exact number.
@@ -153,8 +175,10 @@ impl Builder {
         let causes = if is_entry { trace.causes.one(Cause::Table(told)) } else { symbol.causes };
         let after = graph.len();
         let told = trace.causes.get(causes).clone();
-        trace.definitions.push(Definition { name, at: symbol.at, causes: told, after });
-        Symbol { causes, ..symbol }
+        let place = if name.quantity.step().is_some() { trace.place() } else { None };
+        trace.definitions.push(Definition { name, at: symbol.at, causes: told, after, term: symbol.term, place });
+        let term = trace.terms.as_mut().map_or(TermId::NONE, |terms| terms.push(Written::Named(name)));
+        Symbol { causes, term, ..symbol }
     }
 
     /// Names the components of a vector.
@@ -183,45 +207,66 @@ impl Builder {
 
     pub(crate) fn sum<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().sum(a.at, b.at);
-        self.recorded(made, Some(Operation::Sum), [a, b])
+        self.recorded(made, Some(Operator::Sum), [a, b])
     }
 
     pub(crate) fn product<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().product(a.at, b.at);
-        self.recorded(made, Some(Operation::Product), [a, b])
+        self.recorded(made, Some(Operator::Product), [a, b])
     }
 
     /// No ledger counts it.
     pub(crate) fn quotient<'s>(&'s self, a: Symbol<'s>, b: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().quotient(a.at, b.at);
-        self.recorded(made, None, [a, b])
+        self.recorded(made, Some(Operator::Quotient), [a, b])
     }
 
     /// No ledger counts it.
     pub(crate) fn by_sign<'s>(&'s self, x: Symbol<'s>, positive: Symbol<'s>, negative: Symbol<'s>) -> Symbol<'s> {
         let made = self.graph.borrow_mut().by_sign(x.at, positive.at, negative.at);
-        self.recorded(made, None, [positive, negative])
+        let symbol = self.recorded(made, None, [positive, negative]);
+        let operands = [x, positive, negative].map(|operand| self.term(operand));
+        let term = self.written(Written::BySign(operands));
+        Symbol { term, ..symbol }
     }
 
     /// The symbol of what an operation gave, which the trace is told of.
     fn recorded<'s>(
         &'s self,
         (at, outcome): (Ref, Outcome),
-        operation: Option<Operation>,
+        operator: Option<Operator>,
         operands: [Symbol<'s>; 2],
     ) -> Symbol<'s> {
         let Some(trace) = &self.trace else { return self.symbol(at) };
+        let terms = operands.map(|operand| self.term(operand));
         let (graph, trace) = (&*self.graph.borrow(), &mut *trace.borrow_mut());
-        let mut causes = CausesId::ARITHMETIC;
-        if let Some(operation) = operation {
-            let reason;
+        let (mut causes, mut reason) = (CausesId::ARITHMETIC, CausesId::ARITHMETIC);
+        let counted = match operator {
+            Some(Operator::Sum) => Some(Operation::Sum),
+            Some(Operator::Product) => Some(Operation::Product),
+            _ => None,
+        };
+        if let Some(operation) = counted {
             (causes, reason) = trace.causes_of(graph, operation, at, outcome, operands);
             trace.record(graph.len(), operation, outcome, reason);
         } else {
             trace.record_birth(graph.len());
         }
         trace.record_roles(graph, at, outcome, operands);
-        Symbol { builder: self, at, causes }
+        let counted = trace.place().is_some();
+        let written =
+            operator.map(|operator| Written::Operation { operator, operands: terms, at, outcome, reason, counted });
+        let kept = trace.terms.as_mut().zip(written);
+        let term = kept.map_or(TermId::NONE, |(terms, written)| terms.push(written));
+        Symbol { builder: self, at, causes, term }
+    }
+
+    /// The term of a symbol, which is a leaf of a formula now.
+    fn term(&self, symbol: Symbol<'_>) -> TermId {
+        match symbol.term {
+            TermId::NONE => self.written(Written::Node(symbol.at, symbol.causes)),
+            term => term,
+        }
     }
 
     /// Writes what is the derivative by one variable: its quantities bear that in their names.
@@ -315,20 +360,17 @@ impl<'s> JointLines<'s> {
 
     /// A quantity that is one number.
     pub(crate) fn scalar(&self, quantity: Quantity, formula: impl FnOnce() -> Symbol<'s>) -> Symbol<'s> {
-        let value = self.within(quantity, formula);
-        self.name(quantity, value)
+        self.within(quantity, || self.name(quantity, formula()))
     }
 
     /// A vector.
     pub(crate) fn vector(&self, quantity: Quantity, formula: impl FnOnce() -> Vector<'s>) -> Vector<'s> {
-        let value = self.within(quantity, formula);
-        self.name_vector(quantity, value)
+        self.within(quantity, || self.name_vector(quantity, formula()))
     }
 
     /// A matrix.
     pub(crate) fn matrix(&self, quantity: Quantity, formula: impl FnOnce() -> Matrix<'s>) -> Matrix<'s> {
-        let value = self.within(quantity, formula);
-        self.builder.name_matrix(quantity, self.named, value)
+        self.within(quantity, || self.builder.name_matrix(quantity, self.named, formula()))
     }
 
     /// Writes what belongs to a quantity and gets no name of its own.

@@ -21,6 +21,7 @@ mod sample_point;
 mod symbol;
 mod trace;
 mod value_numbering;
+mod written;
 
 pub(crate) use builder::{Builder, JointLines};
 pub(crate) use causes::CausesId;
@@ -37,3 +38,4 @@ pub(crate) use sample_point::SamplePoint;
 pub(crate) use symbol::{Matrix, Symbol, Vector, by_quarters};
 pub(crate) use trace::{Birth, Definition, Trace, Traced};
 pub(crate) use value_numbering::number_values;
+pub(crate) use written::{TermId, Written, WrittenTerms};

@@ -2,6 +2,8 @@
 
 use std::fmt;
 
+use rne_model::JointKind;
+
 /// One of the seven steps of the lecture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Step {
@@ -156,13 +158,16 @@ struct Row {
     indices: Indices,
     step: Option<Step>,
     has_statements: bool,
+    letter: &'static str,
+    unit: &'static str,
     meaning: &'static str,
 }
 
 /// The enumeration of the quantities and the table of what is known of each, from one row per quantity.
 macro_rules! quantities {
     ($(
-        $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $meaning:literal;
+        $quantity:ident: $prefix:literal, $indices:ident, $step:literal, $has_statements:literal, $letter:literal,
+        $unit:literal, $meaning:literal;
     )*) => {
         /// A quantity of the recursion. Vectors of link i are in frame i, in form P: at joint i, fixed to link i.
         #[allow(rustdoc::broken_intra_doc_links)] // [ω]× is no link
@@ -177,132 +182,153 @@ macro_rules! quantities {
             indices: Indices::$indices,
             step: Step::of($step),
             has_statements: $has_statements,
+            letter: $letter,
+            unit: $unit,
             meaning: $meaning,
         },)*];
     };
 }
 
 quantities! {
-    // quantity                 its name, indices,     step (0: none, 8: beyond), statements of its own, meaning
+    // quantity                 its name, indices, step (0: none, 8: beyond), statements of its own, letter, unit (of a
+    //                          revolute joint | of a prismatic one), meaning
     // Arguments of the function.
-    Position:                   "q",         Joint,     0, false, "joint position";
-    Rate:                       "qd",        Joint,     0, false, "joint rate";
-    RateDot:                    "qdd",       Joint,     0, false, "joint acceleration";
-    AppliedTorque:              "tau",       Joint,     0, false, "τ of the actuator";
-    Parameter:                  "par",       Joint,     0, false,
+    Position:                   "q",         Joint,     0, false, "q", "rad|m", "joint position";
+    Rate:                       "qd",        Joint,     0, false, "q̇", "rad/s|m/s", "joint rate";
+    RateDot:                    "qdd",       Joint,     0, false, "q̈", "rad/s²|m/s²", "joint acceleration";
+    AppliedTorque:              "tau",       Joint,     0, false, "τ", "N m|N", "τ of the actuator";
+    Parameter:                  "par",       Joint,     0, false, "p", "",
         "a parameter of the robot file that is given at run time";
 
     // Constants of the table.
-    Constant:                   "k",         Counted,   0, false, "a number";
-    Two:                        "two",       Alone,     0, false, "the number 2";
-    One:                        "one",       Alone,     0, false, "the number 1";
-    Half:                       "half",      Alone,     0, false, "the number 1/2";
-    RotorInertia:               "jm",        Joint,     0, false, "rotor inertia at the joint, G² Jm";
-    ViscousFriction:            "bv",        Joint,     0, false, "viscous friction at the joint, G² B";
-    CoulombFriction:            "tc",        Joint,     0, false, "Coulomb friction at the joint, |G| Tc";
-    Theta:                      "theta",     Joint,     0, false, "constant part of the joint angle";
-    TwistSine:                  "sa",        Joint,     0, false, "sine of the twist α";
-    TwistCosine:                "ca",        Joint,     0, false, "cosine of the twist α";
-    ThetaSine:                  "st",        Joint,     0, false, "sine of the constant θ";
-    ThetaCosine:                "ct",        Joint,     0, false, "cosine of the constant θ";
-    Offset:                     "b",         Joint,     0, false, "constant part of the offset along the axis";
-    Com:                        "com",       Vector,    0, false, "centre of mass from the link frame's origin";
-    Mass:                       "m",         Joint,     0, false, "mass";
-    R:                          "r",         Vector,    0, false, "r: centre of mass → next joint";
-    Inertia:                    "i",         Matrix,    0, false, "inertia about the centre of mass";
-    TipRotation:                "rot",       Matrix,    0, false, "rotation from the last link to the tip frame";
-    FirstMoment:                "h",         Vector,    0, false,
+    Constant:                   "k",         Counted,   0, false, "k", "", "a number";
+    Two:                        "two",       Alone,     0, false, "2", "", "the number 2";
+    One:                        "one",       Alone,     0, false, "1", "", "the number 1";
+    Half:                       "half",      Alone,     0, false, "1/2", "", "the number 1/2";
+    RotorInertia:               "jm",        Joint,     0, false, "Jm", "kg m²|kg",
+        "rotor inertia at the joint, G² Jm";
+    ViscousFriction:            "bv",        Joint,     0, false, "B", "N m s/rad|N s/m",
+        "viscous friction at the joint, G² B";
+    CoulombFriction:            "tc",        Joint,     0, false, "Tc", "N m|N",
+        "Coulomb friction at the joint, |G| Tc";
+    Theta:                      "theta",     Joint,     0, false, "θ", "rad", "constant part of the joint angle";
+    TwistSine:                  "sa",        Joint,     0, false, "sα", "", "sine of the twist α";
+    TwistCosine:                "ca",        Joint,     0, false, "cα", "", "cosine of the twist α";
+    ThetaSine:                  "st",        Joint,     0, false, "sθ", "", "sine of the constant θ";
+    ThetaCosine:                "ct",        Joint,     0, false, "cθ", "", "cosine of the constant θ";
+    Offset:                     "b",         Joint,     0, false, "b", "m",
+        "constant part of the offset along the axis";
+    Com:                        "com",       Vector,    0, false, "com", "m",
+        "centre of mass from the link frame's origin";
+    Mass:                       "m",         Joint,     0, false, "m", "kg", "mass";
+    R:                          "r",         Vector,    0, false, "r", "m", "r: centre of mass → next joint";
+    Inertia:                    "i",         Matrix,    0, false, "I", "kg m²", "inertia about the centre of mass";
+    TipRotation:                "rot",       Matrix,    0, false, "R", "",
+        "rotation from the last link to the tip frame";
+    FirstMoment:                "h",         Vector,    0, false, "h", "kg m",
         "first moment of regrouped matter about the frame's origin";
-    SecondMoment:               "p",         Matrix,    0, false, "second moment ∫ r rᵀ dm of regrouped matter";
+    SecondMoment:               "p",         Matrix,    0, false, "P", "kg m²",
+        "second moment ∫ r rᵀ dm of regrouped matter";
 
     // Step 1.
-    Angle:                      "angle",     Joint,     1, false, "θ + q";
-    Sine:                       "s",         Joint,     1, false, "sine of the joint angle";
-    Cosine:                     "c",         Joint,     1, false, "cosine of the joint angle";
-    TurnedSine:                 "sj",        Joint,     1, false, "sine of θ + q, from those of q";
-    TurnedCosine:               "cj",        Joint,     1, false, "its cosine";
-    GroupPosition:              "q",         Group,     1, false,
+    Angle:                      "angle",     Joint,     1, false, "θ", "rad", "θ + q";
+    Sine:                       "s",         Joint,     1, false, "s", "", "sine of the joint angle";
+    Cosine:                     "c",         Joint,     1, false, "c", "", "cosine of the joint angle";
+    TurnedSine:                 "sj",        Joint,     1, false, "s", "", "sine of θ + q, from those of q";
+    TurnedCosine:               "cj",        Joint,     1, false, "c", "", "its cosine";
+    GroupPosition:              "q",         Group,     1, false, "q", "rad",
         "sum of the positions of joints h to i, whose axes are parallel";
-    GroupTheta:                 "theta",     Group,     0, false, "constant part of the sum of their angles";
-    GroupAngle:                 "angle",     Group,     1, false,
+    GroupTheta:                 "theta",     Group,     0, false, "θ", "rad",
+        "constant part of the sum of their angles";
+    GroupAngle:                 "angle",     Group,     1, false, "θ", "rad",
         "sum of the angles of joints h to i, whose axes are parallel";
-    GroupSine:                  "s",         Group,     1, false, "its sine";
-    GroupCosine:                "c",         Group,     1, false, "its cosine";
-    Term:                       "t",         Counted,   0, false, "a term that has no meaning of its own";
-    Rotation:                   "rot",       Matrix,    1, false, "R: frame i → frame i-1";
-    Omega:                      "w",         Vector,    1, true,  "ω: angular velocity";
-    OmegaUnturned:              "wn",        Vector,    1, false,
+    GroupSine:                  "s",         Group,     1, false, "s", "", "its sine";
+    GroupCosine:                "c",         Group,     1, false, "c", "", "its cosine";
+    Term:                       "t",         Counted,   0, false, "t", "", "a term that has no meaning of its own";
+    Rotation:                   "rot",       Matrix,    1, false, "R", "", "R: frame i → frame i-1";
+    Omega:                      "w",         Vector,    1, true,  "ω", "rad/s", "ω: angular velocity";
+    OmegaUnturned:              "wn",        Vector,    1, false, "ωN", "rad/s",
         "ω in frame N, on the axis but not turning with the joint";
 
     // Step 2.
-    OmegaDot:                   "dw",        Vector,    2, true,  "ω̇: angular acceleration";
-    Gradient:                   "u",         Matrix,    2, false, "U = [ω̇]× + [ω]×[ω]×";
-    GradientUnturned:           "un",        Matrix,    2, false, "U in frame N";
+    OmegaDot:                   "dw",        Vector,    2, true,  "ω̇", "rad/s²", "ω̇: angular acceleration";
+    Gradient:                   "u",         Matrix,    2, false, "U", "1/s²", "U = [ω̇]× + [ω]×[ω]×";
+    GradientUnturned:           "un",        Matrix,    2, false, "UN", "1/s²", "U in frame N";
 
     // Step 3.
-    OmegaCrossR:                "wxr",       Vector,    4, false, "ω × r";
-    D:                          "d",         Vector,    4, false, "d: joint → centre of mass";
-    OmegaCrossD:                "wxd",       Vector,    4, false, "ω × d";
-    Velocity:                   "dc",        Vector,    3, true,  "ċ: velocity of the centre of mass";
+    OmegaCrossR:                "wxr",       Vector,    4, false, "(ω×r)", "m/s", "ω × r";
+    D:                          "d",         Vector,    4, false, "d", "m", "d: joint → centre of mass";
+    JointPointVelocity:         "dj",        Vector,    3, false, "j̇", "m/s",
+        "velocity of the joint's point, in the frame before it";
+    OmegaCrossD:                "wxd",       Vector,    4, false, "(ω×d)", "m/s", "ω × d";
+    Velocity:                   "dc",        Vector,    3, true,  "ċ", "m/s", "ċ: velocity of the centre of mass";
 
     // Step 4.
-    JointPointAcceleration:     "ddj",       Vector,    4, false,
+    JointPointAcceleration:     "ddj",       Vector,    4, false, "j̈", "m/s²",
         "acceleration of the joint's point, in the frame before it";
-    TwiceRate:                  "twice_qd",  Joint,     4, false, "2 q̇";
-    Acceleration:               "ddc",       Vector,    4, true,  "c̈: acceleration of the centre of mass";
-    OriginAcceleration:         "a",         Vector,    4, true,  "acceleration of the frame's origin, less gravity";
-    OriginAccelerationUnturned: "an",        Vector,    4, true,  "the same in frame N";
+    TwiceRate:                  "twice_qd",  Joint,     4, false, "2q̇", "rad/s|m/s", "2 q̇";
+    Acceleration:               "ddc",       Vector,    4, true,  "c̈", "m/s²",
+        "c̈: acceleration of the centre of mass";
+    OriginAcceleration:         "a",         Vector,    4, true,  "a", "m/s²",
+        "acceleration of the frame's origin, less gravity";
+    OriginAccelerationUnturned: "an",        Vector,    4, true,  "aN", "m/s²", "the same in frame N";
 
     // Step 5.
-    Gravity:                    "g",         Vector,    5, true,  "g: acceleration of gravity";
+    Gravity:                    "g",         Vector,    5, true,  "g", "m/s²", "g: acceleration of gravity";
 
     // Step 6.
-    ChildForce:                 "fc",        Vector,    6, false, "f of the next joint, turned into this frame";
-    ChildMoment:                "nc",        Vector,    6, false, "n of the next joint, turned into this frame";
-    InertiaForce:               "f",         Vector,    6, true,  "f = m c̈";
-    AngularMomentum:            "h",         Vector,    6, false, "I ω";
-    InertiaMoment:              "n",         Vector,    6, true,  "n = I ω̇ + ω × I ω";
-    JointForce:                 "f",         Links,     6, true,  "force exerted by link h = i - 1 on link i";
-    JointMoment:                "n",         Links,     6, true,
+    ChildForce:                 "fc",        Vector,    6, false, "f", "N",
+        "f of the next joint, turned into this frame";
+    ChildMoment:                "nc",        Vector,    6, false, "n", "N m",
+        "n of the next joint, turned into this frame";
+    InertiaForce:               "f",         Vector,    6, true,  "f", "N", "f = m c̈";
+    AngularMomentum:            "h",         Vector,    6, false, "(Iω)", "N m s", "I ω";
+    InertiaMoment:              "n",         Vector,    6, true,  "n", "N m", "n = I ω̇ + ω × I ω";
+    JointForce:                 "f",         Links,     6, true,  "f", "N",
+        "force exerted by link h = i - 1 on link i";
+    JointMoment:                "n",         Links,     6, true,  "n", "N m",
         "moment exerted by link h = i - 1 on link i, about joint i";
-    ReducedForce:               "f",         Vector,    6, true,
+    ReducedForce:               "f",         Vector,    6, true,  "f", "N",
         "force on the link and all behind it, of regrouped matter";
-    ReducedMoment:              "n",         Vector,    6, true,
+    ReducedMoment:              "n",         Vector,    6, true,  "n", "N m",
         "moment on the link and all behind it, of regrouped matter";
-    TurnedForce:                "fc",        Vector,    6, true,
+    TurnedForce:                "fc",        Vector,    6, true,  "f", "N",
         "f of the next joint, in the axes of this link or of its frame N";
-    TurnedMoment:               "nc",        Vector,    6, true,  "n of the next joint there";
-    CompositeFirstMoment:       "hc",        Vector,    6, false, "first moment of all links from i on, as one body";
-    CompositeSecondMoment:      "pc",        Matrix,    6, false, "their second moment ∫ r rᵀ dm";
-    UnitForce:                  "fu",        Vector,    6, false,
+    TurnedMoment:               "nc",        Vector,    6, true,  "n", "N m", "n of the next joint there";
+    CompositeFirstMoment:       "hc",        Vector,    6, false, "h", "kg m",
+        "first moment of all links from i on, as one body";
+    CompositeSecondMoment:      "pc",        Matrix,    6, false, "P", "kg m²", "their second moment ∫ r rᵀ dm";
+    UnitForce:                  "fu",        Vector,    6, false, "f", "N",
         "force on link i and all behind it, for q̈ = 1 of one joint";
-    UnitMoment:                 "nu",        Vector,    6, false, "moment on them";
+    UnitMoment:                 "nu",        Vector,    6, false, "n", "N m", "moment on them";
 
     // Step 7.
-    Torque:                     "tau",       Joint,     7, true,  "τ: joint torque (force, for a prismatic joint)";
+    Torque:                     "tau",       Joint,     7, true,  "τ", "N m|N",
+        "τ: joint torque (force, for a prismatic joint)";
 
     // Beyond the seven steps.
-    Partial:                    "x",         Joint,     8, false, "a term that has no meaning of its own";
-    FrameRotation:              "frame",     Matrix,    8, true,
+    Partial:                    "x",         Joint,     8, false, "", "", "a term that has no meaning of its own";
+    FrameRotation:              "frame",     Matrix,    8, true,  "", "",
         "rotation from the axes of frame i to those of the world; of the tip for i = n + 1";
-    FrameOrigin:                "origin",    Vector,    8, true,  "origin of that frame in the world";
-    JacobianLinear:             "jv",        Vector,    8, true,  "velocity of the tip per rate of joint i, world axes";
-    JacobianAngular:            "jw",        Vector,    8, true,
+    FrameOrigin:                "origin",    Vector,    8, true,  "", "", "origin of that frame in the world";
+    JacobianLinear:             "jv",        Vector,    8, true,  "", "",
+        "velocity of the tip per rate of joint i, world axes";
+    JacobianAngular:            "jw",        Vector,    8, true,  "", "",
         "angular velocity of the tip per rate of joint i, world axes";
-    TipAcceleration:            "acc",       Vector,    8, false,
+    TipAcceleration:            "acc",       Vector,    8, false, "", "",
         "acceleration of the tip where joints do not accelerate";
-    ComPosition:                "pos",       Vector,    8, true,  "centre of mass in frame 0";
-    KineticEnergy:              "kinetic",   Alone,     8, false, "kinetic energy";
-    PotentialEnergy:            "potential", Alone,     8, false, "potential energy";
-    CoriolisElement:            "cor",       Column,    8, false, "element (i, j) of the Coriolis matrix";
-    RegressorElement:           "y",         Parameter, 8, false, "torque i per parameter of link j";
-    LowerFactor:                "low",       Column,    8, true,  "element (i, j) of L, M = L D Lᵀ";
-    ScaledFactor:               "lowd",      Column,    8, false, "the same times D";
-    Pivot:                      "pivot",     Joint,     8, true,  "element i of D";
-    InversePivot:               "inv",       Joint,     8, true,  "1/D";
-    Reduced:                    "rhs",       Joint,     8, true,  "L⁻¹ (τ - bias)";
-    Scaled:                     "sol",       Joint,     8, true,  "the same divided by D";
-    ActuatorTorque:             "act",       Joint,     8, false, "what the motor adds";
+    ComPosition:                "pos",       Vector,    8, true,  "", "", "centre of mass in frame 0";
+    KineticEnergy:              "kinetic",   Alone,     8, false, "", "", "kinetic energy";
+    PotentialEnergy:            "potential", Alone,     8, false, "", "", "potential energy";
+    CoriolisElement:            "cor",       Column,    8, false, "", "", "element (i, j) of the Coriolis matrix";
+    RegressorElement:           "y",         Parameter, 8, false, "", "", "torque i per parameter of link j";
+    LowerFactor:                "low",       Column,    8, true,  "", "", "element (i, j) of L, M = L D Lᵀ";
+    ScaledFactor:               "lowd",      Column,    8, false, "", "", "the same times D";
+    Pivot:                      "pivot",     Joint,     8, true,  "", "", "element i of D";
+    InversePivot:               "inv",       Joint,     8, true,  "", "", "1/D";
+    Reduced:                    "rhs",       Joint,     8, true,  "", "", "L⁻¹ (τ - bias)";
+    Scaled:                     "sol",       Joint,     8, true,  "", "", "the same divided by D";
+    ActuatorTorque:             "act",       Joint,     8, false, "", "", "what the motor adds";
 }
 
 impl Quantity {
@@ -342,6 +368,28 @@ impl Quantity {
     #[must_use]
     pub fn pattern(self) -> String {
         [self.prefix(), self.indices().pattern()].concat()
+    }
+
+    /// Whether it has components along axes: it is a vector or a matrix.
+    #[must_use]
+    pub const fn is_vector(self) -> bool {
+        matches!(self.indices(), Indices::Vector | Indices::Matrix | Indices::Links)
+    }
+
+    /// Its letter in formulas, without indices: of the lecture, where that has one. Empty beyond the seven steps.
+    #[must_use]
+    pub const fn letter(self) -> &'static str {
+        self.row().letter
+    }
+
+    /// In which unit it is, at a joint of this kind; empty for plain numbers, and beyond the seven steps.
+    #[must_use]
+    pub fn unit(self, kind: JointKind) -> &'static str {
+        let unit = self.row().unit;
+        match (unit.split_once('|'), kind) {
+            (Some((unit, _)), JointKind::Revolute) | (Some((_, unit)), JointKind::Prismatic) => unit,
+            (None, _) => unit,
+        }
     }
 
     /// What its name stands for, for the legend of a listing.

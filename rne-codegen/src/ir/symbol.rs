@@ -4,7 +4,7 @@ use std::ops::{Add, Mul};
 
 use rne_model::QuarterTurns;
 
-use super::{Builder, CausesId, Number, Ref, operators};
+use super::{Builder, CausesId, Number, Ref, TermId, operators};
 use crate::ir::quantity::Axis;
 
 /// A number of a graph that is being written.
@@ -14,6 +14,8 @@ pub(crate) struct Symbol<'s> {
     pub(crate) at: Ref,
     /// Why it is the constant that it is, if it is one.
     pub(crate) causes: CausesId,
+    /// The formula that it is, where formulas are kept.
+    pub(crate) term: TermId,
 }
 
 impl Symbol<'_> {
@@ -24,7 +26,8 @@ impl Symbol<'_> {
 
     /// The number, negated if `negative`.
     pub(crate) fn signed(self, negative: bool) -> Self {
-        Self { at: self.at.signed(negative), ..self }
+        let term = if negative { self.builder.negative(self.term) } else { self.term };
+        Self { at: self.at.signed(negative), term, ..self }
     }
 
     /// 1/x

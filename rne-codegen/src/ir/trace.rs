@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 
 use super::causes::{CausesId, KnownCauses};
-use super::{Graph, Outcome, Ref, Side, Symbol};
+use super::{Graph, Outcome, Ref, Side, Symbol, TermId, WrittenTerms};
 use crate::ir::fold_report::{Cause, Causes, Fold, FoldReport, Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Component};
@@ -18,6 +18,10 @@ pub(crate) struct Definition {
     pub(crate) causes: Causes,
     /// How many nodes there were when it got the name.
     pub(crate) after: usize,
+    /// The formula that got the name.
+    pub(crate) term: TermId,
+    /// Where its operations are counted.
+    pub(crate) place: Option<Place>,
 }
 
 /// Where a node was created.
@@ -36,7 +40,9 @@ pub(crate) struct Trace {
     pub(crate) births: Vec<Option<Birth>>,
     /// As what a constant entered a node: (node, constant) → its name there.
     pub(crate) roles: HashMap<(Ref, Ref), Name>,
-    pub(super) causes: KnownCauses,
+    pub(crate) causes: KnownCauses,
+    /// The formulas as they were written, if they are kept.
+    pub(crate) terms: Option<WrittenTerms>,
     place: Option<Place>,
     axis: Option<Axis>,
 }
@@ -58,6 +64,11 @@ impl Trace {
         // leaves and constants of the table that came before belong to no step
         self.births.resize_with(nodes, || None);
         (std::mem::replace(&mut self.place, place), std::mem::replace(&mut self.axis, axis))
+    }
+
+    /// The place at hand.
+    pub(super) fn place(&self) -> Option<Place> {
+        self.place
     }
 
     /// Sets the component that the next operations belong to.

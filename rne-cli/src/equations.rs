@@ -1,0 +1,116 @@
+//! The inspection as text: four lines for each component of each step.
+
+use std::fmt::Write as _;
+
+use rne_inspection::{Became, Cell, Component, Inspection, Operations};
+use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
+
+use crate::terminal::{self, FORMULA, FOUND, QUIET, TITLE};
+
+/// Columns where the output is no terminal.
+const WIDTH: usize = 80;
+
+/// In front of each of the lines of a component.
+const LABELS: [&str; 4] = ["general   ", "here      ", "gone      ", "code      "];
+
+/// The steps that are asked for, all components of each.
+pub(crate) fn text(inspection: &Inspection, joint: Option<usize>, step: Option<usize>) -> String {
+    let is_wanted =
+        |cell: &&Cell| joint.is_none_or(|joint| joint == cell.joint) && step.is_none_or(|step| step == cell.step);
+    let cells: Vec<String> = inspection.cells.iter().filter(is_wanted).map(|cell| of_cell(inspection, cell)).collect();
+    if cells.is_empty() {
+        return format!(
+            "{QUIET}{} has no equations there; only torques keep to the steps{QUIET:#}\n",
+            inspection.function
+        );
+    }
+    cells.join("\n")
+}
+
+fn of_cell(inspection: &Inspection, cell: &Cell) -> String {
+    let Cell { joint, step, title, before, after, .. } = cell;
+    let of = if *joint > inspection.robot.joints.len() { "payload".to_owned() } else { format!("joint {joint}") };
+    let mut text = format!("{TITLE}{of}, step {step}: {title}{TITLE:#}\n");
+    for formula in &cell.formulas {
+        let _ = writeln!(text, "{}", styled(FORMULA, &fill(&formula.text, "  ", "      ")));
+    }
+    if *before != Operations::default() {
+        let counts = format!(
+            "{} products and {} sums, {} and {} left",
+            before.products, before.sums, after.products, after.sums
+        );
+        let _ = writeln!(text, "{}", styled(QUIET, &fill(&counts, "  ", "  ")));
+    }
+    for component in &cell.components {
+        text.push('\n');
+        text.push_str(&of_component(inspection, component));
+    }
+    text
+}
+
+fn of_component(inspection: &Inspection, component: &Component) -> String {
+    let name = &component.name;
+    let mut text = format!("  {TITLE}{name}{TITLE:#}");
+    let _ = write!(text, "   {QUIET}{}{QUIET:#}", about(inspection, name));
+    text.push('\n');
+    let mut line = |label: &str, of: &str| {
+        let _ = writeln!(text, "{}", fill(of, &format!("    {label}"), "                "));
+    };
+    line(LABELS[0], &format!("{name} = {}", component.general));
+    line(LABELS[1], &format!("{name} = {}", component.with_numbers));
+    for (index, folded) in component.folded.iter().enumerate() {
+        let label = if index == 0 { LABELS[2] } else { "          " };
+        line(label, &format!("{} = {}: {}", folded.term, folded.left, folded.why));
+    }
+    let code = code(inspection, component);
+    for (index, code) in code.iter().enumerate() {
+        let label = if index == 0 { LABELS[3] } else { "          " };
+        let _ = writeln!(text, "{}", styled(FOUND, &fill(code, &format!("    {label}"), "                  ")));
+    }
+    text
+}
+
+/// What a name is: in words, with its unit and its axes.
+fn about(inspection: &Inspection, name: &str) -> String {
+    let meaning = inspection.meaning(name).map_or("", |(_, quantity)| quantity.meaning);
+    let unit = inspection.unit(name);
+    let unit = if unit.is_empty() { String::new() } else { format!(", {unit}") };
+    let frame = inspection.frame(name).map_or(String::new(), |frame| format!(", axes of frame {frame}"));
+    format!("{meaning}{unit}{frame}")
+}
+
+/// The statements that are left, or what became of the component instead.
+fn code(inspection: &Inspection, component: &Component) -> Vec<String> {
+    let rust = |name: &String| {
+        let statement = inspection.statements.iter().find(|statement| statement.name == *name);
+        statement.map(|statement| statement.rust.split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    let mut lines: Vec<String> = component.statements.iter().filter_map(rust).collect();
+    match &component.became {
+        Became::Computed => {}
+        Became::Same { name } => lines.push(format!("none: it is {name}")),
+        Became::Constant { value, why } => lines.push(format!("none: it is {value}, {why}")),
+        Became::Inside => {
+            let users = component.used_by.join(", ");
+            lines.push(format!("none of its own: it stands where it is used, in {users}"));
+        }
+        Became::Unused => lines.push(format!("none: {} does not need it", inspection.function)),
+    }
+    lines
+}
+
+fn fill(text: &str, first: &str, others: &str) -> String {
+    let options = Options::new(terminal::width(WIDTH))
+        .initial_indent(first)
+        .subsequent_indent(others)
+        .break_words(false)
+        .word_separator(WordSeparator::AsciiSpace)
+        .word_splitter(WordSplitter::NoHyphenation)
+        .wrap_algorithm(WrapAlgorithm::FirstFit);
+    textwrap::fill(text, options)
+}
+
+/// A style for each of several lines.
+fn styled(style: anstyle::Style, text: &str) -> String {
+    text.lines().map(|line| format!("{style}{line}{style:#}")).collect::<Vec<_>>().join("\n")
+}

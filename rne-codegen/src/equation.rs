@@ -1,0 +1,77 @@
+//! Formulas component by component as they were written, before anything folds: what every term became and why.
+//!
+//! A [`Program`](crate::Program) has the code that is left. Its equations say what the code is left of:
+//! `w2_x = rot2_xx * w1_x + rot2_yx * w1_y + ..`, where the base does not move and a turn leaves an axis alone.
+
+use crate::ir::fold_report::{Causes, Fold, Place};
+use crate::ir::name::Name;
+use crate::program::{Operator, Sign};
+
+/// A component of a quantity and the formula that gives it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Equation {
+    /// The component.
+    pub name: Name,
+    /// The step, joint and quantity in which its operations are counted; `None` for numbers of the table.
+    pub place: Option<Place>,
+    /// The formula, over names, numbers and arguments.
+    pub term: Term,
+}
+
+/// A term of a formula with what folding made of it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Term {
+    /// Another component, an argument or a number of the table.
+    Variable(Name),
+    /// A number, and because of what it is that one.
+    Number(f64, Causes),
+    /// -a
+    Negative(Box<Term>),
+    /// The sine of an angle.
+    Sine(Box<Term>),
+    /// The cosine of an angle.
+    Cosine(Box<Term>),
+    /// Two operands with an operator between them.
+    Operation(Box<Operation>),
+    /// One of two values by the sign of the first, as in [`Expression::BySign`](crate::Expression::BySign).
+    BySign(Box<[Term; 3]>),
+}
+
+/// An operation of a formula.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operation {
+    /// Which one.
+    pub operator: Operator,
+    /// Left and right.
+    pub operands: [Term; 2],
+    /// What became of it.
+    pub fold: Fold,
+    /// All that makes it a zero, or leaves one operand alone; `None` where nothing of the arm does.
+    pub causes: Option<Causes>,
+    /// The name that its value has in the code, if it has one.
+    pub name: Option<(Name, Sign)>,
+}
+
+impl Term {
+    /// The components, arguments and numbers of the table in it, from left to right.
+    pub fn names(&self) -> Vec<Name> {
+        let mut names = Vec::new();
+        self.visit(&mut |term| {
+            if let Self::Variable(name) = term {
+                names.push(*name);
+            }
+        });
+        names
+    }
+
+    /// Calls `visitor` with the term and every term in it, outer terms first.
+    pub fn visit<'t>(&'t self, visitor: &mut impl FnMut(&'t Self)) {
+        visitor(self);
+        match self {
+            Self::Variable(_) | Self::Number(..) => {}
+            Self::Negative(a) | Self::Sine(a) | Self::Cosine(a) => a.visit(visitor),
+            Self::Operation(operation) => operation.operands.iter().for_each(|operand| operand.visit(visitor)),
+            Self::BySign(operands) => operands.iter().for_each(|operand| operand.visit(visitor)),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! Formulas as they were written, kept beside the graph, where half of their terms have no node: what folds is gone
+//! there.
+
+use super::{CausesId, Outcome, Ref};
+use crate::ir::name::Name;
+use crate::program::Operator;
+
+/// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct TermId(u32);
+
+impl TermId {
+    /// Nothing but a node of the graph.
+    pub(crate) const NONE: Self = Self(0);
+}
+
+/// A term.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Written {
+    /// A node: a number, an argument, or what was written on the graph alone.
+    Node(Ref, CausesId),
+    /// What has a name.
+    Named(Name),
+    /// -a
+    Negative(TermId),
+    /// An operation, the node that it became and how, and why it folded; `counted` if it belongs to a step.
+    Operation { operator: Operator, operands: [TermId; 2], at: Ref, outcome: Outcome, reason: CausesId, counted: bool },
+    /// One of two values by the sign of the first.
+    BySign([TermId; 3]),
+}
+
+/// All terms of a graph, those inside others first.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct WrittenTerms(Vec<Written>);
+
+impl WrittenTerms {
+    pub(crate) fn push(&mut self, term: Written) -> TermId {
+        self.0.push(term);
+        TermId(u32::try_from(self.0.len()).unwrap_or_default())
+    }
+
+    /// The term; `None` for [`TermId::NONE`].
+    pub(crate) fn get(&self, id: TermId) -> Option<Written> {
+        self.0.get((id.0 as usize).checked_sub(1)?).copied()
+    }
+}

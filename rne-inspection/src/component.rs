@@ -1,0 +1,172 @@
+//! The equation of one component: in general, for this robot, what folded, and what is left.
+
+use std::collections::{BTreeMap, HashMap};
+
+use rne_codegen::{self as codegen, Equation, Program, ResolvedAs, emit};
+use rne_model::Robot;
+
+use crate::record::{Became, Component, Folded};
+use crate::tree::{Mark, Tree, signed};
+
+/// Operations of a number of the table that are told one by one.
+const SIMPLE: usize = 12;
+
+/// The equations of a program, and what is asked of them again and again.
+pub(crate) struct Equations<'p> {
+    robot: &'p Robot,
+    program: &'p Program,
+    became: HashMap<String, Became>,
+    used_by: BTreeMap<String, Vec<String>>,
+    statements: HashMap<String, Vec<String>>,
+    reasons: Vec<String>,
+}
+
+impl<'p> Equations<'p> {
+    pub(crate) fn new(robot: &'p Robot, program: &'p Program) -> Self {
+        let became = program.resolutions.iter().map(|resolution| {
+            let found = match &resolution.value {
+                ResolvedAs::Computed => Became::Computed,
+                ResolvedAs::Same(name, sign) => Became::Same { name: signed(name.to_string(), *sign) },
+                ResolvedAs::Constant(value, causes) => {
+                    let why = if *value == 0.0 { emit::reason(robot, causes, 0) } else { "of the table".to_owned() };
+                    Became::Constant { value: *value, why }
+                }
+                ResolvedAs::Inside => Became::Inside,
+                ResolvedAs::Unused => Became::Unused,
+            };
+            (resolution.name.to_string(), found)
+        });
+        let mut used_by: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        for equation in &program.equations {
+            let user = equation.name.to_string();
+            for name in equation.term.names() {
+                let users = used_by.entry(name.to_string()).or_default();
+                if !users.contains(&user) {
+                    users.push(user.clone());
+                }
+            }
+        }
+        let mut statements: HashMap<String, Vec<String>> = HashMap::new();
+        for statement in program.angles.iter().chain(&program.statements) {
+            statements.entry(owner(statement).to_string()).or_default().push(statement.name.to_string());
+        }
+        Self { robot, program, became: became.collect(), used_by, statements, reasons: Vec::new() }
+    }
+
+    /// What every component of an equation is, in order.
+    pub(crate) fn components(&mut self, is_here: impl Fn(&Equation) -> bool) -> Vec<Component> {
+        let program = self.program;
+        program.equations.iter().filter(|equation| is_here(equation)).map(|of| self.component(of)).collect()
+    }
+
+    /// All reasons that trees tell by number.
+    pub(crate) fn into_reasons(self) -> Vec<String> {
+        self.reasons
+    }
+
+    fn component(&mut self, equation: &Equation) -> Component {
+        let name = equation.name.to_string();
+        let (robot, reasons) = (self.robot, &mut self.reasons);
+        let general = Tree::of_term(&equation.term, &mut |causes, magnitude| {
+            let reason = emit::reason(robot, causes, magnitude);
+            reasons.iter().position(|known| *known == reason).unwrap_or_else(|| {
+                reasons.push(reason);
+                reasons.len() - 1
+            })
+        });
+        // how the inertia of a link is turned is no step of the lecture, and long
+        let general = match self.became.get(&name) {
+            Some(Became::Constant { value, .. }) if equation.place.is_none() && general.size() > SIMPLE => {
+                Tree::Number(*value)
+            }
+            _ => general,
+        };
+        let with_numbers = general.map_names(&|name| self.here(name)).to_string();
+        let mut folded = Vec::new();
+        self.fold(&general, &mut folded);
+        folded.dedup();
+        let statements = self.statements.get(&name).cloned().unwrap_or_default();
+        let became = match self.became.get(&name) {
+            // a torque that is another name is returned under its own
+            Some(Became::Same { .. }) if statements.contains(&name) => Became::Computed,
+            found => found.cloned().unwrap_or(Became::Inside),
+        };
+        Component {
+            with_numbers,
+            general,
+            folded,
+            became,
+            statements,
+            used_by: self.used_by.get(&name).cloned().unwrap_or_default(),
+            name,
+        }
+    }
+
+    /// What stands in the place of a name for this robot.
+    fn here(&self, name: &str) -> Tree {
+        match self.became.get(name) {
+            Some(Became::Constant { value, .. }) => Tree::Number(*value),
+            Some(Became::Same { name }) => match name.strip_prefix('-') {
+                Some(name) => Tree::Node("neg", vec![Tree::Name(name.to_owned())], None),
+                None => Tree::Name(name.clone()),
+            },
+            _ => Tree::Name(name.to_owned()),
+        }
+    }
+
+    /// The largest terms that are gone, from left to right.
+    fn fold(&self, tree: &Tree, folded: &mut Vec<Folded>) {
+        let Tree::Node(operator, operands, mark) = tree else { return };
+        let (fold, why, name) = match mark {
+            None => ("kept", None, None),
+            Some(Mark { fold, why, name }) => (*fold, why.and_then(|why| self.reasons.get(why)), name.clone()),
+        };
+        let why = why.cloned().unwrap_or_default();
+        let mut gone = |left: String, why: String| folded.push(Folded { term: tree.to_string(), left, why });
+        match (*operator, fold) {
+            ("*", "zero") => return gone("0".to_owned(), why),
+            (_, "constant") => {
+                let value = tree.map_names(&|name| self.here(name)).evaluate(&|_| f64::NAN);
+                return gone(value.to_string(), "constants".to_owned());
+            }
+            (_, "cancelled") => return gone("0".to_owned(), "its terms cancel".to_owned()),
+            (_, "shared") => {
+                return gone(name.unwrap_or_else(|| "the same".to_owned()), "computed before".to_owned());
+            }
+            (_, "one") => gone(self.other_factor(operands), why),
+            _ => {}
+        }
+        let is_sum = matches!(*operator, "+" | "-");
+        for operand in operands {
+            match operand {
+                // a summand that is zero
+                Tree::Name(name) if is_sum => {
+                    if let Some(Became::Constant { value: 0.0, why }) = self.became.get(name) {
+                        folded.push(Folded { term: name.clone(), left: "0".to_owned(), why: why.clone() });
+                    }
+                }
+                _ => self.fold(operand, folded),
+            }
+        }
+    }
+
+    /// What a factor of 1 or -1 leaves of a product.
+    fn other_factor(&self, operands: &[Tree]) -> String {
+        let unit = |operand: &Tree| match operand.map_names(&|name| self.here(name)) {
+            of if !of.names().is_empty() => None,
+            of => Some(of.evaluate(&|_| f64::NAN)).filter(|value| value.abs() == 1.0),
+        };
+        let [a, b] = operands else { return String::new() };
+        let (sign, left) = match (unit(b), unit(a)) {
+            (Some(sign), _) => (sign, a),
+            (None, Some(sign)) => (sign, b),
+            (None, None) => return "its other factor".to_owned(),
+        };
+        if sign < 0.0 { Tree::Node("neg", vec![left.clone()], None).to_string() } else { left.to_string() }
+    }
+}
+
+/// The component that a statement computes, wholly or in part.
+pub(crate) fn owner(statement: &codegen::Statement) -> codegen::Name {
+    codegen::Name { part: 0, ..statement.name }
+}

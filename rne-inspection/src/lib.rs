@@ -1,0 +1,266 @@
+//! What the compiler knows of an arm, as data to look at: of every component of every step the general equation, the
+//! equation of this robot, what folded away and because of which zeros, the code that is left, units, frames, counts.
+//!
+//! [`inspect`] makes it; it becomes JSON by serde. Text, pages and plots are renderers of it, and none of them computes
+//! dynamics of its own. Data in, data out: nothing here opens a file or prints.
+//!
+//! ```
+//! use rne_codegen::{Form, Function};
+//!
+//! let file = rne_robots::find("puma560").expect("it is shipped");
+//! let robot = rne_model::Robot::from_yaml(file.yaml)?;
+//! let inspection = rne_inspection::inspect(&robot, Function::InverseDynamics)?;
+//! let cell = inspection.cell(2, 1).expect("joint 2 has a first step");
+//! assert_eq!(cell.formulas[0].text, "ω2 = R2ᵀ ω1 + q̇2 e");
+//! assert_eq!(cell.component("w2_x").expect("ω2 has an x").statements, ["w2_x"]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod component;
+mod name;
+mod record;
+mod tree;
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rne_codegen::emit::{self, Line, Selection};
+use rne_codegen::{self as codegen, CompileError, Compiler, Form, Function, Program};
+use rne_model::{Angle, Convention, JointKind};
+
+use crate::component::{Equations, owner};
+pub use crate::record::{
+    Became, Cell, Component, Counts, Folded, Formula, Inspection, Joint, Name, Operations, Quantity, Robot, SineCosine,
+    Statement, Transform,
+};
+pub use crate::tree::{Mark, Tree};
+
+/// The version of the shape.
+pub const VERSION: u32 = 1;
+
+/// Compiles the seven steps of a function and tells all of them.
+///
+/// # Errors
+/// When it does not compile: [`Compiler::compile`].
+pub fn inspect(robot: &rne_model::Robot, function: Function) -> Result<Inspection, CompileError> {
+    let program = Compiler::new(robot).with_equations().compile(function, Form::SevenSteps)?;
+    Ok(Inspection::new(robot, &program))
+}
+
+impl Inspection {
+    /// What there is to say of a program. Equations are told where the program has them
+    /// ([`Compiler::with_equations`]).
+    #[must_use]
+    pub fn new(robot: &rne_model::Robot, program: &Program) -> Self {
+        let mut equations = Equations::new(robot, program);
+        let (before, after) = (program.before(), program.operations());
+        let statements = rust(robot, program);
+        let table = equations.components(|equation| equation.place.is_none());
+        let cells = cells(robot, program, &mut equations);
+        let names = names(program);
+        Self {
+            schema: "rne-inspection",
+            version: VERSION,
+            generator: concat!("rne ", env!("CARGO_PKG_VERSION")).to_owned(),
+            robot: described(robot),
+            function: program.function.to_string(),
+            form: program.form.to_string(),
+            counts: Counts {
+                before: Operations { products: before.0, sums: before.1 },
+                after: Operations { products: after.mul, sums: after.add },
+                divisions: after.div,
+                angles: after.sincos,
+                statements: after.statements,
+            },
+            quantities: names
+                .iter()
+                .map(|name| (name::quantity(name.quantity), name::of_quantity(name.quantity)))
+                .collect(),
+            names: names.iter().map(|name| (name.to_string(), name::record(*name))).collect(),
+            reasons: equations.into_reasons(),
+            arguments: program.arguments.iter().map(ToString::to_string).collect(),
+            constants: program.constants.iter().map(|constant| (constant.name.to_string(), constant.value)).collect(),
+            angles: program.angles.iter().map(|statement| of_statement(program, statement, &statements)).collect(),
+            sines_and_cosines: program.sines_and_cosines.iter().map(sine_and_cosine).collect(),
+            statements: program
+                .statements
+                .iter()
+                .map(|statement| of_statement(program, statement, &statements))
+                .collect(),
+            outputs: program
+                .outputs
+                .iter()
+                .map(|output| (output.name.to_string(), Tree::of_expression(&output.value)))
+                .collect(),
+            table,
+            cells,
+        }
+    }
+
+    /// A step of a joint; both count from 1.
+    #[must_use]
+    pub fn cell(&self, joint: usize, step: usize) -> Option<&Cell> {
+        self.cells.iter().find(|cell| cell.joint == joint && cell.step == step)
+    }
+
+    /// The unit of a name; empty for plain numbers.
+    #[must_use]
+    pub fn unit(&self, name: &str) -> &'static str {
+        let Some((name, quantity)) = self.meaning(name) else { return "" };
+        let kind = self.robot.joints.get(name.joint.wrapping_sub(1)).map_or("revolute", |joint| joint.kind);
+        quantity.units[usize::from(kind == "prismatic")]
+    }
+
+    /// In the axes of which frame a name is: a joint's number, 0 for the base.
+    #[must_use]
+    pub fn frame(&self, name: &str) -> Option<usize> {
+        let (name, quantity) = self.meaning(name)?;
+        match quantity.axes? {
+            "link" => Some(name.joint),
+            _ => self.robot.joints.get(name.joint.wrapping_sub(1)).map(|joint| joint.parent),
+        }
+    }
+
+    /// What a name is, and what its quantity is.
+    #[must_use]
+    pub fn meaning(&self, name: &str) -> Option<(&Name, &Quantity)> {
+        let name = self.names.get(name)?;
+        Some((name, self.quantities.get(&name.quantity)?))
+    }
+
+    /// A component of any step, or of the table.
+    #[must_use]
+    pub fn component(&self, name: &str) -> Option<&Component> {
+        let of_cells = self.cells.iter().flat_map(|cell| &cell.components);
+        of_cells.chain(&self.table).find(|component| component.name == name)
+    }
+}
+
+impl Cell {
+    /// One of its components.
+    #[must_use]
+    pub fn component(&self, name: &str) -> Option<&Component> {
+        self.components.iter().find(|component| component.name == name)
+    }
+}
+
+/// The steps of the joints with their equations; none where the program has no equations.
+fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<'_>) -> Vec<Cell> {
+    if program.equations.is_empty() {
+        return Vec::new();
+    }
+    let what = Selection { explain: true, ..Selection::default() };
+    let listing = emit::listing(robot, program, what);
+    let mut cells = Vec::new();
+    for section in &listing.sections {
+        let Some((joint, step, None)) = section.of else { continue };
+        let place = |equation: &codegen::Equation| {
+            equation.place.is_some_and(|place| place.joint == joint && place.step == step)
+        };
+        let mut cell = Cell {
+            joint,
+            step: step.number(),
+            title: step.title(),
+            formulas: Vec::new(),
+            before: Operations::default(),
+            after: Operations::default(),
+            reasons: Vec::new(),
+            components: equations.components(place),
+        };
+        for line in &section.lines {
+            match line {
+                Line::Formula(formula) => {
+                    let quantity = name::quantity(formula.quantity);
+                    cell.formulas.push(Formula { quantity, text: formula.text.clone() });
+                }
+                Line::Folds(folds) => {
+                    cell.before = Operations { products: folds.before.0, sums: folds.before.1 };
+                    cell.after = Operations { products: folds.left.0, sums: folds.left.1 };
+                    cell.reasons.clone_from(&folds.reasons);
+                }
+                _ => {}
+            }
+        }
+        cells.push(cell);
+    }
+    cells
+}
+
+/// The statements as they stand in Rust, by name.
+fn rust(robot: &rne_model::Robot, program: &Program) -> BTreeMap<String, String> {
+    let listing = emit::listing(robot, program, Selection::default());
+    let lines = listing.sections.iter().flat_map(|section| &section.lines);
+    let statement = |line: &Line<'_>| match line {
+        Line::Statement(statement) => Some((statement.name.to_string(), line.annotated().to_string())),
+        _ => None,
+    };
+    lines.filter_map(statement).collect()
+}
+
+fn of_statement(program: &Program, statement: &codegen::Statement, rust: &BTreeMap<String, String>) -> Statement {
+    let (name, owner) = (statement.name.to_string(), owner(statement));
+    let is_component = program.equations.iter().any(|equation| equation.name == owner);
+    let value = Tree::of_expression(&statement.value);
+    Statement {
+        component: is_component.then(|| owner.to_string()),
+        rust: rust.get(&name).cloned().unwrap_or_else(|| format!("let {name} = {value};")),
+        name,
+        value,
+    }
+}
+
+fn sine_and_cosine(turn: &codegen::SineCosine) -> SineCosine {
+    let text = |name: &Option<codegen::Name>| name.map(|name| name.to_string());
+    let joint = turn.sine.or(turn.cosine).map_or(turn.place.joint, |name| name.joint);
+    SineCosine { joint, sine: text(&turn.sine), cosine: text(&turn.cosine), angle: Tree::of_expression(&turn.angle) }
+}
+
+/// What every name of the program means.
+fn names(program: &Program) -> BTreeSet<codegen::Name> {
+    let turned = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
+    let written = program.equations.iter().flat_map(|of| std::iter::once(of.name).chain(of.term.names()));
+    let stated = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
+    let constants = program.constants.iter().map(|constant| constant.name);
+    let outputs = program.outputs.iter().map(|output| output.name);
+    let all = program.arguments.iter().copied().chain(constants).chain(turned).chain(written).chain(stated);
+    all.chain(outputs).collect()
+}
+
+fn described(robot: &rne_model::Robot) -> Robot {
+    let transform =
+        |of: &rne_model::Transform| Transform { xyz: of.xyz, rpy: of.rpy.map(|angle: Angle| angle.radians) };
+    let joint = |(index, joint): (usize, &rne_model::Joint)| {
+        let (row, inertia) = (&joint.row, joint.row.link.inertia);
+        Joint {
+            name: joint.name.clone(),
+            kind: match row.kind {
+                JointKind::Revolute => "revolute",
+                JointKind::Prismatic => "prismatic",
+            },
+            parent: name::parent(robot, index + 1),
+            theta: row.dh.theta.radians,
+            d: row.dh.d,
+            a: row.dh.a,
+            alpha: row.dh.alpha.radians,
+            mass: row.link.mass,
+            com: row.link.com,
+            inertia: [inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz],
+            position_limits: joint.limits.position.map(Into::into),
+            velocity_limit: joint.limits.velocity,
+            effort_limit: joint.limits.effort,
+        }
+    };
+    Robot {
+        name: robot.name.clone(),
+        title: robot.title.clone().unwrap_or_else(|| robot.name.clone()),
+        source: robot.source.clone(),
+        convention: match robot.convention {
+            Convention::Standard => "standard",
+            Convention::Modified => "modified",
+        },
+        gravity: robot.gravity,
+        base: transform(&robot.base),
+        tool: transform(&robot.tool),
+        joints: robot.joints.iter().enumerate().map(joint).collect(),
+    }
+}

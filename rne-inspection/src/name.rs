@@ -1,0 +1,79 @@
+//! What a name means: quantity, unit, frame, and where it is drawn on the arm.
+
+use rne_codegen::{self as codegen, Component, Quantity};
+use rne_model::{JointKind, Robot};
+
+use crate::record::{self, Name};
+
+/// `Omega` as `omega`, `JointForce` as `joint_force`.
+pub(crate) fn quantity(quantity: Quantity) -> String {
+    let mut text = String::new();
+    for letter in format!("{quantity:?}").chars() {
+        if letter.is_uppercase() && !text.is_empty() {
+            text.push('_');
+        }
+        text.extend(letter.to_lowercase());
+    }
+    text
+}
+
+pub(crate) fn record(name: codegen::Name) -> Name {
+    let component = match name.component {
+        Component::Scalar => None,
+        Component::Vector(axis) => Some(axis.to_string()),
+        Component::Matrix(row, column) => Some(format!("{row}{column}")),
+    };
+    let part = (name.part > 0).then_some(name.part);
+    Name { quantity: quantity(name.quantity), joint: name.joint, component, part }
+}
+
+/// What there is to know of a quantity.
+pub(crate) fn of_quantity(of: Quantity) -> record::Quantity {
+    record::Quantity {
+        letter: of.letter(),
+        meaning: of.meaning(),
+        step: of.step().map(codegen::Step::number).filter(|step| *step <= 7),
+        units: [of.unit(JointKind::Revolute), of.unit(JointKind::Prismatic)],
+        axes: axes(of),
+        drawn: drawn(of),
+    }
+}
+
+/// The number of the joint that carries another; 0 is the base.
+pub(crate) fn parent(robot: &Robot, joint: usize) -> usize {
+    match joint {
+        0 => 0,
+        _ if joint > robot.dof() => robot.dof(),
+        _ => robot.parent(joint - 1).map_or(0, |parent| parent + 1),
+    }
+}
+
+const fn axes(quantity: Quantity) -> Option<&'static str> {
+    match quantity {
+        // from one frame to another
+        Quantity::Rotation | Quantity::TipRotation => None,
+        // the joint's point belongs to both links; its acceleration is wanted in the axes of the one before
+        Quantity::JointPointVelocity | Quantity::JointPointAcceleration => Some("parent"),
+        _ if quantity.is_vector() => Some("link"),
+        _ => None,
+    }
+}
+
+#[allow(clippy::match_same_arms)] // one line for each group of quantities
+const fn drawn(quantity: Quantity) -> Option<&'static str> {
+    use Quantity as Q;
+    Some(match quantity {
+        Q::Omega | Q::OmegaDot | Q::JointForce | Q::JointMoment | Q::JointPointVelocity => "joint",
+        Q::JointPointAcceleration | Q::OriginAcceleration | Q::ReducedForce | Q::ReducedMoment => "joint",
+        Q::OmegaCrossD | Q::Velocity | Q::Acceleration | Q::Gravity => "com",
+        Q::InertiaForce | Q::InertiaMoment | Q::AngularMomentum => "com",
+        // of the next joint: what it carries
+        Q::ChildForce | Q::ChildMoment | Q::OmegaCrossR | Q::R => "lever",
+        Q::Position | Q::Rate | Q::RateDot | Q::Torque | Q::AppliedTorque | Q::TwiceRate => "axis",
+        Q::Angle | Q::Sine | Q::Cosine | Q::TurnedSine | Q::TurnedCosine | Q::Theta => "axis",
+        Q::TwistSine | Q::TwistCosine | Q::ThetaSine | Q::ThetaCosine | Q::Rotation | Q::TipRotation => "frame",
+        Q::D | Q::Com => "position",
+        Q::Mass | Q::Inertia | Q::FirstMoment | Q::SecondMoment => "link",
+        _ => return None,
+    })
+}

@@ -1,0 +1,238 @@
+//! Formulas as trees that other programs can walk, and as text.
+
+use std::fmt::Write as _;
+
+use rne_codegen::{Expression, Fold, Operator, Sign, Term};
+use serde::ser::{Serialize, SerializeSeq, Serializer};
+
+/// A formula. In JSON a name is a string, a number a number, and everything else an array with the operator first:
+/// `["+", "a", ["*", "b", 2.0]]`. Operators: `+ - * /` with two operands; `neg`, `sin`, `cos` with one; `sign` with
+/// three (the second where the first is positive, the third where it is negative, else 0). What folding made of an
+/// operation is an object behind its operands.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Tree {
+    /// A name.
+    Name(String),
+    /// A number.
+    Number(f64),
+    /// An operator and its operands.
+    Node(&'static str, Vec<Tree>, Option<Mark>),
+}
+
+/// What became of an operation.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Mark {
+    /// `kept`, `zero`, `one`, `constant`, `cancelled`, `shared` or `unused`.
+    pub fold: &'static str,
+    /// Why: the number of an entry of [`Inspection::reasons`](crate::Inspection::reasons), from 0; absent where nothing
+    /// of the arm is the reason.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub why: Option<usize>,
+    /// The name that the value has in the code, with a minus sign before it where that is its negative.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub name: Option<String>,
+}
+
+impl Serialize for Tree {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Name(name) => serializer.serialize_str(name),
+            Self::Number(value) => serializer.serialize_f64(*value),
+            Self::Node(operator, operands, mark) => {
+                let mut array = serializer.serialize_seq(None)?;
+                array.serialize_element(operator)?;
+                operands.iter().try_for_each(|operand| array.serialize_element(operand))?;
+                mark.iter().try_for_each(|mark| array.serialize_element(mark))?;
+                array.end()
+            }
+        }
+    }
+}
+
+const fn sign(operator: Operator) -> &'static str {
+    match operator {
+        Operator::Sum => "+",
+        Operator::Difference => "-",
+        Operator::Product => "*",
+        Operator::Quotient => "/",
+    }
+}
+
+const fn word(fold: Fold) -> &'static str {
+    match fold {
+        Fold::Kept => "kept",
+        Fold::Zero(_) => "zero",
+        Fold::One(_) => "one",
+        Fold::Constant => "constant",
+        Fold::Cancelled => "cancelled",
+        Fold::Shared => "shared",
+        Fold::Unused => "unused",
+    }
+}
+
+impl Tree {
+    /// A formula before folding; `why` words the causes of a zero (0) or a one (1).
+    pub(crate) fn of_term(term: &Term, why: &mut impl FnMut(&rne_codegen::Causes, u8) -> usize) -> Self {
+        match term {
+            Term::Variable(name) => Self::Name(name.to_string()),
+            Term::Number(value, _) => Self::Number(*value),
+            Term::Negative(a) => Self::Node("neg", vec![Self::of_term(a, why)], None),
+            Term::Sine(a) => Self::Node("sin", vec![Self::of_term(a, why)], None),
+            Term::Cosine(a) => Self::Node("cos", vec![Self::of_term(a, why)], None),
+            Term::BySign(operands) => {
+                Self::Node("sign", operands.iter().map(|operand| Self::of_term(operand, why)).collect(), None)
+            }
+            Term::Operation(operation) => {
+                let magnitude = u8::from(matches!(operation.fold, Fold::One(_)));
+                let mark = Mark {
+                    fold: word(operation.fold),
+                    why: operation.causes.as_ref().map(|causes| why(causes, magnitude)),
+                    name: operation.name.map(|(name, sign)| signed(name.to_string(), sign)),
+                };
+                // that it is kept goes without saying
+                let mark = (mark.fold != "kept" || mark.name.is_some()).then_some(mark);
+                let operands = operation.operands.iter().map(|operand| Self::of_term(operand, why)).collect();
+                Self::Node(sign(operation.operator), operands, mark)
+            }
+        }
+    }
+
+    /// The code of a statement.
+    pub(crate) fn of_expression(expression: &Expression) -> Self {
+        match expression {
+            Expression::Variable(name) => Self::Name(name.to_string()),
+            Expression::Zero => Self::Number(0.0),
+            Expression::Negative(a) => Self::Node("neg", vec![Self::of_expression(a)], None),
+            Expression::Binary(operator, a, b) => {
+                Self::Node(sign(*operator), vec![Self::of_expression(a), Self::of_expression(b)], None)
+            }
+            Expression::BySign(operands) => {
+                Self::Node("sign", operands.iter().map(Self::of_expression).collect(), None)
+            }
+        }
+    }
+
+    /// The same with other leaves in the place of its names.
+    #[must_use]
+    pub fn map_names(&self, of: &impl Fn(&str) -> Self) -> Self {
+        match self {
+            Self::Name(name) => of(name),
+            Self::Number(_) => self.clone(),
+            Self::Node(operator, operands, mark) => {
+                let operands = operands.iter().map(|operand| operand.map_names(of)).collect();
+                Self::Node(operator, operands, mark.clone())
+            }
+        }
+    }
+
+    /// How many operations it has.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        match self {
+            Self::Name(_) | Self::Number(_) => 0,
+            Self::Node(_, operands, _) => 1 + operands.iter().map(Self::size).sum::<usize>(),
+        }
+    }
+
+    /// The names in it, from left to right, each as often as it stands there.
+    #[must_use]
+    pub fn names(&self) -> Vec<&str> {
+        match self {
+            Self::Name(name) => vec![name],
+            Self::Number(_) => Vec::new(),
+            Self::Node(_, operands, _) => operands.iter().flat_map(Self::names).collect(),
+        }
+    }
+
+    /// Its value, when `of` gives those of the names.
+    pub fn evaluate(&self, of: &impl Fn(&str) -> f64) -> f64 {
+        match self {
+            Self::Name(name) => of(name),
+            Self::Number(value) => *value,
+            Self::Node(operator, operands, _) => {
+                let value = |index: usize| operands.get(index).map_or(f64::NAN, |operand| operand.evaluate(of));
+                match *operator {
+                    "+" => value(0) + value(1),
+                    "-" => value(0) - value(1),
+                    "*" => value(0) * value(1),
+                    "/" => value(0) / value(1),
+                    "neg" => -value(0),
+                    "sin" => value(0).sin(),
+                    "cos" => value(0).cos(),
+                    _ if value(0) > 0.0 => value(1),
+                    _ if value(0) < 0.0 => value(2),
+                    _ => 0.0,
+                }
+            }
+        }
+    }
+
+    /// How tightly it holds together: sums least.
+    fn rank(&self) -> u8 {
+        match self {
+            Self::Node("+" | "-" | "neg", ..) => 0,
+            Self::Node("*" | "/", ..) => 1,
+            Self::Number(value) if value.is_sign_negative() => 0,
+            _ => 2,
+        }
+    }
+
+    fn write(&self, text: &mut String) {
+        let inner = |operand: &Self, least: u8, text: &mut String| {
+            if operand.rank() < least {
+                text.push('(');
+                operand.write(text);
+                text.push(')');
+            } else {
+                operand.write(text);
+            }
+        };
+        match self {
+            Self::Name(name) => text.push_str(name),
+            Self::Number(value) => {
+                let _ = write!(text, "{value}");
+            }
+            Self::Node(operator @ ("+" | "-" | "*" | "/"), operands, _) => {
+                let (rank, is_sum) = (self.rank(), *operator == "+");
+                if let [a, b] = &operands[..] {
+                    // what begins with a sign may begin a sum
+                    let begins =
+                        if matches!(a, Self::Node("neg", ..) | Self::Number(_)) && rank == 0 { 0 } else { rank };
+                    inner(a, begins, text);
+                    let _ = write!(text, " {operator} ");
+                    // sums and products are computed in the order in which they stand
+                    let least = if is_sum && matches!(b, Self::Node("*" | "/", ..)) { 1 } else { rank + 1 };
+                    inner(b, least, text);
+                }
+            }
+            Self::Node("neg", operands, _) => {
+                text.push('-');
+                if let Some(a) = operands.first() {
+                    inner(a, 2, text);
+                }
+            }
+            Self::Node(function, operands, _) => {
+                text.push_str(function);
+                text.push('(');
+                for (index, operand) in operands.iter().enumerate() {
+                    text.push_str(if index > 0 { ", " } else { "" });
+                    operand.write(text);
+                }
+                text.push(')');
+            }
+        }
+    }
+}
+
+impl std::fmt::Display for Tree {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let mut text = String::new();
+        self.write(&mut text);
+        f.write_str(&text)
+    }
+}
+
+/// A name, with a minus sign where it stands for the negative.
+pub(crate) fn signed(name: String, sign: Sign) -> String {
+    if sign == Sign::Minus { format!("-{name}") } else { name }
+}
