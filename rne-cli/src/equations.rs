@@ -34,26 +34,8 @@ pub(crate) fn of_name(inspection: &Inspection, name: &str) -> Option<String> {
         Some(step) => format!("joint {}, step {step}\n\n", known.joint),
         None => String::new(),
     };
-    let stated = inspection.angles.iter().chain(&inspection.statements).find(|statement| statement.name == name);
-    let mut text = match inspection.component(name) {
-        Some(component) => of_component(inspection, component),
-        // a shared term, or a name of a form that has no equations
-        None => {
-            let mut text = opening(inspection, name);
-            if let Some(owner) = stated.and_then(|statement| statement.component.as_ref()) {
-                let _ = writeln!(text, "    part of   {owner}");
-            }
-            if let Some((_, value)) = inspection.constants.iter().find(|(constant, _)| constant == name) {
-                let _ = writeln!(text, "    number    {value}");
-            }
-            if let Some(statement) = stated {
-                let code = statement.rust.split_whitespace().collect::<Vec<_>>().join(" ");
-                let code = fill(&code, &format!("    {}", LABELS[3]), "                  ");
-                let _ = writeln!(text, "{}", styled(FOUND, &code));
-            }
-            text
-        }
-    };
+    let equations = inspection.component(name).map(|component| of_component(inspection, component));
+    let mut text = equations.unwrap_or_else(|| of_other(inspection, name));
     let users = inspection.statements.iter().filter(|statement| statement.value.names().contains(&name));
     let turned = inspection.sines_and_cosines.iter().filter(|turn| turn.angle.names().contains(&name));
     let turned = turned.flat_map(|turn| turn.sine.iter().chain(&turn.cosine)).map(String::as_str);
@@ -63,6 +45,24 @@ pub(crate) fn of_name(inspection: &Inspection, name: &str) -> Option<String> {
         let _ = writeln!(text, "{}", styled(QUIET, &fill(&users, "    used by   ", "              ")));
     }
     Some(place + &text)
+}
+
+/// A shared term, a number, an argument, or a name of a form that has no equations.
+fn of_other(inspection: &Inspection, name: &str) -> String {
+    let stated = inspection.angles.iter().chain(&inspection.statements).find(|statement| statement.name == name);
+    let mut text = opening(inspection, name);
+    if let Some(owner) = stated.and_then(|statement| statement.component.as_ref()) {
+        let _ = writeln!(text, "    part of   {owner}");
+    }
+    if let Some((_, value)) = inspection.constants.iter().find(|(constant, _)| constant == name) {
+        let _ = writeln!(text, "    number    {value}");
+    }
+    if let Some(statement) = stated {
+        let code = statement.rust.split_whitespace().collect::<Vec<_>>().join(" ");
+        let code = fill(&code, &format!("    {}", LABELS[3]), "                  ");
+        let _ = writeln!(text, "{}", styled(FOUND, &code));
+    }
+    text
 }
 
 fn of_cell(inspection: &Inspection, cell: &Cell) -> String {
