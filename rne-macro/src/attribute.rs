@@ -20,6 +20,8 @@ pub(crate) struct Attribute {
     pub(crate) allow_lints: bool,
     /// Whether rotors belong to the arm.
     pub(crate) rotors: bool,
+    /// Where the code is asked for as a file to read, if it is.
+    pub(crate) inspect: Option<Span>,
     /// Where tests are asked for, if they are.
     pub(crate) tests: Option<Span>,
     /// The path of the crate `rne` in the user's crate.
@@ -89,13 +91,15 @@ impl Attribute {
             max_ops: entries.max_ops,
             allow_lints: entries.seen.iter().any(|key| key == "allow_lints"),
             rotors: entries.seen.iter().any(|key| key == "rotors"),
+            inspect: entries.inspect,
             tests: entries.tests,
             krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
         }
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `tests`, `allow_lints` and `crate`";
+const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `tests`, `inspect`, `allow_lints` and \
+     `crate`";
 
 #[derive(Default)]
 struct Entries {
@@ -103,6 +107,7 @@ struct Entries {
     source: Option<Source>,
     form: Option<Form>,
     max_ops: Option<Limit>,
+    inspect: Option<Span>,
     tests: Option<Span>,
     krate: Option<Path>,
 }
@@ -132,7 +137,7 @@ impl Entries {
         let name = key.to_string();
         if !matches!(
             name.as_str(),
-            "path" | "yaml" | "builtin" | "form" | "max_ops" | "rotors" | "tests" | "allow_lints" | "crate"
+            "path" | "yaml" | "builtin" | "form" | "max_ops" | "rotors" | "tests" | "inspect" | "allow_lints" | "crate"
         ) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
@@ -140,9 +145,11 @@ impl Entries {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
         }
         self.seen.push(name.clone());
-        if matches!(name.as_str(), "rotors" | "tests" | "allow_lints") {
-            if name == "tests" {
-                self.tests = Some(key.span());
+        if matches!(name.as_str(), "rotors" | "tests" | "inspect" | "allow_lints") {
+            match name.as_str() {
+                "tests" => self.tests = Some(key.span()),
+                "inspect" => self.inspect = Some(key.span()),
+                _ => {}
             }
             let has_value = input.peek(Token![=]);
             let message = format!("`{name}` has no value: it is there, or it is not");

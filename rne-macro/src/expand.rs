@@ -13,6 +13,7 @@ use syn::{Data, DeriveInput};
 use crate::attribute::{Attribute, Limit, Source};
 use crate::error::{Errors, describe};
 use crate::implementation::Target;
+use crate::inspection;
 use crate::location::{self, RobotFile};
 use crate::own_tests;
 use crate::parameters::Parameters;
@@ -47,6 +48,11 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
                 (capability, attribute.max_ops, programs.first())
             {
                 is_within(limit, program, &mut errors);
+            }
+            if let Some(span) = attribute.inspect
+                && let Err(error) = inspection::write(robot, capability, attribute.form, programs)
+            {
+                errors.at_span(span, format!("the code for reading cannot be written: {error}"));
             }
             let code = target.robot(robot, capability, programs, &parameters);
             let names = own_tests::of_capability(capability);

@@ -9,6 +9,7 @@ mod description;
 mod error;
 mod expand;
 mod implementation;
+mod inspection;
 mod location;
 mod own_tests;
 mod parameters;
@@ -303,6 +304,12 @@ use rne_codegen::Capability;
 /// errors, by `#![deny(warnings)]` or `-D warnings`, a lint is one too, as every warning of such a crate. What
 /// published tables have, as tensors that violate the triangle inequality, is a note: `rne check FILE` shows it, a
 /// build does not.
+///
+/// # `inspect`
+///
+/// `#[robot(path = "…", inspect)]` writes the code as a file to read, with the formulas of each step and the meaning of
+/// every name, beside what the compiler writes: `target/debug/rne/NAME.InverseDynamics.seven_steps.rs`. Who meets `w2_z`
+/// in a debugger finds it there; `rne explain w2_z FILE` tells what it is computed from.
 ///
 /// # `allow_lints`
 ///

@@ -98,3 +98,25 @@ fn a_changed_robot_file_is_compiled_again() {
     assert_eq!(program.printed(), "5");
     fs::remove_file(&golden).expect("it was there");
 }
+
+#[test]
+fn the_code_for_reading_stands_beside_what_the_compiler_writes() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("inspect");
+    fs::create_dir_all(folder.join("src")).expect("a folder for sources");
+    fs::write(folder.join("Cargo.toml"), build::manifest("inspect")).expect("the manifest");
+    let program = "#[derive(rne::InverseDynamics)]\n#[robot(builtin = \"planar2\", inspect)]\nstruct Arm;\n\n\
+                   fn main() {\n    let _ = rne::InverseDynamics::gravity_torques(&Arm, &[0.0_f64; 2]);\n}\n";
+    fs::write(folder.join("src/main.rs"), program).expect("the program");
+    let file = build::target().join("debug/rne/planar2.InverseDynamics.seven_steps.rs");
+    // of a run before, which the compiler would not repeat
+    let _ = fs::remove_file(&file);
+    let touched = fs::read_to_string(folder.join("src/main.rs")).expect("the program") + "// anew\n";
+    fs::write(folder.join("src/main.rs"), touched).expect("the program");
+    let output = build::cargo("build", &folder).arg("--quiet").output().expect("cargo runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = fs::read_to_string(&file).expect("the file is there");
+    for part in ["// joint 2, step 1: angular velocity", "let w2_z = qd1 + qd2;", "ω: angular velocity", "rne explain"]
+    {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+}

@@ -10,7 +10,7 @@ pub(crate) fn root() -> &'static Path {
 }
 
 /// The target folder: that of trybuild, which nobody can choose.
-fn target() -> PathBuf {
+pub(crate) fn target() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).with_file_name("tests").join("trybuild")
 }
 
