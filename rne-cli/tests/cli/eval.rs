@@ -187,7 +187,7 @@ fn parameters_are_set() {
     assert!((torque(&["--set", "held=2"]) - 3.2 * 9.81 / 4.0).abs() < 1e-14);
     assert!((torque(&["--set", "held=0.5", "--set", "m=2*4"]) - 8.0 * 9.81 / 4.0).abs() < 1e-13);
     let fails = |status, more: &[&str], words: &[&str]| fails(status, &[&call[..], more].concat(), words);
-    fails(1, &["--set", "hold=2"], &["no parameter `hold`", "there are `held`, `m`", "did you mean `held`?"]);
+    fails(2, &["--set", "hold=2"], &["no parameter `hold`", "there are `held`, `m`", "did you mean `held`?"]);
     fails(1, &["--set", "held=-2"], &["the mass `m` = -0.8 is negative"]);
     fails(2, &["--set", "held=2", "--set", "held=3"], &["--set gives held twice"]);
     fails(2, &["--set", "held"], &["write NAME=VALUE"]);
