@@ -51,7 +51,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// How far a torque may be off, in parts of the largest; as its last digit tells, unless given
-    #[arg(long, value_name = "T", value_parser = tolerance)]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]
@@ -85,10 +85,9 @@ fn resolution(number: &str) -> f64 {
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|tolerance| (0.0..1.0).contains(tolerance))
-        .ok_or_else(|| "a tolerance is a part of the largest torque, from 0 to below 1, such as 1e-4".to_owned())
+    text.parse().ok().filter(|tolerance| (0.0..1.0).contains(tolerance)).ok_or_else(|| {
+        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4".to_owned()
+    })
 }
 
 /// An answer as JSON has it.

@@ -69,7 +69,9 @@ fn mistakes_in_the_call() {
     call(&["--tau", "1,2"], &["--tau needs 1 number", "not 2"]);
     call(&[], &["--tau"]);
     call(&["--tau", "x"], &["number 1, `x`, is none"]);
-    call(&["--tau", "1", "--tolerance", "2"], &["from 0 to below 1"]);
+    for bad in ["2", "-1", "-1e-3", "x"] {
+        call(&["--tau", "1", "--tolerance", bad], &["from 0 to below 1, such as --tolerance 1e-4"]);
+    }
     let state = ["--q", "0.5,0.3", "--qd", "1e155,0.5", "--qdd", "2,1", "--tau", "1,2"];
     fails(1, &[&["diagnose", "planar2"][..], &state].concat(), &["overflows: the state is too large"]);
 }
