@@ -26,6 +26,8 @@ pub(crate) const FOUND: Style = AnsiColor::Green.on_default();
 pub(crate) const TYPED: Style = AnsiColor::Yellow.on_default();
 /// All is well.
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
+/// Something is probably not what was meant.
+pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 /// Something is wrong.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
 
