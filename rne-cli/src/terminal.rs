@@ -48,6 +48,13 @@ pub(crate) fn width(most: usize) -> usize {
     terminal.map_or(most, |columns| columns.clamp(FEWEST, most))
 }
 
+/// Columns of a table: those of the terminal, and 100 of a pipe or a file.
+pub(crate) fn room() -> usize {
+    const OF_A_FILE: usize = 100;
+    let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
+    terminal.unwrap_or(OF_A_FILE)
+}
+
 /// Prints what a command returned.
 pub(crate) fn show(outcome: &Outcome) -> ExitCode {
     let _ = write(AutoStream::auto(io::stderr().lock()), &outcome.remark);

@@ -153,5 +153,5 @@ fn a_golden_file_with_another_name_is_told() {
     );
     assert!(checked.contains(&told), "{checked}");
     fs::rename(&golden, folder.join("wrist.golden.csv")).expect("renamed");
-    assert!(!fine(&["check", robot]).contains("golden"));
+    assert!(!fine(&["check", robot]).contains("warning"));
 }
