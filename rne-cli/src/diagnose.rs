@@ -30,7 +30,8 @@ Examples:
 
 The usual slips are made one by one, then in pairs: convention, gravity,
 inertia and centre of mass from another point, units, offsets, signs, motors,
-wrench, and the misprints of the lecture. A state with speeds and accelerations
+wrench, and the misprints of the lecture; alone also the sign of one alpha, one
+theta, one component of a centre of mass. A state with speeds and accelerations
 of all joints tells the most apart.")]
 pub(crate) struct Arguments {
     #[command(flatten)]

@@ -196,8 +196,7 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
     let shown = |line: Vec<String>| -> Vec<String> {
         line.into_iter().enumerate().filter(|(column, _)| is_shown(*column)).map(|(_, cell)| cell).collect()
     };
-    let alignment: Vec<Align> =
-        (0..).zip(alignment).filter(|(column, _)| is_shown(*column)).map(|(_, to)| to).collect();
+    let alignment: Vec<Align> = (0..).zip(alignment).filter(|(at, _)| is_shown(*at)).map(|(_, to)| to).collect();
     let mut lines = vec![shown(titles.map(str::to_owned).into())];
     for (_, counts) in counted {
         let mut function_before = None;
