@@ -167,7 +167,8 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
 }
 
 /// The counts of robots as a table: a line per robot, below it a line per function and form. Where it is wider than
-/// `room` columns it does without products and sums before folding, without the lines, then without all that was before.
+/// `room` columns it does without products and sums before folding, without the lines, then without all that was
+/// before.
 pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
     const LEAST: [&[usize]; 3] = [&[2, 3], &[LINES], &[4, 5]];
     let mut left_out = Vec::new();
