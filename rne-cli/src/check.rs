@@ -5,11 +5,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_codegen::Function;
-use rne_model::{Checked, Convention, JointKind, Robot, plan_of, robot_of};
+use rne_model::{Checked, Convention, JointKind, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
 
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome};
-use crate::terminal::{GOOD, QUIET};
+use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::{physics, plan_file, robot_file};
 
 /// Check robot files and plans: `ok` and lints, or every error
@@ -83,7 +83,20 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
         plan_file::verify(&robot, &read)?;
     }
     let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
-    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.render(true)), laws })
+    let lints = (!lints.is_empty()).then(|| lints.render(true));
+    let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).collect();
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), laws })
+}
+
+/// A golden file that the tests of a derive would not find.
+fn misnamed_golden(path: &Path) -> Option<String> {
+    let found = if path.is_file() { misnamed_golden_of(path) } else { None }?;
+    Some(format!(
+        "{WARNING}warning{WARNING:#}: {} is not the golden file of {}; did you mean to name it {}?",
+        found.display(),
+        path.display(),
+        golden_of(path).display()
+    ))
 }
 
 /// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.

@@ -30,7 +30,8 @@ Examples:
 
 The usual slips are made one by one, then in pairs: convention, gravity,
 inertia and centre of mass from another point, units, offsets, signs, motors,
-wrench, and the misprints of the lecture. A state with speeds and accelerations
+wrench, and the misprints of the lecture; alone also the sign of one alpha, one
+theta, one component of a centre of mass. A state with speeds and accelerations
 of all joints tells the most apart.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -51,7 +52,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
     /// How far a torque may be off, in parts of the largest; as its last digit tells, unless given
-    #[arg(long, value_name = "T", value_parser = tolerance)]
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// {"agrees": …, "error": …, "explanations": […]}
     #[arg(long)]
@@ -85,10 +86,9 @@ fn resolution(number: &str) -> f64 {
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
-    text.parse()
-        .ok()
-        .filter(|tolerance| (0.0..1.0).contains(tolerance))
-        .ok_or_else(|| "a tolerance is a part of the largest torque, from 0 to below 1, such as 1e-4".to_owned())
+    text.parse().ok().filter(|tolerance| (0.0..1.0).contains(tolerance)).ok_or_else(|| {
+        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4".to_owned()
+    })
 }
 
 /// An answer as JSON has it.

@@ -12,7 +12,7 @@ use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Entry};
-use crate::{answer, arguments, golden};
+use crate::{answer, arguments, golden, limits};
 
 /// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
@@ -64,7 +64,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
     /// A golden file instead: torques at N states, which `#[robot(…, tests)]` reads
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..), conflicts_with_all = [
+    #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
         "gravity", "trace", "json",
     ])]
@@ -120,10 +120,11 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Axes::Lecture => trace.to_lecture(),
         Axes::Base => trace.to_base(),
     });
+    let remark = limits::remark(&robot, &state.q);
     if arguments.json {
         let trace = links.as_ref().map(|links| worksheet::entries(&robot, links));
         let result = grouped(&function.layout(robot.dof()), &numbers);
-        return Outcome::json(&Reply { result, trace });
+        return Ok(Outcome { remark, ..Outcome::json(&Reply { result, trace })? });
     }
     let mut text = String::new();
     if let Some(links) = links {
@@ -131,7 +132,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text.push('\n');
     }
     text.push_str(&answer::text(&robot, &state, &numbers));
-    Ok(Outcome::text(text))
+    Ok(Outcome { remark, ..Outcome::text(text) })
 }
 
 impl Arguments {

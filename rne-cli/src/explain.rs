@@ -110,8 +110,9 @@ const EXIT_STATUS: &str = "\
 1    the input is at fault: a robot file or a plan has an error or cannot be
      read, a result is not finite, a file that is checked is stale, torques
      differ and `rne diagnose` cannot say why, or the output cannot be written
-2    the command line is at fault: an option, a joint that the robot does not
-     have, a list of another length, or a file that rne does not overwrite
+2    the command line is at fault: an option, a joint, parameter or link that
+     the robot does not have, a list of another length, or a file that rne does
+     not overwrite
 130  `rne search` was ended by a second Ctrl-C; the plan file is what it was
 
 Errors go to standard error, and nothing to standard output then. A reader that

@@ -16,8 +16,9 @@ Examples:
   rne export puma560 --urdf
 
 Links are `world`, `base` (frame 0), `link_1` … and `tip`; the frame of a link
-stands on the axis of its joint. Gravity that is not [0, 0, -9.81] in `world`
-is told, for a URDF cannot say it.")]
+stands on the axis of its joint. Friction is written at the joint: G² B and
+|G| Tc of its motor. Gravity that is not [0, 0, -9.81] in `world` is told, for a
+URDF cannot say it.")]
 pub(crate) struct Arguments {
     /// The robot file; - is standard input
     #[arg(value_name = "FILE")]

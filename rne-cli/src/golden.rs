@@ -91,6 +91,12 @@ fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>
     ]
 }
 
+/// Reads how many states a golden file is to have.
+pub(crate) fn states(text: &str) -> Result<u16, String> {
+    let states = text.parse().ok().filter(|&states| states > 0);
+    states.ok_or_else(|| format!("a golden file has 1 to {} states, such as --golden 100", u16::MAX))
+}
+
 /// A golden file: torques of a robot at so many states; its heading says which settings are not the file's.
 pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
     let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));

@@ -76,13 +76,15 @@ fn lock(text: &str) -> Result<(String, f64), String> {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let (file, text) = read(&arguments.file)?;
     let urdf = Urdf::read(&file, &text).map_err(|report| Failure::from(&report))?;
+    let selection = Selection {
+        base: arguments.base.clone(),
+        tip: arguments.tip.clone(),
+        lock: arguments.lock.clone(),
+        lock_others: arguments.lock_others,
+    };
+    urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;
     let options = Options {
-        selection: Selection {
-            base: arguments.base.clone(),
-            tip: arguments.tip.clone(),
-            lock: arguments.lock.clone(),
-            lock_others: arguments.lock_others,
-        },
+        selection,
         convention: arguments.convention,
         snap: !arguments.no_snap,
         keep_unphysical: arguments.keep_unphysical,
@@ -100,11 +102,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
 }
 
-/// The text, and the name of its file without folders: it becomes part of the source.
+/// The text, and what messages call its file.
 fn read(path: &Path) -> Result<(String, String), Failure> {
     const LONGEST: usize = 16 << 20;
-    let name = path.file_name().unwrap_or(path.as_os_str()).to_string_lossy();
-    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { name.into_owned() };
+    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
     let bytes = match input_file::read(path, LONGEST) {
         Ok(bytes) => bytes,
         Err(error) if error.kind() == ErrorKind::NotFound => {

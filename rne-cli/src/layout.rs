@@ -50,6 +50,16 @@ pub(crate) fn width(text: &str) -> usize {
     UnicodeWidthStr::width(text)
 }
 
+/// As much of a text as so many columns hold, with a sign that it goes on.
+pub(crate) fn shortened(text: &str, to: usize) -> String {
+    if width(text) <= to {
+        return text.to_owned();
+    }
+    let most = |end: &usize| width(&text[..*end]) < to;
+    let end = text.char_indices().map(|(at, _)| at).take_while(most).last().unwrap_or(0);
+    format!("{}…", text[..end].trim_end())
+}
+
 /// Words put into lines of a width; lines after the first start with `indent`.
 pub(crate) fn wrap(text: &str, to: usize, indent: &str) -> String {
     let options = Options::new(to).subsequent_indent(indent).break_words(false);
@@ -66,6 +76,14 @@ mod tests {
         assert_eq!(width("ω̇2 + q̈2"), 7);
         assert_eq!(left("c̈", 3), "c̈  ");
         assert_eq!(right("c̈", 3), "  c̈");
+    }
+
+    #[test]
+    fn what_is_too_long_ends_with_a_sign() {
+        assert_eq!(shortened("ω̇ is known", 10), "ω̇ is known");
+        assert_eq!(shortened("ω̇ is known", 9), "ω̇ is kno…");
+        assert_eq!(shortened("one two", 5), "one…");
+        assert_eq!(shortened("one", 0), "…");
     }
 
     #[test]

@@ -22,7 +22,9 @@ mod highlight;
 mod import;
 mod input_file;
 mod layout;
+mod limits;
 mod list;
+mod mistyped;
 mod new;
 mod numbers;
 mod ops;
@@ -39,6 +41,7 @@ mod terminal;
 mod tour;
 mod worksheet;
 
+use std::env;
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -49,7 +52,13 @@ use crate::outcome::{Failure, Outcome};
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(error) => return terminal::usage(&error),
+        Err(error) => {
+            let words: Vec<String> = env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+            return match mistyped::explained(&error, &words) {
+                Some((name, failure)) => terminal::complain(&name, &failure),
+                None => terminal::usage(&error),
+            };
+        }
     };
     let (name, outcome) = run(arguments.command);
     match outcome {

@@ -10,11 +10,11 @@ use rne_model::Robot;
 use serde::Serialize;
 
 use crate::arm::Rotors;
-use crate::layout::{Align, columns};
+use crate::layout::{Align, columns, width, wrap};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TITLE};
-use crate::{arguments, functions, plan_file};
+use crate::{arguments, functions, plan_file, terminal};
 
 /// Count operations, before folding and in the generated code
 #[derive(Args)]
@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let outcome = arguments.rotors.robot(path).and_then(|robot| {
             let compiler = Compiler::new(path, &robot).without(&arguments.without);
             if arguments.tricks {
-                savings.push_str(&tricks(&robot, compiler.plans()?));
+                savings.push_str(&tricks(&robot, compiler.plans()?, terminal::room()));
             } else {
                 let functions: Vec<Function> = functions::of(&robot)
                     .filter(|function| arguments.functions.is_empty() || arguments.functions.contains(function))
@@ -102,7 +102,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(first) => Err(Failure { text: complaints.join("\n\n"), status: first.status }),
         None if arguments.tricks => Ok(Outcome::text(savings)),
         None if arguments.json => Ok(Outcome { remark: remarks, ..Outcome::json(&entries(&counted))? }),
-        None => Ok(Outcome { remark: remarks, ..Outcome::text(table(&counted)) }),
+        None => Ok(Outcome { remark: remarks, ..Outcome::text(table(&counted, terminal::room())) }),
     }
 }
 
@@ -134,17 +134,19 @@ pub(crate) fn counts(
     Ok(counts)
 }
 
-/// What each trick of a plan saves.
-fn tricks(robot: &Robot, plans: &PlanSet) -> String {
+/// What each trick of a plan saves, in lines of `room` columns.
+fn tricks(robot: &Robot, plans: &PlanSet, room: usize) -> String {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", robot.name);
     let mut lines = vec![["trick", "saves", "what it is"].map(str::to_owned)];
     for (trick, saved) in plan::savings(robot, plans) {
         lines.push([format!(" {trick}"), saved.to_string(), trick.formula().to_owned()]);
     }
-    for (index, line) in columns(&[Align::Left, Align::Right, Align::Left], &lines).iter().enumerate() {
+    let lines = columns(&[Align::Left, Align::Right, Align::Left], &lines);
+    let before = lines.first().and_then(|titles| titles.find("what")).unwrap_or(0);
+    for (index, line) in lines.iter().enumerate() {
         let _ = match index {
             0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
-            _ => writeln!(text, "{line}"),
+            _ => writeln!(text, "{}", wrap(line, room, &" ".repeat(before))),
         };
     }
     text
@@ -164,18 +166,39 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
     counted.iter().flat_map(|(robot, counts)| counts.iter().map(move |count| entry(robot, count))).collect()
 }
 
-/// The counts of robots as a table: a line per robot, below it a line per function and form.
-pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
+/// The counts of robots as a table: a line per robot, below it a line per function and form. Where it is wider than
+/// `room` columns it does without products and sums before folding, without the lines, then without all that was
+/// before.
+pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
+    const LEAST: [&[usize]; 3] = [&[2, 3], &[LINES], &[4, 5]];
+    let mut left_out = Vec::new();
+    let mut table = with_columns(counted, &left_out);
+    for columns in LEAST {
+        if table.lines().all(|line| width(&anstream::adapter::strip_str(line).to_string()) <= room) {
+            break;
+        }
+        left_out.extend(columns);
+        table = with_columns(counted, &left_out);
+    }
+    table
+}
+
+/// The column of the lines.
+const LINES: usize = 11;
+
+/// The table without some of its columns; that of divisions is always counted.
+fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String {
     use Align::{Left, Right};
     let divides = counted.iter().flat_map(|(_, counts)| counts).any(|count| count.after.div > 0);
-    let mut titles = vec!["", "form", "mul", "add", "total", "", "mul", "add", "total", "sincos", "lines"];
-    let mut alignment = vec![Left, Left, Right, Right, Right, Left, Right, Right, Right, Right, Right];
+    let titles = ["", "form", "mul", "add", "total", "", "mul", "add", "total", "div", "sincos", "lines"];
+    let alignment = [Left, Left, Right, Right, Right, Left, Right, Right, Right, Right, Right, Right];
     let division = 9; // its column, behind the total
-    if divides {
-        titles.insert(division, "div");
-        alignment.insert(division, Right);
-    }
-    let mut lines: Vec<Vec<String>> = vec![titles.into_iter().map(str::to_owned).collect()];
+    let is_shown = |column: usize| !left_out.contains(&column) && (column != division || divides);
+    let shown = |line: Vec<String>| -> Vec<String> {
+        line.into_iter().enumerate().filter(|(column, _)| is_shown(*column)).map(|(_, cell)| cell).collect()
+    };
+    let alignment: Vec<Align> = (0..).zip(alignment).filter(|(at, _)| is_shown(*at)).map(|(_, to)| to).collect();
+    let mut lines = vec![shown(titles.map(str::to_owned).into())];
     for (_, counts) in counted {
         let mut function_before = None;
         for &Count { function, form, before: (products, sums), after } in counts {
@@ -183,7 +206,7 @@ pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
             // the forms of one function replace the same recursion
             let [before_mul, before_add, before] =
                 [products, sums, products + sums].map(|count| if again { String::new() } else { count.to_string() });
-            let mut line = vec![
+            lines.push(shown(vec![
                 format!(" {function}"),
                 form.to_string(),
                 before_mul,
@@ -193,21 +216,28 @@ pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
                 after.mul.to_string(),
                 after.add.to_string(),
                 after.total().to_string(),
+                if after.div == 0 { String::new() } else { after.div.to_string() },
                 after.sincos.to_string(),
                 after.statements.to_string(),
-            ];
-            if divides {
-                line.insert(division, if after.div == 0 { String::new() } else { after.div.to_string() });
-            }
-            lines.push(line);
+            ]));
         }
     }
     let mut lines = columns(&alignment, &lines).into_iter();
     let titles = lines.next().unwrap_or_default();
-    let (before, after) = (titles.find("mul"), titles.rfind("mul"));
+    // what stands before the arrow ends with its total
+    let (total, after) = (titles.find("total").unwrap_or(0), titles.rfind("mul").unwrap_or(0));
     let mut text = String::new();
-    if let (Some(before), Some(after)) = (before, after) {
-        let _ = writeln!(text, "{QUIET}{:before$}{:<2$}generated{QUIET:#}", "", "before folding", after - before);
+    match titles.find("mul").filter(|before| *before < after) {
+        Some(before) => {
+            let _ = writeln!(text, "{QUIET}{:before$}{:<2$}generated{QUIET:#}", "", "before folding", after - before);
+        }
+        None if total < after => {
+            let end = total + "total".len();
+            let _ = writeln!(text, "{QUIET}{:>end$}{:2$}generated{QUIET:#}", "before folding", "", after - end);
+        }
+        None => {
+            let _ = writeln!(text, "{QUIET}{:after$}generated{QUIET:#}", "");
+        }
     }
     let _ = writeln!(text, "{QUIET}{titles}{QUIET:#}");
     for (robot, counts) in counted {
@@ -217,4 +247,41 @@ pub(crate) fn table(counted: &[(String, Vec<Count>)]) -> String {
         }
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_of_counts_fits_its_room() {
+        let file = rne_robots::find("puma560").expect("shipped");
+        let robot = Robot::from_yaml(file.yaml).expect("valid");
+        let path = Path::new("puma560");
+        let compiler = Compiler::built_in(path, &robot, file.plan.expect("a plan")).expect("valid");
+        let functions = [Function::InverseDynamics, Function::InverseDynamicsOnMovingBase, Function::ForwardDynamics];
+        let counts = counts(path, &compiler, &functions, true, &mut String::new()).expect("counted");
+        let totals: Vec<String> = counts.iter().map(|count| count.after.total().to_string()).collect();
+        let counted = [(robot.name.clone(), counts)];
+        let lines = |room| {
+            let text = anstream::adapter::strip_str(&table(&counted, room)).to_string();
+            text.lines().map(str::to_owned).collect::<Vec<_>>()
+        };
+        let widest = |lines: &[String]| lines.iter().map(|line| width(line)).max().unwrap_or(0);
+        assert!(widest(&lines(1000)) > 100, "the whole table is wide");
+        for room in 80..140 {
+            let lines = lines(room);
+            assert!(widest(&lines) <= room, "{room}: {lines:#?}");
+            // what is generated is there in each, under its title
+            let generated = lines[0].find("generated").expect("a title");
+            for (line, total) in lines[3..].iter().zip(&totals) {
+                let cells = line.chars().skip(generated).collect::<String>();
+                assert!(cells.split_whitespace().any(|cell| cell == total), "{room}: no {total} in {line}");
+            }
+            assert_eq!(lines[0].contains("before folding"), lines[1].matches("total").count() == 2, "{lines:#?}");
+        }
+        let folded = tricks(&robot, compiler.plans().expect("plans"), 80);
+        let folded = anstream::adapter::strip_str(&folded).to_string();
+        assert!(folded.lines().all(|line| width(line) <= 80), "{folded}");
+    }
 }

@@ -63,6 +63,11 @@ impl Failure {
         Self { text: headed(message), status: USAGE }
     }
 
+    /// The command line names what the file, which is in order, does not have.
+    pub(crate) fn unknown_name(report: &Report) -> Self {
+        Self { status: USAGE, ..Self::from(report) }
+    }
+
     /// The robot is valid but cannot be compiled.
     pub(crate) fn compile(file: &str, error: &CompileError) -> Self {
         Self::input(format_args!("{file}: {error}"))

@@ -55,7 +55,16 @@ fn read_by(path: &Path, settings: &[(&str, f64)], run_time: &[&str]) -> Result<(
     let read = |name: &str, bytes: &[u8]| {
         let reader = Reader::new(name).run_time(run_time);
         let reader = settings.iter().fold(reader, |reader, &(parameter, value)| reader.setting(parameter, value));
-        reader.read(bytes).map_err(|report| Failure::from(&report))
+        reader.read(bytes).map_err(|report| {
+            // the file is at fault, unless it is in order by itself and has no such parameter
+            let names: Vec<&str> = settings.iter().map(|(parameter, _)| *parameter).chain(run_time.to_vec()).collect();
+            let alone = if names.is_empty() { None } else { Reader::new(name).read(bytes).ok() };
+            let has = |alone: &Checked, name: &str| alone.robot.parameters.iter().any(|(known, _)| known == name);
+            match alone {
+                Some(alone) if !names.iter().all(|name| has(&alone, name)) => Failure::unknown_name(&report),
+                _ => Failure::from(&report),
+            }
+        })
     };
     if let Some(robot) = robot_of(path) {
         return Err(Failure::usage(format_args!(

@@ -26,6 +26,8 @@ pub(crate) const FOUND: Style = AnsiColor::Green.on_default();
 pub(crate) const TYPED: Style = AnsiColor::Yellow.on_default();
 /// All is well.
 pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
+/// Something is probably not what was meant.
+pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
 /// Something is wrong.
 pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
 
@@ -44,6 +46,13 @@ pub(crate) fn width(most: usize) -> usize {
     const FEWEST: usize = 40;
     let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
     terminal.map_or(most, |columns| columns.clamp(FEWEST, most))
+}
+
+/// Columns of a table: those of the terminal, and 100 of a pipe or a file.
+pub(crate) fn room() -> usize {
+    const OF_A_FILE: usize = 100;
+    let terminal = terminal_size::terminal_size_of(io::stdout()).map(|(columns, _)| usize::from(columns.0));
+    terminal.unwrap_or(OF_A_FILE)
 }
 
 /// Prints what a command returned.

@@ -54,7 +54,7 @@ pub(crate) fn run() -> Result<Outcome, Failure> {
     let path = Path::new(NAME);
     let compiler = Compiler::built_in(path, &robot, file.plan.unwrap_or_default())?;
     let counts = ops::counts(path, &compiler, &Function::TORQUES, true, &mut String::new())?;
-    text.push_str(&ops::table(&[(robot.name.clone(), counts)]));
+    text.push_str(&ops::table(&[(robot.name.clone(), counts)], terminal::room()));
     chapter(
         &mut text,
         5,

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use rne_model::{Limits, Motor, Report};
+use rne_model::{Limits, Motor, Report, did_you_mean};
 
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
@@ -118,12 +118,64 @@ pub(crate) fn extract(
     Ok((chain, walk.told))
 }
 
+impl Urdf {
+    /// Whether every link and every joint that a selection names is there.
+    ///
+    /// # Errors
+    ///
+    /// The first name that is not, with the one that was probably meant and those that there are.
+    pub fn check_names(&self, selection: &Selection) -> Result<(), Report> {
+        selection.base.as_ref().map_or(Ok(0), |name| link(self, name, "base"))?;
+        selection.tip.as_ref().map_or(Ok(0), |name| link(self, name, "tip"))?;
+        selection.lock.iter().try_for_each(|(name, _)| joint(self, name).map(|_| ()))
+    }
+}
+
 fn link(urdf: &Urdf, name: &str, what: &str) -> Result<usize, Report> {
     urdf.links.iter().position(|link| link.name == name).ok_or_else(|| {
         let message = format!("there is no link {} that could be the {what}", quoted(name));
-        let known = names(urdf.links.iter().map(|link| &link.name));
-        urdf.source.error(&(0..0), message, format!("the links are {known}"))
+        let known = if what == "tip" {
+            let leaves = leaves(urdf, urdf.root);
+            format!("a chain may end at any link; those that carry no other:\n{}", listed(urdf, &leaves))
+        } else {
+            format!("the links are {}", names(urdf.links.iter().map(|link| &link.name)))
+        };
+        let help = meant(name, urdf.links.iter().map(|link| link.name.as_str())) + &known;
+        urdf.source.error(&(0..0), message, help)
     })
+}
+
+/// A joint that is to be locked.
+fn joint(urdf: &Urdf, name: &str) -> Result<usize, Report> {
+    urdf.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
+        let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
+        let movable: Vec<&str> = movable.map(|joint| joint.name.as_str()).collect();
+        let message = format!("there is no joint {} to be locked", quoted(name));
+        let known = format!("the movable joints are {}", names(&movable));
+        urdf.source.error(&(0..0), message, meant(name, movable) + &known)
+    })
+}
+
+/// The question after the name that was probably meant: one that is a slip away, or the only one that has the word in
+/// it, as `panda_hand` has `hand`.
+fn meant<'n>(word: &str, known: impl IntoIterator<Item = &'n str>) -> String {
+    let known: Vec<&str> = known.into_iter().collect();
+    let lower = word.to_lowercase();
+    let mut longer = known.iter().filter(|name| !lower.is_empty() && name.to_lowercase().contains(&lower));
+    let only = longer.next().copied().filter(|_| longer.next().is_none());
+    let meant = did_you_mean(word, known.iter().copied()).or(only);
+    meant.map_or_else(String::new, |meant| format!("did you mean {}? ", quoted(meant)))
+}
+
+/// Leaves, one per line, with the joints before them.
+fn listed(urdf: &Urdf, leaves: &[(usize, usize)]) -> String {
+    let listed = leaves.iter().map(|&(leaf, joints)| {
+        let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
+        format!("  {} ({joints})", quoted(&urdf.links[leaf].name))
+    });
+    let more = leaves.len().saturating_sub(LISTED);
+    let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
+    listed.take(LISTED).collect::<Vec<_>>().join("\n") + &more
 }
 
 /// The link where the chain ends.
@@ -135,15 +187,9 @@ fn tip(urdf: &Urdf, base: usize, selection: &Selection) -> Result<usize, Report>
     if let [(leaf, _)] = leaves[..] {
         return Ok(leaf);
     }
-    let listed = leaves.iter().map(|&(leaf, joints)| {
-        let joints = if joints == 1 { "1 joint".to_owned() } else { format!("{joints} joints") };
-        format!("  {} ({joints})", quoted(&urdf.links[leaf].name))
-    });
-    let more = leaves.len().saturating_sub(LISTED);
-    let more = if more > 0 { format!("\n  and {more} more") } else { String::new() };
-    let listed = listed.take(LISTED).collect::<Vec<_>>().join("\n");
     let message = format!("{} has {} leaves, so the tip must be named", quoted(&urdf.links[base].name), leaves.len());
-    let help = format!("name one, or a link before it, with --tip; in the order of the text:\n{listed}{more}");
+    let help =
+        format!("name one, or a link before it, with --tip; in the order of the text:\n{}", listed(urdf, &leaves));
     Err(urdf.source.error(&urdf.links[base].span, message, help))
 }
 
@@ -191,12 +237,7 @@ fn path(urdf: &Urdf, base: usize, tip: usize) -> Result<Vec<usize>, Report> {
 fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Report> {
     let mut locks = HashMap::new();
     for (name, value) in &selection.lock {
-        let Some(index) = urdf.joints.iter().position(|joint| joint.name == *name) else {
-            let movable = urdf.joints.iter().filter(|joint| joint.kind.has_one_freedom());
-            let help = format!("the movable joints are {}", names(movable.map(|joint| &joint.name)));
-            let message = format!("there is no joint {} to be locked", quoted(name));
-            return Err(urdf.source.error(&(0..0), message, help));
-        };
+        let index = joint(urdf, name)?;
         let joint = &urdf.joints[index];
         if !joint.kind.has_one_freedom() {
             let message =

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{Robot, one_line};
+use rne_model::{Motor, Robot, one_line};
 
 use crate::body::Body;
 use crate::chain::ChainJoint;
@@ -24,6 +24,9 @@ pub struct Exported {
 
 /// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
 /// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
+///
+/// Of a motor the friction is there, as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
+/// both directions.
 #[must_use]
 pub fn export(robot: &Robot) -> Exported {
     let chain = of_robot(robot);
@@ -38,9 +41,7 @@ pub fn export(robot: &Robot) -> Exported {
              model.gravity.linear = np.array([{x}, {y}, {z}])"
         ));
     }
-    if robot.joints.iter().any(|joint| joint.motor.is_some()) {
-        remarks.push("motors are left out: a URDF has no place for gears and rotors".to_owned());
-    }
+    remarks.extend(of_motors(robot));
     let mut text = String::from("<?xml version=\"1.0\"?>\n");
     if let Some(title) = &robot.title {
         let _ = writeln!(text, "<!-- {} -->", comment(title));
@@ -62,6 +63,53 @@ pub fn export(robot: &Robot) -> Exported {
     fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
     text.push_str("</robot>\n");
     Exported { text, gravity, remarks }
+}
+
+/// What a URDF cannot say of motors.
+fn of_motors(robot: &Robot) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let motors = || robot.joints.iter().filter_map(|joint| Some((one_line(&joint.name), joint.motor?)));
+    if motors().any(|(_, motor)| motor.inertia != 0.0 || motor.gear_ratio != 1.0) {
+        let and =
+            if motors().any(|(_, motor)| Friction::of(&motor).is_some()) { ", but for their friction" } else { "" };
+        remarks.push(format!("motors are left out{and}: a URDF has no place for gears and rotors"));
+    }
+    let named = |is_so: fn(&Motor) -> bool| {
+        let names: Vec<String> = motors().filter(|(_, motor)| is_so(motor)).map(|(name, _)| name).collect();
+        (!names.is_empty()).then(|| names.join(", "))
+    };
+    if let Some(names) = named(|motor| motor.coulomb[0] != -motor.coulomb[1]) {
+        remarks.push(format!(
+            "Coulomb friction that differs with the direction is written as its mean, for a URDF has one: {names}"
+        ));
+    }
+    if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {
+        remarks.push(format!("friction that is too large for a number is left out: {names}"));
+    }
+    remarks
+}
+
+/// The friction of a joint as a URDF has it.
+struct Friction {
+    /// N m s/rad or N s/m.
+    damping: f64,
+    /// N m or N.
+    friction: f64,
+}
+
+impl Friction {
+    /// Through the gear: G² B and |G| Tc, of the mean Tc of both directions; `None` where that overflows.
+    fn at_joint(motor: &Motor) -> Option<Self> {
+        let Motor { gear_ratio, viscous, coulomb: [positive, negative], .. } = *motor;
+        let mean = 0.5 * positive - 0.5 * negative;
+        let (damping, friction) = (gear_ratio * gear_ratio * viscous, gear_ratio.abs() * mean);
+        (damping.is_finite() && friction.is_finite()).then_some(Self { damping, friction })
+    }
+
+    /// The same, where there is any.
+    fn of(motor: &Motor) -> Option<Self> {
+        Self::at_joint(motor).filter(|at_joint| at_joint.damping != 0.0 || at_joint.friction != 0.0)
+    }
 }
 
 /// The names of joints that are taken.
@@ -121,11 +169,15 @@ fn movable(text: &mut String, name: &str, joint: &ChainJoint, (parent, child): (
     } else {
         format!("lower=\"{}\" upper=\"{}\" ", number(lower), number(upper))
     };
+    let dynamics = joint.motor.as_ref().and_then(Friction::of).map_or_else(String::new, |at_joint| {
+        let [damping, friction] = [at_joint.damping, at_joint.friction].map(number);
+        format!("    <dynamics damping=\"{damping}\" friction=\"{friction}\"/>\n")
+    });
     let _ = writeln!(
         text,
         "  <joint name=\"{name}\" type=\"{kind}\">\n    <parent link=\"{parent}\"/>\n    \
          <child link=\"{child}\"/>\n    {}\n    <axis xyz=\"0 0 1\"/>\n    \
-         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n  </joint>",
+         <limit {position}effort=\"{}\" velocity=\"{}\"/>\n{dynamics}  </joint>",
         origin(joint.place),
         number(limits.effort.unwrap_or(0.0)),
         number(limits.velocity.unwrap_or(0.0))

@@ -115,7 +115,7 @@ impl Urdf {
         robot.title = title(&self.name);
         robot.source = format!(
             "{}, from {} to {}; imported by rne {}",
-            printable(&self.source.file),
+            printable(self.source.file_name()),
             printable(&told.base),
             printable(&told.tip),
             env!("CARGO_PKG_VERSION")

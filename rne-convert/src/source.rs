@@ -1,6 +1,8 @@
 //! The text that is read, and mistakes in it.
 
+use std::ffi::OsStr;
 use std::ops::Range;
+use std::path::Path;
 
 use rne_model::Report;
 
@@ -12,6 +14,11 @@ pub(crate) struct Source {
 }
 
 impl Source {
+    /// The name of the file without its folders: where they are matters to messages alone.
+    pub(crate) fn file_name(&self) -> &str {
+        Path::new(&self.file).file_name().and_then(OsStr::to_str).unwrap_or(&self.file)
+    }
+
     /// A mistake at some bytes of the text.
     pub(crate) fn error(
         &self,

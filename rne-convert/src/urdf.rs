@@ -100,7 +100,8 @@ pub(crate) struct Joint {
 }
 
 impl Urdf {
-    /// Reads the text of a URDF; `file` is what messages call it.
+    /// Reads the text of a URDF; `file` is what messages call it, its path. The robot file keeps its name without
+    /// folders.
     ///
     /// # Errors
     ///

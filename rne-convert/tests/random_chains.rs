@@ -198,7 +198,7 @@ fn what_is_exported_comes_back() {
 #[test]
 fn shipped_robots_are_written_converted_and_exported() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots");
-    let mut seen = 0;
+    let (mut seen, mut with_friction) = (0, 0);
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let name = path.file_name().unwrap().to_string_lossy().into_owned();
@@ -223,7 +223,27 @@ fn shipped_robots_are_written_converted_and_exported() {
         let options =
             Options { snap: false, gravity, convention: robot.convention, keep_unphysical: true, ..Options::default() };
         let back = Urdf::read(&name, &exported.text).and_then(|urdf| urdf.import(&options));
-        assert_same_torques(&robot, &back.unwrap_or_else(|report| panic!("{report}")).robot, 1e-12);
+        let back = back.unwrap_or_else(|report| panic!("{report}")).robot;
+        assert_same_torques(&robot, &back, 1e-12);
+        has_the_friction_of_both_directions(&robot, &back);
+        with_friction += usize::from(back.joints.iter().any(|joint| joint.motor.is_some()));
     }
-    assert!(seen >= 15, "{seen}");
+    assert!(seen >= 15 && with_friction >= 1, "{seen}, {with_friction} with friction");
+}
+
+/// Half of the difference of the torques forth and back is the mean of the friction of both directions: by the runtime,
+/// which computes it through the gear.
+fn has_the_friction_of_both_directions(robot: &Robot, back: &Robot) {
+    let still = vec![0.0; robot.dof()];
+    let friction = |robot: &Robot, speed: f64| -> Vec<f64> {
+        let arm = DynArm::from_robot(robot);
+        let [forth, back] =
+            [speed, -speed].map(|speed| arm.actuator_torques(&vec![speed; robot.dof()], &still).unwrap());
+        forth.iter().zip(back).map(|(forth, back)| 0.5 * (forth - back)).collect()
+    };
+    for speed in [1e-3, 0.5, 3.0] {
+        let (expected, found) = (friction(robot, speed), friction(back, speed));
+        let close = expected.iter().zip(&found).all(|(a, b)| (a - b).abs() <= 1e-14 * a.abs());
+        assert!(close, "{} at {speed}: {expected:?} {found:?}", robot.name);
+    }
 }

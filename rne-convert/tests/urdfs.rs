@@ -444,6 +444,31 @@ fn bodies_that_are_none() {
     assert!(!kept.robot.joints[0].is_physical());
 }
 
+/// 50² 2e-4 N m s/rad and 50 (0.03 + 0.01)/2 N m; a friction without a gear comes back to the last digit.
+#[test]
+fn friction_goes_through_the_gear_to_the_joint() {
+    let text = |motor: &str| {
+        format!(
+            "{{format: 1, name: arm, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [{{type: \
+             revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1}}, motor: {motor}}}]}}"
+        )
+    };
+    let exported = |motor: &str| rne_convert::export(&Robot::from_yaml(&text(motor)).unwrap_or_else(|e| panic!("{e}")));
+    let geared = exported("{inertia: 1e-4, gear_ratio: -50, viscous: 2e-4, coulomb: [0.03, -0.01]}");
+    assert!(geared.text.contains("<dynamics damping=\"0.5\" friction=\"1\"/>"), "{}", geared.text);
+    for part in ["motors are left out, but for their friction", "is written as its mean", ": joint1"] {
+        assert!(geared.remarks.iter().any(|remark| remark.contains(part)), "{part}: {:?}", geared.remarks);
+    }
+    let direct = exported("{viscous: 0.1, coulomb: [0.3, -0.3]}");
+    assert_eq!(direct.remarks, [""; 0]);
+    let back = plain(&direct.text).robot.joints[0].motor.expect("friction");
+    assert_eq!((back.viscous, back.coulomb, back.gear_ratio, back.inertia), (0.1, [0.3, -0.3], 1.0, 0.0));
+    let rotor = exported("{inertia: 1e-4, gear_ratio: 50}");
+    assert!(!rotor.text.contains("dynamics") && rotor.remarks.len() == 1, "{rotor:?}");
+    let huge = exported("{inertia: 1e-4, gear_ratio: 1e160, viscous: 1}");
+    assert!(!huge.text.contains("dynamics") && huge.remarks.len() == 2, "{huge:?}");
+}
+
 #[test]
 fn friction_becomes_that_of_a_motor_without_a_gear() {
     let text = pendulum("<axis xyz=\"0 1 0\"/><dynamics damping=\"0.5\" friction=\"0.2\"/>");

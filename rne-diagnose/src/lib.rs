@@ -1,8 +1,8 @@
 //! Why is my torque different? Two tools that disagree have, as a rule, made one of the same few slips: the rows read
 //! in the other convention, gravity upwards, an inertia about another point, degrees.
 //!
-//! [`diagnose`] makes every one of them, and every pair, and names those that give the numbers in question. Numbers in,
-//! data out: nothing here opens a file or prints.
+//! [`diagnose`] makes every one of them, one [`Typo`] at a time, then every pair, and names those that give the
+//! numbers in question. Numbers in, data out: nothing here opens a file or prints.
 //!
 //! ```
 //! use rne_diagnose::{Diagnosis, Observation, Slip, diagnose};
@@ -24,6 +24,7 @@ pub mod lecture;
 mod misprint;
 mod observation;
 mod slip;
+mod typo;
 
 use rne_model::Robot;
 use rne_runtime::{DynArm, WrongLength};
@@ -31,6 +32,7 @@ use rne_runtime::{DynArm, WrongLength};
 use crate::computation::Computation;
 pub use crate::observation::Observation;
 pub use crate::slip::Slip;
+pub use crate::typo::Typo;
 
 /// What is to be said of torques.
 #[derive(Clone, Debug, PartialEq)]
@@ -66,7 +68,8 @@ pub fn diagnose(robot: &Robot, seen: &[Observation]) -> Result<Diagnosis, WrongL
         let tried = Tried::of(robot, seen, slips)?.filter(|tried| tried.fits);
         Ok(tried.map(|Tried { error, .. }| Explanation { slips: slips.to_vec(), error }))
     };
-    let found = slips.iter().filter_map(|&slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
+    let alone = slips.iter().copied().chain(Typo::all_of(robot).into_iter().map(Slip::Typo));
+    let found = alone.filter_map(|slip| explains(&[slip]).transpose()).collect::<Result<Vec<_>, _>>()?;
     if !found.is_empty() {
         return Ok(Diagnosis::Explained(found));
     }

@@ -7,6 +7,7 @@ use rne_model::{Convention, Inertia, InertiaReference, JointKind, Link, Robot, T
 
 use crate::computation::Computation;
 use crate::lecture::Misprint;
+use crate::typo::Typo;
 
 /// A slip that makes two tools disagree. In this order they are looked for: the commonest first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -75,6 +76,8 @@ pub enum Slip {
     RatesExchanged,
     /// A formula of the lecture as it was printed, or a common mistake in one.
     Misprint(Misprint),
+    /// A sign that is mistyped in one row or link; looked for alone, not in pairs.
+    Typo(Typo),
 }
 
 /// Which slips exclude each other: they change the same thing.
@@ -97,10 +100,11 @@ enum Subject {
     UnitOfTorque,
     Rates,
     Formula(Misprint),
+    Number(Typo),
 }
 
 impl Slip {
-    /// All that could be made with a robot.
+    /// All that could be made with a robot, singly and in pairs: what concerns all links, one joint or a formula.
     #[must_use]
     pub fn all_of(robot: &Robot) -> Vec<Self> {
         let mut all = vec![Self::OtherConvention, Self::GravityReversed, Self::NoGravity];
@@ -169,6 +173,7 @@ impl Slip {
             Self::TorquesInNmm => Subject::UnitOfTorque,
             Self::RatesExchanged => Subject::Rates,
             Self::Misprint(misprint) => Subject::Formula(misprint),
+            Self::Typo(typo) => Subject::Number(typo),
         }
     }
 
@@ -232,6 +237,7 @@ impl Slip {
             Self::TorquesInNmm => of.moment_factor = 1e3,
             Self::RatesExchanged => of.rates_exchanged = true,
             Self::Misprint(misprint) => of.misprints.push(misprint),
+            Self::Typo(typo) => typo.make(robot),
         }
     }
 }
@@ -307,6 +313,7 @@ impl Slip {
             Self::TorquesInNmm => "torques_in_nmm",
             Self::RatesExchanged => "rates_exchanged",
             Self::Misprint(_) => "misprint",
+            Self::Typo(typo) => typo.name(),
         }
     }
 
@@ -381,6 +388,7 @@ impl Slip {
             Self::TorquesInNmm => "the torques of turning joints are in N mm".to_owned(),
             Self::RatesExchanged => "velocities and accelerations are exchanged".to_owned(),
             Self::Misprint(misprint) => misprint.says().to_owned(),
+            Self::Typo(typo) => typo.says(robot),
         }
     }
 
@@ -436,6 +444,7 @@ impl Slip {
             Self::TorquesInNmm => "N m where a joint turns, N where it slides".to_owned(),
             Self::RatesExchanged => "q̇ before q̈: τ(q, q̇, q̈)".to_owned(),
             Self::Misprint(misprint) => misprint.right().to_owned(),
+            Self::Typo(typo) => typo.right(robot),
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::inspection;
 use crate::location::{self, RobotFile};
 use crate::own_tests;
 use crate::parameters::Parameters;
-use crate::warning::warnings;
+use crate::warning::{misnamed_golden, warnings};
 
 /// The derive of a capability.
 ///
@@ -71,11 +71,14 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
     let is_silent = attribute.allow_lints || matches!(attribute.source, Some(Source::Builtin(_)));
     let said = if is_silent { None } else { attribute.source.as_ref().zip(loaded.lints.as_ref()) };
     let warnings = said.map(|(source, lints)| warnings(lints, &item, source.span()));
+    let asks = capability == Capability::InverseDynamics && attribute.tests.is_some() && !is_silent;
+    let misnamed = loaded.misnamed_golden.filter(|_| asks).zip(attribute.source.as_ref());
+    let misnamed = misnamed.map(|((found, right), source)| misnamed_golden(&found, &right, &item, source.span()));
     // a plan that is not used is not watched
     let plan = loaded.plan.filter(|_| attribute.form != Form::SevenSteps).map(|file| watch(&file));
     let watched = loaded.watched;
     let errors = errors.into_tokens();
-    quote!(#errors #warnings #watched #plan #code)
+    quote!(#errors #warnings #misnamed #watched #plan #code)
 }
 
 fn is_struct(item: &DeriveInput, errors: &mut Errors) {
@@ -118,6 +121,8 @@ pub(crate) struct Loaded {
     pub(crate) plan: Option<RobotFile>,
     /// The golden file beside it.
     golden: Option<RobotFile>,
+    /// A file that was probably meant to be that: its name, and what it should be.
+    misnamed_golden: Option<(String, String)>,
     /// How many joints it has, or seems to have if it is invalid.
     joints: usize,
     /// What is suspicious about a valid file.
@@ -125,6 +130,7 @@ pub(crate) struct Loaded {
 }
 
 pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors) -> Loaded {
+    let mut misnamed_golden = None;
     let (name, bytes, watched, plan, golden, text) = match source {
         Source::Yaml(text) => {
             ("<inline yaml>".to_owned(), text.value().into_bytes(), TokenStream::new(), None, None, quote!(#text))
@@ -135,6 +141,7 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
                 let plan = plan.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
                 let golden = location::golden_beside(&file);
                 let golden = golden.map_err(|unreadable| errors.at(path, unreadable)).unwrap_or_default();
+                misnamed_golden = location::misnamed_golden_beside(&file).filter(|_| golden.is_none());
                 let watched = watch(&file);
                 let text = text(&file);
                 (file.shown, file.bytes, watched, plan, golden, text)
@@ -167,7 +174,8 @@ pub(crate) fn load(source: &Source, parameters: &Parameters, errors: &mut Errors
     });
     match checked {
         Ok(Some(Checked { robot, lints, .. })) => {
-            Loaded { joints: robot.dof(), robot: Some(robot), text, watched, plan, golden, lints: Some(lints) }
+            let (joints, robot, lints) = (robot.dof(), Some(robot), Some(lints));
+            Loaded { robot, text, watched, plan, golden, misnamed_golden, joints, lints }
         }
         // a field is no parameter, which has been said
         Ok(None) => Loaded { watched, ..Loaded::default() },

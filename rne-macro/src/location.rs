@@ -5,7 +5,7 @@ use std::path::{Component, Path, PathBuf};
 use std::{env, fmt, fs, io};
 
 use proc_macro2::Span;
-use rne_model::{did_you_mean, golden_of, plan_of, read_file};
+use rne_model::{did_you_mean, golden_of, misnamed_golden_of, plan_of, read_file};
 use syn::LitStr;
 
 /// A robot file that has been read.
@@ -104,6 +104,14 @@ pub(crate) fn plan_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing
 /// The golden file beside a robot file, if there is one.
 pub(crate) fn golden_beside(file: &RobotFile) -> Result<Option<RobotFile>, Missing> {
     beside(file, golden_of)
+}
+
+/// A file beside a robot file that was probably meant to be its golden file: its name, and what it should be.
+pub(crate) fn misnamed_golden_beside(file: &RobotFile) -> Option<(String, String)> {
+    let found = misnamed_golden_of(file.absolute.as_deref()?)?;
+    let shown = Path::new(&file.shown);
+    let found = shown.with_file_name(found.file_name()?);
+    Some((found.display().to_string(), golden_of(shown).display().to_string()))
 }
 
 fn beside(file: &RobotFile, name: fn(&Path) -> PathBuf) -> Result<Option<RobotFile>, Missing> {

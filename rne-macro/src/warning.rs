@@ -1,4 +1,4 @@
-//! Lints of a robot file as warnings of the compiler.
+//! Lints of a robot file, and of what stands beside it, as warnings of the compiler.
 
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
@@ -20,12 +20,23 @@ pub(crate) fn warnings(lints: &Report, item: &DeriveInput, place: Span) -> Token
     if !is_first(item, place) {
         return TokenStream::new();
     }
-    let levels: Vec<&Attribute> = item.attrs.iter().filter(|attribute| is_level(attribute)).collect();
     let mut notes: Vec<String> = lints.warnings().take(SAID).map(|lint| note(&lints.name, lint)).collect();
     let more = lints.warnings().count().saturating_sub(SAID);
     if more > 0 {
         notes.push(format!("{}: and {more} more warnings; `rne check` shows them all", lints.name));
     }
+    used(&notes, item, place)
+}
+
+/// The warning that the tests compare with no golden file, although one is nearly there.
+pub(crate) fn misnamed_golden(found: &str, right: &str, item: &DeriveInput, place: Span) -> TokenStream {
+    let note =
+        format!("{found} is not the golden file of this robot, and no test reads it\ndid you mean to name it {right}?");
+    used(&[note], item, place)
+}
+
+fn used(notes: &[String], item: &DeriveInput, place: Span) -> TokenStream {
+    let levels: Vec<&Attribute> = item.attrs.iter().filter(|attribute| is_level(attribute)).collect();
     let used = notes.iter().map(|note| {
         let body = quote_spanned! {place=>
             const _: () = {

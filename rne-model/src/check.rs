@@ -97,7 +97,7 @@ impl<'a> Reader<'a> {
                 Err(problems.finish(self.name, ""))
             }
             Err(error) => {
-                source::not_utf8(bytes, error, &problems);
+                source::not_utf8(bytes, error, document::ROBOT_FILE.name, &problems);
                 Err(problems.finish(self.name, &String::from_utf8_lossy(bytes)))
             }
         }

@@ -361,7 +361,11 @@ impl<'t> Builder<'t> {
 
     fn close(&mut self, end: &Range<usize>) -> Result<(), Diagnostic> {
         let Some(open) = self.stack.pop() else { return Ok(()) };
-        let text = self.text.get(open.start..end.end).unwrap_or_default();
+        // the parser ends what is in brackets where the next value begins, behind comments
+        let is_at = |at: usize, brackets: [char; 2]| self.text.get(at..).is_some_and(|rest| rest.starts_with(brackets));
+        let is_in_brackets = is_at(open.start, ['[', '{']) && is_at(end.start, [']', '}']);
+        let end = if is_in_brackets { end.start + 1 } else { end.end };
+        let text = self.text.get(open.start..end).unwrap_or_default();
         let span = open.start..open.start + text.trim_end().len();
         let content = match open.children {
             Children::Sequence(items) => Content::Sequence(items),
@@ -457,4 +461,33 @@ fn line(breaks: &[usize], offset: usize) -> usize {
 
 fn not_a_key(span: Range<usize>) -> Diagnostic {
     Diagnostic::error(span, "a key must be a plain word; lists, mappings and aliases are not allowed as keys")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The text of the value behind each key of a path.
+    fn value<'t>(text: &'t str, path: &[&str]) -> &'t str {
+        let root = read("x.yaml", text, ROBOT_FILE).unwrap_or_else(|report| panic!("{report}"));
+        let node = path.iter().fold(&*root, |node, key| node.get(key).unwrap_or_else(|| panic!("no {key}")));
+        &text[node.span.clone()]
+    }
+
+    #[test]
+    fn what_is_in_brackets_ends_with_them() {
+        for after in ["", "   ", " # a comment", "\n\n", " # a comment\n\n# another ] }\n"] {
+            let text =
+                format!("a: [0, 1]{after}\nb:\n  c: {{d: [2,  # half\n    3], e: [f: 1]}}{after}\ng: &h {{}}{after}\n");
+            assert_eq!(value(&text, &["a"]), "[0, 1]", "{text}");
+            assert_eq!(value(&text, &["b", "c"]), "{d: [2,  # half\n    3], e: [f: 1]}", "{text}");
+            assert_eq!(value(&text, &["b", "c", "d"]), "[2,  # half\n    3]", "{text}");
+            assert_eq!(value(&text, &["b", "c", "e"]), "[f: 1]", "{text}");
+            assert_eq!(value(&text, &["g"]), "{}", "{text}");
+        }
+        // a pair without brackets of its own
+        let root = read("x.yaml", "[f: 1]  # one", ROBOT_FILE).expect("YAML");
+        let Content::Sequence(items) = &root.content else { panic!("{root:?}") };
+        assert!(items[0].span.start == 1 && items[0].span.end <= 5, "{items:?}");
+    }
 }

@@ -66,7 +66,7 @@ impl GoldenFile {
         let text = match std::str::from_utf8(bytes) {
             Ok(text) => text,
             Err(error) => {
-                not_utf8(bytes, error, &problems);
+                not_utf8(bytes, error, "a golden file", &problems);
                 return Err(problems.finish(name, &String::from_utf8_lossy(bytes)));
             }
         };
@@ -245,6 +245,9 @@ mod tests {
         // every mistake of a line
         assert_eq!(state("a,b,3,4,5,6,7,8").lines().count(), 2);
         let report = GoldenFile::read("arm.golden.csv", b"q1\xFF", 2).expect_err("no text");
-        assert!(report.short().contains("arm.golden.csv:1:3: error: byte 0xFF is not UTF-8"), "{report}");
+        assert!(
+            report.short().contains("arm.golden.csv:1:3: error: byte 0xFF is not UTF-8; a golden file is"),
+            "{report}"
+        );
     }
 }

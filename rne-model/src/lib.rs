@@ -93,7 +93,7 @@ mod varying;
 #[cfg(feature = "std")]
 pub use check::{Checked, Reader};
 #[cfg(feature = "std")]
-pub use data_file::{MAX_BYTES, golden_of, open_file, plan_of, read_file, read_limited, robot_of};
+pub use data_file::{MAX_BYTES, golden_of, misnamed_golden_of, open_file, plan_of, read_file, read_limited, robot_of};
 #[cfg(feature = "std")]
 pub use diagnostic::{Diagnostic, Report, Severity};
 #[cfg(feature = "std")]

@@ -20,12 +20,12 @@ pub(crate) fn size_is_fine(length: usize, what: &str, problems: &Problems) -> bo
 }
 
 /// Reports the first byte of `bytes` that is not UTF-8.
-pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, problems: &Problems) {
+pub(crate) fn not_utf8(bytes: &[u8], error: std::str::Utf8Error, what: &str, problems: &Problems) {
     let at = error.valid_up_to();
     let byte = bytes.get(at).copied().unwrap_or_default();
     // Its replacement, U+FFFD, takes three bytes of the text that is shown.
     problems.push(
-        Diagnostic::error(at..at + 3, format!("byte 0x{byte:02X} is not UTF-8; a robot file is UTF-8 text"))
+        Diagnostic::error(at..at + 3, format!("byte 0x{byte:02X} is not UTF-8; {what} is UTF-8 text"))
             .label("not UTF-8")
             .help(match bytes {
                 [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",

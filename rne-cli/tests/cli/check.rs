@@ -137,3 +137,21 @@ fn physics() {
     assert_eq!(called.status, 1);
     assert_eq!((called.out.matches("  holds").count(), called.out.matches("  fails").count()), (3, 2), "{called:?}");
 }
+
+#[test]
+fn a_golden_file_with_another_name_is_told() {
+    let folder = folder("misnamed_golden");
+    let (robot, golden) = (folder.join("wrist.yaml"), folder.join("wirst.golden.csv"));
+    fs::copy(format!("{ROOT}/robots/planar1.yaml"), &robot).expect("copied");
+    fs::write(&golden, "q1,qd1,qdd1,tau1\n0,0,0,0\n").expect("written");
+    let robot = robot.to_str().expect("UTF-8");
+    let checked = fine(&["check", robot]);
+    let told = format!(
+        "warning: {} is not the golden file of {robot}; did you mean to name it {}?",
+        golden.display(),
+        folder.join("wrist.golden.csv").display()
+    );
+    assert!(checked.contains(&told), "{checked}");
+    fs::rename(&golden, folder.join("wrist.golden.csv")).expect("renamed");
+    assert!(!fine(&["check", robot]).contains("warning"));
+}

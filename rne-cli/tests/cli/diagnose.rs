@@ -69,7 +69,26 @@ fn mistakes_in_the_call() {
     call(&["--tau", "1,2"], &["--tau needs 1 number", "not 2"]);
     call(&[], &["--tau"]);
     call(&["--tau", "x"], &["number 1, `x`, is none"]);
-    call(&["--tau", "1", "--tolerance", "2"], &["from 0 to below 1"]);
+    for bad in ["2", "-1", "-1e-3", "x"] {
+        call(&["--tau", "1", "--tolerance", bad], &["from 0 to below 1, such as --tolerance 1e-4"]);
+    }
     let state = ["--q", "0.5,0.3", "--qd", "1e155,0.5", "--qdd", "2,1", "--tau", "1,2"];
     fails(1, &[&["diagnose", "planar2"][..], &state].concat(), &["overflows: the state is too large"]);
+}
+
+/// Somebody has typed `alpha: pi/2` for joint 3 of the PUMA 560, whose file has `-pi/2`.
+#[test]
+fn a_mistyped_sign_is_named() {
+    let file = folder("mistyped").join("puma.yaml");
+    let text = fs::read_to_string(format!("{ROOT}/robots/puma560.yaml")).expect("a robot");
+    let mistyped = text.replacen("a: 0.0203, alpha: -pi/2", "a: 0.0203, alpha: pi/2", 1);
+    assert_ne!(text, mistyped);
+    fs::write(&file, mistyped).expect("written");
+    let state = ["--q", "0.1,0.3,-0.5,0.1,0.2,0.4", "--qd", "1,1,1,1,1,1", "--qdd", "1,0,0,0,0,1"];
+    let json = fine(&[&["eval", file.to_str().expect("UTF-8"), "--json"][..], &state].concat());
+    let tau: String = json.chars().filter(|c| c.is_ascii_digit() || ".,-".contains(*c)).collect();
+    let called = rne(&[&["diagnose", "puma560", "--tau", &tau][..], &state].concat());
+    for part in ["exactly", "`alpha` of row 3 (j3) has the other sign", "in the file `alpha` of row 3 (j3) is -1.5"] {
+        assert!(called.out.contains(part), "no `{part}` in {called:?}");
+    }
 }

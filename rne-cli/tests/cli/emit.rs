@@ -326,7 +326,7 @@ fn parameters_at_run_time() {
 #[test]
 fn parameters_that_cannot_stay_free() {
     let emit = |names| ["emit", DESK, "--run-time", names];
-    fails(1, &emit("uper"), &["no parameter `uper` for run time", "did you mean `upper`?"]);
+    fails(2, &emit("uper"), &["no parameter `uper` for run time", "did you mean `upper`?"]);
     fails(2, &emit("fore,fore"), &["--run-time names fore twice"]);
     let folder = folder("run_time_angle");
     let (robot, out) = (path(&folder, "arm.yaml"), path(&folder, "arm.rs"));

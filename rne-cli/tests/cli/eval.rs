@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::call::{ROOT, fails, fine, folder};
+use crate::call::{ROOT, fails, fine, folder, rne};
 use rne::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
     InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Wrench,
@@ -122,6 +122,14 @@ fn arguments_that_do_not_fit() {
         call(2, &["--q", bad], &["--q", "number 2", "is none", if bad.contains('e') { "too large" } else { "finite" }]);
     }
     call(2, &["--q", "1,90°,3"], &["number 2", "write `deg(90)`"]);
+    // numbers may begin with a sign or a point, and behind an option too
+    let minus = ["eval", robot, "--qd", three, "--qdd", three, "--json"];
+    let torques = fine(&[&minus[..], &["--q=-0.5,0.3,0.1"]].concat());
+    for q in [&["--q", "-0.5,0.3,0.1"][..], &["--q", "-.5,.3,1/10"], &["--q", "-1/2, 0.3, 0.1"]] {
+        assert_eq!(fine(&[&minus[..], q].concat()), torques, "{q:?}");
+    }
+    let commas = ["write --q -0.5,0.3,0.1\n", "try 'rne eval --help'"];
+    call(2, &["--qd", three, "--qdd", three, "--q", "-0.5", "0.3", "0.1"], &commas);
     for bad in ["1,x,3", "1,,3"] {
         call(2, &["--q", bad], &["number 2"]);
     }
@@ -187,7 +195,7 @@ fn parameters_are_set() {
     assert!((torque(&["--set", "held=2"]) - 3.2 * 9.81 / 4.0).abs() < 1e-14);
     assert!((torque(&["--set", "held=0.5", "--set", "m=2*4"]) - 8.0 * 9.81 / 4.0).abs() < 1e-13);
     let fails = |status, more: &[&str], words: &[&str]| fails(status, &[&call[..], more].concat(), words);
-    fails(1, &["--set", "hold=2"], &["no parameter `hold`", "there are `held`, `m`", "did you mean `held`?"]);
+    fails(2, &["--set", "hold=2"], &["no parameter `hold`", "there are `held`, `m`", "did you mean `held`?"]);
     fails(1, &["--set", "held=-2"], &["the mass `m` = -0.8 is negative"]);
     fails(2, &["--set", "held=2", "--set", "held=3"], &["--set gives held twice"]);
     fails(2, &["--set", "held"], &["write NAME=VALUE"]);
@@ -345,9 +353,31 @@ fn a_golden_file_is_written() {
     }
     let longer = fine(&["eval", robot, "--golden", "5", "--set", "fore=0.25"]);
     assert!(longer.starts_with(&text), "the same states in each run");
-    fails(2, &["eval", robot, "--golden", "0"], &["--golden"]);
+    for bad in ["0", "-3", "65536", "ten", "1.5"] {
+        fails(2, &["eval", robot, "--golden", bad], &["a golden file has 1 to 65535 states, such as --golden 100"]);
+    }
     fails(2, &["eval", robot, "--golden", "3", "--q", "0,0,0"], &["cannot be used with"]);
     let rotors = fine(&["eval", "robots/puma560.yaml", "--golden", "1", "--rotors"]);
     assert_ne!(rotors.lines().last(), fine(&["eval", "robots/puma560.yaml", "--golden", "1"]).lines().last());
     assert!(rotors.starts_with("# Torques of puma560, with its rotors"), "{rotors}");
+}
+
+/// Limits are no part of the dynamics: what lies outside is noted beside the answer, and is no part of it.
+#[test]
+fn positions_outside_of_the_limits_are_noted() {
+    let text = fs::read_to_string(format!("{ROOT}/{PUMA}")).expect("a robot");
+    let robot = rne_model::Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"));
+    let (_, upper) = robot.joints[1].limits.position.expect("limits");
+    let beyond = format!("0,{},0,0,0,0", upper + 0.25);
+    for more in [&[][..], &["--json"]] {
+        let at = ["eval", PUMA, "--function", "gravity_torques", "--q"];
+        let called = rne(&[&at[..], &[&beyond], more].concat());
+        assert_eq!((called.status, called.err.lines().count()), (0, 1), "{called:?}");
+        assert!(called.err.starts_with("note: q2 = ") && called.err.contains("outside of the limits of"), "{called:?}");
+        assert!(!called.out.contains("note") && !called.out.is_empty(), "{called:?}");
+        assert_eq!(rne(&[&at[..], &["0,0,0,0,0,0"], more].concat()).err, "");
+    }
+    // no limits, no notes
+    let free = rne(&["eval", "robots/planar2.yaml", "--function", "gravity_torques", "--q", "100,100"]);
+    assert_eq!((free.status, free.err.as_str()), (0, ""));
 }

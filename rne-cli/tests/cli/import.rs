@@ -43,9 +43,14 @@ fn an_import_prints_the_robot_file_and_tells_what_it_did() {
         assert!(called.err.contains(part), "no `{part}` in {}", called.err);
     }
     fails(1, &["import", urdf], &["`base` has 2 leaves", "`finger` (3 joints)", "`tip` (2 joints)", "--tip"]);
-    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", "arm.urdf:14:3"]);
+    fails(1, &["import", urdf, "--tip", "tip"], &["movable joints off the chain", "`grip`", &format!("{urdf}:14:3")]);
     fails(1, &["import", "no.urdf"], &["there is no URDF no.urdf"]);
     fails(2, &["import", urdf, "--lock", "grip"], &["JOINT=VALUE"]);
+    let leaves = ["those that carry no other", "`finger` (3 joints)", "`tip` (2 joints)"];
+    let unknown = [&["no link `tipp` that could be the tip", "did you mean `tip`?"], &leaves[..]].concat();
+    fails(2, &["import", urdf, "--tip", "tipp"], &unknown);
+    fails(2, &["import", urdf, "--base", "fing", "--tip", "tip"], &["did you mean `finger`?", "the links are `base`"]);
+    fails(2, &["import", urdf, "--tip", "tip", "--lock", "gripp=0"], &["no joint `gripp`", "did you mean `grip`?"]);
     let raw = rne(&["import", urdf, "--tip", "tip", "--lock-others", "--no-snap"]);
     assert!(raw.out.contains("alpha: 1.5708}") && !raw.err.contains("snapped"), "{raw:?}");
     // From a pipe too.

@@ -1,0 +1,149 @@
+//! Slips on the command line whose usual message would mislead: blanks in a list of numbers, an option without its
+//! value, a value that looks like an option.
+
+use clap::{Arg, ArgAction, Command, CommandFactory as _};
+
+use crate::arguments::Arguments;
+use crate::numbers::List;
+use crate::outcome::Failure;
+use crate::terminal::TYPED;
+
+/// The command, as its help is asked for, and what is wrong with its words; `None` where the message of the parser says
+/// it well. `words` are those behind the name of the program.
+pub(crate) fn explained(error: &clap::Error, words: &[String]) -> Option<(String, Failure)> {
+    if !error.use_stderr() {
+        return None;
+    }
+    let mut grammar = Arguments::command();
+    grammar.build();
+    let name = words.first()?;
+    let command = grammar.get_subcommands().find(|command| command.get_name() == name)?;
+    let words = &words[1..];
+    let text = with_blanks(command, words).or_else(|| without_value(command, words)).or_else(|| {
+        let is_stray = error.kind() == clap::error::ErrorKind::UnknownArgument;
+        is_stray.then(|| refused(command, words)).flatten()
+    })?;
+    Some((format!("rne {name}"), Failure::usage(text)))
+}
+
+/// The option of a word, `--q` or `--q=1`, and its value if it stands in the same word.
+fn option<'c, 'w>(command: &'c Command, word: &'w str) -> Option<(&'c Arg, Option<&'w str>)> {
+    let word = word.strip_prefix("--")?;
+    let (name, value) = word.split_once('=').map_or((word, None), |(name, value)| (name, Some(value)));
+    let arg = command.get_arguments().find(|arg| arg.get_long() == Some(name))?;
+    Some((arg, value))
+}
+
+fn takes_value(arg: &Arg) -> bool {
+    matches!(arg.get_action(), ArgAction::Set | ArgAction::Append)
+}
+
+fn takes_list(arg: &Arg) -> bool {
+    let is_list = |name: &clap::builder::Str| matches!(name.as_str(), "LIST" | "V");
+    arg.get_value_names().is_some_and(|names| names.iter().any(is_list))
+}
+
+/// An option with what it takes and is for, as its help has it.
+fn described(arg: &Arg) -> String {
+    let help = arg.get_help().map(ToString::to_string).unwrap_or_default();
+    format!("{TYPED}{arg}{TYPED:#}: {help}")
+}
+
+/// Lists of numbers with blanks between them: `--q 0.5 0.3`, `--q 0.5, 0.3`.
+fn with_blanks(command: &Command, words: &[String]) -> Option<String> {
+    let numbers = |word: &str| {
+        let word = word.trim_matches(',');
+        word.parse::<List>().is_ok().then(|| word.to_owned())
+    };
+    let mut meant = Vec::new();
+    for (index, word) in words.iter().enumerate() {
+        let Some((arg, value)) = option(command, word).filter(|(arg, _)| takes_list(arg)) else { continue };
+        let rest = words[index + 1..].iter().map(String::as_str);
+        let parts: Vec<String> = value.into_iter().chain(rest).map_while(numbers).collect();
+        if parts.len() > 1 {
+            meant.push(format!("{TYPED}--{} {}{TYPED:#}", arg.get_long().unwrap_or_default(), parts.join(",")));
+        }
+    }
+    (!meant.is_empty())
+        .then(|| format!("a list has commas and no blanks between its numbers: write {}", meant.join(" ")))
+}
+
+/// An option that takes numbers, and behind it another option or nothing: `--q --qd 1,1`.
+fn without_value(command: &Command, words: &[String]) -> Option<String> {
+    let is_missing = |(index, word): (usize, &String)| {
+        let (arg, value) = option(command, word).filter(|(arg, _)| takes_list(arg))?;
+        let is_next = words.get(index + 1).is_none_or(|next| option(command, next).is_some());
+        (value.is_none() && is_next).then_some(arg)
+    };
+    let arg = words.iter().enumerate().find_map(is_missing)?;
+    let long = arg.get_long().unwrap_or_default();
+    let example = if long == "payload" { "2,0,0,0.1" } else { "0.1,-0.2,pi/2" };
+    Some(format!("the numbers of {}\nare missing; write such as {TYPED}--{long} {example}{TYPED:#}", described(arg)))
+}
+
+/// A value that begins with a dash behind an option that takes none such: `--joint -1`.
+fn refused(command: &Command, words: &[String]) -> Option<String> {
+    words.windows(2).find_map(|pair| {
+        let [before, word] = pair else { return None };
+        let (arg, value) = option(command, before).filter(|(arg, _)| takes_value(arg))?;
+        let is_dashed = word.strip_prefix('-').is_some_and(|rest| !rest.is_empty() && !rest.starts_with('-'));
+        let is_refused = is_dashed && value.is_none() && !arg.is_allow_hyphen_values_set();
+        let is_refused = is_refused && !(arg.is_allow_negative_numbers_set() && word.parse::<f64>().is_ok());
+        is_refused.then(|| format!("`{word}` is no value of {}", described(arg)))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser as _;
+
+    use super::*;
+
+    /// What is said of a command line that is refused.
+    fn said(line: &str) -> Option<String> {
+        let words: Vec<String> = line.split(' ').map(str::to_owned).collect();
+        let all = std::iter::once("rne".to_owned()).chain(words.iter().cloned());
+        let error = Arguments::try_parse_from(all).err()?;
+        explained(&error, &words).map(|(_, failure)| anstream::adapter::strip_str(&failure.text).to_string())
+    }
+
+    #[test]
+    fn blanks_in_lists_are_commas() {
+        for (line, meant) in [
+            ("eval planar2 --q 0.5 0.3 --qd 0,0 --qdd 0,0", "--q 0.5,0.3"),
+            ("eval planar2 --q 0.5, 0.3 --qd 0,0 --qdd 0,0", "--q 0.5,0.3"),
+            ("eval planar2 --q=0.5 -0.3 --qd 0,0", "--q 0.5,-0.3"),
+            ("eval --q -pi/2 .3 --qd 1 2 planar2", "--q -pi/2,.3 --qd 1,2"),
+            ("eval arm --q 1,2 3 --base-omega 0 0 1", "--q 1,2,3 --base-omega 0,0,1"),
+            ("diagnose planar2 --q 1,2 --qd 1,2 --qdd 1,2 --tau 1 2", "--tau 1,2"),
+        ] {
+            let expected = format!("error: a list has commas and no blanks between its numbers: write {meant}");
+            assert_eq!(said(line), Some(expected), "{line}");
+        }
+    }
+
+    #[test]
+    fn options_without_their_numbers() {
+        for line in ["eval planar2 --q --qd 1,1", "eval planar2 --qd 1,1 --q", "eval planar2 --q --json"] {
+            let said = said(line).expect(line);
+            assert!(said.contains("--q <LIST>: Joint positions") && said.contains("--q 0.1,-0.2"), "{line}: {said}");
+        }
+    }
+
+    #[test]
+    fn dashes_before_values() {
+        let joint = said("show puma560 --joint -1").expect("refused");
+        assert!(joint.starts_with("error: `-1` is no value of --joint <") && !joint.contains("-- -1"), "{joint}");
+        let set = said("eval planar2 --set -m --q 1,1").expect("refused");
+        assert!(set.contains("`-m` is no value of --set <NAME=VALUE>: Another value of a parameter"), "{set}");
+    }
+
+    #[test]
+    fn what_the_parser_says_well_stays() {
+        for line in
+            ["eval planar2 --qq 1", "evil", "eval --help", "check", "show puma560 -x", "eval planar2 --golden -3"]
+        {
+            assert_eq!(said(line), None, "{line}");
+        }
+    }
+}
