@@ -6,6 +6,7 @@ Usage: python page.py RNE FOLDER [PICTURES]     RNE is the binary, pages go to F
 import json
 import pathlib
 import random
+import shutil
 import statistics
 import subprocess
 import sys
@@ -40,7 +41,9 @@ def browser(width, height, dark=False):
                      f"--window-size={width},{height}"):
         options.add_argument(argument)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
-    driver = webdriver.Chrome(options=options)
+    # named, so that nobody looks for them elsewhere
+    options.binary_location = shutil.which("chromium")
+    driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
     # a window has a smallest width, a phone has not
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})
@@ -98,7 +101,9 @@ def statements(driver, robot, inspection):
               readout,
             };
             """, name)
-        unit = inspection["quantities"][inspection["names"][name]["quantity"]]["units"][0]
+        known = inspection["names"][name]
+        kind = inspection["robot"]["joints"][known["joint"] - 1]["kind"]
+        unit = inspection["quantities"][known["quantity"]]["units"][kind == "prismatic"].replace(" ", "·")
         for what in ("name", "component", "arrow", "value"):
             check(found[what], f"{robot}: {name} leads to no {what}")
         check(name in found["readout"] and unit in found["readout"], f"{robot}: the readout has no {name} in {unit}")
@@ -160,8 +165,8 @@ def sliders(driver, robot):
         """)
     paint = driver.execute_script(
         "return performance.getEntriesByType('paint').filter(of => of.name === 'first-contentful-paint')[0]?.startTime")
-    print(f"  first paint {paint or float('nan'):.0f} ms; slider to repaint: work {statistics.median(work):.1f} ms, with the wait "
-          f"for the frame {statistics.median(took):.1f} ms (medians of 60)")
+    print(f"  first paint {paint or float('nan'):.0f} ms; slider to repaint: work {statistics.median(work):.1f} ms, "
+          f"with the wait for the frame {statistics.median(took):.1f} ms (medians of 60)")
 
 
 def hover(driver, robot):

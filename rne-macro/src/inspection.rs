@@ -1,5 +1,5 @@
-//! `#[robot(inspect)]`: the generated code as a file to read, with the formulas and the meaning of every name, where the
-//! compiler writes its output.
+//! `#[robot(inspect)]`: the generated code as a file to read, with the formulas and the meaning of every name, where
+//! the compiler writes its output.
 
 use std::ffi::OsString;
 use std::fs;

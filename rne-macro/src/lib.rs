@@ -308,8 +308,8 @@ use rne_codegen::Capability;
 /// # `inspect`
 ///
 /// `#[robot(path = "…", inspect)]` writes the code as a file to read, with the formulas of each step and the meaning of
-/// every name, beside what the compiler writes: `target/debug/rne/NAME.InverseDynamics.seven_steps.rs`. Who meets `w2_z`
-/// in a debugger finds it there; `rne explain w2_z FILE` tells what it is computed from.
+/// every name, beside what the compiler writes: `target/debug/rne/NAME.InverseDynamics.seven_steps.rs`. Who meets
+/// `w2_z` in a debugger finds it there; `rne explain w2_z FILE` tells what it is computed from.
 ///
 /// # `allow_lints`
 ///
