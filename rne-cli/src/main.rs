@@ -6,7 +6,9 @@ mod arguments;
 mod arm;
 mod base_parameters;
 mod check;
+mod compare;
 mod convert;
+mod csv_table;
 mod diagnose;
 mod emit;
 mod eval;
@@ -37,6 +39,7 @@ mod state;
 mod terminal;
 mod tour;
 mod worksheet;
+mod worksheet_file;
 
 use std::process::ExitCode;
 

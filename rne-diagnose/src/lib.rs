@@ -24,6 +24,7 @@ pub mod lecture;
 mod misprint;
 mod observation;
 mod slip;
+pub mod worksheet;
 
 use rne_model::Robot;
 use rne_runtime::{DynArm, WrongLength};
