@@ -167,9 +167,10 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
         let _ = writeln!(text, "no usual slip gives this value: check each term above");
     }
     let tally = format!(
-        "{} compared, {} differ{}; what depends on this one is to be computed again",
+        "{} compared, {} {}{}; what depends on this one is to be computed again",
         values(comparison.compared),
         comparison.differing,
+        if comparison.differing == 1 { "differs" } else { "differ" },
         not_given(comparison)
     );
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&tally, width, ""));
@@ -199,7 +200,7 @@ fn inputs(line: &Line) -> String {
     let width = line.inputs.iter().map(|input| crate::layout::width(&input.symbol)).max().unwrap_or(0);
     for input in &line.inputs {
         let symbol = left(&input.symbol, width);
-        let unit = if input.unit == "1" { "" } else { input.unit };
+        let unit = if input.unit == "1" { String::new() } else { format!(" {QUIET}{}{QUIET:#}", input.unit) };
         let numbers = match (matrix(&input.values), input.values.as_slice()) {
             (Some(rows), _) => {
                 let margin = " ".repeat(width + 7);
@@ -208,9 +209,9 @@ fn inputs(line: &Line) -> String {
             (None, [one]) => fixed(*one).trim().to_owned(),
             (None, several) => triple(several),
         };
-        let _ = writeln!(text, "    {symbol} = {numbers} {QUIET}{unit}{QUIET:#}");
+        let _ = writeln!(text, "    {symbol} = {numbers}{unit}");
     }
-    text.lines().map(str::trim_end).fold(String::new(), |text, line| text + line + "\n")
+    text
 }
 
 /// The terms of a formula, and their sum.

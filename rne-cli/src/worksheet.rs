@@ -73,6 +73,9 @@ const MARGIN: usize = 12;
 /// Columns of a unit, with the gap before the formula.
 const UNIT: usize = 8;
 
+/// A blank at which no line breaks.
+const TIED: &str = "\u{A0}";
+
 /// The worksheet for reading.
 pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: &State) -> String {
     let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
@@ -85,6 +88,10 @@ pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: 
         if section != Some(here) {
             section = Some(here);
             title(&mut text, robot, line);
+            if narrowed.step.is_none() && !line.quantity.is_inward() {
+                let of_file = wrap(&format!("    {}", of_file(robot, line.joint)), COLUMNS, "      ");
+                let _ = writeln!(text, "{QUIET}{of_file}{QUIET:#}");
+            }
         }
         write_line(&mut text, line);
     }
@@ -145,8 +152,43 @@ fn title(text: &mut String, robot: &Robot, line: &Line) {
     let name = robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name);
     let margin = left(&format!("link {}", line.joint), MARGIN);
     let [x, y, z] = ["x", "y", "z"].map(|axis| left(&format!("    {axis}"), WIDTH));
-    let gap = " ".repeat(2);
-    let _ = writeln!(text, "\n{TITLE}{margin}{TITLE:#}{QUIET}{x}{y}{z}{gap}{way}, {kind}, {name}{QUIET:#}");
+    let about = format!("  {way}, {kind}, {name}");
+    let head = format!("{TITLE}{margin}{TITLE:#}{QUIET}{x}{y}{z}");
+    let is_long = MARGIN + 3 * WIDTH + width(&about) > COLUMNS;
+    let _ = match is_long {
+        false => writeln!(text, "\n{head}{about}{QUIET:#}"),
+        true => writeln!(text, "\n{head}  {way}, {kind}{QUIET:#}\n{QUIET}    {name}{QUIET:#}"),
+    };
+}
+
+/// The numbers of a row of the table that the lines below it need.
+fn of_file(robot: &Robot, joint: usize) -> String {
+    let (i, row) = (joint, &robot.joints[joint - 1].row);
+    let number = |value: f64| {
+        let text = fixed(value).trim().to_owned();
+        if text.contains(['e', 'E']) || !text.contains('.') {
+            return text;
+        }
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    let [x, y, z] = row.link.com.map(number);
+    let inertia = row.link.inertia;
+    let named = [
+        ("xx", inertia.xx),
+        ("yy", inertia.yy),
+        ("zz", inertia.zz),
+        ("xy", inertia.xy),
+        ("xz", inertia.xz),
+        ("yz", inertia.yz),
+    ];
+    let inertia = named.into_iter().filter(|(_, value)| *value != 0.0);
+    let inertia: Vec<String> = inertia.map(|(name, value)| format!("I{name} {}", number(value))).collect();
+    let inertia = if inertia.is_empty() { "I 0".to_owned() } else { inertia.join(", ") };
+    format!(
+        "of the file: a{i} {} m, α{i} {} rad, com{i} ({x}, {y}, {z}) m, about it {inertia} kg m²",
+        number(row.dh.a),
+        number(row.dh.alpha.radians)
+    )
 }
 
 fn write_line(text: &mut String, line: &Line) {
@@ -175,15 +217,17 @@ fn write_line(text: &mut String, line: &Line) {
         (None, several) => several.iter().map(|value| fixed(*value)).collect(),
     };
     let unit = left(if line.unit() == "1" { "" } else { line.unit() }, UNIT);
-    let is_said = !line.terms.is_empty() || line.formula.contains(['ω', '(', 'R', 'A', 'm', '-']);
-    let (equals, style) = if is_said && is_formula(line) { ("= ", FORMULA) } else { ("", QUIET) };
+    let (equals, style) = if is_formula(line) { ("= ", FORMULA) } else { ("", QUIET) };
     let formula = format!("{equals}{}", line.formula);
-    let row = format!("{}{numbers}  {QUIET}{unit}{QUIET:#}", left(&name, MARGIN));
+    let row = format!("{}{numbers}", left(&name, MARGIN));
     let room = COLUMNS - (MARGIN + 3 * WIDTH + 2 + UNIT);
     let below = width(&formula) > room;
-    if below {
+    if below && unit.trim().is_empty() {
         let _ = writeln!(text, "{}", row.trim_end());
+    } else if below {
+        let _ = writeln!(text, "{row}  {QUIET}{}{QUIET:#}", unit.trim_end());
     } else {
+        let row = format!("{row}  {QUIET}{unit}{QUIET:#}");
         let _ = writeln!(text, "{row}{style}{formula}{style:#}");
     }
     if let Some([_, second, third]) = matrix {
@@ -194,16 +238,17 @@ fn write_line(text: &mut String, line: &Line) {
         }
     }
     if below {
-        let wrapped = wrap(&format!("      {formula}"), COLUMNS, "        ");
+        // a line breaks before a term
+        let tied = formula.replace(' ', TIED).replace(&format!("{TIED}+{TIED}"), &format!(" +{TIED}"));
+        let wrapped = wrap(&format!("{}{tied}", TIED.repeat(6)), COLUMNS, "        ").replace(TIED, " ");
         let _ = writeln!(text, "{style}{wrapped}{style:#}");
     }
 }
 
 /// Whether the right side says how to compute it, not what it is.
 fn is_formula(line: &Line) -> bool {
-    !matches!(line.formula.as_str(), "given" | "of the row" | "nothing touches the tip")
-        && !line.formula.starts_with("exerted")
-        && !line.formula.starts_with("from joint")
+    let at_the_tip = matches!(line.quantity, Quantity::NextForce | Quantity::NextMoment) && line.terms.is_empty();
+    !at_the_tip && !matches!(line.formula.as_str(), "given" | "of the row")
 }
 
 /// The rows of a matrix of nine numbers, or of the six of a symmetric one.

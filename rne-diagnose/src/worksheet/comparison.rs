@@ -152,12 +152,18 @@ impl<'a> Ordered<'a> {
         Self { sheet, values: given.iter().filter_map(place).collect(), digits, rounding }
     }
 
+    /// What a hand that rounds to these digits at each line is off by, in a line of this size: two units of the last
+    /// digit, for what is rounded before adds up.
+    fn by_hand(&self, size: f64) -> f64 {
+        2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
+    }
+
     /// How far a value of a place may be off.
     fn allowed(&self, place: Place) -> f64 {
         let Some(line) = self.sheet.lines.get(place.0) else { return 0.0 };
         let size = line.size();
         let written = self.values.get(&place).map_or(0.0, |given| given.resolution.min(COARSEST * size));
-        let by_hand = size * 10_f64.powi(1 - i32::from(self.digits));
+        let by_hand = self.by_hand(size);
         let rounding = self.rounding.get(line.unit()).copied().unwrap_or_default();
         by_hand.max(written) + rounding
     }
@@ -218,12 +224,16 @@ impl<'a> Ordered<'a> {
     /// What was done on the line alone.
     fn of_the_line(&self, line: usize, component: usize) -> Vec<Reason> {
         let ways = local::ways(self.line(line), component);
+        let zero_is_no_multiple = |way: &local::Way| {
+            let small = way.values[component].is_none_or(|value| value.abs() <= self.allowed((line, component)));
+            !small || way.says.contains("term")
+        };
         let fits = |way: &local::Way| {
             let mut said = way.values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
             said.all(|(at, value)| self.agrees((line, at), value))
         };
         let mut found: Vec<Reason> = Vec::new();
-        for way in ways.into_iter().filter(fits) {
+        for way in ways.into_iter().filter(|way| fits(way) && zero_is_no_multiple(way)) {
             let whole = way.values.len() > 1 && way.values.iter().all(Option::is_some);
             let reach = if whole { Reach::Line } else { Reach::Component };
             // what explains the line needs no help from what explains a part of it
@@ -243,7 +253,7 @@ impl<'a> Ordered<'a> {
             return Ok(Vec::new());
         }
         let largest = norm(&tau.iter().map(|value| value.value).collect::<Vec<_>>());
-        let by_hand = largest * 10_f64.powi(1 - i32::from(self.digits));
+        let by_hand = self.by_hand(largest);
         let seen = Observation {
             q: at.q.clone(),
             qd: at.qd.clone(),

@@ -98,17 +98,20 @@ impl Formulas<'_> {
         let slides = *kind == JointKind::Prismatic;
         let [theta, offset] = [(row.dh.theta.radians, !slides), (row.dh.d, slides)].map(|(constant, moves)| {
             let own = if moves { vec![scalar(&format!("q{i}"), q)] } else { Vec::new() };
-            own.into_iter().chain([scalar("the constant of the row", constant)]).collect::<Vec<_>>()
+            own.into_iter().chain([scalar("the constant of its row", constant)]).collect::<Vec<_>>()
         });
         let sum = |terms: &[Term]| terms.iter().map(|term| term.values[0]).sum::<f64>();
-        let moving =
-            |moves: bool| if moves { format!("q{i} + the constant of the row") } else { "of the row".to_owned() };
+        let moving = |terms: &[Term]| match terms {
+            [own, constant] if constant.values[0] == 0.0 => own.text.clone(),
+            [own, constant] => format!("{} + {}", own.text, short(constant.values[0])).replace("+ -", "- "),
+            _ => "of the row".to_owned(),
+        };
         let mut lines = vec![
             here.line(Quantity::Q, vec![q], "given"),
             here.line(Quantity::Qd, vec![qd], "given"),
             here.line(Quantity::Qdd, vec![qdd], "given"),
-            Line { terms: theta.clone(), ..here.line(Quantity::Theta, vec![sum(&theta)], &moving(!slides)) },
-            Line { terms: offset.clone(), ..here.line(Quantity::Offset, vec![sum(&offset)], &moving(slides)) },
+            Line { terms: theta.clone(), ..here.line(Quantity::Theta, vec![sum(&theta)], &moving(&theta)) },
+            Line { terms: offset.clone(), ..here.line(Quantity::Offset, vec![sum(&offset)], &moving(&offset)) },
             here.line(Quantity::Mass, vec![link.mass], "given"),
         ];
         lines.push(self.rotation_line(here, orientations));
@@ -156,7 +159,7 @@ impl Formulas<'_> {
             (Axes::Base, true) => (format!("A{i} Rx(α{i})"), "(…)ᵀ".to_owned()),
             (Axes::Base, false) => (format!("A{i}"), format!("A{i}ᵀ")),
         };
-        let formula = format!("{left} I {right}, I about the centre of mass in link axes");
+        let formula = format!("{left} I {right}, I of the file, about com");
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = link.inertia;
         lines.push(here.line(Quantity::Inertia, vec![xx, xy, xz, yy, yz, zz], formula.trim_start()));
         lines
@@ -389,9 +392,9 @@ impl Formulas<'_> {
                 let symbol = quantity.symbol(i);
                 let Some(next) = self.links.get(i) else {
                     let what = match (&self.at.wrench, &self.at.payload) {
-                        (Some(_), _) => "exerted at the tip, turned into these axes",
-                        (None, Some(_)) => "exerted on the payload, turned into these axes",
-                        (None, None) => "nothing touches the tip",
+                        (Some(_), _) => "at the tip, in these axes",
+                        (None, Some(_)) => "on the payload",
+                        (None, None) => "free tip",
                     };
                     return here.line(quantity, list(value), what);
                 };
@@ -434,6 +437,12 @@ impl Here<'_> {
         let inputs = inputs.into_iter().flatten().collect();
         Line { formula, terms, inputs, ..self.line(quantity, values.to_vec(), "") }
     }
+}
+
+/// A number in six digits.
+fn short(value: f64) -> String {
+    let value: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    value.to_string()
 }
 
 fn term(text: &str, value: &V) -> Term {

@@ -18,7 +18,7 @@ pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
         |says: String, values: Vec<f64>| ways.push(Way { says, values: values.into_iter().map(Some).collect() });
     let with = |change: &[f64], times: f64| ours.iter().zip(change).map(|(x, y)| x + times * y).collect::<Vec<_>>();
     let several = line.terms.iter().filter(|term| super::norm(&term.values) > 0.0).count() > 1;
-    for term in line.terms.iter().filter(|_| several) {
+    for term in line.terms.iter().filter(|_| line.terms.len() > 1) {
         whole(format!("the term {} is left out", term.text), with(&term.values, -1.0));
     }
     for term in line.terms.iter().filter(|_| several) {
