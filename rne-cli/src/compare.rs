@@ -121,12 +121,13 @@ fn not_given(comparison: &Comparison) -> String {
 
 fn agreement(robot: &Robot, comparison: &Comparison, digits: u8) -> String {
     let text = format!(
-        "{GOOD}ok{GOOD:#} {} of {TITLE}{}{TITLE:#} compared, all agree to {digits} digits{}",
+        "ok {} of {} compared, all agree to {digits} digits{}",
         values(comparison.compared),
         robot.name,
         not_given(comparison)
     );
-    wrap(&text, terminal::width(WIDTH) + 20, "   ") + "\n"
+    let text = wrap(&text, terminal::width(WIDTH), "   ");
+    format!("{GOOD}ok{GOOD:#}{}\n", text.strip_prefix("ok").unwrap_or(&text))
 }
 
 /// More columns are hard to read.

@@ -89,7 +89,8 @@ pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: 
             section = Some(here);
             title(&mut text, robot, line);
             if narrowed.step.is_none() && !line.quantity.is_inward() {
-                let of_file = wrap(&format!("    {}", of_file(robot, line.joint)), COLUMNS, "      ");
+                let of_file =
+                    wrap(&format!("    {}", of_file(robot, line.joint)), COLUMNS, "      ").replace(TIED, " ");
                 let _ = writeln!(text, "{QUIET}{of_file}{QUIET:#}");
             }
         }
@@ -182,7 +183,7 @@ fn of_file(robot: &Robot, joint: usize) -> String {
         ("yz", inertia.yz),
     ];
     let inertia = named.into_iter().filter(|(_, value)| *value != 0.0);
-    let inertia: Vec<String> = inertia.map(|(name, value)| format!("I{name} {}", number(value))).collect();
+    let inertia: Vec<String> = inertia.map(|(name, value)| format!("I{name}{TIED}{}", number(value))).collect();
     let inertia = if inertia.is_empty() { "I 0".to_owned() } else { inertia.join(", ") };
     format!(
         "of the file: a{i} {} m, α{i} {} rad, com{i} ({x}, {y}, {z}) m, about it {inertia} kg m²",

@@ -18,3 +18,4 @@ mod search;
 mod shipped;
 mod show;
 mod terminal;
+mod worksheet;
