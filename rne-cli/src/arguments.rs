@@ -10,8 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell,
-    show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, search,
+    shell, show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -45,6 +45,7 @@ pub(crate) enum Command {
     Ops(ops::Arguments),
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
+    Plot(plot::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

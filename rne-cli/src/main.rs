@@ -31,6 +31,7 @@ mod outcome;
 mod output_file;
 mod physics;
 mod plan_file;
+mod plot;
 mod robot_file;
 mod search;
 mod shell;
@@ -38,6 +39,7 @@ mod show;
 mod state;
 mod terminal;
 mod tour;
+mod trajectory_file;
 mod worksheet;
 mod worksheet_file;
 
@@ -70,6 +72,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
+        Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

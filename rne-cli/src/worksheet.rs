@@ -156,9 +156,10 @@ fn title(text: &mut String, robot: &Robot, line: &Line) {
     let about = format!("  {way}, {kind}, {name}");
     let head = format!("{TITLE}{margin}{TITLE:#}{QUIET}{x}{y}{z}");
     let is_long = MARGIN + 3 * WIDTH + width(&about) > COLUMNS;
-    let _ = match is_long {
-        false => writeln!(text, "\n{head}{about}{QUIET:#}"),
-        true => writeln!(text, "\n{head}  {way}, {kind}{QUIET:#}\n{QUIET}    {name}{QUIET:#}"),
+    let _ = if is_long {
+        writeln!(text, "\n{head}  {way}, {kind}{QUIET:#}\n{QUIET}    {name}{QUIET:#}")
+    } else {
+        writeln!(text, "\n{head}{about}{QUIET:#}")
     };
 }
 

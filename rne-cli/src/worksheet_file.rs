@@ -114,8 +114,7 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
     if mistakes.are_there() {
         return mistakes.finish(Filled { values: Vec::new(), axes: None });
     }
-    let filled = Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text }.rows(&rows);
-    filled
+    Reading { robot, mistakes, axes, seen: HashMap::new(), values: Vec::new(), text }.rows(&rows)
 }
 
 fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Vec<(Cells<'a>, Range<usize>)> {
@@ -179,6 +178,11 @@ fn is_ours(format: Option<&str>, name: Option<&str>, span: &Range<usize>, robot:
     }
 }
 
+/// The members of an object, each as it is written.
+fn object(raw: &str) -> Result<BTreeMap<String, &RawValue>, serde_json::Error> {
+    serde_json::from_str(raw)
+}
+
 fn json_rows<'a>(
     name: &str,
     text: &'a str,
@@ -199,9 +203,6 @@ fn json_rows<'a>(
                     JSON has no NaN and no comma behind the last element";
         Failure::from(&Report::of_error(name, text, at..at + 1, format!("this is no worksheet: {message}"), Some(help)))
     };
-    fn object<'a>(raw: &'a str) -> Result<BTreeMap<String, &'a RawValue>, serde_json::Error> {
-        serde_json::from_str(raw)
-    }
     let mut list = text.trim();
     if list.starts_with('{') {
         let mut sheet = object(list).map_err(|error| broken(&error, list))?;
@@ -218,13 +219,11 @@ fn json_rows<'a>(
         {
             is_ours(format, robot_name, &span, robot, mistakes);
         }
-        match sheet.get("rows") {
-            Some(rows) => list = rows.get(),
-            None => {
-                mistakes.push(0..1, "there is no key `rows`", Some("`rows` is a list of objects, one for each value"));
-                return Ok(Vec::new());
-            }
-        }
+        let Some(rows) = sheet.get("rows") else {
+            mistakes.push(0..1, "there is no key `rows`", Some("`rows` is a list of objects, one for each value"));
+            return Ok(Vec::new());
+        };
+        list = rows.get();
     }
     let raw_rows: Vec<&RawValue> = serde_json::from_str(list).map_err(|error| broken(&error, list))?;
     let mut rows = Vec::new();

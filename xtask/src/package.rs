@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -37,6 +37,7 @@ const CRATES: [&str; 9] = [
     "rne-diagnose",
     "rne",
     "rne-convert",
+    "rne-plot",
     "rne-cli",
 ];
 

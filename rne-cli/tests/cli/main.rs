@@ -14,6 +14,7 @@ mod help;
 mod hostile;
 mod import;
 mod plans;
+mod plot;
 mod search;
 mod shipped;
 mod show;

@@ -147,7 +147,7 @@ fn slips_are_named() {
     let text = fs::read_to_string(format!("{}/robots/planar2.yaml", crate::call::ROOT)).expect("a robot");
     fs::write(&up, text.replace("gravity: [0, -9.81, 0]", "gravity: [0, 9.81, 0]")).expect("a file");
     let path = up.to_str().expect("UTF-8");
-    let wrong: Vec<&str> = PLANAR2.iter().map(|word| if word.ends_with(".yaml") { path } else { word }).collect();
+    let wrong: Vec<&str> = PLANAR2.iter().map(|word| if word.starts_with("robots/") { path } else { word }).collect();
     let mine = fine(&[&wrong[..], &["--csv"]].concat());
     let called = compared(&mine, &[]);
     assert_eq!(called.status, 1);
@@ -165,6 +165,8 @@ fn slips_are_named() {
     assert!(called.out.contains("gravity points the other way"), "{}", called.out);
 }
 
+const HEAD: &str = "joint,step,quantity,component,value,unit,frame\n";
+
 /// What is wrong with a file, where, and what to do.
 #[test]
 fn files_that_are_no_worksheets() {
@@ -175,7 +177,6 @@ fn files_that_are_no_worksheets() {
             assert!(called.err.contains(part), "{text:?}: no `{part}` in {}", called.err);
         }
     };
-    const HEAD: &str = "joint,step,quantity,component,value,unit,frame\n";
     let row = |row: &str, parts: &[&str]| bad(&format!("{HEAD}1,1,omega,z,1.3,rad/s,link\n{row}\n"), parts);
     bad("", &["the file is empty", "the header is `joint,step,quantity"]);
     bad(HEAD, &["no value is given"]);
