@@ -21,7 +21,8 @@ use crate::{answer, arguments, golden, show, worksheet_file};
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
   rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
       --wrench 3,-2,0,0,0,0.5 --json
@@ -72,10 +73,10 @@ pub(crate) struct Arguments {
         "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
-    /// The seven-step worksheet: every vector, and what goes into it
+    /// The worksheet of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Its axes: link, fixed to link i, the generated code's; joint, fixed to link i-1, the lecture's; base, of frame 0
+    /// Its axes: link, joint (the lecture's) or base
     #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
     axes: Option<Axes>,
     /// Its lines of one joint, from 1
@@ -87,10 +88,10 @@ pub(crate) struct Arguments {
     /// It as CSV, a row for each component
     #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
     csv: bool,
-    /// The first of your values that differs, and why: rows of --csv or --json
+    /// Where your rows of it first differ, and why
     #[arg(long, value_name = "MINE", requires = "trace")]
     compare: Option<PathBuf>,
-    /// Significant digits that have to agree [default: 4]
+    /// Significant digits that agree; 4, unless given
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
     digits: Option<u8>,
     /// {"result": …}, with --trace also "trace"

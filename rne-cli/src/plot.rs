@@ -15,7 +15,7 @@ use crate::output_file;
 use crate::terminal::QUIET;
 use crate::trajectory_file;
 
-/// Draw torques along a trajectory: inertia, Coriolis, gravity, powers
+/// Draw torques along a trajectory, with their parts
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -99,7 +99,8 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
     let least = Trajectory::least_duration(robot, &from, &to);
     // tenths of a second, not less than the limits ask for
     let seconds = arguments.duration.unwrap_or_else(|| DURATION.max((least * 10.0).ceil() / 10.0));
-    let trajectory = Trajectory::quintic(&from, &to, seconds, SAMPLES).map_err(Failure::usage)?;
+    let too_fast = |_| Failure::input(format_args!("in {seconds:e} s a speed overflows: the motion is too fast"));
+    let trajectory = Trajectory::quintic(&from, &to, seconds, SAMPLES).map_err(too_fast)?;
     let fast = if seconds < least {
         format!(", faster than speed limits allow ({} s)", rounded(least, 2))
     } else {

@@ -108,7 +108,7 @@ fn what_is_printed_agrees() {
     let called = compared(mine, &[]);
     assert_eq!(
         called.out,
-        "ok 2 values of planar2 compared, all agree to 4 digits; not given: steps 2, 3, 4, 5 and 6\n"
+        "ok 2 values of planar2 compared, all agree to 4 digits; not given: steps 2, 3,\n   4, 5 and 6\n"
     );
     // a list of rows is enough of JSON
     let mine = r#"[{"joint": 1, "quantity": "tau", "value": 12.366}, {"joint": 2, "quantity": "tau", "value": 2.421}]"#;
@@ -117,7 +117,7 @@ fn what_is_printed_agrees() {
     assert_eq!((&reply["agrees"], &reply["compared"], called.status), (&true.into(), &2.into(), 0), "{reply}");
 }
 
-/// The issue of a lecture: a term of c̈2 is left out, and everything behind it follows.
+/// A term of c̈2 is left out, and what is behind it follows.
 #[test]
 fn the_first_difference_reads_well() {
     let csv = fine(&planar2(&["--csv"]));
