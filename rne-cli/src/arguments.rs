@@ -30,8 +30,7 @@ Examples:
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
 FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
-Exit status: `rne explain exit-status`. NO_COLOR turns colours off.
-docs/robot-file.md explains every key of a robot file.")]
+Exit status: `rne explain exit-status`. Keys of a file: docs/robot-file.md.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,

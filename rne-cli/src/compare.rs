@@ -144,7 +144,7 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
         line.joint
     );
     let numbers = [first.theirs, first.ours, first.theirs - first.ours].map(fixed);
-    let _ = writeln!(text, "  yours   {}", numbers[0]);
+    let _ = writeln!(text, "  yours   {}", numbers[0].trim_end());
     let unit = if line.unit() == "1" { "" } else { line.unit() };
     let _ = writeln!(text, "  right   {}  {QUIET}{unit}{QUIET:#}", numbers[1].trim_end());
     let _ = writeln!(text, "  off by  {}\n", numbers[2].trim_end());

@@ -22,21 +22,26 @@ pub(crate) struct Row<'a> {
     pub(crate) span: Range<usize>,
 }
 
-/// The lines of a table, without comments, which begin with `#`, and without empty lines.
-#[derive(Debug, Default)]
-pub(crate) struct Table<'a> {
-    pub(crate) rows: Vec<Row<'a>>,
-    /// The comments, each without its `#`, and where it stands.
-    pub(crate) comments: Vec<(&'a str, Range<usize>)>,
+/// What stands on a line that is not empty.
+#[derive(Clone, Debug)]
+pub(crate) enum Line<'a> {
+    Row(Row<'a>),
+    /// Without its `#`, and where it stands.
+    Comment(&'a str, Range<usize>),
+    /// A quote opens here and does not close on its line.
+    OpenQuote(Range<usize>),
 }
 
-/// Mistakes in a file, all that are found.
+/// Mistakes in a file, as many as are read.
 #[derive(Debug)]
 pub(crate) struct Mistakes<'a> {
     name: &'a str,
     text: &'a str,
     report: Option<Report>,
 }
+
+/// Mistakes that are told: a file with another decimal mark has one in each cell.
+const TOLD: usize = 20;
 
 /// The text of a file, without a byte order mark.
 pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Failure> {
@@ -59,6 +64,9 @@ impl<'a> Mistakes<'a> {
     }
 
     pub(crate) fn push(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
+        if self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD) {
+            return;
+        }
         let report = Report::of_error(self.name, self.text, span, message, help);
         match &mut self.report {
             Some(all) => all.diagnostics.extend(report.diagnostics),
@@ -82,30 +90,32 @@ impl<'a> Mistakes<'a> {
     }
 }
 
-impl<'a> Table<'a> {
-    /// Reads a text whose cells are separated by commas, or by semicolons where its first line has no comma.
-    pub(crate) fn read(text: &'a str, mistakes: &mut Mistakes<'_>) -> Self {
-        let mut table = Self::default();
-        let mut separator = None;
-        let mut start = 0;
-        for line in text.split('\n') {
-            let shown = line.trim();
-            let from = start + (line.len() - line.trim_start().len());
-            let span = from..from + shown.len();
-            start += line.len() + 1;
-            if let Some(comment) = shown.strip_prefix('#') {
-                table.comments.push((comment.trim(), span));
-            } else if !shown.is_empty() {
-                let separator = *separator.get_or_insert(if shown.contains(',') { ',' } else { ';' });
-                match cells(shown, from, separator) {
-                    Ok(cells) => table.rows.push(Row { cells, span }),
-                    Err(at) => mistakes.push(at..from + shown.len(), "this quote is not closed on its line", None),
-                }
-            }
+/// The lines of a table: cells are separated by commas, or by semicolons where the first of them has no comma; comments
+/// begin with `#`; empty lines are left out.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    let mut separator = None;
+    let mut start = 0;
+    text.split('\n').filter_map(move |line| {
+        let shown = line.trim();
+        let from = start + (line.len() - line.trim_start().len());
+        let span = from..from + shown.len();
+        start += line.len() + 1;
+        if shown.is_empty() {
+            return None;
         }
-        table
-    }
+        if let Some(comment) = shown.strip_prefix('#') {
+            return Some(Line::Comment(comment.trim(), span));
+        }
+        let separator = *separator.get_or_insert(if shown.contains(',') { ',' } else { ';' });
+        Some(match cells(shown, from, separator) {
+            Ok(cells) => Line::Row(Row { cells, span }),
+            Err(at) => Line::OpenQuote(at..span.end),
+        })
+    })
 }
+
+/// What is wrong with a line of [`Line::OpenQuote`].
+pub(crate) const OPEN_QUOTE: &str = "this quote is not closed on its line";
 
 /// The cells of a line that starts at `start`; or where a quote opens that does not close.
 fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usize> {
@@ -150,23 +160,33 @@ mod tests {
     #[test]
     fn cells_have_their_places() {
         let text = "# a comment\r\na, \"b, \"\"c\"\"\" ,ü\r\n\r\n1,,3\n";
-        let mut mistakes = Mistakes::new("x.csv", text);
-        let table = Table::read(text, &mut mistakes);
-        assert!(!mistakes.are_there());
-        assert_eq!(table.comments[0].0, "a comment");
-        let texts: Vec<Vec<&str>> =
-            table.rows.iter().map(|row| row.cells.iter().map(|cell| cell.text.as_ref()).collect()).collect();
-        assert_eq!(texts, [vec!["a", "b, \"c\"", "ü"], vec!["1", "", "3"]]);
-        assert_eq!(&text[table.rows[0].cells[1].span.clone()], "\"b, \"\"c\"\"\"");
-        assert_eq!(&text[table.rows[1].cells[2].span.clone()], "3");
+        let all: Vec<Line<'_>> = lines(text).collect();
+        let [Line::Comment(comment, _), Line::Row(first), Line::Row(second)] = all.as_slice() else {
+            panic!("{all:?}")
+        };
+        let texts = |row: &Row<'_>| row.cells.iter().map(|cell| cell.text.to_string()).collect::<Vec<_>>();
+        assert_eq!(*comment, "a comment");
+        assert_eq!(
+            (texts(first), texts(second)),
+            (["a", "b, \"c\"", "ü"].map(str::to_owned).to_vec(), ["1", "", "3"].map(str::to_owned).to_vec())
+        );
+        assert_eq!(&text[first.cells[1].span.clone()], "\"b, \"\"c\"\"\"");
+        assert_eq!(&text[second.cells[2].span.clone()], "3");
     }
 
     #[test]
     fn a_quote_that_stays_open_is_told() {
         let text = "a,b\n1,\"2\n";
-        let mut mistakes = Mistakes::new("x.csv", text);
-        Table::read(text, &mut mistakes);
+        let Some(Line::OpenQuote(span)) = lines(text).nth(1) else { panic!("it is open") };
+        assert_eq!(&text[span], "\"2");
+    }
+
+    #[test]
+    fn so_many_mistakes_are_told() {
+        let text = "x\n".repeat(1000);
+        let mut mistakes = Mistakes::new("x.csv", &text);
+        (0..1000).for_each(|at| mistakes.push(2 * at..2 * at + 1, "no", None));
         let failure = mistakes.finish(()).unwrap_err();
-        assert!(failure.text.contains("not closed") && failure.text.contains("x.csv:2:3"), "{}", failure.text);
+        assert_eq!(failure.text.matches("x.csv:").count(), TOLD, "{}", failure.text);
     }
 }

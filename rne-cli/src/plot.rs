@@ -8,6 +8,7 @@ use rne_model::{JointKind, Robot};
 use rne_plot::{TorqueHistory, Trajectory, svg};
 
 use crate::arm::{ChosenArm, Setting};
+use crate::input_file::is_standard_input;
 use crate::layout::{Align, columns};
 use crate::numbers::{exact, rounded};
 use crate::outcome::{Failure, Outcome};
@@ -90,7 +91,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), Failure> {
     if let Some(path) = &arguments.trajectory {
         let trajectory_file::Given { trajectory, derived } = trajectory_file::read(path, robot)?;
-        let name = path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        let name = match path.file_name() {
+            Some(name) if !is_standard_input(path) => name.to_string_lossy().into_owned(),
+            _ => "trajectory".to_owned(),
+        };
         let samples = trajectory.time.len();
         let derived = if derived.is_empty() { String::new() } else { format!("; {derived}") };
         return Ok((trajectory, format!("{name}, {samples} samples{derived}")));

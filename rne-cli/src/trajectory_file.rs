@@ -5,15 +5,12 @@ use std::path::Path;
 use rne_model::{Robot, did_you_mean};
 use rne_plot::{Trajectory, TrajectoryError};
 
-use crate::csv_table::{Mistakes, Row, Table, quoted, text_of};
+use crate::csv_table::{Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, quoted, text_of};
 use crate::input_file;
 use crate::outcome::Failure;
 
-/// An hour of a six-joint arm at a hundred hertz has about this many bytes.
-const LONGEST: usize = 128 << 20;
-
-/// Mistakes in numbers that are told; a file with another decimal mark has one in each cell.
-const TOLD: usize = 20;
+/// Ten minutes of a six-joint arm at a hundred hertz, with all digits, are as long.
+const LONGEST: usize = 24 << 20;
 
 /// A trajectory, and in words what of it was derived.
 pub(crate) struct Given {
@@ -39,22 +36,38 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     }
     let text = text_of(&name, &bytes)?;
     let mut mistakes = Mistakes::new(&name, text);
-    let table = Table::read(text, &mut mistakes);
     let dof = robot.dof();
     let help = format!(
         "the header is t,{}; columns qd and qdd may be left out, others are passed over",
         names("q", dof).join(",")
     );
-    let Some((header, rows)) = table.rows.split_first() else {
+    let mut rows = Vec::new();
+    let mut table = lines(text).filter_map(|line| match line {
+        Line::Row(row) => Some(Ok(row)),
+        Line::OpenQuote(span) => Some(Err(span)),
+        Line::Comment(..) => None,
+    });
+    let header = table.next().and_then(|line| line.map_err(|span| mistakes.push(span, OPEN_QUOTE, None)).ok());
+    let Some(header) = header else {
         if !mistakes.are_there() {
             mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
         }
         return mistakes.finish(()).and(Err(Failure::input("the file is empty")));
     };
-    let Some(columns) = columns(header, dof, &help, &mut mistakes) else {
+    let Some(columns) = columns(&header, dof, &help, &mut mistakes) else {
         return mistakes.finish(()).and(Err(Failure::input("the header is not one of a trajectory")));
     };
-    let samples = numbers(header, rows, &columns, &mut mistakes);
+    let asked = columns.asked(header.cells.len());
+    let mut samples = Vec::new();
+    for line in table {
+        match line {
+            Ok(row) => {
+                rows.push(row.span.start);
+                samples.push(numbers(&header, &row, &asked, &mut mistakes));
+            }
+            Err(span) => mistakes.push(span, OPEN_QUOTE, None),
+        }
+    }
     mistakes.finish(())?;
     let mut mistakes = Mistakes::new(&name, text);
     let of = |columns: &[usize]| -> Vec<Vec<f64>> {
@@ -73,8 +86,8 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
         Err(error) => {
             let (span, help) = match &error {
                 TrajectoryError::Time(sample) => {
-                    let row = &rows[(*sample).min(rows.len() - 1)];
-                    (row.cells.get(columns.time).map_or_else(|| row.span.clone(), |cell| cell.span.clone()), None)
+                    let start = rows.get(*sample).copied().unwrap_or_default();
+                    (start..start + 1, None)
                 }
                 TrajectoryError::TooFew { .. } => {
                     (text.len()..text.len(), Some("a derivative needs three samples, a trajectory two"))
@@ -138,40 +151,37 @@ fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>
     (!mistakes.are_there()).then_some(columns)
 }
 
-/// The numbers of every line, column by column; 0 in columns that nobody asks for.
-fn numbers(header: &Row<'_>, rows: &[Row<'_>], columns: &Columns, mistakes: &mut Mistakes<'_>) -> Vec<Vec<f64>> {
-    let asked: Vec<bool> = (0..header.cells.len())
-        .map(|column| {
-            let of = |columns: &Option<Vec<usize>>| columns.as_ref().is_some_and(|columns| columns.contains(&column));
-            column == columns.time || columns.q.contains(&column) || of(&columns.qd) || of(&columns.qdd)
-        })
-        .collect();
-    let mut wrong = 0;
-    let mut all = Vec::with_capacity(rows.len());
-    for row in rows {
-        let mut numbers = vec![0.0; header.cells.len()];
-        if row.cells.len() != header.cells.len() && wrong < TOLD {
-            let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());
-            mistakes.push(row.span.clone(), message, Some("numbers have a decimal point, no comma"));
-            wrong += 1;
-            continue;
+impl Columns {
+    /// Whether a column is one of them.
+    fn asked(&self, columns: usize) -> Vec<bool> {
+        let all = [Some(&self.q), self.qd.as_ref(), self.qdd.as_ref()];
+        let mut asked = vec![false; columns];
+        for &column in all.into_iter().flatten().flatten().chain([&self.time]) {
+            asked[column] = true;
         }
-        for (column, cell) in row.cells.iter().enumerate().filter(|(column, _)| asked.get(*column) == Some(&true)) {
-            match cell.text.parse::<f64>().ok().filter(|number| number.is_finite()) {
-                Some(number) => numbers[column] = number,
-                None if wrong < TOLD => {
-                    let message = if cell.text.is_empty() {
-                        format!("a number of column `{}` is missing", header.cells[column].text)
-                    } else {
-                        format!("{} of column `{}` is no finite number", quoted(&cell.text), header.cells[column].text)
-                    };
-                    mistakes.push(cell.span.clone(), message, None);
-                    wrong += 1;
-                }
-                None => {}
-            }
-        }
-        all.push(numbers);
+        asked
     }
-    all
+}
+
+/// The numbers of a line, column by column; 0 in columns that nobody asks for, and where there is none.
+fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
+    if row.cells.len() != header.cells.len() {
+        let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());
+        mistakes.push(row.span.clone(), message, Some("numbers have a decimal point, no comma"));
+        return Vec::new();
+    }
+    let mut number = |(cell, name): (&Cell<'_>, &Cell<'_>)| {
+        let number = cell.text.parse::<f64>().ok().filter(|number| number.is_finite());
+        number.unwrap_or_else(|| {
+            let message = if cell.text.is_empty() {
+                format!("a number of column `{}` is missing", name.text)
+            } else {
+                format!("{} of column `{}` is no finite number", quoted(&cell.text), name.text)
+            };
+            mistakes.push(cell.span.clone(), message, None);
+            0.0
+        })
+    };
+    let pairs = row.cells.iter().zip(&header.cells).zip(asked);
+    pairs.map(|(pair, asked)| if *asked { number(pair) } else { 0.0 }).collect()
 }

@@ -13,7 +13,7 @@ use rne_model::{Report, Robot, did_you_mean};
 use serde::Serialize;
 use serde_json::value::RawValue;
 
-use crate::csv_table::{Cell, Mistakes, Table, quoted, text_of};
+use crate::csv_table::{self, Cell, Mistakes, OPEN_QUOTE, quoted, text_of};
 use crate::diagnose::resolution;
 use crate::input_file;
 use crate::numbers::exact;
@@ -27,7 +27,7 @@ const FORMAT: u32 = 1;
 const COLUMNS: [&str; 7] = ["joint", "step", "quantity", "component", "value", "unit", "frame"];
 
 /// A worksheet of 64 joints has half a megabyte.
-const LONGEST: usize = 16 << 20;
+const LONGEST: usize = 4 << 20;
 
 /// One number of a worksheet.
 #[derive(Serialize)]
@@ -81,9 +81,9 @@ pub(crate) fn json(
         .map_err(Failure::input)?;
     let rows = rows.join(",\n      ");
     let (name, axes) = (serde_json::Value::from(robot.name.as_str()), sheet.axes.name());
+    let about = format!(r#""format": {FORMAT}, "robot": {name}, "axes": "{axes}""#);
     Ok(format!(
-        "{{\n  \"result\": {result},\n  \"trace\": {{\n    \"format\": {FORMAT},\n    \"robot\": {name},\n    \"axes\": \
-         \"{axes}\",\n    \"rows\": [\n      {rows}\n    ]\n  }}\n}}\n"
+        "{{\n  \"result\": {result},\n  \"trace\": {{\n    {about},\n    \"rows\": [\n      {rows}\n    ]\n  }}\n}}\n"
     ))
 }
 
@@ -118,15 +118,22 @@ pub(crate) fn read(path: &Path, robot: &Robot, axes: Option<Axes>) -> Result<Fil
 }
 
 fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Vec<(Cells<'a>, Range<usize>)> {
-    let table = Table::read(text, mistakes);
-    for (comment, span) in &table.comments {
-        if let Some(about) = comment.strip_prefix("rne worksheet,") {
-            let word = |key: &str| about.split(',').find_map(|part| part.trim().strip_prefix(key).map(str::trim));
-            is_ours(word("format "), word("robot "), span, robot, mistakes);
+    let mut lines = Vec::new();
+    for line in csv_table::lines(text) {
+        match line {
+            csv_table::Line::Row(row) => lines.push(row),
+            csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
+            csv_table::Line::Comment(comment, span) => {
+                if let Some(about) = comment.strip_prefix("rne worksheet,") {
+                    let word =
+                        |key: &str| about.split(',').find_map(|part| part.trim().strip_prefix(key).map(str::trim));
+                    is_ours(word("format "), word("robot "), &span, robot, mistakes);
+                }
+            }
         }
     }
     let header = format!("the header is `{}`; each line below it has a value", COLUMNS.join(","));
-    let Some((first, rest)) = table.rows.split_first() else {
+    let Some((first, rest)) = lines.split_first() else {
         if !mistakes.are_there() {
             mistakes.push(0..0, "the file is empty: there is no header", Some(&header));
         }
@@ -260,7 +267,7 @@ struct Reading<'a> {
     robot: &'a Robot,
     mistakes: Mistakes<'a>,
     axes: Option<Axes>,
-    /// The line on which a component was given.
+    /// The byte at which a component was given.
     seen: HashMap<(usize, Quantity, usize), usize>,
     values: Vec<GivenValue>,
     text: &'a str,
@@ -303,8 +310,8 @@ impl Reading<'_> {
         self.frame(quantity, cell("frame"));
         let Some(component) = self.component(quantity, cell("component"), span) else { return };
         let Some(value) = self.value(value_cell) else { return };
-        let line = 1 + self.text.get(..span.start).unwrap_or_default().matches('\n').count();
-        if let Some(first) = self.seen.insert((joint, quantity, component), line) {
+        if let Some(first) = self.seen.insert((joint, quantity, component), span.start) {
+            let first = 1 + self.text.get(..first).unwrap_or_default().matches('\n').count();
             let name = quantity.components()[component];
             let message = format!("{quantity} {name} of joint {joint} is given twice; first on line {first}");
             self.mistakes.push(span.clone(), message.replace("  ", " "), Some("keep one of them"));

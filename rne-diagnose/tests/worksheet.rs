@@ -1,5 +1,5 @@
-//! Worksheets against the lecture's formulas, typed here over vectors in the axes of frame 0, and against positions that
-//! are differentiated; then mistakes that were made on purpose.
+//! Worksheets against the lecture's formulas, typed here over vectors in the axes of frame 0, and against positions
+//! that are differentiated; then mistakes that were made on purpose.
 
 use std::f64::consts::FRAC_PI_2;
 

@@ -38,10 +38,11 @@ fn numbers_are_those_of_the_pendulum() {
             assert!((found[index] - expected).abs() < 1e-12, "{index}: {} is not {expected}", found[index]);
         }
     }
-    // without rates they are derived, and hardly differ; columns in another order, semicolons, a column that is passed over
+    // without rates they are derived, and hardly differ; columns in another order, semicolons, a column that is passed
+    // over
     let mut lean = String::from("note;q1;t\n");
     for [t, q, ..] in &states {
-        lean += &format!("x;{q};{t}\n");
+        lean.extend(["x;", &q.to_string(), ";", &t.to_string(), "\n"]);
     }
     let derived = rne_reading(&["plot", "planar1", "--csv", "--trajectory", "-"], &lean);
     let torques = column(&derived.out, "tau1");

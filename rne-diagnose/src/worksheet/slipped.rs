@@ -16,8 +16,8 @@ pub(super) struct Slipped {
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Every slip that can be made at a situation: those of [`Slip::all_of`], and those that no torque shows. None of a base
-/// that moves or of a payload.
+/// Every slip that can be made at a situation: those of [`Slip::all_of`], and those that no torque shows. None of a
+/// base that moves or of a payload.
 pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
     if at.base.is_some() || at.payload.is_some() {
         return Ok(Vec::new());
