@@ -64,7 +64,7 @@ impl<'a> Mistakes<'a> {
     }
 
     pub(crate) fn push(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
-        if self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD) {
+        if self.are_enough() {
             return;
         }
         let report = Report::of_error(self.name, self.text, span, message, help);
@@ -72,6 +72,11 @@ impl<'a> Mistakes<'a> {
             Some(all) => all.diagnostics.extend(report.diagnostics),
             None => self.report = Some(report),
         }
+    }
+
+    /// Whether no more are told, so that there is no use in reading on.
+    pub(crate) fn are_enough(&self) -> bool {
+        self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD)
     }
 
     pub(crate) const fn are_there(&self) -> bool {

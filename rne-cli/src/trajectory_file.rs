@@ -12,6 +12,9 @@ use crate::outcome::Failure;
 /// Ten minutes of a six-joint arm at a hundred hertz, with all digits, are as long.
 const LONGEST: usize = 24 << 20;
 
+/// A picture has a thousand pixels.
+const MOST: usize = 200_000;
+
 /// A trajectory, and in words what of it was derived.
 pub(crate) struct Given {
     pub(crate) trajectory: Trajectory,
@@ -61,6 +64,12 @@ pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
     let mut samples = Vec::new();
     for line in table {
         match line {
+            Ok(row) if samples.len() == MOST => {
+                let message = format!("there are more than {MOST} samples");
+                mistakes.push(row.span, message, Some("plot a part of them, or every tenth"));
+                break;
+            }
+            _ if mistakes.are_enough() => break,
             Ok(row) => {
                 rows.push(row.span.start);
                 samples.push(numbers(&header, &row, &asked, &mut mistakes));

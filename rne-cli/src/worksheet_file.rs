@@ -29,6 +29,9 @@ const COLUMNS: [&str; 7] = ["joint", "step", "quantity", "component", "value", "
 /// A worksheet of 64 joints has half a megabyte.
 const LONGEST: usize = 4 << 20;
 
+/// More rows than any worksheet has for a joint.
+const MOST: usize = 200;
+
 /// One number of a worksheet.
 #[derive(Serialize)]
 struct Row {
@@ -121,6 +124,10 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     let mut lines = Vec::new();
     for line in csv_table::lines(text) {
         match line {
+            csv_table::Line::Row(row) if lines.len() > MOST * robot.dof() => {
+                too_many(&row.span, robot, mistakes);
+                break;
+            }
             csv_table::Line::Row(row) => lines.push(row),
             csv_table::Line::OpenQuote(span) => mistakes.push(span, OPEN_QUOTE, None),
             csv_table::Line::Comment(comment, span) => {
@@ -171,6 +178,11 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
         rows.push((cells.collect(), row.span.clone()));
     }
     rows
+}
+
+fn too_many(span: &Range<usize>, robot: &Robot, mistakes: &mut Mistakes<'_>) {
+    let message = format!("there are more rows than a worksheet of {} has", robot.name);
+    mistakes.push(span.clone(), message, Some("each component of each joint is given once"));
 }
 
 /// Whether a worksheet is of this format and robot, where it says so.
@@ -234,7 +246,11 @@ fn json_rows<'a>(
     }
     let raw_rows: Vec<&RawValue> = serde_json::from_str(list).map_err(|error| broken(&error, list))?;
     let mut rows = Vec::new();
-    for raw in raw_rows {
+    for (index, raw) in raw_rows.into_iter().enumerate() {
+        if index > MOST * robot.dof() {
+            too_many(&place(raw), robot, mistakes);
+            break;
+        }
         let fields = object(raw.get()).map_err(|error| broken(&error, raw.get()))?;
         let mut cells = Cells::new();
         for (key, value) in &fields {
@@ -310,7 +326,8 @@ impl Reading<'_> {
         self.frame(quantity, cell("frame"));
         let Some(component) = self.component(quantity, cell("component"), span) else { return };
         let Some(value) = self.value(value_cell) else { return };
-        if let Some(first) = self.seen.insert((joint, quantity, component), span.start) {
+        let first = *self.seen.entry((joint, quantity, component)).or_insert(span.start);
+        if first != span.start {
             let first = 1 + self.text.get(..first).unwrap_or_default().matches('\n').count();
             let name = quantity.components()[component];
             let message = format!("{quantity} {name} of joint {joint} is given twice; first on line {first}");

@@ -124,6 +124,7 @@ fn trajectories_that_are_none() {
     rows("2,0,5,1\n", &["4 cells, and 3 columns", "decimal point"]);
     rows("1,2,2\n", &[":4:1", "the time of sample 3 is not later"]);
     rows("0.5,2,2\n", &[":4:1", "not later"]);
+    bad(&("t,q1,q2\n".to_owned() + &"0,0,0\n".repeat(200_001)), &["more than 200000 samples"]);
     // each mistake is told
     rows("2,x,1\n3,1,y\n", &[":4:3", ":5:5"]);
     bad("t,q1,\"q2\n", &["this quote is not closed"]);

@@ -194,6 +194,8 @@ fn files_that_are_no_worksheets() {
     row("1,2,omega_dot,x,1,rad/s^2,base", &["this is in base axes, and the comparison in link axes", "--axes base"]);
     row("1,2,omega_dot,x,1,rad/s2,lonk", &["`lonk` names no axes", "`lecture`"]);
     row("1,1,omega,z,1.3,rad/s,link", &[":3:1", "omega z of joint 1 is given twice; first on line 2"]);
+    row("1,1,omega,z,1,,\n1,1,omega,z,1,,", &[":3:1", ":4:1", "first on line 2"]);
+    bad(&(HEAD.to_owned() + &"1,7,tau,,1,,\n".repeat(1000)), &["more rows than a worksheet of planar2 has"]);
     for number in ["nan", "inf", "1e999", "O.5", "1/0"] {
         row(&format!("1,2,omega_dot,x,{number},rad/s²,link"), &[":3:17", "is no number"]);
     }
