@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use rne_diagnose::worksheet::{Comparison, Difference, Line, Reach, Reason, Situation, Worksheet};
+use rne_diagnose::worksheet::{Comparison, Difference, Line, Quantity, Reach, Reason, Situation, Worksheet};
 use rne_model::Robot;
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use crate::layout::{Align, columns, left, wrap};
 use crate::numbers::fixed;
 use crate::outcome::{Failure, Outcome};
 use crate::terminal::{self, ERROR, FORMULA, FOUND, GOOD, QUIET, TITLE};
-use crate::worksheet::{matrix, triple};
+use crate::worksheet::{is_formula, matrix, triple};
 use crate::worksheet_file::{self, Filled, steps_in_words};
 
 /// How far a hand may be off, and whether a program reads the answer.
@@ -149,7 +149,8 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
     let _ = writeln!(text, "  right   {}  {QUIET}{unit}{QUIET:#}", numbers[1].trim_end());
     let _ = writeln!(text, "  off by  {}\n", numbers[2].trim_end());
     let width = terminal::width(WIDTH);
-    let formula = wrap(&format!("  {symbol} = {}", line.formula), width, "    ");
+    let equals = if is_formula(line) { " =" } else { ":" };
+    let formula = wrap(&format!("  {symbol}{equals} {}", line.formula), width, "    ");
     let _ = writeln!(text, "{FORMULA}{formula}{FORMULA:#}");
     text.push_str(&inputs(line));
     text.push_str(&terms(line));
@@ -164,8 +165,12 @@ fn difference(robot: &Robot, sheet: &Worksheet, comparison: &Comparison, first: 
         }
         previous = Some(reason.reach);
     }
-    if first.reasons.is_empty() {
-        let _ = writeln!(text, "no usual slip gives this value: check each term above");
+    let is_state = matches!(line.quantity, Quantity::Q | Quantity::Qd | Quantity::Qdd);
+    if is_state {
+        let _ = writeln!(text, "your worksheet is of another state than that of the command line");
+    } else if first.reasons.is_empty() {
+        let check = if line.terms.len() > 1 { ": check each term above" } else { "" };
+        let _ = writeln!(text, "no usual slip gives this value{check}");
     }
     let tally = format!(
         "{} compared, {} {}{}; what depends on this one is to be computed again",

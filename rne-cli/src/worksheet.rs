@@ -248,7 +248,7 @@ fn write_line(text: &mut String, line: &Line) {
 }
 
 /// Whether the right side says how to compute it, not what it is.
-fn is_formula(line: &Line) -> bool {
+pub(crate) fn is_formula(line: &Line) -> bool {
     let at_the_tip = matches!(line.quantity, Quantity::NextForce | Quantity::NextMoment) && line.terms.is_empty();
     !at_the_tip && !matches!(line.formula.as_str(), "given" | "of the row")
 }

@@ -131,6 +131,12 @@ fn the_first_difference_reads_well() {
     let first = &json["first"];
     assert_eq!((&first["quantity"], &first["component"]), (&"acceleration".into(), &"x".into()), "{json}");
     assert_eq!(first["reasons"][0]["says"], "the term ω2 × (ω2 × d2) is left out");
+    // another state, and a payload that nobody said anything of
+    let called = compared("joint,quantity,value\n1,q,0.7\n", &[]);
+    assert!(called.out.contains("q1: given") && called.out.contains("of another state than that"), "{}", called.out);
+    let payload: Vec<&str> = planar2(&["--payload", "2,0.1,0,0", "--csv"]);
+    let called = compared(&fine(&payload), &[]);
+    assert!(called.out.contains("step 6, joint 2 (j2), f2,3, component x"), "{}", called.out);
     // gravity upwards, in torques alone
     let mine = "joint,quantity,value\n1,tau,-13.2\n2,tau,-2.41\n";
     let torques = fine(&["eval", "robots/planar2.yaml", "--q", "0.6,-1.1", "--qd", "1.3,-0.4", "--qdd", "-0.7,2.1"]);
