@@ -10,8 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell,
-    show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, search,
+    shell, show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -30,8 +30,7 @@ Examples:
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
 FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
-Exit status: `rne explain exit-status`. NO_COLOR turns colours off.
-docs/robot-file.md explains every key of a robot file.")]
+Exit status: `rne explain exit-status`. Keys of a file: docs/robot-file.md.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -45,6 +44,7 @@ pub(crate) enum Command {
     Ops(ops::Arguments),
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
+    Plot(plot::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

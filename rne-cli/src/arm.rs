@@ -70,6 +70,11 @@ pub(crate) struct ChosenArm {
 }
 
 impl ChosenArm {
+    /// The file as it is named on the command line.
+    pub(crate) fn file(&self) -> &Path {
+        &self.file
+    }
+
     pub(crate) fn robot(&self) -> Result<Robot, Failure> {
         Ok(self.rotors.of(with_settings(&self.file, &self.set)?))
     }

@@ -76,7 +76,7 @@ impl std::str::FromStr for Printed {
 }
 
 /// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
-fn resolution(number: &str) -> f64 {
+pub(crate) fn resolution(number: &str) -> f64 {
     let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));
     let plain = mantissa.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c));
     let (true, Ok(exponent)) = (plain, exponent.parse::<i32>()) else { return 0.0 };

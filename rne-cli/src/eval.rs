@@ -1,24 +1,28 @@
 //! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
 
+use std::path::PathBuf;
+
 use clap::Args;
-use rne::{DynArm, DynTrace};
-use rne_codegen::{Answer, Function, Layout, Record};
+use rne::DynArm;
+use rne_codegen::{Answer, Function, Layout, Record, Step};
+use rne_diagnose::worksheet::Worksheet;
 use rne_model::Robot;
-use serde::Serialize;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::arm::{ChosenArm, Setting};
+use crate::compare::{self, Manner};
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
-use crate::worksheet::{self, Axes, Entry};
-use crate::{answer, arguments, golden, limits};
+use crate::worksheet::{self, Axes, Narrowed};
+use crate::{answer, arguments, golden, limits, show, worksheet_file};
 
 /// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 1.3,-0.4 --qdd -0.7,2.1 --trace
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
   rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv
   rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
       --wrench 3,-2,0,0,0,0.5 --json
@@ -66,27 +70,37 @@ pub(crate) struct Arguments {
     /// A golden file instead: torques at N states, which `#[robot(…, tests)]` reads
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
-        "gravity", "trace", "json",
+        "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
-    /// The seven-step worksheet: every vector
+    /// The worksheet of the seven steps
     #[arg(long)]
     trace: bool,
-    /// Axes of the worksheet: link, fixed to link i, the generated code's; lecture, fixed to link i-1; base, of frame 0
-    #[arg(long, value_enum, hide_possible_values = true, default_value_t = Axes::Link, requires = "trace")]
-    axes: Axes,
+    /// Its axes: link, joint (the lecture's) or base
+    #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
+    axes: Option<Axes>,
+    /// Its lines of one joint, from 1
+    #[arg(long, value_name = "I", value_parser = arguments::joint, requires = "trace", conflicts_with = "compare")]
+    joint: Option<usize>,
+    /// Its lines of one step, 1 to 7
+    #[arg(long, value_name = "S", value_parser = arguments::step, requires = "trace", conflicts_with = "compare")]
+    step: Option<Step>,
+    /// It as CSV, a row for each component
+    #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
+    csv: bool,
+    /// Where your rows of it first differ, and why
+    #[arg(long, value_name = "MINE", requires = "trace")]
+    compare: Option<PathBuf>,
+    /// Significant digits that agree; 4, unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
+    digits: Option<u8>,
     /// {"result": …}, with --trace also "trace"
     #[arg(long)]
     json: bool,
 }
 
-/// The answer as JSON has it.
-#[derive(Serialize)]
-struct Reply<'a> {
-    result: Value,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    trace: Option<Vec<Entry<'a>>>,
-}
+/// Digits to which a hand computes.
+const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot()?;
@@ -111,27 +125,38 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let arm = DynArm::from_robot(&robot);
     // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
     let numbers = state.numbers(&arm).map_err(Failure::usage)?;
-    let trace = if arguments.trace { Some(trace(&arm, &state).map_err(Failure::usage)?) } else { None };
     if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
         return Err(Failure::input(not_finite(&robot, function, index)));
     }
-    let links = trace.map(|trace| match arguments.axes {
-        Axes::Link => trace.links,
-        Axes::Lecture => trace.to_lecture(),
-        Axes::Base => trace.to_base(),
-    });
     let remark = limits::remark(&robot, &state.q);
+    let result = || grouped(&function.layout(robot.dof()), &numbers);
+    if !arguments.trace {
+        if arguments.json {
+            return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
+        }
+        return Ok(Outcome { remark, ..Outcome::text(answer::text(&robot, &state, &numbers)) });
+    }
+    let situation = worksheet::situation(&state, robot.dof());
+    if let Some(path) = &arguments.compare {
+        let manner = Manner { digits: arguments.digits.unwrap_or(DIGITS_BY_HAND), json: arguments.json };
+        return compare::run(path, &robot, &situation, arguments.axes, manner);
+    }
+    let narrowed = Narrowed { joint: arguments.joint, step: arguments.step };
+    show::check_joint(&robot, arguments.joint)?;
+    let axes = arguments.axes.unwrap_or(Axes::Link).into();
+    let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
+    if arguments.csv {
+        return Ok(Outcome { remark, ..Outcome::text(worksheet_file::csv(&robot, &sheet, narrowed)) });
+    }
     if arguments.json {
-        let trace = links.as_ref().map(|links| worksheet::entries(&robot, links));
-        let result = grouped(&function.layout(robot.dof()), &numbers);
-        return Ok(Outcome { remark, ..Outcome::json(&Reply { result, trace })? });
+        let text = worksheet_file::json(&robot, &sheet, narrowed, &result())?;
+        return Ok(Outcome { remark, ..Outcome::text(text) });
     }
-    let mut text = String::new();
-    if let Some(links) = links {
-        text.push_str(&worksheet::text(&robot, &links, arguments.axes, &state));
+    let mut text = worksheet::text(&robot, &sheet, narrowed, &state);
+    if narrowed.is_all() {
         text.push('\n');
+        text.push_str(&answer::text(&robot, &state, &numbers));
     }
-    text.push_str(&answer::text(&robot, &state, &numbers));
     Ok(Outcome { remark, ..Outcome::text(text) })
 }
 
@@ -149,16 +174,6 @@ impl Arguments {
             base_acceleration: self.base_acceleration.as_ref(),
             gravity: self.gravity.as_ref(),
         }
-    }
-}
-
-fn trace(arm: &DynArm, state: &State) -> Result<DynTrace<f64>, rne::WrongLength> {
-    let zero = vec![0.0; arm.dof()];
-    // what the function does not take is at rest
-    let [qd, qdd] = [&state.qd, &state.qdd].map(|values| if values.is_empty() { &zero } else { values });
-    match &state.payload {
-        Some(payload) => arm.trace_with_payload(&state.q, qd, qdd, payload),
-        None => arm.trace(&state.q, qd, qdd, &state.base, state.wrench.as_ref()),
     }
 }
 

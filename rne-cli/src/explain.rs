@@ -109,7 +109,8 @@ const EXIT_STATUS: &str = "\
      the file is what rne would write
 1    the input is at fault: a robot file or a plan has an error or cannot be
      read, a result is not finite, a file that is checked is stale, torques
-     differ and `rne diagnose` cannot say why, or the output cannot be written
+     differ and `rne diagnose` cannot say why, a value differs from that of
+     `rne eval --trace --compare`, or the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file that rne does
      not overwrite

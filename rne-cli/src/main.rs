@@ -6,7 +6,9 @@ mod arguments;
 mod arm;
 mod base_parameters;
 mod check;
+mod compare;
 mod convert;
+mod csv_table;
 mod diagnose;
 mod emit;
 mod equations;
@@ -32,6 +34,7 @@ mod outcome;
 mod output_file;
 mod physics;
 mod plan_file;
+mod plot;
 mod robot_file;
 mod search;
 mod shell;
@@ -39,7 +42,9 @@ mod show;
 mod state;
 mod terminal;
 mod tour;
+mod trajectory_file;
 mod worksheet;
+mod worksheet_file;
 
 use std::env;
 use std::process::ExitCode;
@@ -77,6 +82,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Ops(arguments)) => ("rne ops", ops::run(&arguments)),
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
+        Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

@@ -58,7 +58,8 @@ pub(crate) fn fixed(value: f64) -> String {
         // the column of the point is one left of the digits
         return format!("{:>1$}{2}", "0", WIDTH - DIGITS - 1, " ".repeat(DIGITS + 1));
     }
-    if value.abs() < 1e-5 || value.abs() >= 1e5 {
+    // four digits at least, for a hand computes with so many
+    if value.abs() < 1e-3 || value.abs() >= 1e5 {
         return format!("{value:>WIDTH$.4e}");
     }
     format!("{value:>WIDTH$.DIGITS$}")
@@ -97,6 +98,7 @@ mod tests {
         assert_eq!(fixed(0.0), "    0       ");
         assert_eq!(fixed(-0.0), fixed(0.0));
         assert_eq!(fixed(1.25e-17), "  1.2500e-17");
+        assert_eq!((fixed(0.001_234_56), fixed(-0.000_987_65)), ("    0.001235".into(), "  -9.8765e-4".into()));
         assert_eq!([0.0, -0.0, 1.25, 1e-9].map(|x| rounded(x, 3)), ["0", "0", "1.250", "1.00e-9"]);
         assert_eq!(at_the_point(&["1.5".to_owned(), "-10".to_owned()]), ["  1.5", "-10"]);
     }

@@ -219,7 +219,8 @@ fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
     Ok(Outcome::text(text))
 }
 
-fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
+/// Whether a robot has this joint.
+pub(crate) fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
     match joint {
         Some(joint) if joint == 0 || joint > robot.dof() => {
             let joints: Vec<String> = robot

@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 
 use clap::ValueEnum;
-use rne::LinkTrace;
-use rne_codegen::Argument;
-use rne_model::{Joint, JointKind, Robot};
-use serde::Serialize;
+use rne::BaseMotion;
+use rne_codegen::{Argument, Step};
+use rne_diagnose::worksheet::{self, Line, Quantity, Situation, Worksheet};
+use rne_model::{JointKind, Robot};
 
-use crate::layout::left;
+use crate::layout::{left, width, wrap};
 use crate::numbers::{WIDTH, fixed};
 use crate::state::State;
 use crate::terminal::{FORMULA, QUIET, TITLE};
@@ -19,126 +19,53 @@ pub(crate) enum Axes {
     /// Fixed to link i, z along joint i: the generated code's
     Link,
     /// Fixed to link i-1, z along joint i: the lecture's
-    Lecture,
+    #[value(alias = "lecture")]
+    Joint,
     /// Those of frame 0
     Base,
 }
 
-impl Axes {
-    fn meaning(self) -> &'static str {
-        match self {
-            Self::Link => "link i in axes fixed to link i, z along joint i; R turns them into those of the link before",
-            Self::Lecture => {
-                "link i in the lecture's axes, fixed to link i-1, z along joint i; R turns them into those before"
-            }
-            Self::Base => "every vector in the axes of frame 0, so R = 1",
+impl From<Axes> for worksheet::Axes {
+    fn from(axes: Axes) -> Self {
+        match axes {
+            Axes::Link => Self::Link,
+            Axes::Joint => Self::Joint,
+            Axes::Base => Self::Base,
         }
     }
 }
 
-/// One line of the worksheet.
-struct Line {
-    /// Step of the lecture, on its first line.
-    step: Option<usize>,
-    name: String,
-    /// x, y, z.
-    value: [f64; 3],
-    unit: &'static str,
-    /// Right side of its formula, a line each.
-    formula: Vec<String>,
+/// Which lines are wanted.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Narrowed {
+    /// Those of a joint, from 1.
+    pub(crate) joint: Option<usize>,
+    /// Those of a step.
+    pub(crate) step: Option<Step>,
 }
 
-impl Line {
-    fn new(step: usize, name: String, value: [f64; 3], unit: &'static str, formula: &[String]) -> Self {
-        Self { step: Some(step), name, value, unit, formula: formula.to_vec() }
+impl Narrowed {
+    pub(crate) fn has(self, line: &Line) -> bool {
+        let of_step = |step: Step| usize::from(line.quantity.step()) == step.number();
+        self.joint.is_none_or(|joint| joint == line.joint) && self.step.is_none_or(of_step)
     }
 
-    fn again(self) -> Self {
-        Self { step: None, ..self }
+    pub(crate) const fn is_all(self) -> bool {
+        self.joint.is_none() && self.step.is_none()
     }
 }
 
-/// The worksheet for reading.
-pub(crate) fn text(robot: &Robot, links: &[LinkTrace<f64>], axes: Axes, state: &State) -> String {
-    let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
-    let n = links.len();
-    let tip = match (&state.wrench, &state.payload) {
-        (Some(_), _) => "what the last link exerts at the tip",
-        (None, Some(_)) => "what the last link exerts on the payload, at the tip",
-        (None, None) => "0, nothing touches the tip",
-    };
-    let _ = writeln!(text, "{}", axes.meaning());
-    let base = if state.function.takes(Argument::Base) {
-        "ω0, ω̇0, c̈0, g0 as given, ċ0 = 0"
-    } else {
-        "ω0, ω̇0, ċ0, c̈0 = 0, g0 = gravity"
-    };
-    let _ = writeln!(text, "at the base {base}; f{n},{0} and n{n},{0} = {tip}", n + 1);
-    let joints = links.iter().zip(&robot.joints).enumerate();
-    for (index, (link, joint)) in joints.clone() {
-        title(&mut text, "outward", index + 1, joint);
-        for line in forward(index + 1, n, joint.row.kind, link) {
-            write_line(&mut text, &line);
-        }
-    }
-    for (index, (link, joint)) in joints.rev() {
-        title(&mut text, "back", index + 1, joint);
-        for line in backward(index + 1, link) {
-            write_line(&mut text, &line);
-        }
-        write_torque(&mut text, index + 1, joint.row.kind, link.tau);
-    }
-    text
+/// What the worksheet is of.
+pub(crate) fn situation(state: &State, dof: usize) -> Situation {
+    // what the function does not take is at rest
+    let [qd, qdd] =
+        [&state.qd, &state.qdd].map(|values| if values.is_empty() { vec![0.0; dof] } else { values.clone() });
+    let base = state.function.takes(Argument::Base).then_some(state.base);
+    Situation { q: state.q.clone(), qd, qdd, base, wrench: state.wrench, payload: state.payload }
 }
 
-fn title(text: &mut String, way: &str, i: usize, joint: &Joint) {
-    let kind = match joint.row.kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-    };
-    let margin = left(&format!("link {i}"), MARGIN);
-    let [x, y, z] = ["x", "y", "z"].map(|axis| left(&format!("    {axis}"), WIDTH));
-    let gap = " ".repeat(UNIT + 2);
-    let name = &joint.name;
-    let _ = writeln!(text, "\n{TITLE}{margin}{TITLE:#}{QUIET}{x}{y}{z}{gap}{way}, {name}, {kind}{QUIET:#}");
-}
-
-/// Steps 1 to 5, and the two vectors of the table that they use.
-fn forward(i: usize, n: usize, kind: JointKind, link: &LinkTrace<f64>) -> Vec<Line> {
-    let p = i - 1;
-    let next = if i < n { format!("from there to joint {}", i + 1) } else { "from there to the tip".to_owned() };
-    let slides = kind == JointKind::Prismatic;
-    let with = |base: String, own: String| if slides { base } else { base + &own };
-    let plus = |base: String, own: String| if slides { base + &own } else { base };
-    let omega = with(format!("R{i}ᵀ ω{p}"), format!(" + q̇{i} e"));
-    let omega_dot = with(format!("R{i}ᵀ ω̇{p}"), format!(" + q̈{i} e + q̇{i} ω{i} × e"));
-    let velocity = plus(format!("R{i}ᵀ (ċ{p} + ω{p} × r{p}) + ω{i} × d{i}"), format!(" + q̇{i} e"));
-    let carried = format!("R{i}ᵀ (c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p}))");
-    let own = format!("  + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})");
-    let sliding = format!("  + q̈{i} e + 2 q̇{i} ω{i} × e");
-    let acceleration = if slides { vec![carried, own, sliding] } else { vec![carried, own] };
-    vec![
-        Line::new(0, format!("d{i}"), link.d, "m", &[format!("from joint {i} to the centre of mass")]).again(),
-        Line::new(0, format!("r{i}"), link.r, "m", &[next]).again(),
-        Line::new(1, format!("ω{i}"), link.omega, "rad/s", &[omega]),
-        Line::new(2, format!("ω̇{i}"), link.omega_dot, "rad/s²", &[omega_dot]),
-        Line::new(3, format!("ċ{i}"), link.velocity, "m/s", &[velocity]),
-        Line::new(4, format!("c̈{i}"), link.acceleration, "m/s²", &acceleration),
-        Line::new(5, format!("g{i}"), link.gravity, "m/s²", &[format!("R{i}ᵀ g{p}")]),
-    ]
-}
-
-/// Step 6.
-fn backward(i: usize, link: &LinkTrace<f64>) -> Vec<Line> {
-    let (p, n) = (i - 1, i + 1);
-    let moment = format!("n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}");
-    vec![
-        Line::new(6, format!("f{i}"), link.inertia_force, "N", &[format!("m{i} c̈{i}")]),
-        Line::new(6, format!("n{i}"), link.inertia_moment, "N m", &[format!("I{i} ω̇{i} + ω{i} × I{i} ω{i}")]).again(),
-        Line::new(6, format!("f{p},{i}"), link.joint_force, "N", &[format!("f{i} + f{i},{n} - m{i} g{i}")]).again(),
-        Line::new(6, format!("n{p},{i}"), link.joint_moment, "N m", &[moment]).again(),
-    ]
-}
+/// Columns of a terminal that everything has room in.
+const COLUMNS: usize = 80;
 
 /// Columns before the numbers.
 const MARGIN: usize = 12;
@@ -146,79 +73,191 @@ const MARGIN: usize = 12;
 /// Columns of a unit, with the gap before the formula.
 const UNIT: usize = 8;
 
-fn write_line(text: &mut String, Line { step, name, value, unit, formula }: &Line) {
-    let step = step.map_or_else(String::new, |step| step.to_string());
-    let name = left(&format!("  {step:1} {name}"), MARGIN);
-    let [x, y, z] = value.map(fixed);
-    let unit = left(unit, UNIT);
-    let mut formula = formula.iter();
-    let first = formula.next().map_or("", String::as_str);
-    let equals = if step.is_empty() && first.starts_with("from") { "" } else { "= " };
-    let style = if equals.is_empty() { QUIET } else { FORMULA };
-    let _ = writeln!(text, "{name}{x}{y}{z}  {QUIET}{unit}{QUIET:#}{style}{equals}{first}{style:#}");
-    let margin = " ".repeat(MARGIN + 3 * WIDTH + 2 + UNIT);
-    for more in formula {
-        let _ = writeln!(text, "{margin}{FORMULA}{more}{FORMULA:#}");
+/// A blank at which no line breaks.
+const TIED: &str = "\u{A0}";
+
+/// The worksheet for reading.
+pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: &State) -> String {
+    let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
+    for line in heading(robot, sheet.axes, state) {
+        let _ = writeln!(text, "{}", wrap(&line, COLUMNS, "  "));
+    }
+    let mut section = None;
+    for line in sheet.lines.iter().filter(|line| narrowed.has(line)) {
+        let here = (line.joint, line.quantity.is_inward());
+        if section != Some(here) {
+            section = Some(here);
+            title(&mut text, robot, line);
+            if narrowed.step.is_none() && !line.quantity.is_inward() {
+                let of_file =
+                    wrap(&format!("    {}", of_file(robot, line.joint)), COLUMNS, "      ").replace(TIED, " ");
+                let _ = writeln!(text, "{QUIET}{of_file}{QUIET:#}");
+            }
+        }
+        write_line(&mut text, line);
+    }
+    text
+}
+
+/// The axes, and what the recursion starts with.
+fn heading(robot: &Robot, axes: worksheet::Axes, state: &State) -> Vec<String> {
+    let n = robot.dof();
+    let meaning = match axes {
+        worksheet::Axes::Link => {
+            "link axes: fixed to link i, z along joint i, so e = (0, 0, 1); Ri turns components in them into those of \
+             link i-1, R1 into those of frame 0"
+        }
+        worksheet::Axes::Joint => {
+            "joint axes, the lecture's: fixed to link i-1, z along joint i, so e = (0, 0, 1); Ri turns components in \
+             them into those of joint i-1, R1 into those of frame 0"
+        }
+        worksheet::Axes::Base => {
+            "base axes: every vector in those of frame 0; Ai turns components in axes fixed to link i into them"
+        }
+    };
+    let tip = match (&state.wrench, &state.payload) {
+        (Some(_), _) => format!("f{n},{0} and n{n},{0}: what the last link exerts at the tip", n + 1),
+        (None, Some(_)) => {
+            format!("f{n},{0} and n{n},{0}: what the last link exerts on the payload, at the tip", n + 1)
+        }
+        (None, None) => format!("f{n},{0} = 0 and n{n},{0} = 0: nothing touches the tip", n + 1),
+    };
+    let BaseMotion { omega, omega_dot, acceleration, .. } = state.base;
+    let [omega, omega_dot, acceleration] = [omega, omega_dot, acceleration].map(|value| triple(&value));
+    let gravity = if state.function.takes(Argument::Base) { state.base.gravity } else { robot.gravity };
+    let base = if state.function.takes(Argument::Base) {
+        format!("at the base ω0 = {omega} rad/s, ω̇0 = {omega_dot} rad/s², ċ0 = 0, c̈0 = {acceleration} m/s²")
+    } else {
+        "at the base ω0, ω̇0, ċ0, c̈0 = 0".to_owned()
+    };
+    let a = robot.rows().next().map_or(0.0, |row| row.dh.a);
+    let lever = match robot.convention {
+        rne_model::Convention::Standard => "r0 = 0".to_owned(),
+        rne_model::Convention::Modified => format!("r0 = {} m", triple(&[a, 0.0, 0.0])),
+    };
+    vec![meaning.to_owned(), format!("{base}, g0 = {} m/s², {lever}", triple(&gravity)), tip]
+}
+
+/// `(0, -9.81, 0)`.
+pub(crate) fn triple(values: &[f64]) -> String {
+    let numbers: Vec<String> = values.iter().map(|value| fixed(*value).trim().to_owned()).collect();
+    format!("({})", numbers.join(", "))
+}
+
+fn title(text: &mut String, robot: &Robot, line: &Line) {
+    let kind = match line.kind {
+        JointKind::Revolute => "revolute",
+        JointKind::Prismatic => "prismatic",
+    };
+    let way = if line.quantity.is_inward() { "back" } else { "outward" };
+    let name = robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name);
+    let margin = left(&format!("link {}", line.joint), MARGIN);
+    let [x, y, z] = ["x", "y", "z"].map(|axis| left(&format!("    {axis}"), WIDTH));
+    let about = format!("  {way}, {kind}, {name}");
+    let head = format!("{TITLE}{margin}{TITLE:#}{QUIET}{x}{y}{z}");
+    let is_long = MARGIN + 3 * WIDTH + width(&about) > COLUMNS;
+    let _ = if is_long {
+        writeln!(text, "\n{head}  {way}, {kind}{QUIET:#}\n{QUIET}    {name}{QUIET:#}")
+    } else {
+        writeln!(text, "\n{head}{about}{QUIET:#}")
+    };
+}
+
+/// The numbers of a row of the table that the lines below it need.
+fn of_file(robot: &Robot, joint: usize) -> String {
+    let (i, row) = (joint, &robot.joints[joint - 1].row);
+    let number = |value: f64| {
+        let text = fixed(value).trim().to_owned();
+        if text.contains(['e', 'E']) || !text.contains('.') {
+            return text;
+        }
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    };
+    let [x, y, z] = row.link.com.map(number);
+    let inertia = row.link.inertia;
+    let named = [
+        ("xx", inertia.xx),
+        ("yy", inertia.yy),
+        ("zz", inertia.zz),
+        ("xy", inertia.xy),
+        ("xz", inertia.xz),
+        ("yz", inertia.yz),
+    ];
+    let inertia = named.into_iter().filter(|(_, value)| *value != 0.0);
+    let inertia: Vec<String> = inertia.map(|(name, value)| format!("I{name}{TIED}{}", number(value))).collect();
+    let inertia = if inertia.is_empty() { "I 0".to_owned() } else { inertia.join(", ") };
+    format!(
+        "of the file: a{i} {} m, α{i} {} rad, com{i} ({x}, {y}, {z}) m, about it {inertia} kg m²",
+        number(row.dh.a),
+        number(row.dh.alpha.radians)
+    )
+}
+
+fn write_line(text: &mut String, line: &Line) {
+    let step = line.quantity.step();
+    let first = matches!(
+        line.quantity,
+        Quantity::Omega
+            | Quantity::OmegaDot
+            | Quantity::Velocity
+            | Quantity::Acceleration
+            | Quantity::Gravity
+            | Quantity::InertiaForce
+            | Quantity::Tau
+    );
+    let step = if first { step.to_string() } else { String::new() };
+    let matrix = matrix(&line.values);
+    let symbol = line.symbol();
+    let name = if matrix.is_some() { format!("  {step:1} {symbol} x") } else { format!("  {step:1} {symbol}") };
+    let numbers = match (&matrix, line.values.as_slice()) {
+        (Some(rows), _) => rows[0].map(fixed).concat(),
+        // it is the z element
+        (None, [tau]) if line.quantity == Quantity::Tau => {
+            format!("{}{TITLE}{}{TITLE:#}", " ".repeat(2 * WIDTH), fixed(*tau))
+        }
+        (None, [one]) => fixed(*one) + &" ".repeat(2 * WIDTH),
+        (None, several) => several.iter().map(|value| fixed(*value)).collect(),
+    };
+    let unit = left(if line.unit() == "1" { "" } else { line.unit() }, UNIT);
+    let (equals, style) = if is_formula(line) { ("= ", FORMULA) } else { ("", QUIET) };
+    let formula = format!("{equals}{}", line.formula);
+    let row = format!("{}{numbers}", left(&name, MARGIN));
+    let room = COLUMNS - (MARGIN + 3 * WIDTH + 2 + UNIT);
+    let below = width(&formula) > room;
+    if below && unit.trim().is_empty() {
+        let _ = writeln!(text, "{}", row.trim_end());
+    } else if below {
+        let _ = writeln!(text, "{row}  {QUIET}{}{QUIET:#}", unit.trim_end());
+    } else {
+        let row = format!("{row}  {QUIET}{unit}{QUIET:#}");
+        let _ = writeln!(text, "{row}{style}{formula}{style:#}");
+    }
+    if let Some([_, second, third]) = matrix {
+        let indent = " ".repeat(width(&name).saturating_sub(1));
+        for (axis, values) in [("y", second), ("z", third)] {
+            let _ =
+                writeln!(text, "{}{}", left(&format!("{indent}{axis}"), MARGIN), values.map(fixed).concat().trim_end());
+        }
+    }
+    if below {
+        // a line breaks before a term
+        let tied = formula.replace(' ', TIED).replace(&format!("{TIED}+{TIED}"), &format!(" +{TIED}"));
+        let wrapped = wrap(&format!("{}{tied}", TIED.repeat(6)), COLUMNS, "        ").replace(TIED, " ");
+        let _ = writeln!(text, "{style}{wrapped}{style:#}");
     }
 }
 
-/// Step 7: one number, in the column of z, for it is the z element.
-fn write_torque(text: &mut String, i: usize, kind: JointKind, tau: f64) {
-    let (unit, wrench) = match kind {
-        JointKind::Revolute => ("N m", 'n'),
-        JointKind::Prismatic => ("N", 'f'),
-    };
-    let name = left(&format!("  7 τ{i}"), MARGIN + 2 * WIDTH);
-    let (tau, unit) = (fixed(tau), left(unit, UNIT));
-    let _ = writeln!(
-        text,
-        "{name}{TITLE}{tau}{TITLE:#}  {QUIET}{unit}{QUIET:#}{FORMULA}= e · {wrench}{},{i}{FORMULA:#}",
-        i - 1
-    );
+/// Whether the right side says how to compute it, not what it is.
+pub(crate) fn is_formula(line: &Line) -> bool {
+    let at_the_tip = matches!(line.quantity, Quantity::NextForce | Quantity::NextMoment) && line.terms.is_empty();
+    !at_the_tip && !matches!(line.formula.as_str(), "given" | "of the row")
 }
 
-/// One link of the worksheet, as JSON has it.
-#[derive(Serialize)]
-pub(crate) struct Entry<'a> {
-    link: usize,
-    joint: &'a str,
-    sin: f64,
-    cos: f64,
-    rotation: [[f64; 3]; 3],
-    d: [f64; 3],
-    r: [f64; 3],
-    omega: [f64; 3],
-    omega_dot: [f64; 3],
-    velocity: [f64; 3],
-    acceleration: [f64; 3],
-    gravity: [f64; 3],
-    inertia_force: [f64; 3],
-    inertia_moment: [f64; 3],
-    joint_force: [f64; 3],
-    joint_moment: [f64; 3],
-    tau: f64,
-}
-
-/// The worksheet for programs: an entry per link, base to tip, named as in the runtime.
-pub(crate) fn entries<'a>(robot: &'a Robot, links: &[LinkTrace<f64>]) -> Vec<Entry<'a>> {
-    let entry = |(index, (link, joint)): (usize, (&LinkTrace<f64>, &'a Joint))| Entry {
-        link: index + 1,
-        joint: &joint.name,
-        sin: link.sin,
-        cos: link.cos,
-        rotation: link.rotation,
-        d: link.d,
-        r: link.r,
-        omega: link.omega,
-        omega_dot: link.omega_dot,
-        velocity: link.velocity,
-        acceleration: link.acceleration,
-        gravity: link.gravity,
-        inertia_force: link.inertia_force,
-        inertia_moment: link.inertia_moment,
-        joint_force: link.joint_force,
-        joint_moment: link.joint_moment,
-        tau: link.tau,
-    };
-    links.iter().zip(&robot.joints).enumerate().map(entry).collect()
+/// The rows of a matrix of nine numbers, or of the six of a symmetric one.
+pub(crate) fn matrix(values: &[f64]) -> Option<[[f64; 3]; 3]> {
+    match *values {
+        [xx, xy, xz, yx, yy, yz, zx, zy, zz] => Some([[xx, xy, xz], [yx, yy, yz], [zx, zy, zz]]),
+        [xx, xy, xz, yy, yz, zz] => Some([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]),
+        _ => None,
+    }
 }

@@ -30,6 +30,14 @@ pub(crate) struct Computation {
     pub(crate) torque_factor: f64,
 }
 
+/// A state as a computation understands it.
+pub(crate) struct Moved {
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    pub(crate) qdd: Vec<f64>,
+    pub(crate) wrench: Option<Wrench<f64>>,
+}
+
 impl Computation {
     /// The right one.
     pub(crate) fn right(robot: &Robot) -> Self {
@@ -78,7 +86,23 @@ impl Computation {
     /// # Errors
     /// When a list of the observation does not have one number per joint.
     pub(crate) fn torques(&self, arm: &DynArm, at: &Observation) -> Result<Vec<f64>, WrongLength> {
-        let (mut q, mut qd, mut qdd) = (at.q.clone(), at.qd.clone(), at.qdd.clone());
+        let Moved { q, qd, qdd, wrench } = self.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
+        let tau = if self.misprints.is_empty() {
+            arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench.unwrap_or_else(Wrench::zero))?
+        } else {
+            self.by_the_lecture(&q, &qd, &qdd, wrench)
+        };
+        self.printed(arm, tau, &qd, &qdd)
+    }
+
+    /// The state as this computation understands it.
+    pub(crate) fn moved(
+        &self,
+        mut q: Vec<f64>,
+        mut qd: Vec<f64>,
+        mut qdd: Vec<f64>,
+        wrench: Option<Wrench<f64>>,
+    ) -> Moved {
         if self.rates_exchanged {
             std::mem::swap(&mut qd, &mut qdd);
         }
@@ -97,14 +121,20 @@ impl Computation {
             *qdd *= self.acceleration_factor * if index == 0 { self.first_factor } else { 1.0 };
         }
         let scaled = |v: [f64; 3]| v.map(|x| x * self.wrench_factor);
-        let wrench = at.wrench.map(|Wrench { force, moment }| Wrench { force: scaled(force), moment: scaled(moment) });
-        let mut tau = if self.misprints.is_empty() {
-            arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench.unwrap_or_else(Wrench::zero))?
-        } else {
-            self.by_the_lecture(&q, &qd, &qdd, wrench)
-        };
+        let wrench = wrench.map(|Wrench { force, moment }| Wrench { force: scaled(force), moment: scaled(moment) });
+        Moved { q, qd, qdd, wrench }
+    }
+
+    /// Torques as this computation prints them.
+    pub(crate) fn printed(
+        &self,
+        arm: &DynArm,
+        mut tau: Vec<f64>,
+        qd: &[f64],
+        qdd: &[f64],
+    ) -> Result<Vec<f64>, WrongLength> {
         if self.motor_torques {
-            let motors = arm.actuator_torques(&qd, &qdd)?;
+            let motors = arm.actuator_torques(qd, qdd)?;
             tau.iter_mut().zip(motors).for_each(|(tau, motor)| *tau += motor);
         }
         for (index, (tau, row)) in tau.iter_mut().zip(self.robot.rows()).enumerate() {
@@ -117,7 +147,14 @@ impl Computation {
         Ok(tau)
     }
 
-    fn by_the_lecture(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> Vec<f64> {
+    /// Every vector of the lecture's formulas, in the lecture's axes, with the links where they stand.
+    pub(crate) fn lecture(&self, moved: &Moved) -> (Vec<lecture::Placed>, Vec<lecture::LinkVectors>) {
+        let rows: Vec<_> = self.robot.rows().copied().collect();
+        let state = self.state(&moved.q, &moved.qd, &moved.qdd, moved.wrench);
+        (lecture::place(&rows, &state.q, &self.misprints), lecture::seven_steps(&rows, &state, &self.misprints))
+    }
+
+    fn state(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> lecture::State {
         let Robot { tool, gravity, .. } = &self.robot;
         // the lecture's wrench stands in frame n+1, where rne has the tool
         let Wrench { force, moment } = wrench.unwrap_or_else(Wrench::zero);
@@ -125,7 +162,11 @@ impl Computation {
         let force = turn * nalgebra::Vector3::from(force);
         let moment = turn * nalgebra::Vector3::from(moment) + nalgebra::Vector3::from(tool.xyz).cross(&force);
         let wrench = Wrench { force: force.into(), moment: moment.into() };
-        let state = lecture::State { q: q.to_vec(), qd: qd.to_vec(), qdd: qdd.to_vec(), gravity: *gravity, wrench };
+        lecture::State { q: q.to_vec(), qd: qd.to_vec(), qdd: qdd.to_vec(), gravity: *gravity, wrench }
+    }
+
+    pub(crate) fn by_the_lecture(&self, q: &[f64], qd: &[f64], qdd: &[f64], wrench: Option<Wrench<f64>>) -> Vec<f64> {
+        let state = self.state(q, qd, qdd, wrench);
         let rows: Vec<_> = self.robot.rows().copied().collect();
         let mut tau: Vec<f64> =
             lecture::seven_steps(&rows, &state, &self.misprints).into_iter().map(|link| link.tau).collect();

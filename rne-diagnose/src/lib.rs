@@ -1,6 +1,8 @@
 //! Why is my torque different? Two tools that disagree have, as a rule, made one of the same few slips: the rows read
 //! in the other convention, gravity upwards, an inertia about another point, degrees.
 //!
+//! Where a computation by hand goes wrong, [`worksheet`] says line by line.
+//!
 //! [`diagnose`] makes every one of them, one [`Typo`] at a time, then every pair, and names those that give the
 //! numbers in question. Numbers in, data out: nothing here opens a file or prints.
 //!
@@ -25,6 +27,7 @@ mod misprint;
 mod observation;
 mod slip;
 mod typo;
+pub mod worksheet;
 
 use rne_model::Robot;
 use rne_runtime::{DynArm, WrongLength};

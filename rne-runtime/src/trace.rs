@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 
 use crate::link_frame::{Chain, rotation_z};
-use crate::link_state::{LinkLoad, LinkMotion};
+use crate::link_state::{ForceMoment, LinkLoad, LinkMotion};
 use crate::{Constant, Scalar};
 
 /// What the seven steps find for link i.
@@ -24,6 +24,10 @@ pub struct LinkTrace<T> {
     pub d: [T; 3],
     /// r_i, from the centre of mass to J_{i+1} (for the last link: to the origin of the tip frame), m.
     pub r: [T; 3],
+    /// m_i, kg.
+    pub mass: T,
+    /// Rows of I_i, the inertia about the centre of mass, kg m².
+    pub inertia: [[T; 3]; 3],
     /// Step 1: angular velocity ω_i, rad/s.
     pub omega: [T; 3],
     /// Step 2: angular acceleration ω̇_i, rad/s².
@@ -38,6 +42,12 @@ pub struct LinkTrace<T> {
     pub inertia_force: [T; 3],
     /// Step 6: n_i = I_i ω̇_i + ω_i × I_i ω_i, about the centre of mass, N m.
     pub inertia_moment: [T; 3],
+    /// Step 6: f_{i,i+1}, exerted by link i on link i+1 (by the last link at the tip), turned into the axes of this
+    /// entry, N.
+    pub next_force: [T; 3],
+    /// Step 6: n_{i,i+1}, exerted by link i on link i+1, about J_{i+1} (by the last link, about the origin of the tip
+    /// frame), turned into the axes of this entry, N m.
+    pub next_moment: [T; 3],
     /// Step 6: f_{i-1,i}, exerted by link i-1 on link i, N.
     pub joint_force: [T; 3],
     /// Step 6: n_{i-1,i}, exerted by link i-1 on link i, about J_i, N m.
@@ -89,6 +99,8 @@ impl<T: Scalar> LinkTrace<T> {
             rotation: rows(&Matrix3::identity()),
             d: zero,
             r: zero,
+            mass: T::zero(),
+            inertia: [zero; 3],
             omega: zero,
             omega_dot: zero,
             velocity: zero,
@@ -96,6 +108,8 @@ impl<T: Scalar> LinkTrace<T> {
             gravity: zero,
             inertia_force: zero,
             inertia_moment: zero,
+            next_force: zero,
+            next_moment: zero,
             joint_force: zero,
             joint_moment: zero,
             tau: T::zero(),
@@ -117,6 +131,8 @@ impl<T: Scalar> LinkTrace<T> {
             rotation: rows(rotation),
             d: turned(self.d),
             r: turned(self.r),
+            mass: self.mass,
+            inertia: rows(&(turn * Matrix3::from(self.inertia).transpose() * turn.transpose())),
             omega: turned(self.omega),
             omega_dot: turned(self.omega_dot),
             velocity: turned(self.velocity),
@@ -124,6 +140,8 @@ impl<T: Scalar> LinkTrace<T> {
             gravity: turned(self.gravity),
             inertia_force: turned(self.inertia_force),
             inertia_moment: turned(self.inertia_moment),
+            next_force: turned(self.next_force),
+            next_moment: turned(self.next_moment),
             joint_force: turned(self.joint_force),
             joint_moment: turned(self.joint_moment),
             tau: self.tau,
@@ -140,15 +158,18 @@ pub(crate) fn record<S: Constant, T: Scalar>(
     loads: &[LinkLoad<T>],
     traces: &mut [LinkTrace<T>],
 ) {
-    let angles = chain.links().zip(q).map(|(link, &q)| link.sin_cos(q));
-    let found = angles.zip(velocities).zip(motions).zip(loads);
-    for (index, ((((angle, velocity), motion), load), trace)) in found.zip(traces).enumerate() {
+    let found = chain.links::<T>().zip(q).zip(velocities).zip(motions).zip(loads);
+    for (index, (((((link, &q), velocity), motion), load), trace)) in found.zip(traces).enumerate() {
+        let angle = link.sin_cos(q);
+        let next = load.carried.map_or_else(ForceMoment::zero, |carried| carried.wrench);
         *trace = LinkTrace {
             sin: angle.0,
             cos: angle.1,
             rotation: rows(&motion.rotation),
             d: motion.d.into(),
             r: chain.mount_behind(index).r.into(),
+            mass: link.mass,
+            inertia: rows(&link.inertia),
             omega: motion.omega.into(),
             omega_dot: motion.omega_dot.into(),
             velocity: (*velocity).into(),
@@ -156,6 +177,8 @@ pub(crate) fn record<S: Constant, T: Scalar>(
             gravity: motion.gravity.into(),
             inertia_force: load.inertia.force.into(),
             inertia_moment: load.inertia.moment.into(),
+            next_force: next.force.into(),
+            next_moment: next.moment.into(),
             joint_force: load.joint.force.into(),
             joint_moment: load.joint.moment.into(),
             tau: load.tau,

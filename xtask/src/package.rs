@@ -38,6 +38,7 @@ const CRATES: [&str; 10] = [
     "rne-inspection",
     "rne",
     "rne-convert",
+    "rne-plot",
     "rne-cli",
 ];
 

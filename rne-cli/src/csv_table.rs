@@ -1,0 +1,197 @@
+//! Tables of comma-separated values: lines of cells, each with its place, so that a message can point at it.
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use rne_model::Report;
+
+use crate::outcome::Failure;
+
+/// A cell without the blanks and quotes around it.
+#[derive(Clone, Debug)]
+pub(crate) struct Cell<'a> {
+    pub(crate) text: Cow<'a, str>,
+    /// The bytes of the file that it stands on.
+    pub(crate) span: Range<usize>,
+}
+
+/// A line with something in it.
+#[derive(Clone, Debug)]
+pub(crate) struct Row<'a> {
+    pub(crate) cells: Vec<Cell<'a>>,
+    pub(crate) span: Range<usize>,
+}
+
+/// What stands on a line that is not empty.
+#[derive(Clone, Debug)]
+pub(crate) enum Line<'a> {
+    Row(Row<'a>),
+    /// Without its `#`, and where it stands.
+    Comment(&'a str, Range<usize>),
+    /// A quote opens here and does not close on its line.
+    OpenQuote(Range<usize>),
+}
+
+/// Mistakes in a file, as many as are read.
+#[derive(Debug)]
+pub(crate) struct Mistakes<'a> {
+    name: &'a str,
+    text: &'a str,
+    report: Option<Report>,
+}
+
+/// Mistakes that are told: a file with another decimal mark has one in each cell.
+const TOLD: usize = 20;
+
+/// The text of a file, without a byte order mark.
+pub(crate) fn text_of<'a>(name: &str, bytes: &'a [u8]) -> Result<&'a str, Failure> {
+    let bytes = bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes);
+    std::str::from_utf8(bytes).map_err(|error| {
+        let at = error.valid_up_to();
+        let byte = bytes.get(at).copied().unwrap_or_default();
+        let help = match bytes {
+            [0xFF, 0xFE, ..] | [0xFE, 0xFF, ..] => "this looks like UTF-16; save the file as UTF-8",
+            _ => "save the file with the encoding UTF-8; spreadsheets call it `CSV UTF-8`",
+        };
+        let text = String::from_utf8_lossy(bytes);
+        Failure::from(&Report::of_error(name, &text, at..at + 3, format!("byte 0x{byte:02X} is not UTF-8"), Some(help)))
+    })
+}
+
+impl<'a> Mistakes<'a> {
+    pub(crate) const fn new(name: &'a str, text: &'a str) -> Self {
+        Self { name, text, report: None }
+    }
+
+    pub(crate) fn push(&mut self, span: Range<usize>, message: impl Into<String>, help: Option<&str>) {
+        if self.are_enough() {
+            return;
+        }
+        let report = Report::of_error(self.name, self.text, span, message, help);
+        match &mut self.report {
+            Some(all) => all.diagnostics.extend(report.diagnostics),
+            None => self.report = Some(report),
+        }
+    }
+
+    /// Whether no more are told, so that there is no use in reading on.
+    pub(crate) fn are_enough(&self) -> bool {
+        self.report.as_ref().is_some_and(|report| report.diagnostics.len() >= TOLD)
+    }
+
+    pub(crate) const fn are_there(&self) -> bool {
+        self.report.is_some()
+    }
+
+    /// The value, unless there were mistakes.
+    pub(crate) fn finish<T>(self, value: T) -> Result<T, Failure> {
+        match self.report {
+            Some(mut report) => {
+                report.diagnostics.sort_by_key(|found| found.span.start);
+                Err(Failure::from(&report))
+            }
+            None => Ok(value),
+        }
+    }
+}
+
+/// The lines of a table: cells are separated by commas, or by semicolons where the first of them has no comma; comments
+/// begin with `#`; empty lines are left out.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
+    let mut separator = None;
+    let mut start = 0;
+    text.split('\n').filter_map(move |line| {
+        let shown = line.trim();
+        let from = start + (line.len() - line.trim_start().len());
+        let span = from..from + shown.len();
+        start += line.len() + 1;
+        if shown.is_empty() {
+            return None;
+        }
+        if let Some(comment) = shown.strip_prefix('#') {
+            return Some(Line::Comment(comment.trim(), span));
+        }
+        let separator = *separator.get_or_insert(if shown.contains(',') { ',' } else { ';' });
+        Some(match cells(shown, from, separator) {
+            Ok(cells) => Line::Row(Row { cells, span }),
+            Err(at) => Line::OpenQuote(at..span.end),
+        })
+    })
+}
+
+/// What is wrong with a line of [`Line::OpenQuote`].
+pub(crate) const OPEN_QUOTE: &str = "this quote is not closed on its line";
+
+/// The cells of a line that starts at `start`; or where a quote opens that does not close.
+fn cells(line: &str, start: usize, separator: char) -> Result<Vec<Cell<'_>>, usize> {
+    let mut cells = Vec::new();
+    let (mut from, mut quoted) = (0, None);
+    let ends = line.char_indices().chain([(line.len(), separator)]);
+    for (at, character) in ends {
+        match character {
+            '"' => quoted = if quoted.is_some() { None } else { Some(at) },
+            _ if character == separator && (quoted.is_none() || at == line.len()) => {
+                if let Some(open) = quoted {
+                    return Err(start + open);
+                }
+                let cell = line.get(from..at).unwrap_or_default();
+                let shown = cell.trim();
+                let begins = start + from + (cell.len() - cell.trim_start().len());
+                let inner = shown.strip_prefix('"').and_then(|inner| inner.strip_suffix('"'));
+                let text = inner.map_or(Cow::Borrowed(shown), |inner| Cow::Owned(inner.replace("\"\"", "\"")));
+                cells.push(Cell { text, span: begins..begins + shown.len() });
+                from = at + character.len_utf8();
+            }
+            _ => {}
+        }
+    }
+    Ok(cells)
+}
+
+/// A text for a message: shortened, control characters escaped, in backticks.
+pub(crate) fn quoted(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut shown: String = text.chars().take(LONGEST).collect::<String>().escape_debug().to_string();
+    if text.chars().nth(LONGEST).is_some() {
+        shown.push('…');
+    }
+    format!("`{shown}`")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_have_their_places() {
+        let text = "# a comment\r\na, \"b, \"\"c\"\"\" ,ü\r\n\r\n1,,3\n";
+        let all: Vec<Line<'_>> = lines(text).collect();
+        let [Line::Comment(comment, _), Line::Row(first), Line::Row(second)] = all.as_slice() else {
+            panic!("{all:?}")
+        };
+        let texts = |row: &Row<'_>| row.cells.iter().map(|cell| cell.text.to_string()).collect::<Vec<_>>();
+        assert_eq!(*comment, "a comment");
+        assert_eq!(
+            (texts(first), texts(second)),
+            (["a", "b, \"c\"", "ü"].map(str::to_owned).to_vec(), ["1", "", "3"].map(str::to_owned).to_vec())
+        );
+        assert_eq!(&text[first.cells[1].span.clone()], "\"b, \"\"c\"\"\"");
+        assert_eq!(&text[second.cells[2].span.clone()], "3");
+    }
+
+    #[test]
+    fn a_quote_that_stays_open_is_told() {
+        let text = "a,b\n1,\"2\n";
+        let Some(Line::OpenQuote(span)) = lines(text).nth(1) else { panic!("it is open") };
+        assert_eq!(&text[span], "\"2");
+    }
+
+    #[test]
+    fn so_many_mistakes_are_told() {
+        let text = "x\n".repeat(1000);
+        let mut mistakes = Mistakes::new("x.csv", &text);
+        (0..1000).for_each(|at| mistakes.push(2 * at..2 * at + 1, "no", None));
+        let failure = mistakes.finish(()).unwrap_err();
+        assert_eq!(failure.text.matches("x.csv:").count(), TOLD, "{}", failure.text);
+    }
+}

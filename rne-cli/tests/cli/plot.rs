@@ -1,0 +1,135 @@
+//! `rne plot`: pictures of torques, the numbers behind them, and trajectories that are none.
+
+use std::fs;
+
+use crate::call::{Called, fails, fine, folder, rne, rne_reading};
+
+/// Columns of the CSV, by name.
+fn column(csv: &str, name: &str) -> Vec<f64> {
+    let header: Vec<&str> = csv.lines().next().expect("a header").split(',').collect();
+    let at = header.iter().position(|column| *column == name).unwrap_or_else(|| panic!("no {name} in {header:?}"));
+    let cell = |line: &str| line.split(',').nth(at).and_then(|cell| cell.parse().ok()).expect("a number");
+    csv.lines().skip(1).map(cell).collect()
+}
+
+/// A rod that is swung by hand: τ = m a²/3 q̈ + m g a/2 cos q, and power τ q̇.
+#[test]
+fn numbers_are_those_of_the_pendulum() {
+    let (m, a, g) = (2.0, 0.5, 9.81);
+    let mut trajectory = String::from("t,q1,qd1,qdd1\n");
+    let states: Vec<[f64; 4]> = (0..50_u32)
+        .map(|i| {
+            let t = f64::from(i) * 0.02;
+            [t, t.sin(), t.cos(), -t.sin()]
+        })
+        .collect();
+    for [t, q, qd, qdd] in &states {
+        trajectory += &[t, q, qd, qdd].map(f64::to_string).join(",");
+        trajectory.push('\n');
+    }
+    let called = rne_reading(&["plot", "planar1", "--csv", "--trajectory", "-"], &trajectory);
+    assert_eq!((called.status, called.err.as_str()), (0, ""));
+    let of = |name| column(&called.out, name);
+    let numbers = [of("tau1"), of("inertia1"), of("velocity1"), of("gravity1"), of("power1")];
+    for (index, [_, q, qd, qdd]) in states.iter().enumerate() {
+        let (inertia, gravity) = (m * a * a / 3.0 * qdd, m * g * a / 2.0 * q.cos());
+        let expected = [inertia + gravity, inertia, 0.0, gravity, (inertia + gravity) * qd];
+        for (found, expected) in numbers.iter().zip(expected) {
+            assert!((found[index] - expected).abs() < 1e-12, "{index}: {} is not {expected}", found[index]);
+        }
+    }
+    // without rates they are derived, and hardly differ; columns in another order, semicolons, a column that is passed
+    // over
+    let mut lean = String::from("note;q1;t\n");
+    for [t, q, ..] in &states {
+        lean.extend(["x;", &q.to_string(), ";", &t.to_string(), "\n"]);
+    }
+    let derived = rne_reading(&["plot", "planar1", "--csv", "--trajectory", "-"], &lean);
+    let torques = column(&derived.out, "tau1");
+    assert!(torques.iter().zip(&numbers[0]).all(|(a, b)| (a - b).abs() < 0.01), "{torques:?}");
+    let picture = rne_reading(&["plot", "planar1", "--trajectory", "-"], &lean).out;
+    assert!(picture.contains("50 samples; velocities and accelerations derived from the positions"), "{picture}");
+}
+
+#[test]
+fn pictures_are_written() {
+    let path = folder("plot").join("planar2.svg");
+    let path = path.to_str().expect("UTF-8");
+    let said = fine(&["plot", "planar2", "-o", path]);
+    insta::assert_snapshot!(said.replace(path, "planar2.svg"));
+    let picture = fs::read_to_string(path).expect("a picture");
+    assert!(picture.starts_with("<svg") && picture.contains("Two-link planar arm") && picture.contains("in 2 s"));
+    assert_eq!(picture, fine(&["plot", "planar2"]));
+    assert!(fine(&["plot", "planar2", "-o", path]).starts_with("up to date"));
+    fails(2, &["plot", "planar1", "-o", path], &["is there already", "--force"]);
+    fine(&["plot", "planar1", "-o", path, "--force"]);
+    // speed limits ask for time
+    assert!(fine(&["plot", "panda", "--duration", "0.1"]).contains("faster than speed limits allow"));
+    assert!(!fine(&["plot", "panda"]).contains("faster than"));
+    let set = fine(&["plot", "planar2", "--set", "m2=3"]);
+    assert!(set.contains(", m2 = 3") && set != picture);
+    assert!(fine(&["plot", "puma560", "--rotors"]).contains("with rotors"));
+    fails(2, &["plot", "planar1", "--duration", "0"], &["seconds above 0"]);
+    fails(1, &["plot", "planar1", "--duration", "1e-170"], &["overflows"]);
+    fails(2, &["plot", "planar1", "--duration", "1", "--trajectory", "x.csv"], &["cannot be used with"]);
+    let file = folder("plots").join("arm.yaml");
+    fs::copy(format!("{}/robots/planar1.yaml", crate::call::ROOT), &file).expect("a copy");
+    let file = file.to_str().expect("UTF-8");
+    fails(2, &["plot", file, "-o", file, "--force"], &["is the file that is read"]);
+}
+
+/// Every shipped robot has a picture.
+#[test]
+fn every_robot_is_drawn() {
+    for robot in rne_robots_names() {
+        let Called { out, err, status } = rne(&["plot", &robot]);
+        assert_eq!((status, err.as_str()), (0, ""), "{robot}");
+        assert!(out.starts_with("<svg") && out.ends_with("</svg>\n") && !out.contains("NaN"), "{robot}");
+    }
+}
+
+fn rne_robots_names() -> Vec<String> {
+    let names = fine(&["list"]);
+    let names = names.lines().filter_map(|line| line.split_whitespace().next());
+    let is_robot = |name: &&str| fs::exists(format!("{}/robots/{name}.yaml", crate::call::ROOT)).unwrap_or(false);
+    let names: Vec<String> = names.filter(is_robot).map(str::to_owned).collect();
+    assert!(names.len() > 20, "{names:?}");
+    names
+}
+
+/// What is wrong with a trajectory, and where.
+#[test]
+fn trajectories_that_are_none() {
+    let bad = |text: &str, parts: &[&str]| {
+        let Called { out, err, status } = rne_reading(&["plot", "planar2", "--trajectory", "-"], text);
+        assert_eq!((status, out.as_str()), (1, ""), "{text:?}: {err}");
+        for part in parts {
+            assert!(err.contains(part), "{text:?}: no `{part}` in {err}");
+        }
+    };
+    let rows = |rows: &str, parts: &[&str]| bad(&format!("t,q1,q2\n0,0,0\n1,1,1\n{rows}"), parts);
+    bad("", &["the file is empty", "the header is t,q1,q2"]);
+    bad("t,q1,q2\n", &["0 samples, and at least 3"]);
+    bad("t,q1,q2\n0,0,0\n1,1,1\n", &["2 samples, and at least 3", "a derivative needs three samples"]);
+    bad("t,q1\n0,1\n", &["there is no column `q2`"]);
+    bad("time,q1,q2\n0,1,2\n", &["there is no column `t`"]);
+    bad("t,q1,q_2\n0,1,2\n", &["there is no column `q2`; is it `q_2`?"]);
+    bad("t,q1,q2,qd1\n0,1,2,3\n", &["there is no column `qd2`"]);
+    bad("t,q1,q2,q3\n0,1,2,3\n", &[":1:9", "`q3` is of no joint: there are joints 1 to 2"]);
+    bad("t,q1,q2,q1\n0,1,2,3\n", &[":1:9", "`q1` is there twice"]);
+    rows("2,x,1\n", &[":4:3", "`x` of column `q1` is no finite number"]);
+    rows("2,nan,1\n", &[":4:3", "no finite number"]);
+    rows("2,,1\n", &[":4:3", "a number of column `q1` is missing"]);
+    rows("2,1\n", &[":4:1", "2 cells, and 3 columns"]);
+    rows("2,0,5,1\n", &["4 cells, and 3 columns", "decimal point"]);
+    rows("1,2,2\n", &[":4:1", "the time of sample 3 is not later"]);
+    rows("0.5,2,2\n", &[":4:1", "not later"]);
+    bad(&("t,q1,q2\n".to_owned() + &"0,0,0\n".repeat(200_001)), &["more than 200000 samples"]);
+    // each mistake is told
+    rows("2,x,1\n3,1,y\n", &[":4:3", ":5:5"]);
+    bad("t,q1,\"q2\n", &["this quote is not closed"]);
+    let file = folder("trajectories").join("t.csv");
+    fs::write(&file, b"t,q1\xFF\n").expect("a file");
+    fails(1, &["plot", "planar1", "--trajectory", file.to_str().expect("UTF-8")], &["t.csv:1:5", "not UTF-8"]);
+    fails(1, &["plot", "planar1", "--trajectory", "nowhere.csv"], &["the trajectory nowhere.csv cannot be read"]);
+}

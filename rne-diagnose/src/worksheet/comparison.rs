@@ -1,0 +1,273 @@
+//! Somebody else's values beside those of a worksheet.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use rne_model::Robot;
+use rne_runtime::WrongLength;
+
+use super::{Line, Quantity, Situation, Worksheet, local, norm, slipped};
+use crate::{Diagnosis, Observation, diagnose};
+
+/// A value that somebody found for a component of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GivenValue {
+    /// The joint, from 1 at the base.
+    pub joint: usize,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// The index of the component in [`Quantity::components`].
+    pub component: usize,
+    /// The value.
+    pub value: f64,
+    /// Half of the last digit that is written; 0 where all digits are.
+    pub resolution: f64,
+}
+
+/// What comes of a comparison.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Comparison {
+    /// So many values were compared.
+    pub compared: usize,
+    /// So many of them differ.
+    pub differing: usize,
+    /// The steps, 1 to 7, of which no value is given.
+    pub steps_not_given: Vec<u8>,
+    /// The first that differs in the order of computation; `None` when all agree.
+    pub first: Option<Difference>,
+}
+
+/// The first value that differs.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Difference {
+    /// The index of its line in [`Worksheet::lines`].
+    pub line: usize,
+    /// The index of its component.
+    pub component: usize,
+    /// What is given.
+    pub theirs: f64,
+    /// What is right.
+    pub ours: f64,
+    /// What explains it, the likeliest first.
+    pub reasons: Vec<Reason>,
+}
+
+/// An explanation of a value.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Reason {
+    /// What was done, in a clause.
+    pub says: String,
+    /// What is right, where that is more than the formula of the line.
+    pub right: Option<String>,
+    /// What it explains.
+    pub reach: Reach,
+}
+
+/// How much a reason explains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Reach {
+    /// Every value that is given.
+    Everything,
+    /// All torques that are given.
+    Torques,
+    /// What is given of this line.
+    Line,
+    /// This component.
+    Component,
+    /// Every value up to this line, not all behind it.
+    UpToHere,
+}
+
+/// Explanations that are kept.
+const MOST: usize = 4;
+
+/// What a double-precision computation is off by, in parts of the largest value of that unit.
+const ROUNDING: f64 = 1e-9;
+
+/// One digit alone would explain anything: digits count to this part of a line's size.
+const COARSEST: f64 = 0.05;
+
+impl Worksheet {
+    /// Compares given values with those of the worksheet, which is that of `robot` at `at`. A value counts as the same
+    /// when it agrees to so many significant `digits` of the largest that goes into its line, or to the digits with
+    /// which it is written. Values of lines that the worksheet does not have are passed over.
+    ///
+    /// # Errors
+    /// When a list of the situation does not have one number per joint.
+    pub fn compare(
+        &self,
+        robot: &Robot,
+        at: &Situation,
+        given: &[GivenValue],
+        digits: u8,
+    ) -> Result<Comparison, WrongLength> {
+        let given = Ordered::new(self, given, digits);
+        let mut comparison = Comparison {
+            compared: given.values.len(),
+            differing: given.values.iter().filter(|(at, _)| !given.agrees(**at, self.value(**at))).count(),
+            steps_not_given: given.steps_not_given(),
+            first: None,
+        };
+        let first = given.values.iter().find(|(at, _)| !given.agrees(**at, self.value(**at)));
+        let Some((&(line, component), value)) = first else { return Ok(comparison) };
+        let reasons = given.reasons(robot, at, line, component)?;
+        let (theirs, ours) = (value.value, self.value((line, component)));
+        comparison.first = Some(Difference { line, component, theirs, ours, reasons });
+        Ok(comparison)
+    }
+
+    fn value(&self, (line, component): Place) -> f64 {
+        self.lines.get(line).and_then(|line| line.values.get(component)).copied().unwrap_or(f64::NAN)
+    }
+}
+
+/// A line and a component of it, both by index.
+type Place = (usize, usize);
+
+/// Given values in the order of computation.
+struct Ordered<'a> {
+    sheet: &'a Worksheet,
+    values: BTreeMap<Place, GivenValue>,
+    digits: u8,
+    /// What rounding makes of the largest value of a unit.
+    rounding: BTreeMap<&'static str, f64>,
+}
+
+impl<'a> Ordered<'a> {
+    fn new(sheet: &'a Worksheet, given: &[GivenValue], digits: u8) -> Self {
+        let places: BTreeMap<(usize, Quantity), usize> =
+            sheet.lines.iter().enumerate().map(|(index, line)| ((line.joint, line.quantity), index)).collect();
+        let place = |value: &GivenValue| {
+            let line = *places.get(&(value.joint, value.quantity))?;
+            Some(((line, value.component), *value)).filter(|_| value.component < value.quantity.components().len())
+        };
+        let mut rounding = BTreeMap::new();
+        for line in &sheet.lines {
+            let largest = rounding.entry(line.unit()).or_insert(0.0_f64);
+            *largest = largest.max(ROUNDING * line.size());
+        }
+        Self { sheet, values: given.iter().filter_map(place).collect(), digits, rounding }
+    }
+
+    /// What a hand that rounds to these digits at each line is off by, in a line of this size: two units of the last
+    /// digit, for what is rounded before adds up.
+    fn by_hand(&self, size: f64) -> f64 {
+        2.0 * size * 10_f64.powi(1 - i32::from(self.digits))
+    }
+
+    /// How far a value of a place may be off.
+    fn allowed(&self, place: Place) -> f64 {
+        let Some(line) = self.sheet.lines.get(place.0) else { return 0.0 };
+        let size = line.size();
+        let written = self.values.get(&place).map_or(0.0, |given| given.resolution.min(COARSEST * size));
+        let by_hand = self.by_hand(size);
+        let rounding = self.rounding.get(line.unit()).copied().unwrap_or_default();
+        by_hand.max(written) + rounding
+    }
+
+    /// Whether what is given at a place is this value; true where nothing is given.
+    fn agrees(&self, place: Place, value: f64) -> bool {
+        let Some(given) = self.values.get(&place) else { return true };
+        let difference = given.value - value;
+        let off = match given.quantity {
+            // an angle and the same with full turns
+            Quantity::Theta => difference - (difference / std::f64::consts::TAU).round() * std::f64::consts::TAU,
+            _ => difference,
+        };
+        off.abs() <= self.allowed(place)
+    }
+
+    fn steps_not_given(&self) -> Vec<u8> {
+        let given: BTreeSet<u8> = self.values.values().map(|value| value.quantity.step()).collect();
+        (1..=7).filter(|step| !given.contains(step)).collect()
+    }
+
+    fn line(&self, index: usize) -> &Line {
+        &self.sheet.lines[index]
+    }
+
+    fn reasons(
+        &self,
+        robot: &Robot,
+        at: &Situation,
+        line: usize,
+        component: usize,
+    ) -> Result<Vec<Reason>, WrongLength> {
+        let slipped = slipped::all(robot, at, self.sheet)?;
+        let explains = |values: &[Vec<f64>], up_to: usize| {
+            // somewhere it has to differ from what is right, or it says nothing
+            let here = |place: Place| values.get(place.0).and_then(|line| line.get(place.1)).copied();
+            let mut places = self.values.keys().take_while(|place| place.0 <= up_to);
+            places.all(|&place| here(place).is_some_and(|value| self.agrees(place, value)))
+        };
+        let of_slip = |slip: crate::Slip, reach| {
+            let (says, right) = (slip.says(robot), Some(slip.right(robot)));
+            Reason { says, right, reach }
+        };
+        let last = self.sheet.lines.len();
+        let everything = slipped.iter().filter(|slipped| explains(&slipped.values, last));
+        let mut reasons: Vec<Reason> =
+            everything.map(|slipped| of_slip(slipped.slip, Reach::Everything)).take(MOST).collect();
+        if reasons.is_empty() {
+            reasons.extend(self.of_the_line(line, component));
+            reasons.extend(self.of_torques(robot, at)?);
+            let so_far = slipped.iter().filter(|slipped| explains(&slipped.values, line));
+            reasons.extend(so_far.map(|slipped| of_slip(slipped.slip, Reach::UpToHere)));
+            reasons.truncate(MOST);
+        }
+        Ok(reasons)
+    }
+
+    /// What was done on the line alone.
+    fn of_the_line(&self, line: usize, component: usize) -> Vec<Reason> {
+        let ways = local::ways(self.line(line), component);
+        let zero_is_no_multiple = |way: &local::Way| {
+            let small = way.values[component].is_none_or(|value| value.abs() <= self.allowed((line, component)));
+            !small || way.says.contains("term")
+        };
+        let fits = |way: &local::Way| {
+            let mut said = way.values.iter().enumerate().filter_map(|(at, value)| Some((at, (*value)?)));
+            said.all(|(at, value)| self.agrees((line, at), value))
+        };
+        let mut found: Vec<Reason> = Vec::new();
+        for way in ways.into_iter().filter(|way| fits(way) && zero_is_no_multiple(way)) {
+            let whole = way.values.len() > 1 && way.values.iter().all(Option::is_some);
+            let reach = if whole { Reach::Line } else { Reach::Component };
+            // what explains the line needs no help from what explains a part of it
+            if reach == Reach::Line || found.iter().all(|other| other.reach != Reach::Line) {
+                found.push(Reason { says: way.says, right: None, reach });
+            }
+        }
+        found.truncate(MOST - 1);
+        found
+    }
+
+    /// What `diagnose` says of the torques, where all of them are given.
+    fn of_torques(&self, robot: &Robot, at: &Situation) -> Result<Vec<Reason>, WrongLength> {
+        let of_tau = |joint: usize| self.values.values().find(|v| v.quantity == Quantity::Tau && v.joint == joint);
+        let tau: Vec<GivenValue> = (1..=robot.dof()).filter_map(of_tau).copied().collect();
+        if tau.len() < robot.dof() || at.base.is_some() || at.payload.is_some() {
+            return Ok(Vec::new());
+        }
+        let largest = norm(&tau.iter().map(|value| value.value).collect::<Vec<_>>());
+        let by_hand = self.by_hand(largest);
+        let seen = Observation {
+            q: at.q.clone(),
+            qd: at.qd.clone(),
+            qdd: at.qdd.clone(),
+            wrench: at.wrench,
+            tau: tau.iter().map(|value| value.value).collect(),
+            resolution: tau.iter().map(|value| value.resolution.min(COARSEST * largest).max(by_hand)).collect(),
+        };
+        let Diagnosis::Explained(all) = diagnose(robot, &[seen])? else { return Ok(Vec::new()) };
+        let reason = |slips: &[crate::Slip]| {
+            let says: Vec<String> = slips.iter().map(|slip| slip.says(robot)).collect();
+            let right: Vec<String> = slips.iter().map(|slip| slip.right(robot)).collect();
+            Reason { says: says.join("; and "), right: Some(right.join("; and ")), reach: Reach::Torques }
+        };
+        Ok(all.iter().take(1).map(|explanation| reason(&explanation.slips)).collect())
+    }
+}

@@ -1,0 +1,88 @@
+//! What somebody may have done on one line alone: a term left out, a sign, axes exchanged, degrees.
+
+use std::f64::consts::PI;
+
+use super::Line;
+
+/// Ways to another value on a line: what was done, and all components then; `None` for those of which nothing is said.
+pub(super) struct Way {
+    pub(super) says: String,
+    pub(super) values: Vec<Option<f64>>,
+}
+
+/// All ways, those that explain a whole line first. `component` is the one that differs.
+pub(super) fn ways(line: &Line, component: usize) -> Vec<Way> {
+    let ours = &line.values;
+    let mut ways = Vec::new();
+    let mut whole =
+        |says: String, values: Vec<f64>| ways.push(Way { says, values: values.into_iter().map(Some).collect() });
+    let with = |change: &[f64], times: f64| ours.iter().zip(change).map(|(x, y)| x + times * y).collect::<Vec<_>>();
+    let several = line.terms.iter().filter(|term| super::norm(&term.values) > 0.0).count() > 1;
+    for term in line.terms.iter().filter(|_| line.terms.len() > 1) {
+        whole(format!("the term {} is left out", term.text), with(&term.values, -1.0));
+    }
+    for term in line.terms.iter().filter(|_| several) {
+        whole(format!("the term {} has the other sign", term.text), with(&term.values, -2.0));
+    }
+    for term in &line.terms {
+        for (says, values) in &term.slips {
+            let change: Vec<f64> = values.iter().zip(&term.values).map(|(slip, right)| slip - right).collect();
+            whole(says.clone(), with(&change, 1.0));
+        }
+    }
+    for term in line.terms.iter().filter(|_| several) {
+        whole(format!("the term {} is counted twice", term.text), with(&term.values, 1.0));
+    }
+    if ours.len() > 1 {
+        whole("all signs are reversed".to_owned(), ours.iter().map(|x| -x).collect());
+    }
+    let names = line.quantity.components();
+    if let [x, y, z] = ours[..] {
+        for (order, values) in [("y, x, z", [y, x, z]), ("x, z, y", [x, z, y]), ("z, y, x", [z, y, x])] {
+            whole(format!("two components are exchanged: {order}"), values.to_vec());
+        }
+        for (order, values) in [("y, z, x", [y, z, x]), ("z, x, y", [z, x, y])] {
+            whole(format!("the components stand in the order {order}"), values.to_vec());
+        }
+    }
+    if ours.len() == 9 {
+        let transposed = [0, 3, 6, 1, 4, 7, 2, 5, 8].map(|index| ours[index]);
+        whole("the matrix is transposed".to_owned(), transposed.to_vec());
+    }
+    if line.quantity.is_angular(line.kind) {
+        whole("it is in degrees".to_owned(), ours.iter().map(|x| x * 180.0 / PI).collect());
+        whole(
+            "it was turned from degrees into radians twice".to_owned(),
+            ours.iter().map(|x| x * PI / 180.0).collect(),
+        );
+    }
+    // of one component alone
+    let mut alone = |says: String, value: f64| {
+        let mut values = vec![None; ours.len()];
+        values[component] = Some(value);
+        ways.push(Way { says, values });
+    };
+    let own = ours[component];
+    alone("the sign is reversed".to_owned(), -own);
+    for (other, value) in ours.iter().enumerate().filter(|(other, value)| *other != component && **value != 0.0) {
+        alone(format!("this is component {}", names[other]), *value);
+        alone(format!("this is component {} with the other sign", names[other]), -*value);
+    }
+    for (says, factor) in
+        [("ten times as large", 10.0), ("a hundred times as large", 100.0), ("a thousand times as large", 1e3)]
+    {
+        alone(format!("it is {says}: a unit, or the decimal point"), own * factor);
+        let small = says.replace("as large", "smaller");
+        alone(format!("it is {small}: a unit, or the decimal point"), own / factor);
+    }
+    alone("it is twice as large".to_owned(), 2.0 * own);
+    alone("it is half as large".to_owned(), 0.5 * own);
+    for term in line.terms.iter().filter(|_| several) {
+        let value = term.values[component];
+        alone(format!("in this component the term {} is left out", term.text), own - value);
+        alone(format!("in this component the term {} has the other sign", term.text), own - 2.0 * value);
+    }
+    // what changes nothing explains nothing
+    ways.retain(|way| way.values[component].is_some_and(|value| (value - own).abs() > 1e-12 * own.abs()));
+    ways
+}

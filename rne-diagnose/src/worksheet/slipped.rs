@@ -1,0 +1,116 @@
+//! The worksheets of those who make one of the usual slips.
+
+use nalgebra::{Matrix3, Vector3};
+use rne_model::Robot;
+use rne_runtime::{DynArm, WrongLength};
+
+use super::formulas::about_z;
+use super::{Axes, Line, Quantity, Situation, Worksheet, orientations};
+use crate::computation::{Computation, Moved};
+use crate::lecture::{LinkVectors, Misprint, Placed};
+use crate::slip::Slip;
+
+/// A slip, and what stands on each line of the worksheet by it.
+pub(super) struct Slipped {
+    pub(super) slip: Slip,
+    pub(super) values: Vec<Vec<f64>>,
+}
+
+/// Every slip that can be made at a situation: those of [`Slip::all_of`], and those that no torque shows. None of a
+/// base that moves or of a payload.
+pub(super) fn all(robot: &Robot, at: &Situation, sheet: &Worksheet) -> Result<Vec<Slipped>, WrongLength> {
+    if at.base.is_some() || at.payload.is_some() {
+        return Ok(Vec::new());
+    }
+    let unseen = [Misprint::E5NoDot, Misprint::E6FactorsSwapped].map(Slip::Misprint);
+    let mut all = Vec::new();
+    for slip in Slip::all_of(robot).into_iter().chain(unseen) {
+        let Some(computation) = Computation::with(robot, &[slip]) else { continue };
+        let values = values(&computation, robot, at, sheet)?;
+        all.push(Slipped { slip, values });
+    }
+    Ok(all)
+}
+
+fn values(
+    computation: &Computation,
+    robot: &Robot,
+    at: &Situation,
+    sheet: &Worksheet,
+) -> Result<Vec<Vec<f64>>, WrongLength> {
+    let moved = computation.moved(at.q.clone(), at.qd.clone(), at.qdd.clone(), at.wrench);
+    let Moved { q, qd, qdd, wrench } = &moved;
+    let slipped = Situation { q: q.clone(), qd: qd.clone(), qdd: qdd.clone(), wrench: *wrench, ..at.clone() };
+    let arm = DynArm::from_robot(&computation.robot);
+    let own = Worksheet::new(&computation.robot, &slipped, sheet.axes)?;
+    let mut values: Vec<Vec<f64>> = own.lines.iter().map(|line| line.values.clone()).collect();
+    let mut tau = own.tau();
+    if !computation.misprints.is_empty() {
+        let (placed, found) = computation.lecture(&moved);
+        let turns = from_the_lecture(robot, at, sheet.axes)?;
+        for (line, values) in sheet.lines.iter().zip(&mut values) {
+            if let Some(misprinted) = misprinted(line, computation, &placed, &found, &turns) {
+                *values = misprinted;
+            }
+        }
+        tau = computation.by_the_lecture(q, qd, qdd, *wrench);
+    }
+    let tau = computation.printed(&arm, tau, qd, qdd)?;
+    for (line, values) in sheet.lines.iter().zip(&mut values) {
+        match line.quantity {
+            // the state is what was asked about, whatever somebody makes of it
+            Quantity::Q | Quantity::Qd | Quantity::Qdd => values.clone_from(&line.values),
+            Quantity::Tau => *values = vec![tau[line.joint - 1]],
+            _ => {}
+        }
+    }
+    Ok(values)
+}
+
+/// From the lecture's axes of each joint into those of a worksheet.
+fn from_the_lecture(robot: &Robot, at: &Situation, axes: Axes) -> Result<Vec<Matrix3<f64>>, WrongLength> {
+    let arm = DynArm::from_robot(robot);
+    let fixed = arm.trace(&at.q, &at.qd, &at.qdd, &arm.fixed_base(), None)?.links;
+    let to_links = fixed.iter().map(|link| about_z(link.sin, link.cos).transpose());
+    Ok(match axes {
+        Axes::Joint => vec![Matrix3::identity(); fixed.len()],
+        Axes::Link => to_links.collect(),
+        Axes::Base => to_links.zip(orientations(&fixed)).map(|(to_link, to_base)| to_base * to_link).collect(),
+    })
+}
+
+/// A line by the lecture's formulas with a misprint; `None` where they say nothing of it.
+fn misprinted(
+    line: &Line,
+    computation: &Computation,
+    placed: &[Placed],
+    found: &[LinkVectors],
+    turns: &[Matrix3<f64>],
+) -> Option<Vec<f64>> {
+    let index = line.joint - 1;
+    let (place, link, turn) = (placed.get(index)?, found.get(index)?, turns.get(index)?);
+    let has = |misprint| computation.misprints.contains(&misprint);
+    let handed = |value: Vector3<f64>, misprint| if has(misprint) { value } else { place.turn * value };
+    let next = found.get(index + 1);
+    let vector = match line.quantity {
+        Quantity::D => place.d,
+        Quantity::R => place.r,
+        Quantity::Omega => link.omega,
+        Quantity::OmegaDot => link.omega_dot,
+        Quantity::Velocity => link.velocity,
+        Quantity::Acceleration => link.acceleration,
+        Quantity::Gravity => link.gravity,
+        Quantity::InertiaForce => link.inertia_force,
+        Quantity::InertiaMoment => link.inertia_moment,
+        Quantity::NextForce => handed(next?.joint_force, Misprint::E10ForceNotTurned),
+        Quantity::NextMoment => handed(next?.joint_moment, Misprint::E10MomentNotTurned),
+        Quantity::JointForce => link.joint_force,
+        Quantity::JointMoment => link.joint_moment,
+        Quantity::Inertia => {
+            let inertia = turn * place.inertia * turn.transpose();
+            return Some([(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)].map(|at| inertia[at]).to_vec());
+        }
+        _ => return None,
+    };
+    Some((turn * vector).iter().copied().collect())
+}

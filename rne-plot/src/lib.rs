@@ -1,0 +1,29 @@
+//! Torques along a trajectory, and what they are made of: the split of a torque into inertia, velocity and gravity
+//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]).
+//!
+//! Numbers in, data and text out: nothing here opens a file or prints.
+//!
+//! ```
+//! use rne_plot::{TorqueHistory, Trajectory, svg};
+//!
+//! let file = rne_robots::find("planar2").expect("it is shipped");
+//! let robot = rne_model::Robot::from_yaml(file.yaml)?;
+//! let swing = Trajectory::quintic(&[-1.0, 0.0], &[0.5, 1.0], 2.0, 201)?;
+//! let history = TorqueHistory::new(&robot, &swing)?;
+//! let sample = &history.parts[100];
+//! assert!((sample.inertia[0] + sample.velocity[0] + sample.gravity[0] - sample.total[0]).abs() < 1e-12);
+//! assert!(svg(&robot, &swing, &history, "a swing").starts_with("<svg"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod chart;
+mod history;
+mod parts;
+mod scale;
+mod trajectory;
+
+pub use crate::chart::svg;
+pub use crate::history::{Peak, TorqueHistory};
+pub use crate::parts::TorqueParts;
+pub use crate::trajectory::{Trajectory, TrajectoryError};

@@ -1,0 +1,109 @@
+//! Axes of a chart: from numbers to pixels, and where their ticks are.
+
+/// A linear axis.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Scale {
+    low: f64,
+    high: f64,
+    /// Pixels of both ends.
+    from: f64,
+    to: f64,
+}
+
+impl Scale {
+    pub(crate) const fn new(low: f64, high: f64, from: f64, to: f64) -> Self {
+        Self { low, high, from, to }
+    }
+
+    /// Pixels of a number.
+    pub(crate) fn at(&self, value: f64) -> f64 {
+        let part = (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0);
+        self.from + part * (self.to - self.from)
+    }
+
+    /// Round numbers on the axis, about so many.
+    pub(crate) fn ticks(&self, about: f64) -> Vec<f64> {
+        let step = step(self.high - self.low, about);
+        let first = (self.low / step - 1e-9).ceil();
+        let last = (self.high / step + 1e-9).floor();
+        let mut ticks = Vec::new();
+        let mut count = first;
+        while count <= last && ticks.len() < 32 {
+            // no -0
+            ticks.push(count * step + 0.0);
+            count += 1.0;
+        }
+        ticks
+    }
+}
+
+/// Both ends of an axis that has room for values and 0, at round numbers.
+pub(crate) fn range(values: impl Iterator<Item = f64>, about: f64) -> (f64, f64) {
+    let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
+    if high - low == 0.0 || !(high - low).is_finite() {
+        return (-1.0, 1.0);
+    }
+    let step = step(high - low, about);
+    ((low / step - 0.05).floor() * step, (high / step + 0.05).ceil() * step)
+}
+
+/// 1, 2 or 5 times a power of ten.
+fn step(span: f64, about: f64) -> f64 {
+    let rough = span / about;
+    let power = 10_f64.powf(rough.log10().floor());
+    let factor = rough / power;
+    let round = if factor < 1.5 {
+        1.0
+    } else if factor < 3.5 {
+        2.0
+    } else if factor < 7.5 {
+        5.0
+    } else {
+        10.0
+    };
+    round * power
+}
+
+/// A number beside a tick, with a minus that is as long as a plus.
+pub(crate) fn label(value: f64) -> String {
+    // what the step of a tick leaves behind, 0.30000000000000004
+    significant(value, 10)
+}
+
+/// A number in so many significant digits, without idle zeros.
+pub(crate) fn significant(value: f64, digits: usize) -> String {
+    let rounded: f64 = format!("{value:.0$e}", digits - 1).parse().unwrap_or(value);
+    let text = if rounded != 0.0 && (rounded.abs() < 1e-4 || rounded.abs() >= 1e6) {
+        format!("{rounded:e}")
+    } else {
+        format!("{}", rounded + 0.0)
+    };
+    text.replace('-', "\u{2212}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ticks_are_round_and_inside() {
+        for (low, high) in [(0.0, 2.0), (-37.6, 81.2), (-1e-7, 3e-7), (-1e12, 0.0), (0.03, 0.0305)] {
+            let ticks = Scale::new(low, high, 0.0, 100.0).ticks(5.0);
+            assert!((3..=12).contains(&ticks.len()), "{low} {high}: {ticks:?}");
+            let slack = 1e-6 * (high - low);
+            assert!(ticks.iter().all(|tick| (low - slack..=high + slack).contains(tick)), "{ticks:?}");
+        }
+        assert_eq!(Scale::new(0.0, 2.0, 0.0, 100.0).ticks(4.0), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        assert_eq!(range([3.0, -7.2].into_iter(), 5.0), (-8.0, 4.0));
+        assert_eq!(range([0.0].into_iter(), 5.0), (-1.0, 1.0));
+        assert_eq!((label(0.1 + 0.2), label(-20.0), label(0.0)), ("0.3".into(), "\u{2212}20".into(), "0".into()));
+        assert_eq!((significant(-37.682, 3), significant(1234.5, 3)), ("\u{2212}37.7".into(), "1230".into()));
+    }
+
+    #[test]
+    fn the_ends_of_an_axis_are_its_pixels() {
+        let scale = Scale::new(-2.0, 6.0, 300.0, 100.0);
+        assert_eq!([-2.0, 0.0, 6.0].map(|value| scale.at(value)), [300.0, 250.0, 100.0]);
+        assert!(Scale::new(-1e308, 1e308, 0.0, 1.0).at(1e308).is_finite());
+    }
+}
