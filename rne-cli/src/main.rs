@@ -6,6 +6,7 @@ mod arguments;
 mod arm;
 mod base_parameters;
 mod check;
+mod closed_form;
 mod convert;
 mod diagnose;
 mod emit;

@@ -10,6 +10,7 @@ use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
 use rne_model::Robot;
 
 use crate::arm::Rotors;
+use crate::closed_form::Wanted;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
@@ -62,6 +63,8 @@ pub(crate) struct Arguments {
     /// Instead of code: which combinations of link parameters the torques depend on, for identification
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without"])]
     base_parameters: bool,
+    #[command(flatten)]
+    closed_form: Wanted,
 }
 
 /// A quantity of the lecture that may be folded away.
@@ -120,6 +123,9 @@ impl Kept {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.closed_form.is_asked_for() {
+        return arguments.closed_form.run(&arguments.file, |robot| arguments.rotors.of(robot));
+    }
     let file = arguments.file.display().to_string();
     let robot = arguments.rotors.robot(&arguments.file)?;
     if arguments.base_parameters {

@@ -28,13 +28,14 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 9] = [
+const CRATES: [&str; 10] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
     "rne-codegen",
     "rne-macro",
     "rne-diagnose",
+    "rne-symbolic",
     "rne",
     "rne-convert",
     "rne-cli",

@@ -1,0 +1,258 @@
+//! A polynomial as a person writes it: common factors before parentheses, what stands beside one sine together.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use num_integer::Integer as _;
+use num_traits::{One, Signed, Zero};
+
+use crate::factor::{Class, Factor};
+use crate::polynomial::{Monomial, Polynomial};
+use crate::rational::{Rational, fraction};
+use crate::symbol::{Constants, Kind, Symbol};
+use crate::trigonometry::{self, Product};
+
+/// A sum of products that may hold sums.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Sum(pub(crate) Vec<Term>);
+
+/// coefficient · before · (sum) · after
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Term {
+    pub(crate) coefficient: Rational,
+    pub(crate) before: Vec<(Factor, i32)>,
+    pub(crate) sum: Option<Sum>,
+    pub(crate) after: Vec<(Factor, i32)>,
+}
+
+/// A term before sums are collected.
+#[derive(Clone, Debug)]
+struct Flat {
+    coefficient: Rational,
+    factors: BTreeMap<Factor, i32>,
+}
+
+/// Short forms that are known, by the polynomial with the first coefficient 1.
+type Known = HashMap<Vec<(Monomial, Rational)>, Vec<Product>>;
+
+/// Writes polynomials of one arm.
+#[derive(Debug)]
+pub(crate) struct Collector<'c> {
+    constants: &'c Constants,
+    known: Known,
+}
+
+impl<'c> Collector<'c> {
+    pub(crate) fn new(constants: &'c Constants) -> Self {
+        Self { constants, known: Known::new() }
+    }
+
+    /// The polynomial, collected; nothing for one that is too long.
+    pub(crate) fn collected(&mut self, polynomial: &Polynomial) -> Option<Sum> {
+        let mut beside: BTreeMap<Monomial, BTreeMap<Monomial, Rational>> = BTreeMap::new();
+        for (monomial, value) in polynomial.terms()? {
+            let (angles, rest) = monomial.split(|symbol| matches!(symbol, Symbol::Sine(_) | Symbol::Cosine(_)));
+            beside.entry(rest).or_default().insert(angles, value.clone());
+        }
+        let mut terms: BTreeMap<BTreeMap<Factor, i32>, Rational> = BTreeMap::new();
+        for (rest, angles) in beside {
+            for (value, short) in self.short(&angles) {
+                let letters = rest.0.iter().map(|&(symbol, n)| (Factor::of(symbol), n));
+                crate::polynomial::enter(&mut terms, letters.chain(short).collect(), value);
+            }
+        }
+        let mut flat: Vec<Flat> =
+            terms.into_iter().map(|(factors, coefficient)| Flat { coefficient, factors }).collect();
+        flat.sort_by_cached_key(order);
+        Some(self.gathered(flat))
+    }
+
+    /// The short form of a polynomial in sines and cosines.
+    fn short(&mut self, angles: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
+        let Some(first) = angles.values().next().cloned() else { return Vec::new() };
+        let scaled: Vec<(Monomial, Rational)> = angles.iter().map(|(k, value)| (k.clone(), value / &first)).collect();
+        let short = self
+            .known
+            .entry(scaled)
+            .or_insert_with_key(|scaled| trigonometry::shortest(&scaled.iter().cloned().collect()));
+        short.iter().map(|(value, factors)| (value * &first, factors.clone())).collect()
+    }
+
+    fn gathered(&self, mut terms: Vec<Flat>) -> Sum {
+        if terms.len() <= 1 {
+            return Sum(terms.into_iter().map(|term| product(term.coefficient, term.factors, None)).collect());
+        }
+        let coefficient = common_coefficient(&terms);
+        let factors = common_factors(&terms);
+        if !coefficient.is_one() || !factors.is_empty() {
+            for term in &mut terms {
+                term.coefficient = &term.coefficient / &coefficient;
+                for (factor, exponent) in &factors {
+                    let place = term.factors.entry(factor.clone()).or_default();
+                    *place -= exponent;
+                    if *place == 0 {
+                        term.factors.remove(factor);
+                    }
+                }
+            }
+            return Sum(vec![product(coefficient, factors, Some(self.gathered(terms)))]);
+        }
+        let groups = by_class(&terms).or_else(|| self.by_factor(&terms));
+        let sum = match groups {
+            Some(groups) => groups.into_iter().flat_map(|group| self.gathered(group).0).collect(),
+            None => terms.into_iter().map(|term| product(term.coefficient, term.factors, None)).collect(),
+        };
+        Sum(positive_first(sum))
+    }
+
+    /// Terms with the factor that most of them have, and the others; `None` where no two have one.
+    fn by_factor(&self, terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
+        let mut counts: BTreeMap<&Factor, usize> = BTreeMap::new();
+        for factor in terms.iter().flat_map(|term| term.factors.keys()) {
+            *counts.entry(factor).or_default() += 1;
+        }
+        let rank = |factor: &Factor| match factor {
+            Factor::Constant(index) => match self.constants.0.get(*index).map(|constant| constant.kind) {
+                Some(Kind::Gravity) => 2,
+                Some(Kind::Mass) => 1,
+                _ => 0,
+            },
+            _ => 0,
+        };
+        // a² + a b is no shorter as a (a + b)
+        let repeated = counts.into_iter().filter(|(factor, count)| *count >= 2 && rank(factor) > 0);
+        // of equals the first
+        let (best, _) = repeated.rev().max_by_key(|(factor, count)| (rank(factor), *count))?;
+        let best = best.clone();
+        let (with, without): (Vec<Flat>, Vec<Flat>) =
+            terms.iter().cloned().partition(|term| term.factors.contains_key(&best));
+        let is_first = terms.first().is_some_and(|term| term.factors.contains_key(&best));
+        Some(if is_first { vec![with, without] } else { vec![without, with] })
+    }
+}
+
+/// Terms together that have the same accelerations, or else the same rates, or else the same sines and cosines; `None`
+/// where that brings no two together.
+fn by_class(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
+    [Class::Acceleration, Class::Rate, Class::Trigonometric].into_iter().find_map(|class| {
+        let mut groups: Vec<(Vec<(Factor, i32)>, Vec<Flat>)> = Vec::new();
+        for term in terms {
+            let part: Vec<(Factor, i32)> =
+                term.factors.iter().filter(|(factor, _)| factor.class() == class).map(|(f, n)| (f.clone(), *n)).collect();
+            match groups.iter_mut().find(|(known, _)| *known == part) {
+                Some((_, group)) => group.push(term.clone()),
+                None => groups.push((part, vec![term.clone()])),
+            }
+        }
+        let is_worth_it = groups.iter().any(|(part, group)| !part.is_empty() && group.len() >= 2);
+        (is_worth_it && groups.len() >= 2).then(|| groups.into_iter().map(|(_, group)| group).collect())
+    })
+}
+
+/// The order of terms: by what is collected first, then by the letters.
+fn order(term: &Flat) -> Vec<(Class, Vec<(Factor, i32)>)> {
+    [Class::Acceleration, Class::Rate, Class::Trigonometric, Class::Constant, Class::Position]
+        .into_iter()
+        .map(|class| {
+            // accelerations and gravity last in no order of the alphabet: what has none of a class comes after what has
+            // some for rates, and before for the rest
+            let part: Vec<(Factor, i32)> = term
+                .factors
+                .iter()
+                .filter(|(factor, _)| factor.class() == class)
+                .map(|(factor, n)| (factor.clone(), -n))
+                .collect();
+            let is_last = part.is_empty() && class >= Class::Rate;
+            (if is_last { Class::Acceleration } else { Class::Constant }, part)
+        })
+        .collect()
+}
+
+/// The factors that all terms have with the same exponent: (1/3) a² + (1/2) a b stays as it is.
+fn common_factors(terms: &[Flat]) -> BTreeMap<Factor, i32> {
+    let Some((first, rest)) = terms.split_first() else { return BTreeMap::new() };
+    let mut common = first.factors.clone();
+    common.retain(|factor, exponent| rest.iter().all(|term| term.factors.get(factor) == Some(exponent)));
+    common
+}
+
+/// What is put before the parentheses: a magnitude that all coefficients have, or what divides integers; and the sign,
+/// if none is positive.
+fn common_coefficient(terms: &[Flat]) -> Rational {
+    let magnitudes: BTreeSet<Rational> = terms.iter().map(|term| term.coefficient.abs()).collect();
+    let magnitude = match magnitudes.first() {
+        Some(only) if magnitudes.len() == 1 => only.clone(),
+        Some(first) if magnitudes.iter().all(Rational::is_integer) => {
+            let divisor = magnitudes.iter().fold(first.numer().clone(), |divisor, other| divisor.gcd(other.numer()));
+            Rational::from_integer(divisor)
+        }
+        _ => fraction(1, 1),
+    };
+    if terms.iter().all(|term| term.coefficient.is_negative()) { -magnitude } else { magnitude }
+}
+
+/// A product. Behind a sum stand the factors that are of a later class than all in it: (m1 + m2) cos θ1.
+fn product(coefficient: Rational, factors: BTreeMap<Factor, i32>, sum: Option<Sum>) -> Term {
+    let latest = sum.as_ref().map_or(Class::Acceleration, latest_class);
+    // a bare number times a sum of one term is that term
+    let (after, before) = factors.into_iter().partition(|(factor, _)| factor.class() > latest.max(Class::Position));
+    Term { coefficient, before, sum, after }
+}
+
+fn latest_class(sum: &Sum) -> Class {
+    let of_term = |term: &Term| {
+        let own = term.before.iter().chain(&term.after).map(|(factor, _)| factor.class());
+        own.chain(term.sum.as_ref().map(latest_class)).max().unwrap_or(Class::Constant)
+    };
+    sum.0.iter().map(of_term).max().unwrap_or(Class::Constant)
+}
+
+/// A sum begins with a positive term, if it has one.
+fn positive_first(mut terms: Vec<Term>) -> Vec<Term> {
+    if let Some(at) = terms.iter().position(|term| term.coefficient.is_positive()) {
+        terms[..=at].rotate_right(1);
+    }
+    terms
+}
+
+impl Sum {
+    /// The sum times a factor, as one term.
+    pub(crate) fn times(&self, factor: Factor) -> Vec<Term> {
+        let mut sum = self.clone();
+        match sum.0.as_mut_slice() {
+            [] => Vec::new(),
+            [single] => {
+                single.after.push((factor, 1));
+                sum.0
+            }
+            _ => {
+                let coefficient = fraction(1, 1);
+                vec![Term { coefficient, before: Vec::new(), sum: Some(sum), after: vec![(factor, 1)] }]
+            }
+        }
+    }
+
+    pub(crate) fn is_zero(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The same without parentheses, in letters: what is printed is held against what was derived.
+    pub(crate) fn expanded(&self) -> Polynomial {
+        self.0.iter().fold(Polynomial::zero(), |sum, term| {
+            let mut product = Polynomial::number(term.coefficient.clone());
+            for (factor, exponent) in term.before.iter().chain(&term.after) {
+                let letter = factor.expanded();
+                let letter = if *exponent < 0 { letter.inverse().unwrap_or_else(Polynomial::zero) } else { letter };
+                product = (0..exponent.abs()).fold(product, |product, _| &product * &letter);
+            }
+            if let Some(inner) = &term.sum {
+                product = &product * &inner.expanded();
+            }
+            sum + product
+        })
+    }
+}
+
+/// Whether the magnitude of a coefficient goes without saying.
+pub(crate) fn is_unit(coefficient: &Rational) -> bool {
+    coefficient.abs().is_one() && !coefficient.is_zero()
+}

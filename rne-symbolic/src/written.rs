@@ -1,0 +1,80 @@
+//! The equations of motion, collected for reading.
+
+use rne_model::JointKind;
+
+use crate::collected::{Collector, Sum};
+use crate::equations::Equations;
+use crate::factor::Factor;
+use crate::lines::Pieces;
+use crate::notation::{Notation, Script};
+use crate::polynomial::Polynomial;
+use crate::seven_steps::TooLong;
+use crate::table::Table;
+use crate::MOST_LINES;
+
+/// Columns of a line.
+pub(crate) const COLUMNS: usize = 80;
+
+/// So many terms a polynomial may have, multiplied out; the printed form is shorter.
+const MOST_TERMS: usize = 1_500;
+
+/// Every polynomial of [`Equations`], collected.
+#[derive(Debug)]
+pub(crate) struct Written {
+    pub(crate) torques: Vec<Sum>,
+    pub(crate) mass_matrix: Vec<Vec<Sum>>,
+    pub(crate) christoffel: Vec<Vec<Vec<Sum>>>,
+    pub(crate) gravity: Vec<Sum>,
+}
+
+impl Written {
+    pub(crate) fn of(table: &Table, equations: &Equations) -> Result<Self, TooLong> {
+        let terms = |polynomial: &Polynomial| polynomial.terms().map_or(usize::MAX, std::collections::BTreeMap::len);
+        let dof = table.rows.len();
+        let velocities: Vec<Polynomial> = (0..dof).map(|i| equations.velocity_torque(i)).collect();
+        if equations.all().chain(&velocities).any(|polynomial| terms(polynomial) > MOST_TERMS) {
+            return Err(TooLong);
+        }
+        let kinds = kinds(table);
+        let notation = Notation { script: Script::Unicode, constants: &table.constants, kinds: &kinds };
+        let mut collector = Collector::new(&table.constants);
+        let mut collected = |polynomial: &Polynomial| collector.collected(polynomial).ok_or(TooLong);
+        let mut written =
+            Self { torques: Vec::new(), mass_matrix: Vec::new(), christoffel: Vec::new(), gravity: Vec::new() };
+        for i in 0..dof {
+            let masses = equations.mass_matrix[i].iter().map(&mut collected).collect::<Result<Vec<_>, _>>()?;
+            let mut symbols = Vec::new();
+            for row in &equations.christoffel[i] {
+                symbols.push(row.iter().map(&mut collected).collect::<Result<Vec<_>, _>>()?);
+            }
+            let gravity = collected(&equations.gravity[i])?;
+            let upper = symbols.iter().enumerate().flat_map(|(j, row)| &row[j..]);
+            let parts = masses[i..].iter().chain(upper).chain([&gravity]).filter(|sum| !sum.is_zero());
+            let lines = parts.map(|sum| Pieces::of(sum, &notation).lines(10, 6, COLUMNS).len()).sum::<usize>();
+            if lines > MOST_LINES {
+                return Err(TooLong);
+            }
+            let accelerations = masses.iter().enumerate().flat_map(|(j, sum)| sum.times(Factor::Acceleration(j)));
+            let velocity = collected(&velocities[i])?;
+            written.torques.push(Sum(accelerations.chain(velocity.0).chain(gravity.0.clone()).collect()));
+            written.mass_matrix.push(masses);
+            written.christoffel.push(symbols);
+            written.gravity.push(gravity);
+        }
+        Ok(written)
+    }
+}
+
+/// What the joints do.
+pub(crate) fn kinds(table: &Table) -> Vec<JointKind> {
+    table.rows.iter().map(|row| row.kind).collect()
+}
+
+/// A polynomial in one line of Unicode.
+pub(crate) fn one_line(table: &Table, polynomial: &Polynomial) -> Option<String> {
+    let kinds = kinds(table);
+    let notation = Notation { script: Script::Unicode, constants: &table.constants, kinds: &kinds };
+    let sum = Collector::new(&table.constants).collected(polynomial)?;
+    let lines = Pieces::of(&sum, &notation).lines(0, 0, usize::MAX);
+    lines.into_iter().next().map(|(_, line)| line)
+}
