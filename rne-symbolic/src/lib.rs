@@ -44,6 +44,8 @@ mod recursion;
 mod seven_steps;
 mod symbol;
 mod table;
+#[cfg(test)]
+mod tests;
 mod text;
 mod trigonometry;
 mod vector;
@@ -53,8 +55,8 @@ pub use crate::parameters::read;
 
 use rne_model::Robot;
 
+use crate::collected::Sum;
 use crate::equations::Equations;
-use crate::polynomial::Polynomial;
 use crate::seven_steps::TooLong;
 use crate::table::Table;
 use crate::written::Written;
@@ -118,33 +120,30 @@ impl ClosedForm {
     /// The element M_ij, joints from 0, in one line; `None` where there is no closed form or no such element.
     #[must_use]
     pub fn mass(&self, i: usize, j: usize) -> Option<String> {
-        let (equations, _) = self.written.as_ref().ok()?;
-        self.one_line(equations.mass_matrix.get(i)?.get(j)?)
+        self.one_line(|written| written.mass_matrix.get(i)?.get(j))
     }
 
     /// The Christoffel symbol c_ijk, joints from 0, in one line: h_i = Σ c_ijk q̇_j q̇_k.
     #[must_use]
     pub fn christoffel(&self, i: usize, j: usize, k: usize) -> Option<String> {
-        let (equations, _) = self.written.as_ref().ok()?;
-        self.one_line(equations.christoffel.get(i)?.get(j)?.get(k)?)
+        self.one_line(|written| written.christoffel.get(i)?.get(j)?.get(k))
     }
 
     /// γ_i, joints from 0, in one line.
     #[must_use]
     pub fn gravity(&self, i: usize) -> Option<String> {
-        let (equations, _) = self.written.as_ref().ok()?;
-        self.one_line(equations.gravity.get(i)?)
+        self.one_line(|written| written.gravity.get(i))
     }
 
-    /// τ_i, joints from 0, in one line.
+    /// τ_i, joints from 0, in one line: accelerations, rates, gravity.
     #[must_use]
     pub fn torque(&self, i: usize) -> Option<String> {
-        let (equations, _) = self.written.as_ref().ok()?;
-        (i < self.joints()).then(|| self.one_line(&equations.torque(i)))?
+        self.one_line(|written| written.torques.get(i))
     }
 
-    fn one_line(&self, polynomial: &Polynomial) -> Option<String> {
-        written::one_line(&self.table, polynomial)
+    fn one_line(&self, of: impl Fn(&Written) -> Option<&Sum>) -> Option<String> {
+        let (_, written) = self.written.as_ref().ok()?;
+        of(written).map(|sum| written::one_line(&self.table, sum))
     }
 
     /// The form as text in Unicode, in lines of at most 80 columns.

@@ -81,7 +81,7 @@ impl Pieces {
         lines
     }
 
-    /// The outermost place to break at, unless that leaves half of the line empty; the last one of equals.
+    /// The outermost place to break at, unless that leaves most of the line empty; the last one of equals.
     fn best_break(pieces: &[Piece], fitting: usize) -> usize {
         let widths: usize = pieces[..fitting].iter().map(|piece| piece.width + 1).sum();
         let mut column = 0;
@@ -89,7 +89,7 @@ impl Pieces {
         for at in 1..=fitting {
             column += pieces[at - 1].width + 1;
             let depth = pieces.get(at).map_or(0, |piece| piece.depth);
-            if 2 * column >= widths && depth <= best.0 {
+            if 4 * column >= widths && depth <= best.0 {
                 best = (depth, at);
             }
         }

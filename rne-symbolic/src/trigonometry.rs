@@ -16,9 +16,14 @@ use crate::symbol::{Angle, Symbol};
 /// A coefficient with its factors.
 pub(crate) type Product = (Rational, Vec<(Factor, i32)>);
 
-/// Joints whose angles are added up in every way; of more, consecutive ones are added, and of many more none.
+/// Of so many joints angles are added and subtracted in every way, of more of them consecutive ones are added.
 const MOST_COMBINED: usize = 3;
-const MOST_ADDED: usize = 5;
+
+/// What is longer stays as it is.
+const MOST_TERMS: usize = 24;
+
+/// Forms that are tried, times the waves of each; the plain ones come first.
+const MOST_WORK: usize = 3_000;
 
 /// Σ (x + iy) e^{ik·θ} by k, one entry for each angle.
 type Waves = BTreeMap<Vec<i32>, (Rational, Rational)>;
@@ -37,7 +42,7 @@ pub(crate) fn shortest(terms: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
             (value.clone(), monomial.0.iter().map(|&(symbol, n)| (Factor::of(symbol), n)).collect())
         })
         .collect();
-    if plain.len() <= 1 {
+    if plain.len() <= 1 || plain.len() > MOST_TERMS {
         return plain;
     }
     let waves = waves(terms, &angles);
@@ -49,12 +54,21 @@ pub(crate) fn shortest(terms: &BTreeMap<Monomial, Rational>) -> Vec<Product> {
         }
     };
     // in order: an earlier form wins a tie
+    let mut forms = 0;
     for basis in &bases {
+        if forms * waves.len() > MOST_WORK || best.len() == 1 {
+            break;
+        }
         let turned = in_basis(&waves, basis);
+        // angles in which the waves are no slower make longer products
+        if order(&turned) > order(&waves) {
+            continue;
+        }
         let largest: Vec<i32> =
             (0..angles.len()).map(|at| turned.keys().map(|k| k[at].abs()).max().unwrap_or(0)).collect();
         let squared: Vec<usize> = (0..angles.len()).filter(|at| largest[*at] >= 2).collect();
         for choice in 0..1_usize << squared.len().min(4) {
+            forms += 1;
             let keeps_sine: Vec<bool> = (0..angles.len())
                 .map(|at| squared.iter().position(|of| *of == at).is_some_and(|bit| choice >> bit & 1 == 1))
                 .collect();
@@ -119,6 +133,11 @@ fn waves(terms: &BTreeMap<Monomial, Rational>, angles: &[Angle]) -> Waves {
     sum
 }
 
+/// How often the waves turn, all together.
+fn order(waves: &Waves) -> i32 {
+    waves.keys().flatten().map(|times| times.abs()).sum()
+}
+
 fn add(waves: &mut Waves, k: Vec<i32>, (x, y): (Rational, Rational)) {
     let place = waves.entry(k).or_insert_with(|| (Rational::zero(), Rational::zero()));
     place.0 += x;
@@ -132,7 +151,7 @@ fn bases(angles: &[Angle]) -> Vec<Vec<Vec<i32>>> {
     let rows = |at: usize| {
         let mut rows = vec![unit(at)];
         // angles are sorted: joints come first
-        if at >= joints || joints > MOST_ADDED {
+        if at >= joints || joints > 2 * MOST_COMBINED {
             return rows;
         }
         for start in (0..at).rev() {

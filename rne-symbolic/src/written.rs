@@ -15,8 +15,8 @@ use crate::MOST_LINES;
 /// Columns of a line.
 pub(crate) const COLUMNS: usize = 80;
 
-/// So many terms a polynomial may have, multiplied out; the printed form is shorter.
-const MOST_TERMS: usize = 1_500;
+/// So many terms a torque may have, multiplied out; the printed form is shorter.
+const MOST_TERMS: usize = 400;
 
 /// Every polynomial of [`Equations`], collected.
 #[derive(Debug)]
@@ -31,8 +31,7 @@ impl Written {
     pub(crate) fn of(table: &Table, equations: &Equations) -> Result<Self, TooLong> {
         let terms = |polynomial: &Polynomial| polynomial.terms().map_or(usize::MAX, std::collections::BTreeMap::len);
         let dof = table.rows.len();
-        let velocities: Vec<Polynomial> = (0..dof).map(|i| equations.velocity_torque(i)).collect();
-        if equations.all().chain(&velocities).any(|polynomial| terms(polynomial) > MOST_TERMS) {
+        if (0..dof).any(|i| terms(&equations.torque(i)) > MOST_TERMS) {
             return Err(TooLong);
         }
         let kinds = kinds(table);
@@ -55,7 +54,7 @@ impl Written {
                 return Err(TooLong);
             }
             let accelerations = masses.iter().enumerate().flat_map(|(j, sum)| sum.times(Factor::Acceleration(j)));
-            let velocity = collected(&velocities[i])?;
+            let velocity = collected(&equations.velocity_torque(i))?;
             written.torques.push(Sum(accelerations.chain(velocity.0).chain(gravity.0.clone()).collect()));
             written.mass_matrix.push(masses);
             written.christoffel.push(symbols);
@@ -70,11 +69,10 @@ pub(crate) fn kinds(table: &Table) -> Vec<JointKind> {
     table.rows.iter().map(|row| row.kind).collect()
 }
 
-/// A polynomial in one line of Unicode.
-pub(crate) fn one_line(table: &Table, polynomial: &Polynomial) -> Option<String> {
+/// A sum in one line of Unicode.
+pub(crate) fn one_line(table: &Table, sum: &Sum) -> String {
     let kinds = kinds(table);
     let notation = Notation { script: Script::Unicode, constants: &table.constants, kinds: &kinds };
-    let sum = Collector::new(&table.constants).collected(polynomial)?;
-    let lines = Pieces::of(&sum, &notation).lines(0, 0, usize::MAX);
-    lines.into_iter().next().map(|(_, line)| line)
+    let lines = Pieces::of(sum, &notation).lines(0, 0, usize::MAX);
+    lines.into_iter().next().map_or_else(String::new, |(_, line)| line)
 }
