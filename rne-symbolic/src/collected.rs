@@ -15,17 +15,17 @@ use crate::trigonometry::{self, Product};
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Sum(pub(crate) Vec<Term>);
 
-/// coefficient · before · (sum) · after
+/// coefficient · before · (sum)ⁿ… · after
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Term {
     pub(crate) coefficient: Rational,
     pub(crate) before: Vec<(Factor, i32)>,
-    pub(crate) sum: Option<Sum>,
+    pub(crate) sums: Vec<(Sum, i32)>,
     pub(crate) after: Vec<(Factor, i32)>,
 }
 
 /// A term before sums are collected.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 struct Flat {
     coefficient: Rational,
     factors: BTreeMap<Factor, i32>,
@@ -79,27 +79,29 @@ impl<'c> Collector<'c> {
 
     fn gathered(&self, mut terms: Vec<Flat>) -> Sum {
         if terms.len() <= 1 {
-            return Sum(terms.into_iter().map(|term| product(term.coefficient, term.factors, None)).collect());
+            return Sum(terms.into_iter().map(Flat::written).collect());
         }
         let coefficient = common_coefficient(&terms);
         let factors = common_factors(&terms);
         if !coefficient.is_one() || !factors.is_empty() {
             for term in &mut terms {
                 term.coefficient = &term.coefficient / &coefficient;
-                for (factor, exponent) in &factors {
-                    let place = term.factors.entry(factor.clone()).or_default();
-                    *place -= exponent;
-                    if *place == 0 {
-                        term.factors.remove(factor);
-                    }
-                }
+                term.factors.retain(|factor, _| !factors.contains_key(factor));
             }
-            return Sum(vec![product(coefficient, factors, Some(self.gathered(terms)))]);
+            let outside = Flat { coefficient, factors };
+            return Sum(vec![product(outside, [self.gathered(terms)])]);
         }
-        let groups = by_class(&terms).or_else(|| self.by_factor(&terms));
+        if let Some(square) = square(&terms) {
+            return Sum(vec![square]);
+        }
+        if let Some((left, right)) = two_sums(&terms) {
+            let one = Flat { coefficient: fraction(1, 1), factors: BTreeMap::new() };
+            return Sum(vec![product(one, [self.gathered(left), self.gathered(right)])]);
+        }
+        let groups = by_class(&terms).or_else(|| self.by_factor(&terms)).or_else(|| with_square(&terms));
         let sum = match groups {
             Some(groups) => groups.into_iter().flat_map(|group| self.gathered(group).0).collect(),
-            None => terms.into_iter().map(|term| product(term.coefficient, term.factors, None)).collect(),
+            None => terms.into_iter().map(Flat::written).collect(),
         };
         Sum(positive_first(sum))
     }
@@ -190,20 +192,141 @@ fn common_coefficient(terms: &[Flat]) -> Rational {
     if terms.iter().all(|term| term.coefficient.is_negative()) { -magnitude } else { magnitude }
 }
 
-/// A product. Behind a sum stand the factors that are of a later class than all in it: (m1 + m2) cos θ1.
-fn product(coefficient: Rational, factors: BTreeMap<Factor, i32>, sum: Option<Sum>) -> Term {
-    let latest = sum.as_ref().map_or(Class::Acceleration, latest_class);
-    // a bare number times a sum of one term is that term
+impl Flat {
+    fn written(self) -> Term {
+        product(self, [])
+    }
+}
+
+/// A product of factors and sums. Behind the sums stand the factors that are of a later class than all in them:
+/// (m1 + m2) cos θ1.
+fn product<const N: usize>(outside: Flat, inside: [Sum; N]) -> Term {
+    let Flat { mut coefficient, mut factors } = outside;
+    let mut sums = Vec::new();
+    for sum in inside {
+        match <[Term; 1]>::try_from(sum.0) {
+            // a sum of one term is a product itself
+            Ok([term]) => {
+                coefficient *= term.coefficient;
+                for (factor, exponent) in term.before.into_iter().chain(term.after) {
+                    *factors.entry(factor).or_default() += exponent;
+                }
+                sums.extend(term.sums);
+            }
+            Err(terms) => sums.push((Sum(terms), 1)),
+        }
+    }
+    factors.retain(|_, exponent| *exponent != 0);
+    let latest = sums.iter().map(|(sum, _)| latest_class(sum)).max().unwrap_or(Class::Acceleration);
     let (after, before) = factors.into_iter().partition(|(factor, _)| factor.class() > latest.max(Class::Position));
-    Term { coefficient, before, sum, after }
+    Term { coefficient, before, sums, after }
 }
 
 fn latest_class(sum: &Sum) -> Class {
     let of_term = |term: &Term| {
         let own = term.before.iter().chain(&term.after).map(|(factor, _)| factor.class());
-        own.chain(term.sum.as_ref().map(latest_class)).max().unwrap_or(Class::Constant)
+        own.chain(term.sums.iter().map(|(sum, _)| latest_class(sum))).max().unwrap_or(Class::Constant)
     };
     sum.0.iter().map(of_term).max().unwrap_or(Class::Constant)
+}
+
+/// k p² ± 2 k p q + k q² = k (p ± q)²
+fn square(terms: &[Flat]) -> Option<Term> {
+    let [first, second, third] = terms else { return None };
+    [[first, second, third], [first, third, second], [second, third, first]].into_iter().find_map(|[one, other, both]| {
+        let root = |term: &Flat| -> Option<BTreeMap<Factor, i32>> {
+            let halves = term.factors.iter().map(|(factor, n)| (n % 2 == 0).then(|| (factor.clone(), n / 2)));
+            halves.collect()
+        };
+        let (p, q) = (root(one)?, root(other)?);
+        let mut middle = p.clone();
+        for (factor, exponent) in &q {
+            *middle.entry(factor.clone()).or_default() += exponent;
+        }
+        let k = &one.coefficient;
+        let twice = k * fraction(2, 1);
+        if *k != other.coefficient || both.coefficient.abs() != twice.abs() || middle != both.factors {
+            return None;
+        }
+        let sign = &both.coefficient / &twice;
+        let of = |coefficient, factors| Flat { coefficient, factors }.written();
+        let root = Sum(vec![of(fraction(1, 1), p), of(sign, q)]);
+        Some(Term { coefficient: k.clone(), before: Vec::new(), sums: vec![(root, 2)], after: Vec::new() })
+    })
+}
+
+/// Three terms that are a square, and the others.
+fn with_square(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
+    let indices = 0..terms.len();
+    let triples = indices.clone().flat_map(|i| (i + 1..terms.len()).map(move |j| (i, j)));
+    let mut triples = triples.flat_map(|(i, j)| (j + 1..terms.len()).map(move |k| [i, j, k]));
+    let found = triples.find(|triple| square(&triple.map(|at| terms[at].clone())).is_some())?;
+    let rest = indices.filter(|at| !found.contains(at)).map(|at| terms[at].clone()).collect();
+    Some(vec![found.map(|at| terms[at].clone()).to_vec(), rest])
+}
+
+/// A product of two sums, multiplied out: what stands beside the rates, the sines or the powers of a letter is the same
+/// sum but for a factor.
+fn two_sums(terms: &[Flat]) -> Option<(Vec<Flat>, Vec<Flat>)> {
+    let classes = [Class::Acceleration, Class::Rate, Class::Trigonometric];
+    let letters: BTreeSet<&Factor> =
+        terms.iter().flat_map(|term| term.factors.keys()).filter(|factor| factor.class() <= Class::Position).collect();
+    let by_class = classes.into_iter().find_map(|class| factored(terms, |factor| factor.class() == class));
+    by_class.or_else(|| letters.into_iter().find_map(|letter| factored(terms, |factor| factor == letter)))
+}
+
+/// The two sums, where what stands beside the chosen factors is proportional.
+fn factored(terms: &[Flat], is_chosen: impl Fn(&Factor) -> bool) -> Option<(Vec<Flat>, Vec<Flat>)> {
+    let mut groups: Vec<(BTreeMap<Factor, i32>, Vec<Flat>)> = Vec::new();
+    for term in terms {
+        let (part, factors): (BTreeMap<_, _>, _) =
+            term.factors.clone().into_iter().partition(|(factor, _)| is_chosen(factor));
+        let rest = Flat { coefficient: term.coefficient.clone(), factors };
+        match groups.iter_mut().find(|(known, _)| *known == part) {
+            Some((_, group)) => group.push(rest),
+            None => groups.push((part, vec![rest])),
+        }
+    }
+    if groups.len() < 2 || groups.iter().any(|(_, group)| group.len() < 2) {
+        return None;
+    }
+    let mut common: Option<Vec<Flat>> = None;
+    let mut contents = Vec::new();
+    for (part, mut group) in groups {
+        // the least exponents, and the first coefficient
+        let mut factors = group[0].factors.clone();
+        for term in &group {
+            for (factor, exponent) in &mut factors {
+                *exponent = (*exponent).min(term.factors.get(factor).copied().unwrap_or(0));
+            }
+            for (factor, exponent) in term.factors.iter().filter(|(_, exponent)| **exponent < 0) {
+                let place = factors.entry(factor.clone()).or_insert(0);
+                *place = (*place).min(*exponent);
+            }
+        }
+        factors.retain(|_, exponent| *exponent != 0);
+        for term in &mut group {
+            for (factor, exponent) in &factors {
+                *term.factors.entry(factor.clone()).or_default() -= exponent;
+            }
+            term.factors.retain(|_, exponent| *exponent != 0);
+        }
+        group.sort_by_cached_key(order);
+        let coefficient = group[0].coefficient.clone();
+        for term in &mut group {
+            term.coefficient = &term.coefficient / &coefficient;
+        }
+        match &common {
+            Some(known) if *known != group => return None,
+            _ => common = Some(group),
+        }
+        for (factor, exponent) in part {
+            *factors.entry(factor).or_default() += exponent;
+        }
+        contents.push(Flat { coefficient, factors });
+    }
+    contents.sort_by_cached_key(order);
+    Some((contents, common?))
 }
 
 /// A sum begins with a positive term, if it has one.
@@ -226,7 +349,7 @@ impl Sum {
             }
             _ => {
                 let coefficient = fraction(1, 1);
-                vec![Term { coefficient, before: Vec::new(), sum: Some(sum), after: vec![(factor, 1)] }]
+                vec![Term { coefficient, before: Vec::new(), sums: vec![(sum, 1)], after: vec![(factor, 1)] }]
             }
         }
     }
@@ -235,7 +358,8 @@ impl Sum {
         self.0.is_empty()
     }
 
-    /// The same without parentheses, in letters: what is printed is held against what was derived.
+    /// The same without parentheses, in letters.
+    #[cfg(test)]
     pub(crate) fn expanded(&self) -> Polynomial {
         self.0.iter().fold(Polynomial::zero(), |sum, term| {
             let mut product = Polynomial::number(term.coefficient.clone());
@@ -244,8 +368,9 @@ impl Sum {
                 let letter = if *exponent < 0 { letter.inverse().unwrap_or_else(Polynomial::zero) } else { letter };
                 product = (0..exponent.abs()).fold(product, |product, _| &product * &letter);
             }
-            if let Some(inner) = &term.sum {
-                product = &product * &inner.expanded();
+            for (inner, power) in &term.sums {
+                let inner = inner.expanded();
+                product = (0..*power).fold(product, |product, _| &product * &inner);
             }
             sum + product
         })

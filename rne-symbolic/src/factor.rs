@@ -1,6 +1,8 @@
 //! What stands in a printed product: the letters, and sines and cosines of sums of angles.
 
+#[cfg(test)]
 use crate::polynomial::Polynomial;
+#[cfg(test)]
 use crate::rational::fraction;
 use crate::symbol::{Angle, Symbol};
 
@@ -58,6 +60,7 @@ impl Factor {
     }
 
     /// The same in letters.
+    #[cfg(test)]
     pub(crate) fn expanded(&self) -> Polynomial {
         match self {
             Self::Constant(index) => Polynomial::symbol(Symbol::Constant(*index)),
@@ -71,6 +74,7 @@ impl Factor {
 }
 
 /// Sine and cosine of a sum of angles, by the addition theorems.
+#[cfg(test)]
 fn sine_cosine(argument: &Argument) -> (Polynomial, Polynomial) {
     let mut sum = (Polynomial::zero(), Polynomial::integer(1));
     for &(angle, times) in argument {

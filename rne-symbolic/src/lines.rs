@@ -127,7 +127,7 @@ impl Writer<'_> {
         let factors = |notation: &Notation<'_>, is_after: bool| {
             let factors = if is_after { &term.after } else { &term.before };
             let powers = factors.iter().map(|(factor, exponent)| notation.power(factor, *exponent));
-            let is_bare = factors.is_empty() && term.sum.is_none() && term.after.is_empty();
+            let is_bare = factors.is_empty() && term.sums.is_empty() && term.after.is_empty();
             let number = (!is_after && (!is_unit(&term.coefficient) || is_bare))
                 .then(|| notation.magnitude(&term.coefficient));
             number.into_iter().chain(powers).collect::<Vec<_>>().join(notation.times())
@@ -135,15 +135,16 @@ impl Writer<'_> {
         let both = |writer: &Self, is_after: bool| (factors(&writer.notation, is_after), factors(&plain, is_after));
         let (text, wide) = both(self, false);
         self.push(text.clone(), wide.width(), depth, false);
-        if let Some(sum) = &term.sum {
-            let space = if text.is_empty() { "" } else { " " };
+        for (at, (sum, power)) in term.sums.iter().enumerate() {
+            let space = if at == 0 && text.is_empty() { "" } else { " " };
             self.push(format!("{space}("), space.len() + 1, depth, false);
             self.sum(sum, depth + 1);
-            self.push(")".to_owned(), 1, depth, false);
+            let power = self.notation.exponent(*power);
+            self.push(format!("){power}"), 1 + usize::from(!power.is_empty()), depth, false);
         }
         let (text, wide) = both(self, true);
         if !text.is_empty() {
-            let is_first = term.sum.is_none() && term.before.is_empty() && is_unit(&term.coefficient);
+            let is_first = term.sums.is_empty() && term.before.is_empty() && is_unit(&term.coefficient);
             let space = match (is_first, self.notation.script) {
                 (true, _) => "",
                 (false, Script::Unicode) => " ",

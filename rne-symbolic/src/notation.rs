@@ -116,7 +116,8 @@ impl Notation<'_> {
         }
     }
 
-    fn exponent(&self, exponent: i32) -> String {
+    /// A raised number; nothing for 1.
+    pub(crate) fn exponent(&self, exponent: i32) -> String {
         match (self.script, exponent) {
             (_, 1) => String::new(),
             (Script::Latex, n) => format!("^{{{n}}}"),
@@ -186,6 +187,8 @@ pub(crate) fn latex_text(text: &str) -> String {
     let mut inert = String::new();
     for c in text.chars() {
         match c {
+            // two of them would become a dash
+            '-' => inert.push_str("-{}"),
             '\\' => inert.push_str(r"\textbackslash{}"),
             '^' => inert.push_str(r"\textasciicircum{}"),
             '~' => inert.push_str(r"\textasciitilde{}"),

@@ -3,7 +3,6 @@
 //! What is zero in the file is zero here, and right angles are exact. Of the other numbers those that the file writes by
 //! its parameters are formulas of these; each of the rest is a letter, called as textbooks do: m1, a2, d3, x_C2, I2_xx.
 
-use num_traits::Zero;
 use rne_model::{Angle as Turn, Convention, Entry, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot};
 
 use crate::polynomial::Polynomial;
