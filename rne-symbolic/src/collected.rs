@@ -217,6 +217,7 @@ fn product<const N: usize>(outside: Flat, inside: [Sum; N]) -> Term {
         }
     }
     factors.retain(|_, exponent| *exponent != 0);
+    sums.sort_by_key(|(sum, _)| latest_class(sum));
     let latest = sums.iter().map(|(sum, _)| latest_class(sum)).max().unwrap_or(Class::Acceleration);
     let (after, before) = factors.into_iter().partition(|(factor, _)| factor.class() > latest.max(Class::Position));
     Term { coefficient, before, sums, after }

@@ -279,6 +279,13 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
         meanings.push("J: inertia about the origin of the link frame, in link axes");
     }
     items.extend(meanings.into_iter().map(|meaning| Item::Words(words(&format!("{meaning}.")))));
+    let slides: Vec<usize> = (0..table.rows.len()).filter(|i| table.rows[*i].kind == JointKind::Prismatic).collect();
+    if !slides.is_empty() {
+        let names: Vec<String> = slides.iter().map(|joint| notation.variable(*joint, 0)).collect();
+        let text = ["Where θ stands for all joint variables, that of a sliding joint is d: ", "."];
+        let [before, after] = text.map(|text| script_words(notation, text));
+        items.push(Item::Words(vec![before, names.join(", "), after]));
+    }
     let mut angles = Vec::new();
     for (angle, turn) in &table.angles {
         let is_used = used.contains(&Symbol::Sine(*angle)) || used.contains(&Symbol::Cosine(*angle));
@@ -322,6 +329,11 @@ fn constant(symbol: Symbol) -> Option<usize> {
 /// A number of the file.
 fn number(value: f64) -> String {
     format!("{value}")
+}
+
+/// Words without Greek letters, which a page has in mathematics alone.
+fn script_words(notation: &Notation<'_>, text: &str) -> String {
+    if notation.script == Script::Latex { text.replace('θ', "theta") } else { text.to_owned() }
 }
 
 fn script(notation: &Notation<'_>, text: &str) -> String {

@@ -72,6 +72,19 @@ pub struct ClosedForm {
     dof: usize,
     /// `Err` where a page does not hold it.
     written: Result<(Equations, Written), TooLong>,
+    /// Where it does not: so many joints from the base have one that fits.
+    shorter: Option<usize>,
+}
+
+/// More joints than these have no form that fits a page, unless they all slide.
+const MOST_JOINTS: usize = 4;
+
+/// The equations of an arm, if they are short enough.
+fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
+    let torques = seven_steps::inverse_dynamics(&arm::links(table), &table.gravity)?;
+    let equations = Equations::sorted(&torques);
+    let written = Written::of(table, &equations)?;
+    Ok((equations, written))
 }
 
 impl ClosedForm {
@@ -81,10 +94,11 @@ impl ClosedForm {
     #[must_use]
     pub fn of(robot: &Robot, joints: usize) -> Self {
         let table = Table::new(robot, joints);
-        let equations = seven_steps::inverse_dynamics(&arm::links(&table), &table.gravity)
-            .map(|torques| Equations::sorted(&torques));
-        let written = equations.and_then(|equations| Written::of(&table, &equations).map(|it| (equations, it)));
-        Self { dof: robot.dof(), table, written }
+        let written = equations(&table);
+        let fits = |joints: &usize| equations(&Table::new(robot, *joints)).is_ok();
+        let fewer = 1..table.rows.len().min(MOST_JOINTS + 1);
+        let shorter = if written.is_ok() { None } else { fewer.rev().find(fits) };
+        Self { dof: robot.dof(), table, written, shorter }
     }
 
     /// Joints that the form has.

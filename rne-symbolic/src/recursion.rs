@@ -11,7 +11,7 @@ use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::table::Row;
 use crate::vector::Vector;
-use crate::{ClosedForm, MOST_LINES};
+use crate::{ClosedForm, MOST_LINES, written};
 
 /// A formula of the recursion on a terminal and in LaTeX: left side, right side.
 type Formula = ([&'static str; 2], [&'static str; 2]);
@@ -26,7 +26,7 @@ const FORWARD: [Formula; 4] = [
         ["c̈i", r"\ddot c_i"],
         [
             "Riᵀ (c̈p + ω̇p × rp + ωp × (ωp × rp)) + ω̇i × di + ωi × (ωi × di)",
-            r"R_i^T (\ddot c_p + \dot\omega_p \times r_p + \omega_p \times (\omega_p \times r_p)) + \dot\omega_i \times d_i + \omega_i \times (\omega_i \times d_i)",
+            r"R_i^T (\ddot c_p + \dot\omega_p \times \mathbf r_p + \omega_p \times (\omega_p \times \mathbf r_p)) + \dot\omega_i \times \mathbf d_i + \omega_i \times (\omega_i \times \mathbf d_i)",
         ],
     ),
     (["gi", r"g_i"], ["Riᵀ gp", r"R_i^T g_p"]),
@@ -42,7 +42,7 @@ const BACKWARD: [Formula; 4] = [
         ["np,i", r"n_{p,i}"],
         [
             "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
-            r"n_i + R_k n_{i,k} + d_i \times f_{p,i} + r_i \times R_k f_{i,k}",
+            r"n_i + R_k n_{i,k} + d_i \times f_{p,i} + \mathbf r_i \times R_k f_{i,k}",
         ],
     ),
     (["τi", r"\tau_i"], ["e · np,i", r"e \cdot n_{p,i}"]),
@@ -53,13 +53,12 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     let script = composer.notation.script;
     let mut why = vec![format!(
         "The closed form of these {} joints is longer than {MOST_LINES} lines for one torque, more than a page can hold \
-         and anybody reads. So here is the recursion that gives it, in the same letters.",
+         and a reader will follow. So here is the recursion that gives it, in the same letters.",
         form.joints()
     )];
-    if form.joints() > 1 {
+    if let Some(joints) = form.shorter {
         why[0].push_str(&format!(
-            " Fewer joints have a shorter form: --first {} takes the arm up to that joint.",
-            (form.joints() - 1).min(3)
+            " The first {joints} of them have a form that fits: --first {joints} takes the arm up to joint {joints}."
         ));
     }
     let mut sections = vec![Section { title: Vec::new(), items: vec![Item::Words(why)] }];
@@ -90,7 +89,11 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     let mut items = Vec::new();
     let mut vector = |left: &str, index: usize, vector: &Vector, seen: &mut Vec<Polynomial>| {
         seen.extend(vector.0.iter().cloned());
-        let left = |notation: &Notation<'_>| notation.indexed(left, &index.to_string());
+        // in print vectors are bold, for d is a letter of the table too
+        let left = |notation: &Notation<'_>| match notation.script {
+            Script::Latex if left.len() == 1 => notation.indexed(&format!("\\mathbf {left}"), &index.to_string()),
+            _ => notation.indexed(left, &index.to_string()),
+        };
         let sums: Vec<_> = vector.0.iter().filter_map(|component| collector.collected(component)).collect();
         composer.formula(left, Pieces::components(&sums, &composer.notation))
     };
@@ -108,8 +111,13 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         if index < links.len() {
             items.push(vector("r", index, &link.r, &mut seen));
         }
-        let mass = Vector([link.mass.clone(), Polynomial::zero(), Polynomial::zero()]);
-        seen.extend(mass.0);
+        let own = |notation: &Notation<'_>| notation.indexed("m", &index.to_string());
+        let mass = written::polynomial(&form.table, &link.mass);
+        if mass != own(&composer.plain) {
+            let sums = Collector::new(composer.notation.constants).collected(&link.mass);
+            items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
+        }
+        seen.push(link.mass.clone());
         let rows = &link.inertia.0;
         let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
         let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);
@@ -119,6 +127,12 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         if !products.is_zero() {
             items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
         }
+    }
+    let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;
+    if script == Script::Unicode && form.table.rows.iter().filter(is_revolute).any(|row| !row.d.is_zero()) {
+        items.push(Item::Words(words(
+            "On the left d is the vector from the joint to the centre of mass, on the right the table's offset.",
+        )));
     }
     sections.push(Section { title: title("Of each link, in the frame at its joint, z along the joint's axis"), items });
     sections.extend(letters(composer, &form.table, &used(seen.iter())));

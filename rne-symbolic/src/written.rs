@@ -76,3 +76,8 @@ pub(crate) fn one_line(table: &Table, sum: &Sum) -> String {
     let lines = Pieces::of(sum, &notation).lines(0, 0, usize::MAX);
     lines.into_iter().next().map_or_else(String::new, |(_, line)| line)
 }
+
+/// A polynomial in one line of Unicode, as the letters of a table; nothing where it is too long.
+pub(crate) fn polynomial(table: &Table, polynomial: &Polynomial) -> String {
+    Collector::new(&table.constants).collected(polynomial).map_or_else(String::new, |sum| one_line(table, &sum))
+}
