@@ -20,7 +20,7 @@ pub(crate) struct Wanted {
     /// The closed form as a LaTeX document
     #[arg(long, conflicts_with_all = OTHERS)]
     latex: bool,
-    /// The closed form of the arm up to joint N, without the links behind
+    /// Of the closed form: the arm up to joint N alone
     #[arg(long, value_name = "N", value_parser = crate::arguments::joint, conflicts_with_all = OTHERS)]
     first: Option<usize>,
 }
@@ -52,16 +52,14 @@ impl Wanted {
         if self.latex {
             return Ok(Outcome::text(form.latex(&emit::ascii(&title))));
         }
-        let styled = |line: &str| match line.starts_with([' ', '\0']) || !is_heading(line) {
-            true => format!("{line}\n"),
-            false => format!("{TITLE}{line}{TITLE:#}\n"),
+        let text = form.text();
+        let mut before = "";
+        let styled = |line| {
+            // a heading stands over lines that are indented
+            let is_heading = std::mem::replace(&mut before, line).is_empty() && !line.ends_with('.');
+            if is_heading && !line.is_empty() { format!("{TITLE}{line}{TITLE:#}\n") } else { format!("{line}\n") }
         };
-        let text: String = form.text().lines().map(styled).collect();
+        let text: String = text.lines().map(styled).collect();
         Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}")))
     }
-}
-
-/// Headings have no point at their end.
-fn is_heading(line: &str) -> bool {
-    !line.is_empty() && !line.ends_with('.')
 }

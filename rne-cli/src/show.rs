@@ -27,6 +27,8 @@ Examples:
   rne show robots/puma560.yaml --function mass_matrix --form reduced
   rne show robots/puma560.yaml --form reduced --without rewriting
   rne show robots/puma560.yaml --base-parameters   what the torques can see
+  rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in letters
+  rne show robots/stanford.yaml --first 3 --latex > stanford.tex
 
 Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of
 link 2 along z, dw ω̇, dc ċ, ddc c̈, f1_2_x and n1_2_x what link 1 exerts on

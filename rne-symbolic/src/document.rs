@@ -294,7 +294,8 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
             Angle::Joint(joint) if turn.radians != 0.0 && is_used => {
                 let q = notation.indexed("q", &(joint + 1).to_string());
                 let constant = if constant.starts_with('-') { constant.replacen('-', "- ", 1) } else { format!("+ {constant}") };
-                angles.push((format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)), String::new()));
+                let unit = if turn.right.is_some() { "" } else { "rad" };
+                angles.push((format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)), unit.to_owned()));
             }
             Angle::Twist(_) | Angle::Turn(_) if is_used => {
                 angles.push((format!("{} = {}", notation.angle(*angle), script(notation, &constant)), "rad".to_owned()));

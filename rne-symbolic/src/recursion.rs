@@ -11,6 +11,7 @@ use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::table::Row;
 use crate::vector::Vector;
+use crate::written::MOST_TERMS;
 use crate::{ClosedForm, MOST_LINES, written};
 
 /// A formula of the recursion on a terminal and in LaTeX: left side, right side.
@@ -52,8 +53,8 @@ const BACKWARD: [Formula; 4] = [
 pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Section> {
     let script = composer.notation.script;
     let mut why = vec![format!(
-        "The closed form of these {} joints is longer than {MOST_LINES} lines for one torque, more than a page can hold \
-         and a reader will follow. So here is the recursion that gives it, in the same letters.",
+        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or has \
+         more than {MOST_TERMS} terms multiplied out. So here is the recursion that gives it, in the same letters.",
         form.joints()
     )];
     if let Some(joints) = form.shorter {
@@ -80,6 +81,10 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         ]));
         let force = math("e · fp,i", r"e \cdot f_{p,i}");
         backward.push(Item::Words(vec!["The force of a sliding joint is ".to_owned(), force, ".".to_owned()]));
+    }
+    if form.table.rows.iter().any(|row| !row.rotor.is_zero()) {
+        let rotor = if script == Script::Latex { r"G_i^2 J_{m,i} \ddot q_i" } else { "Gi² Jmi q̈i" }.to_owned();
+        backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
     }
     let title = |text: &str| words(text);
     sections.push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
@@ -117,7 +122,7 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
             let sums = Collector::new(composer.notation.constants).collected(&link.mass);
             items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
         }
-        seen.push(link.mass.clone());
+        seen.extend([link.mass.clone(), link.rotor.clone()]);
         let rows = &link.inertia.0;
         let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
         let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);

@@ -16,7 +16,7 @@ use crate::MOST_LINES;
 pub(crate) const COLUMNS: usize = 80;
 
 /// So many terms a torque may have, multiplied out; the printed form is shorter.
-const MOST_TERMS: usize = 400;
+pub(crate) const MOST_TERMS: usize = 400;
 
 /// Every polynomial of [`Equations`], collected.
 #[derive(Debug)]
