@@ -3,7 +3,7 @@
 //!
 //! ```text
 //!            R_i                    d_i                        r_i                       I_i
-//! standard   Rx(α_{i-1}) Rz(θ_i)    (a_i, 0, d_i) + Rx(α_i) c̄   -Rx(α_i) c̄               Rx(α_i) Ī Rx(α_i)ᵀ     α_0 = 0
+//! standard   Rx(α_{i-1}) Rz(θ_i)    (a_i, 0, d_i) + Rx(α_i) c̄   -Rx(α_i) c̄               Rx(α_i) Ī Rx(α_i)ᵀ    α_0 = 0
 //! modified   Rx(α_{i-1}) Rz(θ_i)    (0, 0, d_i) + c̄             (a_i, 0, 0) - c̄           Ī
 //! ```
 //!

@@ -31,6 +31,9 @@ struct Flat {
     factors: BTreeMap<Factor, i32>,
 }
 
+/// Some factors of terms, and the terms that have them.
+type Group<P> = (P, Vec<Flat>);
+
 /// Short forms that are known, by the polynomial with the first coefficient 1.
 type Known = HashMap<Vec<(Monomial, Rational)>, Vec<Product>>;
 
@@ -136,10 +139,14 @@ impl<'c> Collector<'c> {
 /// where that brings no two together.
 fn by_class(terms: &[Flat]) -> Option<Vec<Vec<Flat>>> {
     [Class::Acceleration, Class::Rate, Class::Trigonometric].into_iter().find_map(|class| {
-        let mut groups: Vec<(Vec<(Factor, i32)>, Vec<Flat>)> = Vec::new();
+        let mut groups: Vec<Group<Vec<(Factor, i32)>>> = Vec::new();
         for term in terms {
-            let part: Vec<(Factor, i32)> =
-                term.factors.iter().filter(|(factor, _)| factor.class() == class).map(|(f, n)| (f.clone(), *n)).collect();
+            let part: Vec<(Factor, i32)> = term
+                .factors
+                .iter()
+                .filter(|(factor, _)| factor.class() == class)
+                .map(|(f, n)| (f.clone(), *n))
+                .collect();
             match groups.iter_mut().find(|(known, _)| *known == part) {
                 Some((_, group)) => group.push(term.clone()),
                 None => groups.push((part, vec![term.clone()])),
@@ -234,26 +241,28 @@ fn latest_class(sum: &Sum) -> Class {
 /// k p² ± 2 k p q + k q² = k (p ± q)²
 fn square(terms: &[Flat]) -> Option<Term> {
     let [first, second, third] = terms else { return None };
-    [[first, second, third], [first, third, second], [second, third, first]].into_iter().find_map(|[one, other, both]| {
-        let root = |term: &Flat| -> Option<BTreeMap<Factor, i32>> {
-            let halves = term.factors.iter().map(|(factor, n)| (n % 2 == 0).then(|| (factor.clone(), n / 2)));
-            halves.collect()
-        };
-        let (p, q) = (root(one)?, root(other)?);
-        let mut middle = p.clone();
-        for (factor, exponent) in &q {
-            *middle.entry(factor.clone()).or_default() += exponent;
-        }
-        let k = &one.coefficient;
-        let twice = k * fraction(2, 1);
-        if *k != other.coefficient || both.coefficient.abs() != twice.abs() || middle != both.factors {
-            return None;
-        }
-        let sign = &both.coefficient / &twice;
-        let of = |coefficient, factors| Flat { coefficient, factors }.written();
-        let root = Sum(vec![of(fraction(1, 1), p), of(sign, q)]);
-        Some(Term { coefficient: k.clone(), before: Vec::new(), sums: vec![(root, 2)], after: Vec::new() })
-    })
+    [[first, second, third], [first, third, second], [second, third, first]].into_iter().find_map(
+        |[one, other, both]| {
+            let root = |term: &Flat| -> Option<BTreeMap<Factor, i32>> {
+                let halves = term.factors.iter().map(|(factor, n)| (n % 2 == 0).then(|| (factor.clone(), n / 2)));
+                halves.collect()
+            };
+            let (p, q) = (root(one)?, root(other)?);
+            let mut middle = p.clone();
+            for (factor, exponent) in &q {
+                *middle.entry(factor.clone()).or_default() += exponent;
+            }
+            let k = &one.coefficient;
+            let twice = k * fraction(2, 1);
+            if *k != other.coefficient || both.coefficient.abs() != twice.abs() || middle != both.factors {
+                return None;
+            }
+            let sign = &both.coefficient / &twice;
+            let of = |coefficient, factors| Flat { coefficient, factors }.written();
+            let root = Sum(vec![of(fraction(1, 1), p), of(sign, q)]);
+            Some(Term { coefficient: k.clone(), before: Vec::new(), sums: vec![(root, 2)], after: Vec::new() })
+        },
+    )
 }
 
 /// Three terms that are a square, and the others.
@@ -278,7 +287,7 @@ fn two_sums(terms: &[Flat]) -> Option<(Vec<Flat>, Vec<Flat>)> {
 
 /// The two sums, where what stands beside the chosen factors is proportional.
 fn factored(terms: &[Flat], is_chosen: impl Fn(&Factor) -> bool) -> Option<(Vec<Flat>, Vec<Flat>)> {
-    let mut groups: Vec<(BTreeMap<Factor, i32>, Vec<Flat>)> = Vec::new();
+    let mut groups: Vec<Group<BTreeMap<Factor, i32>>> = Vec::new();
     for term in terms {
         let (part, factors): (BTreeMap<_, _>, _) =
             term.factors.clone().into_iter().partition(|(factor, _)| is_chosen(factor));

@@ -77,8 +77,8 @@ pub(crate) fn sections(form: &ClosedForm, script: Script) -> Vec<Section> {
             sections.push(gravity(&composer, written));
             sections.extend(letters(&composer, &form.table, &used(equations.all())));
             if form.is_lagranges() == Some(true) {
-                let words = "Checked: the seven steps and Lagrange's equations give the same polynomials, term by term; \
-                             what stands here is these, collected.";
+                let words = "Checked: the seven steps and Lagrange's equations give the same polynomials, term by \
+                             term; what stands here is these, collected.";
                 sections.push(Section { title: Vec::new(), items: vec![Item::Words(vec![words.to_owned()])] });
             }
         }
@@ -99,8 +99,7 @@ fn math(notation: &Notation<'_>, unicode: &str, latex: &str) -> String {
 fn torques(composer: &Composer<'_>, written: &Written) -> Section {
     let notation = &composer.notation;
     let dof = written.torques.len();
-    let lines =
-        |sum: &Sum| Pieces::of(sum, &composer.plain).lines(7, 6, COLUMNS).len();
+    let lines = |sum: &Sum| Pieces::of(sum, &composer.plain).lines(7, 6, COLUMNS).len();
     let is_short = written.torques.iter().all(|torque| !torque.is_zero() && lines(torque) <= MOST_LINES_OF_A_TORQUE);
     let item = |i: usize| {
         let index = (i + 1).to_string();
@@ -126,7 +125,11 @@ fn torques(composer: &Composer<'_>, written: &Written) -> Section {
     };
     let title = vec![
         "Torques, ".to_owned(),
-        math(notation, "τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ)", r"\tau = M(\theta)\,\ddot\theta + h(\theta,\dot\theta) + \gamma(\theta)"),
+        math(
+            notation,
+            "τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ)",
+            r"\tau = M(\theta)\,\ddot\theta + h(\theta,\dot\theta) + \gamma(\theta)",
+        ),
     ];
     Section { title, items: (0..dof).map(item).collect() }
 }
@@ -212,7 +215,10 @@ fn velocity(composer: &Composer<'_>, equations: &Equations, written: &Written) -
         let rest = math(
             &composer.notation,
             "c_ijk = c_ikj = (∂M_ij/∂θk + ∂M_ik/∂θj - ∂M_jk/∂θi)/2",
-            r"c_{ijk} = c_{ikj} = \tfrac12\left(\frac{\partial M_{ij}}{\partial\theta_k} + \frac{\partial M_{ik}}{\partial\theta_j} - \frac{\partial M_{jk}}{\partial\theta_i}\right)",
+            concat!(
+                r"c_{ijk} = c_{ikj} = \tfrac12\left(\frac{\partial M_{ij}}{\partial\theta_k} ",
+                r"+ \frac{\partial M_{ik}}{\partial\theta_j} - \frac{\partial M_{jk}}{\partial\theta_i}\right)",
+            ),
         );
         items.push(Item::Words(vec!["Christoffel's symbols, ".to_owned(), rest, "; all others are 0.".to_owned()]));
     }
@@ -293,12 +299,17 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
         match angle {
             Angle::Joint(joint) if turn.radians != 0.0 && is_used => {
                 let q = notation.indexed("q", &(joint + 1).to_string());
-                let constant = if constant.starts_with('-') { constant.replacen('-', "- ", 1) } else { format!("+ {constant}") };
+                let constant =
+                    if constant.starts_with('-') { constant.replacen('-', "- ", 1) } else { format!("+ {constant}") };
                 let unit = if turn.right.is_some() { "" } else { "rad" };
-                angles.push((format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)), unit.to_owned()));
+                angles.push((
+                    format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)),
+                    unit.to_owned(),
+                ));
             }
             Angle::Twist(_) | Angle::Turn(_) if is_used => {
-                angles.push((format!("{} = {}", notation.angle(*angle), script(notation, &constant)), "rad".to_owned()));
+                angles
+                    .push((format!("{} = {}", notation.angle(*angle), script(notation, &constant)), "rad".to_owned()));
             }
             _ => {}
         }

@@ -56,9 +56,10 @@ impl Equations {
 
     /// τ_i, from its parts.
     pub(crate) fn torque(&self, joint: usize) -> Polynomial {
-        let accelerations = self.mass_matrix[joint].iter().enumerate().fold(Polynomial::zero(), |sum, (j, element)| {
-            sum + element * &Polynomial::symbol(Symbol::Acceleration(j))
-        });
+        let accelerations = self.mass_matrix[joint]
+            .iter()
+            .enumerate()
+            .fold(Polynomial::zero(), |sum, (j, element)| sum + element * &Polynomial::symbol(Symbol::Acceleration(j)));
         accelerations + self.velocity_torque(joint) + self.gravity[joint].clone()
     }
 

@@ -68,6 +68,7 @@ fn aligned(text: &mut String, rows: &mut Vec<String>) {
 fn mixed(parts: &[String]) -> String {
     let part = |(at, part): (usize, &String)| match at % 2 {
         0 => latex_text(part),
+        _ if part.is_empty() => String::new(),
         _ => format!("${part}$"),
     };
     parts.iter().enumerate().map(part).collect()

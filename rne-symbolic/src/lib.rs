@@ -1,9 +1,9 @@
 //! The dynamics of an arm in closed form, as a lecture writes them: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
 //!
-//! The seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the parameters
-//! of the robot file and the other numbers of its table. The torques are sorted into the mass matrix, Christoffel's
-//! symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is multiplied out
-//! again and must be what was derived. Data in, data out: nothing here opens a file or prints.
+//! The seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the
+//! parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
+//! Christoffel's symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is
+//! multiplied out again and must be what was derived. Data in, data out: nothing here opens a file or prints.
 //!
 //! ```
 //! use rne_symbolic::{ClosedForm, read};
@@ -88,9 +88,9 @@ fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
 }
 
 impl ClosedForm {
-    /// The closed form of the first `joints` joints of a robot, all of them if there are fewer. The links behind are left
-    /// away with their masses. Numbers that depend on the run-time parameters of `robot` are formulas of these: [`read`]
-    /// takes every parameter of a file for one.
+    /// The closed form of the first `joints` joints of a robot, all of them if there are fewer. The links behind are
+    /// left away with their masses. Numbers that depend on the run-time parameters of `robot` are formulas of these:
+    /// [`read`] takes every parameter of a file for one.
     #[must_use]
     pub fn of(robot: &Robot, joints: usize) -> Self {
         let table = Table::new(robot, joints);

@@ -128,8 +128,8 @@ impl Writer<'_> {
             let factors = if is_after { &term.after } else { &term.before };
             let powers = factors.iter().map(|(factor, exponent)| notation.power(factor, *exponent));
             let is_bare = factors.is_empty() && term.sums.is_empty() && term.after.is_empty();
-            let number = (!is_after && (!is_unit(&term.coefficient) || is_bare))
-                .then(|| notation.magnitude(&term.coefficient));
+            let number =
+                (!is_after && (!is_unit(&term.coefficient) || is_bare)).then(|| notation.magnitude(&term.coefficient));
             number.into_iter().chain(powers).collect::<Vec<_>>().join(notation.times())
         };
         let both = |writer: &Self, is_after: bool| (factors(&writer.notation, is_after), factors(&plain, is_after));

@@ -106,7 +106,7 @@ impl Notation<'_> {
                 (_, false) => "+",
             };
             let multiple = if times.abs() == 1 { String::new() } else { times.abs().to_string() };
-            sum.push_str(&format!("{sign}{multiple}{}", self.angle(*angle)));
+            sum.extend([sign, &multiple, &self.angle(*angle)]);
         }
         match (self.script, argument.len()) {
             (Script::Unicode, 1) => format!("{name}{power} {sum}"),

@@ -212,8 +212,7 @@ impl Add for &Polynomial {
 
     fn add(self, other: Self) -> Polynomial {
         let (Some(left), Some(right)) = (&self.terms, &other.terms) else { return Polynomial { terms: None } };
-        let (mut sum, less) =
-            if left.len() >= right.len() { (left.clone(), right) } else { (right.clone(), left) };
+        let (mut sum, less) = if left.len() >= right.len() { (left.clone(), right) } else { (right.clone(), left) };
         for (monomial, value) in less {
             enter(&mut sum, monomial.clone(), value.clone());
         }

@@ -27,17 +27,17 @@ const FORWARD: [Formula; 4] = [
         ["c̈i", r"\ddot c_i"],
         [
             "Riᵀ (c̈p + ω̇p × rp + ωp × (ωp × rp)) + ω̇i × di + ωi × (ωi × di)",
-            r"R_i^T (\ddot c_p + \dot\omega_p \times \mathbf r_p + \omega_p \times (\omega_p \times \mathbf r_p)) + \dot\omega_i \times \mathbf d_i + \omega_i \times (\omega_i \times \mathbf d_i)",
+            concat!(
+                r"R_i^T (\ddot c_p + \dot\omega_p \times \mathbf r_p + \omega_p \times (\omega_p \times \mathbf r_p)) ",
+                r"+ \dot\omega_i \times \mathbf d_i + \omega_i \times (\omega_i \times \mathbf d_i)",
+            ),
         ],
     ),
     (["gi", r"g_i"], ["Riᵀ gp", r"R_i^T g_p"]),
 ];
 
 const BACKWARD: [Formula; 4] = [
-    (
-        ["ni", r"n_i"],
-        ["Ii ω̇i + ωi × (Ii ωi)", r"I_i \dot\omega_i + \omega_i \times (I_i \omega_i)"],
-    ),
+    (["ni", r"n_i"], ["Ii ω̇i + ωi × (Ii ωi)", r"I_i \dot\omega_i + \omega_i \times (I_i \omega_i)"]),
     (["fp,i", r"f_{p,i}"], ["mi (c̈i - gi) + Rk fi,k", r"m_i (\ddot c_i - g_i) + R_k f_{i,k}"]),
     (
         ["np,i", r"n_{p,i}"],
@@ -53,14 +53,18 @@ const BACKWARD: [Formula; 4] = [
 pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Section> {
     let script = composer.notation.script;
     let mut why = vec![format!(
-        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or has \
-         more than {MOST_TERMS} terms multiplied out. So here is the recursion that gives it, in the same letters.",
+        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or \
+         has more than {MOST_TERMS} terms multiplied out. So here is the recursion that gives it, in the same letters.",
         form.joints()
     )];
     if let Some(joints) = form.shorter {
-        why[0].push_str(&format!(
-            " The first {joints} of them have a form that fits: --first {joints} takes the arm up to joint {joints}."
-        ));
+        why.extend([
+            String::new(),
+            format!(
+                " The first {joints} of them have a form that fits: --first {joints} takes the arm up to joint \
+                 {joints}."
+            ),
+        ]);
     }
     let mut sections = vec![Section { title: Vec::new(), items: vec![Item::Words(why)] }];
     let formula = |(left, right): &Formula| {
@@ -87,8 +91,10 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
     }
     let title = |text: &str| words(text);
-    sections.push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
-    sections.push(Section { title: title("Backward, i from the last to 1, k = i + 1; the tip is free"), items: backward });
+    sections
+        .push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
+    sections
+        .push(Section { title: title("Backward, i from the last to 1, k = i + 1; the tip is free"), items: backward });
     let mut collector = Collector::new(composer.notation.constants);
     let mut seen: Vec<Polynomial> = form.table.gravity.0.to_vec();
     let mut items = Vec::new();

@@ -1,7 +1,7 @@
 //! The seven steps of recursive Newton-Euler over polynomials.
 //!
-//! After A. D. Udai, NPTEL "Industrial Robotics: Theories for Implementation", lecture 38, and S. K. Saha. The vectors of
-//! link i stand in frame i, at joint i and fixed to link i; step 3, the velocity, is needed by no torque. The base
+//! After A. D. Udai, NPTEL "Industrial Robotics: Theories for Implementation", lecture 38, and S. K. Saha. The vectors
+//! of link i stand in frame i, at joint i and fixed to link i; step 3, the velocity, is needed by no torque. The base
 //! stands still, nothing touches the tip.
 
 use rne_model::JointKind::{Prismatic, Revolute};
@@ -90,7 +90,7 @@ fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Polynomial>, TooLo
         let inertia_moment = &link.inertia * omega_dot + omega.cross(&(&link.inertia * omega));
         let moment = inertia_moment + child_moment + link.d.cross(&force) + link.r.cross(&child_force);
 
-        // 7   τ_i = e · n_{i-1,i} (prismatic: e · f_{i-1,i})      with the rotor, if that belongs to the arm: + G² Jm q̈_i
+        // 7 τ_i = e · n_{i-1,i} (prismatic: e · f_{i-1,i}) with the rotor, if that belongs to the arm: + G² Jm q̈_i
         let [.., along_axis] = match link.kind {
             Revolute => &moment.0,
             Prismatic => &force.0,

@@ -1,9 +1,12 @@
 //! The table of a robot in letters.
 //!
-//! What is zero in the file is zero here, and right angles are exact. Of the other numbers those that the file writes by
-//! its parameters are formulas of these; each of the rest is a letter, called as textbooks do: m1, a2, d3, x_C2, I2_xx.
+//! What is zero in the file is zero here, and right angles are exact. Of the other numbers those that the file writes
+//! by its parameters are formulas of these; each of the rest is a letter, called as textbooks do: m1, a2, d3, x_C2,
+//! I2_xx.
 
-use rne_model::{Angle as Turn, Convention, Entry, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot};
+use rne_model::{
+    Angle as Turn, Convention, Entry, Formula, Inertia, InertiaElement, InertiaReference, JointKind, Robot,
+};
 
 use crate::polynomial::Polynomial;
 use crate::rational::exact;
@@ -60,7 +63,8 @@ impl Letters<'_> {
         let known = self.parameters.get(index).copied().flatten();
         let symbol = known.unwrap_or_else(|| {
             let name = self.robot.run_time.names.get(index).cloned().unwrap_or_default();
-            let value = self.robot.parameters.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |known| known.1);
+            let value =
+                self.robot.parameters.iter().find(|(known, _)| *known == name).map_or(f64::NAN, |known| known.1);
             let constant = Constant { name, kind, value, unit: "", is_parameter: true, also: Vec::new() };
             let symbol = self.constants.add(constant);
             if let Some(place) = self.parameters.get_mut(index) {
@@ -85,7 +89,13 @@ impl Letters<'_> {
     }
 
     /// A number of the table: zero, a formula, or a letter of this name.
-    fn number(&mut self, written: Option<&Formula>, value: f64, name: &str, (kind, unit): (Kind, &'static str)) -> Polynomial {
+    fn number(
+        &mut self,
+        written: Option<&Formula>,
+        value: f64,
+        name: &str,
+        (kind, unit): (Kind, &'static str),
+    ) -> Polynomial {
         if value == 0.0 {
             return Polynomial::zero();
         }
@@ -94,8 +104,7 @@ impl Letters<'_> {
         if let Some(formula) = formula.filter(|formula| !formula.is_too_long()) {
             return formula;
         }
-        let constant =
-            Constant { name: name.to_owned(), kind, value, unit, is_parameter: false, also: Vec::new() };
+        let constant = Constant { name: name.to_owned(), kind, value, unit, is_parameter: false, also: Vec::new() };
         Polynomial::symbol(self.constants.add(constant))
     }
 
@@ -165,14 +174,7 @@ impl Letters<'_> {
             }
             number
         };
-        Inertia {
-            xx: element(xx),
-            yy: element(yy),
-            zz: element(zz),
-            xy: element(xy),
-            xz: element(xz),
-            yz: element(yz),
-        }
+        Inertia { xx: element(xx), yy: element(yy), zz: element(zz), xy: element(xy), xz: element(xz), yz: element(yz) }
     }
 }
 

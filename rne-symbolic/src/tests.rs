@@ -18,32 +18,39 @@ const TEXTBOOK: [&str; 5] = [
 convention: standard
 gravity: [g, 0, 0]
 joints:
-  - {type: revolute, dh: {theta: 0, d: 0, a: a, alpha: 0}, link: {mass: m, com: [-a/2, 0, 0], inertia: {yy: m*a^2/12, zz: m*a^2/12}}}",
+  - {type: revolute, dh: {theta: 0, d: 0, a: a, alpha: 0},
+     link: {mass: m, com: [-a/2, 0, 0], inertia: {yy: m*a^2/12, zz: m*a^2/12}}}",
     "parameters: {m1: 2.5, a1: 0.8, m2: 1.5, a2: 0.6, gx: 9.81, gy: 1.2}
 convention: standard
 gravity: [gx, gy, 0]
 joints:
-  - {type: revolute, dh: {theta: 0, d: 0, a: a1, alpha: 0}, link: {mass: m1, com: [-a1/2, 0, 0], inertia: {yy: m1*a1^2/12, zz: m1*a1^2/12}}}
-  - {type: revolute, dh: {theta: 0, d: 0, a: a2, alpha: 0}, link: {mass: m2, com: [-a2/2, 0, 0], inertia: {yy: m2*a2^2/12, zz: m2*a2^2/12}}}",
+  - {type: revolute, dh: {theta: 0, d: 0, a: a1, alpha: 0},
+     link: {mass: m1, com: [-a1/2, 0, 0], inertia: {yy: m1*a1^2/12, zz: m1*a1^2/12}}}
+  - {type: revolute, dh: {theta: 0, d: 0, a: a2, alpha: 0},
+     link: {mass: m2, com: [-a2/2, 0, 0], inertia: {yy: m2*a2^2/12, zz: m2*a2^2/12}}}",
     "parameters: {m1: 2.5, m2: 1.5, l: 0.3, J1: 0.12, J2: 0.05, g: 9.81}
 convention: standard
 gravity: [0, -g, 0]
 joints:
-  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: m1, com: [0, 0, l], inertia: {yy: J1}, physical: false}}
+  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: pi/2},
+     link: {mass: m1, com: [0, 0, l], inertia: {yy: J1}, physical: false}}
   - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: m2, inertia: {yy: J2}, physical: false}}",
     "parameters: {m1: 2.5, m2: 1.5, l: 0.3, J2: 0.05, g: 9.81}
 convention: standard
 gravity: [0, 0, -g]
 joints:
   - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: m1}}
-  - {type: revolute, dh: {theta: 0, d: 0, a: 2*l, alpha: 0}, link: {mass: m2, com: [-l, 0, 0], inertia: {zz: J2}, physical: false}}",
+  - {type: revolute, dh: {theta: 0, d: 0, a: 2*l, alpha: 0},
+     link: {mass: m2, com: [-l, 0, 0], inertia: {zz: J2}, physical: false}}",
     // a parameter in a denominator, an offset, and a tensor about the origin that its parameters make
     "parameters: {m: 2, r: 0.5, k: 4, l: 0.2}
 convention: modified
 gravity: [0, 0, -9.81]
 joints:
-  - {type: prismatic, dh: {theta: 0.3, d: l, a: 0, alpha: 0.4}, link: {mass: m, com: [r/k, 0, 0.1], inertia: {zz: m*r^2, yy: m*r^2, xx: 0.1}, inertia_about: origin}}
-  - {type: revolute, dh: {theta: pi/2, d: 0, a: r, alpha: -pi/2}, link: {mass: m/k, com: [0, 1/k - r/(k*l), 0.2], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}",
+  - {type: prismatic, dh: {theta: 0.3, d: l, a: 0, alpha: 0.4},
+     link: {mass: m, com: [r/k, 0, 0.1], inertia: {zz: m*r^2, yy: m*r^2, xx: 0.1}, inertia_about: origin}}
+  - {type: revolute, dh: {theta: pi/2, d: 0, a: r, alpha: -pi/2},
+     link: {mass: m/k, com: [0, 1/k - r/(k*l), 0.2], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}",
 ];
 
 pub(crate) fn robot(text: &str) -> Robot {
@@ -79,11 +86,12 @@ fn random_robot(rng: &mut Rng, joints: usize) -> Robot {
         let products = format!("xy: {}, xz: {}, yz: {}", maybe(rng), maybe(rng), maybe(rng));
         let moments = format!("xx: {}, yy: {}, zz: {}", maybe(rng), maybe(rng), number(rng));
         let motor = format!("{{inertia: {}, gear_ratio: -2.5}}", number(rng));
-        text += &format!(
+        let row = format!(
             "\n  - {{type: {kind}, dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}, motor: {motor}, link: \
              {{mass: {mass}, com: {com}, inertia: {{{moments}, {products}}}, inertia_about: {about}, physical: \
              false}}}}"
         );
+        text.push_str(&row);
     }
     robot(&text)
 }

@@ -135,7 +135,7 @@ fn waves(terms: &BTreeMap<Monomial, Rational>, angles: &[Angle]) -> Waves {
 
 /// How often the waves turn, all together.
 fn order(waves: &Waves) -> i32 {
-    waves.keys().flatten().map(|times| times.abs()).sum()
+    waves.keys().flatten().map(Signed::abs).sum()
 }
 
 fn add(waves: &mut Waves, k: Vec<i32>, (x, y): (Rational, Rational)) {

@@ -2,6 +2,7 @@
 
 use rne_model::JointKind;
 
+use crate::MOST_LINES;
 use crate::collected::{Collector, Sum};
 use crate::equations::Equations;
 use crate::factor::Factor;
@@ -10,7 +11,6 @@ use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::seven_steps::TooLong;
 use crate::table::Table;
-use crate::MOST_LINES;
 
 /// Columns of a line.
 pub(crate) const COLUMNS: usize = 80;
