@@ -11,12 +11,13 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 6] = [
+const DOCUMENTS: [&str; 7] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/command-line.md",
     "docs/firmware.md",
     "docs/robot-file.md",
+    "docs/teaching.md",
     "robots/README.md",
 ];
 
