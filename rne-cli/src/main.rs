@@ -6,6 +6,7 @@ mod arguments;
 mod arm;
 mod base_parameters;
 mod check;
+mod closed_form;
 mod compare;
 mod convert;
 mod csv_table;

@@ -11,6 +11,7 @@ use rne_inspection::Inspection;
 use rne_model::Robot;
 
 use crate::arm::Rotors;
+use crate::closed_form::Wanted;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
@@ -27,6 +28,8 @@ Examples:
   rne show robots/puma560.yaml --base-parameters   what the torques can see
   rne show puma560 --joint 2 --step 1 --equations  of what the code is left
   rne show puma560 --json                          all of it, for programs
+  rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in letters
+  rne show robots/stanford.yaml --first 3 --latex > stanford.tex
 
 `rne explain w2_z puma560` tells what a name in the code is.")]
 pub(crate) struct Arguments {
@@ -67,6 +70,8 @@ pub(crate) struct Arguments {
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
         "json"])]
     base_parameters: bool,
+    #[command(flatten)]
+    closed_form: Wanted,
 }
 
 /// A quantity of the lecture that may be folded away.
@@ -125,6 +130,9 @@ impl Kept {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.closed_form.is_asked_for() {
+        return arguments.closed_form.run(&arguments.file, |robot| arguments.rotors.of(robot));
+    }
     let file = arguments.file.display().to_string();
     let robot = arguments.rotors.robot(&arguments.file)?;
     if arguments.base_parameters {

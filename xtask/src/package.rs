@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 11] = [
+const CRATES: [&str; 12] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -36,6 +36,7 @@ const CRATES: [&str; 11] = [
     "rne-macro",
     "rne-diagnose",
     "rne-inspection",
+    "rne-symbolic",
     "rne",
     "rne-convert",
     "rne-plot",

@@ -2,6 +2,7 @@
 
 mod call;
 mod check;
+mod closed_form;
 mod diagnose;
 mod documents;
 mod emit;

@@ -1,0 +1,65 @@
+//! `rne show --symbolic` and `--latex`: the equations of motion in letters.
+
+use crate::call::{ROOT, fails, fine, rne_reading};
+
+#[test]
+fn the_lectures_arm() {
+    insta::assert_snapshot!(fine(&["show", "robots/planar1.yaml", "--symbolic"]));
+}
+
+/// The lecture has gravity along x.
+#[test]
+fn the_lectures_arm_with_the_lectures_gravity() {
+    let text = std::fs::read_to_string(format!("{ROOT}/robots/planar1.yaml")).expect("a robot");
+    let called = rne_reading(&["show", "-", "--symbolic"], &text.replace("gravity: [0, -g, 0]", "gravity: [g, 0, 0]"));
+    assert!(called.out.contains("\n  τ1 = (1/3) m a² θ̈1 + (1/2) m g a sin θ1\n"), "{called:?}");
+}
+
+#[test]
+fn two_links() {
+    insta::assert_snapshot!(fine(&["show", "planar2", "--symbolic"]));
+}
+
+#[test]
+fn the_stanford_arm_up_to_its_slide() {
+    insta::assert_snapshot!(fine(&["show", "robots/stanford.yaml", "--symbolic", "--first", "3"]));
+}
+
+#[test]
+fn an_arm_that_no_page_holds() {
+    insta::assert_snapshot!(fine(&["show", "robots/puma560.yaml", "--symbolic"]));
+}
+
+#[test]
+fn two_links_in_latex() {
+    insta::assert_snapshot!(fine(&["show", "robots/planar2.yaml", "--latex"]));
+}
+
+#[test]
+fn rotors_belong_to_the_arm_if_asked_for() {
+    let text = fine(&["show", "robots/puma560.yaml", "--first", "2", "--rotors"]);
+    assert!(text.contains("Jm2 G2²") && text.contains("G2 = 107.815"), "{text}");
+    // a direct motor has no gear
+    let text = fine(&["show", "robots/stanford.yaml", "--first", "3", "--rotors", "--symbolic"]);
+    assert!(text.contains("\n  M33 = m3 + Jm3\n") && !text.contains("G3"), "{text}");
+    let recursion = fine(&["show", "robots/puma560.yaml", "--symbolic", "--rotors"]);
+    assert!(recursion.contains("The rotor of joint i adds Gi² Jmi q̈i to its torque"), "{recursion}");
+}
+
+#[test]
+fn what_a_closed_form_has_no_use_for() {
+    for other in [["--joint", "1"], ["--step", "2"], ["--function", "mass_matrix"], ["--form", "reduced"]] {
+        for form in ["--symbolic", "--latex"] {
+            fails(2, &["show", "robots/planar2.yaml", form, other[0], other[1]], &[form, other[0]]);
+        }
+    }
+    fails(2, &["show", "robots/planar2.yaml", "--first", "3"], &["planar2 has 2 joints", "--first takes 1 to 2"]);
+    fails(2, &["show", "robots/planar2.yaml", "--first", "0", "--latex"], &["--first takes 1 to 2"]);
+    fails(1, &["show", "robots/planar7.yaml", "--symbolic"], &["there is no robot file"]);
+}
+
+#[test]
+fn the_same_every_time() {
+    let call = ["show", "robots/spherical_rrp.yaml", "--symbolic"];
+    assert_eq!(fine(&call), fine(&call));
+}

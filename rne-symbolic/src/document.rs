@@ -1,0 +1,369 @@
+//! What is said of a closed form, in order, whatever the script: torques, M, h, γ, and what the letters are.
+
+use std::collections::BTreeSet;
+
+use rne_model::JointKind;
+use unicode_width::UnicodeWidthStr as _;
+
+use crate::ClosedForm;
+use crate::collected::Sum;
+use crate::equations::Equations;
+use crate::lines::Pieces;
+use crate::notation::{Notation, Script};
+use crate::polynomial::Polynomial;
+use crate::recursion;
+use crate::symbol::{Angle, Symbol};
+use crate::table::Table;
+use crate::written::{COLUMNS, Written};
+
+/// A torque of more lines is given by its parts alone.
+const MOST_LINES_OF_A_TORQUE: usize = 8;
+
+/// A part of the document.
+#[derive(Debug)]
+pub(crate) struct Section {
+    /// Words and formulas in turns, words first.
+    pub(crate) title: Vec<String>,
+    pub(crate) items: Vec<Item>,
+}
+
+/// A formula or words.
+#[derive(Debug)]
+pub(crate) enum Item {
+    /// left = right, with the columns that the left side takes on a terminal.
+    Formula { left: String, width: usize, right: Pieces },
+    /// Words and formulas in turns, words first.
+    Words(Vec<String>),
+    /// Formulas in a row, with words behind a formula: the values of letters.
+    List(Vec<(String, String)>),
+}
+
+/// Builds formulas in a script, and knows how wide they are on a terminal.
+pub(crate) struct Composer<'a> {
+    pub(crate) notation: Notation<'a>,
+    pub(crate) plain: Notation<'a>,
+}
+
+impl Composer<'_> {
+    pub(crate) fn formula(&self, left: impl Fn(&Notation<'_>) -> String, right: Pieces) -> Item {
+        Item::Formula { left: left(&self.notation), width: left(&self.plain).width(), right }
+    }
+
+    pub(crate) fn both(&self, of: impl Fn(&Notation<'_>) -> String) -> (String, String) {
+        (of(&self.notation), of(&self.plain))
+    }
+}
+
+/// The sections of a closed form, or of the recursion in its place.
+pub(crate) fn sections(form: &ClosedForm, script: Script) -> Vec<Section> {
+    let kinds = crate::written::kinds(&form.table);
+    let notation = Notation { script, constants: &form.table.constants, kinds: &kinds };
+    let composer = Composer { notation, plain: Notation { script: Script::Unicode, ..notation } };
+    let mut sections = Vec::new();
+    if form.joints() < form.dof {
+        let words = format!(
+            "The first {} of {} joints: what joint {} carries is left away with its mass.",
+            form.joints(),
+            form.dof,
+            form.joints() + 1
+        );
+        sections.push(Section { title: Vec::new(), items: vec![Item::Words(vec![words])] });
+    }
+    match &form.written {
+        Ok((equations, written)) => {
+            sections.push(torques(&composer, written));
+            sections.push(mass_matrix(&composer, equations, written));
+            sections.push(velocity(&composer, equations, written));
+            sections.push(gravity(&composer, written));
+            sections.extend(letters(&composer, &form.table, &used(equations.all())));
+            if form.is_lagranges() == Some(true) {
+                let words = "Checked: the seven steps and Lagrange's equations give the same polynomials, term by \
+                             term; what stands here is these, collected.";
+                sections.push(Section { title: Vec::new(), items: vec![Item::Words(vec![words.to_owned()])] });
+            }
+        }
+        Err(_) => sections.extend(recursion::sections(&composer, form)),
+    }
+    sections
+}
+
+/// Words alone.
+pub(crate) fn words(text: &str) -> Vec<String> {
+    vec![text.to_owned()]
+}
+
+fn math(notation: &Notation<'_>, unicode: &str, latex: &str) -> String {
+    if notation.script == Script::Unicode { unicode.to_owned() } else { latex.to_owned() }
+}
+
+fn torques(composer: &Composer<'_>, written: &Written) -> Section {
+    let notation = &composer.notation;
+    let dof = written.torques.len();
+    let lines = |sum: &Sum| Pieces::of(sum, &composer.plain).lines(7, 6, COLUMNS).len();
+    let is_short = written.torques.iter().all(|torque| !torque.is_zero() && lines(torque) <= MOST_LINES_OF_A_TORQUE);
+    let item = |i: usize| {
+        let index = (i + 1).to_string();
+        let left = |notation: &Notation<'_>| notation.indexed(notation.letter("τ"), &index);
+        if is_short {
+            return composer.formula(left, Pieces::of(&written.torques[i], notation));
+        }
+        let mut terms = Vec::new();
+        for (j, element) in written.mass_matrix[i].iter().enumerate().filter(|(_, element)| !element.is_zero()) {
+            let _ = element;
+            terms.push(composer.both(|notation| {
+                let name = notation.indexed("M", &notation.indices(&[i, j]));
+                format!("{name}{}{}", notation.times(), notation.variable(j, 2))
+            }));
+        }
+        if written.christoffel[i].iter().flatten().any(|symbol| !symbol.is_zero()) {
+            terms.push(composer.both(|notation| notation.indexed("h", &index)));
+        }
+        if !written.gravity[i].is_zero() {
+            terms.push(composer.both(|notation| notation.indexed(notation.letter("γ"), &index)));
+        }
+        composer.formula(left, Pieces::of_terms(&terms))
+    };
+    let title = vec![
+        "Torques, ".to_owned(),
+        math(
+            notation,
+            "τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ)",
+            r"\tau = M(\theta)\,\ddot\theta + h(\theta,\dot\theta) + \gamma(\theta)",
+        ),
+    ];
+    Section { title, items: (0..dof).map(item).collect() }
+}
+
+fn mass_matrix(composer: &Composer<'_>, equations: &Equations, written: &Written) -> Section {
+    let mut items = Vec::new();
+    let dof = written.mass_matrix.len();
+    let mut zeros = 0;
+    for i in 0..dof {
+        for j in i..dof {
+            let sum = &written.mass_matrix[i][j];
+            // off the diagonal what is zero is not worth a line each
+            if sum.is_zero() && i != j {
+                zeros += 1;
+                continue;
+            }
+            let is_symmetric = equations.mass_matrix[i][j] == equations.mass_matrix[j][i];
+            let left = |notation: &Notation<'_>| {
+                let name = notation.indexed("M", &notation.indices(&[i, j]));
+                if i == j || !is_symmetric {
+                    return name;
+                }
+                format!("{name} = {}", notation.indexed("M", &notation.indices(&[j, i])))
+            };
+            items.push(composer.formula(left, Pieces::of(sum, &composer.notation)));
+        }
+    }
+    if zeros > 0 {
+        items.push(Item::Words(words("All other elements are 0.")));
+    }
+    let title = vec!["Mass matrix, ".to_owned(), math(&composer.notation, "M(θ)", r"M(\theta)")];
+    Section { title, items }
+}
+
+fn velocity(composer: &Composer<'_>, equations: &Equations, written: &Written) -> Section {
+    let dof = written.christoffel.len();
+    let mut items = Vec::new();
+    let mut symbols: Vec<(Vec<String>, usize, Option<Pieces>)> = Vec::new();
+    let mut known: Vec<([usize; 3], &Polynomial)> = Vec::new();
+    let name = |notation: &Notation<'_>, indices: [usize; 3]| notation.indexed("c", &notation.indices(&indices));
+    for i in 0..dof {
+        let mut terms = Vec::new();
+        for j in 0..dof {
+            for k in j..dof {
+                if written.christoffel[i][j][k].is_zero() {
+                    continue;
+                }
+                terms.push(composer.both(|notation| {
+                    let (name, times) = (name(notation, [i, j, k]), notation.times());
+                    let (first, second) = (notation.variable(j, 1), notation.variable(k, 1));
+                    match (j == k, notation.script) {
+                        (true, Script::Unicode) => format!("{name}{times}{first}²"),
+                        (true, Script::Latex) => format!("{name}{times}{first}^{{2}}"),
+                        (false, _) => format!("2{times}{name}{times}{first}{times}{second}"),
+                    }
+                }));
+                let symbol = &equations.christoffel[i][j][k];
+                let negative = -symbol;
+                let same = known.iter().find(|(_, other)| **other == *symbol);
+                let opposite = known.iter().find(|(_, other)| **other == negative);
+                let (own, wide) = composer.both(|notation| name(notation, [i, j, k]));
+                if let Some((indices, _)) = same.or(opposite) {
+                    let sign = if same.is_some() { "" } else { "-" };
+                    let indices = *indices;
+                    let (other, other_wide) = composer.both(|notation| format!("{sign}{}", name(notation, indices)));
+                    let pieces = Pieces::of_terms(&[(other, other_wide)]);
+                    symbols.push((vec![own], wide.width(), Some(pieces)));
+                } else {
+                    known.push(([i, j, k], symbol));
+                    let pieces = Pieces::of(&written.christoffel[i][j][k], &composer.notation);
+                    symbols.push((vec![own], wide.width(), Some(pieces)));
+                }
+            }
+        }
+        let index = (i + 1).to_string();
+        items.push(composer.formula(|notation| notation.indexed("h", &index), Pieces::of_terms(&terms)));
+    }
+    let are_some = !symbols.is_empty();
+    for (left, width, right) in symbols {
+        items.push(Item::Formula { left: left.join(" = "), width, right: right.unwrap_or_default() });
+    }
+    if are_some {
+        let rest = math(
+            &composer.notation,
+            "c_ijk = c_ikj = (∂M_ij/∂θk + ∂M_ik/∂θj - ∂M_jk/∂θi)/2",
+            concat!(
+                r"c_{ijk} = c_{ikj} = \tfrac12\left(\frac{\partial M_{ij}}{\partial\theta_k} ",
+                r"+ \frac{\partial M_{ik}}{\partial\theta_j} - \frac{\partial M_{jk}}{\partial\theta_i}\right)",
+            ),
+        );
+        items.push(Item::Words(vec!["Christoffel's symbols, ".to_owned(), rest, "; all others are 0.".to_owned()]));
+    }
+    let title = vec![
+        "Coriolis and centrifugal torques, ".to_owned(),
+        math(&composer.notation, "h(θ,θ̇)", r"h(\theta,\dot\theta)"),
+    ];
+    Section { title, items }
+}
+
+fn gravity(composer: &Composer<'_>, written: &Written) -> Section {
+    let item = |(i, sum): (usize, &Sum)| {
+        let index = (i + 1).to_string();
+        let left = |notation: &Notation<'_>| notation.indexed(notation.letter("γ"), &index);
+        composer.formula(left, Pieces::of(sum, &composer.notation))
+    };
+    let title = vec!["Gravity, ".to_owned(), math(&composer.notation, "γ(θ)", r"\gamma(\theta)")];
+    Section { title, items: written.gravity.iter().enumerate().map(item).collect() }
+}
+
+/// The letters that occur.
+pub(crate) fn used<'p>(polynomials: impl Iterator<Item = &'p Polynomial>) -> BTreeSet<Symbol> {
+    let terms = polynomials.filter_map(Polynomial::terms).flatten();
+    terms.flat_map(|(monomial, _)| monomial.0.iter().map(|(symbol, _)| *symbol)).collect()
+}
+
+/// What the letters are.
+pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Symbol>) -> Option<Section> {
+    let notation = &composer.notation;
+    let value = |index: usize| -> Option<(String, String)> {
+        let constant = table.constants.0.get(index)?;
+        let names: Vec<String> = std::iter::once(notation.constant(index))
+            .chain(constant.also.iter().map(|name| notation.named(name)))
+            .collect();
+        Some((format!("{} = {}", names.join(" = "), number(constant.value)), constant.unit.to_owned()))
+    };
+    let constants: Vec<usize> = used.iter().filter_map(|symbol| constant(*symbol)).collect();
+    let of = |is_parameter: bool| -> Vec<(String, String)> {
+        let chosen = constants.iter().filter(|index| table.constants.0[**index].is_parameter == is_parameter);
+        chosen.filter_map(|index| value(*index)).collect()
+    };
+    let mut items = Vec::new();
+    for (title, list) in [("Parameters of the file:", of(true)), ("Numbers of the table:", of(false))] {
+        if !list.is_empty() {
+            items.push(Item::Words(words(title)));
+            items.push(Item::List(list));
+        }
+    }
+    let names: Vec<&str> = constants
+        .iter()
+        .map(|index| &table.constants.0[*index])
+        .filter(|constant| !constant.is_parameter)
+        .map(|constant| constant.name.as_str())
+        .collect();
+    let has = |start: char, inside: &str| names.iter().any(|name| name.starts_with(start) && name.contains(inside));
+    let mut meanings = Vec::new();
+    if ['x', 'y', 'z'].iter().any(|axis| has(*axis, "_C")) {
+        meanings.push("x_C, y_C, z_C: centre of mass, in the link frame of the table");
+    }
+    if has('I', "_") {
+        meanings.push("I: inertia about the centre of mass, in link axes");
+    }
+    if has('J', "_") {
+        meanings.push("J: inertia about the origin of the link frame, in link axes");
+    }
+    items.extend(meanings.into_iter().map(|meaning| Item::Words(words(&format!("{meaning}.")))));
+    let slides: Vec<usize> = (0..table.rows.len()).filter(|i| table.rows[*i].kind == JointKind::Prismatic).collect();
+    if !slides.is_empty() {
+        let names: Vec<String> = slides.iter().map(|joint| notation.variable(*joint, 0)).collect();
+        let text = ["Where θ stands for all joint variables, that of a sliding joint is d: ", "."];
+        let [before, after] = text.map(|text| script_words(notation, text));
+        items.push(Item::Words(vec![before, names.join(", "), after]));
+    }
+    let mut angles = Vec::new();
+    for (angle, turn) in &table.angles {
+        let is_used = used.contains(&Symbol::Sine(*angle)) || used.contains(&Symbol::Cosine(*angle));
+        let constant = self::angle(turn);
+        match angle {
+            Angle::Joint(joint) if turn.radians != 0.0 && is_used => {
+                let q = notation.indexed("q", &(joint + 1).to_string());
+                let constant =
+                    if constant.starts_with('-') { constant.replacen('-', "- ", 1) } else { format!("+ {constant}") };
+                let unit = if turn.right.is_some() { "" } else { "rad" };
+                angles.push((
+                    format!("{} = {q} {}", notation.angle(*angle), script(notation, &constant)),
+                    unit.to_owned(),
+                ));
+            }
+            Angle::Twist(_) | Angle::Turn(_) if is_used => {
+                angles
+                    .push((format!("{} = {}", notation.angle(*angle), script(notation, &constant)), "rad".to_owned()));
+            }
+            _ => {}
+        }
+    }
+    for (joint, row) in table.rows.iter().enumerate() {
+        let is_used = used.contains(&Symbol::Position(joint));
+        if row.kind == JointKind::Prismatic && !row.d_constant.is_zero() && is_used {
+            let q = notation.indexed("q", &(joint + 1).to_string());
+            let constant = table.offsets.get(joint).copied().unwrap_or(0.0);
+            let sign = if constant < 0.0 { '-' } else { '+' };
+            let text = format!("{} = {q} {sign} {}", notation.variable(joint, 0), number(constant.abs()));
+            angles.push((text, "m".to_owned()));
+        }
+    }
+    if !angles.is_empty() {
+        items.push(Item::Words(words("Angles and lengths of the table, by the joint variables q:")));
+        items.push(Item::List(angles));
+    }
+    (!items.is_empty()).then(|| Section { title: words("Where"), items })
+}
+
+fn constant(symbol: Symbol) -> Option<usize> {
+    match symbol {
+        Symbol::Constant(index) => Some(index),
+        _ => None,
+    }
+}
+
+/// A number of the file.
+fn number(value: f64) -> String {
+    format!("{value}")
+}
+
+/// Words without Greek letters, which a page has in mathematics alone.
+fn script_words(notation: &Notation<'_>, text: &str) -> String {
+    if notation.script == Script::Latex { text.replace('θ', "theta") } else { text.to_owned() }
+}
+
+fn script(notation: &Notation<'_>, text: &str) -> String {
+    if notation.script == Script::Latex { text.replace('π', r"\pi") } else { text.to_owned() }
+}
+
+/// A constant angle: a right one as a multiple of π.
+fn angle(turn: &rne_model::Angle) -> String {
+    let quarters = (turn.radians / std::f64::consts::FRAC_PI_2).round();
+    if turn.right.is_none() || quarters.abs() > 4.0 || quarters == 0.0 {
+        return number(turn.radians);
+    }
+    let sign = if quarters < 0.0 { "-" } else { "" };
+    let magnitude = match quarters.abs() {
+        1.0 => "π/2",
+        2.0 => "π",
+        3.0 => "3π/2",
+        _ => "2π",
+    };
+    format!("{sign}{magnitude}")
+}

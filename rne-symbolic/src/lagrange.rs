@@ -1,0 +1,99 @@
+//! The same equations by Lagrange, from the energies: the independent side.
+//!
+//! It shares the letters of the table with the seven steps and nothing else: frames are placed in the base frame by the
+//! four turns and shifts of a row, velocities are Jacobians, which are derivatives of positions, and
+//!
+//! ```text
+//! M = Σ m Jvᵀ Jv + Jωᵀ (R Ī Rᵀ) Jω      c_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i)      γ_i = -∂/∂q_i Σ m g·c
+//! ```
+
+use rne_model::{Convention, JointKind};
+
+use crate::equations::Equations;
+use crate::polynomial::Polynomial;
+use crate::rational::fraction;
+use crate::seven_steps::TooLong;
+use crate::table::{Row, Table};
+use crate::vector::{Matrix, Vector};
+
+/// A frame in the base frame.
+#[derive(Clone)]
+struct Frame {
+    rotation: Matrix,
+    origin: Vector,
+}
+
+impl Frame {
+    fn turned(&self, turn: &Matrix) -> Self {
+        Self { rotation: &self.rotation * turn, origin: self.origin.clone() }
+    }
+
+    fn shifted(&self, by: &Vector) -> Self {
+        Self { rotation: self.rotation.clone(), origin: &self.origin + &(&self.rotation * by) }
+    }
+
+    fn z(&self) -> Vector {
+        let [x, y, z] = &self.rotation.0;
+        Vector([x, y, z].map(|row| row.0[2].clone()))
+    }
+}
+
+/// The axis of a joint and the frame of its link: Rz(θ) Tz(d) Tx(a) Rx(α), or Rx(α) Tx(a) Rz(θ) Tz(d).
+fn placed(before: &Frame, row: &Row, convention: Convention) -> (Vector, Frame) {
+    let along_x = Vector([row.a.clone(), Polynomial::zero(), Polynomial::zero()]);
+    let along_z = Vector::along_z(row.d.clone());
+    let (about_z, about_x) = (Matrix::about_z(&row.theta), Matrix::about_x(&row.alpha));
+    match convention {
+        Convention::Standard => {
+            (before.z(), before.turned(&about_z).shifted(&along_z).shifted(&along_x).turned(&about_x))
+        }
+        Convention::Modified => {
+            let joint = before.turned(&about_x).shifted(&along_x);
+            (joint.z(), joint.turned(&about_z).shifted(&along_z))
+        }
+    }
+}
+
+/// M, the Christoffel symbols and γ.
+pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
+    let dof = table.rows.len();
+    let zero = Polynomial::zero();
+    let mut mass_matrix = vec![vec![zero.clone(); dof]; dof];
+    let mut potential = zero.clone();
+    let mut frame = Frame { rotation: Matrix::identity(), origin: Vector::zero() };
+    let mut axes: Vec<Vector> = Vec::new();
+    for (i, row) in table.rows.iter().enumerate() {
+        let (axis, link) = placed(&frame, row, table.convention);
+        frame = link;
+        axes.push(axis);
+        let com = frame.shifted(&row.com).origin;
+        potential = potential - &row.mass * &table.gravity.dot(&com);
+        let inertia = &(&frame.rotation * &row.inertia) * &frame.rotation.transpose();
+        let linear: Vec<Vector> = (0..=i).map(|j| Vector(com.0.clone().map(|x| x.by_joint(j)))).collect();
+        let angular: Vec<Vector> = (0..=i)
+            .map(|j| if table.rows[j].kind == JointKind::Revolute { axes[j].clone() } else { Vector::zero() })
+            .collect();
+        for j in 0..=i {
+            for k in j..=i {
+                let energy = &row.mass * &linear[j].dot(&linear[k]) + angular[j].dot(&(&inertia * &angular[k]));
+                if energy.is_too_long() {
+                    return Err(TooLong);
+                }
+                mass_matrix[j][k] = &mass_matrix[j][k] + &energy;
+            }
+        }
+        mass_matrix[i][i] = &mass_matrix[i][i] + &row.rotor;
+    }
+    // only the upper half was summed
+    let of = |j: usize, k: usize| mass_matrix[j.min(k)][j.max(k)].clone();
+    let mass_matrix: Vec<Vec<Polynomial>> = (0..dof).map(|j| (0..dof).map(|k| of(j, k)).collect()).collect();
+    let symbol = |i: usize, j: usize, k: usize| {
+        let sum = mass_matrix[i][j].by_joint(k) + mass_matrix[i][k].by_joint(j) - mass_matrix[j][k].by_joint(i);
+        sum.scaled(&fraction(1, 2))
+    };
+    let all = |of: &dyn Fn(usize) -> Vec<Polynomial>| (0..dof).map(of).collect::<Vec<_>>();
+    let christoffel = (0..dof).map(|i| all(&|j| (0..dof).map(|k| symbol(i, j, k)).collect())).collect();
+    let gravity = (0..dof).map(|i| potential.by_joint(i)).collect();
+    let equations = Equations { mass_matrix, christoffel, gravity };
+    if equations.all().any(Polynomial::is_too_long) { Err(TooLong) } else { Ok(equations) }
+}

@@ -1,0 +1,174 @@
+//! The dynamics of an arm in closed form, as a lecture writes them: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
+//!
+//! The seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the
+//! parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
+//! Christoffel's symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is
+//! multiplied out again and must be what was derived. Data in, data out: nothing here opens a file or prints.
+//!
+//! ```
+//! use rne_symbolic::{ClosedForm, read};
+//!
+//! let text = "
+//! format: 1
+//! name: pendulum
+//! source: the lecture
+//! convention: standard
+//! gravity: [g, 0, 0]
+//! parameters: {m: 2.5, a: 0.8, g: 9.81}
+//! joints:
+//!   - type: revolute
+//!     dh: {theta: 0, d: 0, a: a, alpha: 0}
+//!     link: {mass: m, com: [-a/2, 0, 0], inertia: {yy: m*a^2/12, zz: m*a^2/12}}
+//! ";
+//! let robot = read("pendulum.yaml", text.as_bytes())?;
+//! let form = ClosedForm::of(&robot, 1);
+//! assert!(form.text().contains("  τ1 = (1/3) m a² θ̈1 + (1/2) m g a sin θ1\n"));
+//! assert!(form.latex("pendulum").contains(r"\tau_{1} &= \tfrac{1}{3}\,m\,a^{2}\,\ddot{\theta}_{1}"));
+//! # Ok::<(), rne_model::Report>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod arm;
+mod collected;
+mod document;
+mod equations;
+mod factor;
+mod lagrange;
+mod latex;
+mod lines;
+mod notation;
+mod parameters;
+mod polynomial;
+mod rational;
+mod recursion;
+mod seven_steps;
+mod symbol;
+mod table;
+#[cfg(test)]
+mod tests;
+mod text;
+mod trigonometry;
+mod vector;
+mod written;
+
+pub use crate::parameters::read;
+
+use rne_model::Robot;
+
+use crate::collected::Sum;
+use crate::equations::Equations;
+use crate::seven_steps::TooLong;
+use crate::table::Table;
+use crate::written::Written;
+
+/// So many lines of text one joint may take, its torque in parts: what is longer is no formula to read.
+pub const MOST_LINES: usize = 60;
+
+/// The equations of motion of an arm in letters, or its recursion in letters where they are too long.
+#[derive(Debug)]
+pub struct ClosedForm {
+    table: Table,
+    /// Joints of the robot, of which the form may have the first only.
+    dof: usize,
+    /// `Err` where a page does not hold it.
+    written: Result<(Equations, Written), TooLong>,
+    /// Where it does not: so many joints from the base have one that fits.
+    shorter: Option<usize>,
+}
+
+/// More joints than these have no form that fits a page, unless they all slide.
+const MOST_JOINTS: usize = 4;
+
+/// The equations of an arm, if they are short enough.
+fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
+    let torques = seven_steps::inverse_dynamics(&arm::links(table), &table.gravity)?;
+    let equations = Equations::sorted(&torques);
+    let written = Written::of(table, &equations)?;
+    Ok((equations, written))
+}
+
+impl ClosedForm {
+    /// The closed form of the first `joints` joints of a robot, all of them if there are fewer. The links behind are
+    /// left away with their masses. Numbers that depend on the run-time parameters of `robot` are formulas of these:
+    /// [`read`] takes every parameter of a file for one.
+    #[must_use]
+    pub fn of(robot: &Robot, joints: usize) -> Self {
+        let table = Table::new(robot, joints);
+        let written = equations(&table);
+        let fits = |joints: &usize| equations(&Table::new(robot, *joints)).is_ok();
+        let fewer = 1..table.rows.len().min(MOST_JOINTS + 1);
+        let shorter = if written.is_ok() { None } else { fewer.rev().find(fits) };
+        Self { dof: robot.dof(), table, written, shorter }
+    }
+
+    /// Joints that the form has.
+    #[must_use]
+    pub fn joints(&self) -> usize {
+        self.table.rows.len()
+    }
+
+    /// Whether the equations are short enough to be read; otherwise there is the recursion in letters.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        self.written.is_ok()
+    }
+
+    /// Whether the equations are identical, as polynomials, with those that Lagrange's method gives; `None` where there
+    /// are none, or those of Lagrange grow too long on the way.
+    #[must_use]
+    pub fn is_lagranges(&self) -> Option<bool> {
+        let (equations, _) = self.written.as_ref().ok()?;
+        let lagranges = lagrange::equations(&self.table).ok()?;
+        Some(lagranges == *equations)
+    }
+
+    /// The torques for numbers: joint variables q, rates and accelerations, and the values of the letters in the file.
+    /// `None` where there is no closed form.
+    #[must_use]
+    pub fn torques(&self, q: &[f64], qd: &[f64], qdd: &[f64]) -> Option<Vec<f64>> {
+        let (equations, _) = self.written.as_ref().ok()?;
+        let torque = |joint| equations.torque(joint).evaluate(|symbol| self.table.value(symbol, q, qd, qdd));
+        Some((0..self.joints()).map(torque).collect())
+    }
+
+    /// The element M_ij, joints from 0, in one line; `None` where there is no closed form or no such element.
+    #[must_use]
+    pub fn mass(&self, i: usize, j: usize) -> Option<String> {
+        self.one_line(|written| written.mass_matrix.get(i)?.get(j))
+    }
+
+    /// The Christoffel symbol c_ijk, joints from 0, in one line: h_i = Σ c_ijk q̇_j q̇_k.
+    #[must_use]
+    pub fn christoffel(&self, i: usize, j: usize, k: usize) -> Option<String> {
+        self.one_line(|written| written.christoffel.get(i)?.get(j)?.get(k))
+    }
+
+    /// γ_i, joints from 0, in one line.
+    #[must_use]
+    pub fn gravity(&self, i: usize) -> Option<String> {
+        self.one_line(|written| written.gravity.get(i))
+    }
+
+    /// τ_i, joints from 0, in one line: accelerations, rates, gravity.
+    #[must_use]
+    pub fn torque(&self, i: usize) -> Option<String> {
+        self.one_line(|written| written.torques.get(i))
+    }
+
+    fn one_line(&self, of: impl Fn(&Written) -> Option<&Sum>) -> Option<String> {
+        let (_, written) = self.written.as_ref().ok()?;
+        of(written).map(|sum| written::one_line(&self.table, sum))
+    }
+
+    /// The form as text in Unicode, in lines of at most 80 columns.
+    #[must_use]
+    pub fn text(&self) -> String {
+        text::text(self)
+    }
+
+    /// The form as a LaTeX document that compiles by itself, with the package amsmath; `title` is any text.
+    #[must_use]
+    pub fn latex(&self, title: &str) -> String {
+        latex::latex(self, title)
+    }
+}

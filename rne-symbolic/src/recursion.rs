@@ -1,0 +1,191 @@
+//! The recursion in letters, for an arm whose closed form no page holds: the formulas of the seven steps, and what
+//! they take of each link.
+
+use rne_model::{Convention, JointKind};
+
+use crate::arm;
+use crate::collected::Collector;
+use crate::document::{Composer, Item, Section, letters, used, words};
+use crate::lines::Pieces;
+use crate::notation::{Notation, Script};
+use crate::polynomial::Polynomial;
+use crate::table::Row;
+use crate::vector::Vector;
+use crate::written::MOST_TERMS;
+use crate::{ClosedForm, MOST_LINES, written};
+
+/// A formula of the recursion on a terminal and in LaTeX: left side, right side.
+type Formula = ([&'static str; 2], [&'static str; 2]);
+
+const FORWARD: [Formula; 4] = [
+    (["ωi", r"\omega_i"], ["Riᵀ ωp + q̇i e", r"R_i^T \omega_p + \dot q_i e"]),
+    (
+        ["ω̇i", r"\dot\omega_i"],
+        ["Riᵀ ω̇p + q̈i e + q̇i ωi × e", r"R_i^T \dot\omega_p + \ddot q_i e + \dot q_i\,\omega_i \times e"],
+    ),
+    (
+        ["c̈i", r"\ddot c_i"],
+        [
+            "Riᵀ (c̈p + ω̇p × rp + ωp × (ωp × rp)) + ω̇i × di + ωi × (ωi × di)",
+            concat!(
+                r"R_i^T (\ddot c_p + \dot\omega_p \times \mathbf r_p + \omega_p \times (\omega_p \times \mathbf r_p)) ",
+                r"+ \dot\omega_i \times \mathbf d_i + \omega_i \times (\omega_i \times \mathbf d_i)",
+            ),
+        ],
+    ),
+    (["gi", r"g_i"], ["Riᵀ gp", r"R_i^T g_p"]),
+];
+
+const BACKWARD: [Formula; 4] = [
+    (["ni", r"n_i"], ["Ii ω̇i + ωi × (Ii ωi)", r"I_i \dot\omega_i + \omega_i \times (I_i \omega_i)"]),
+    (["fp,i", r"f_{p,i}"], ["mi (c̈i - gi) + Rk fi,k", r"m_i (\ddot c_i - g_i) + R_k f_{i,k}"]),
+    (
+        ["np,i", r"n_{p,i}"],
+        [
+            "ni + Rk ni,k + di × fp,i + ri × Rk fi,k",
+            r"n_i + R_k n_{i,k} + d_i \times f_{p,i} + \mathbf r_i \times R_k f_{i,k}",
+        ],
+    ),
+    (["τi", r"\tau_i"], ["e · np,i", r"e \cdot n_{p,i}"]),
+];
+
+/// The formulas, the constants of each link, and the letters.
+pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Section> {
+    let script = composer.notation.script;
+    let mut why = vec![format!(
+        "The closed form of these {} joints is too long to be read: a torque takes more than {MOST_LINES} lines, or \
+         has more than {MOST_TERMS} terms multiplied out. So here is the recursion that gives it, in the same letters.",
+        form.joints()
+    )];
+    if let Some(joints) = form.shorter {
+        why.extend([
+            String::new(),
+            format!(
+                " The first {joints} of them have a form that fits: --first {joints} takes the arm up to joint \
+                 {joints}."
+            ),
+        ]);
+    }
+    let mut sections = vec![Section { title: Vec::new(), items: vec![Item::Words(why)] }];
+    let formula = |(left, right): &Formula| {
+        let at = usize::from(script == Script::Latex);
+        let right = Pieces::of_terms(&[(right[at].to_owned(), right[0].to_owned())]);
+        Item::Formula { left: left[at].to_owned(), width: left[0].chars().count(), right }
+    };
+    let has_slides = form.table.rows.iter().any(|row| row.kind == JointKind::Prismatic);
+    let mut forward: Vec<Item> = FORWARD.iter().map(formula).collect();
+    let mut backward: Vec<Item> = BACKWARD.iter().map(formula).collect();
+    if has_slides {
+        let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();
+        forward.push(Item::Words(vec![
+            "A sliding joint turns nothing: its link has no terms with e in the first two, and in the third it has "
+                .to_owned(),
+            math("q̈i e + 2 q̇i ωi × e", r"\ddot q_i e + 2\,\dot q_i\,\omega_i \times e"),
+            " besides.".to_owned(),
+        ]));
+        let force = math("e · fp,i", r"e \cdot f_{p,i}");
+        backward.push(Item::Words(vec!["The force of a sliding joint is ".to_owned(), force, ".".to_owned()]));
+    }
+    if form.table.rows.iter().any(|row| !row.rotor.is_zero()) {
+        let rotor = if script == Script::Latex { r"G_i^2 J_{m,i} \ddot q_i" } else { "Gi² Jmi q̈i" }.to_owned();
+        backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
+    }
+    let title = |text: &str| words(text);
+    sections
+        .push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
+    sections
+        .push(Section { title: title("Backward, i from the last to 1, k = i + 1; the tip is free"), items: backward });
+    let mut collector = Collector::new(composer.notation.constants);
+    let mut seen: Vec<Polynomial> = form.table.gravity.0.to_vec();
+    let mut items = Vec::new();
+    let mut vector = |left: &str, index: usize, vector: &Vector, seen: &mut Vec<Polynomial>| {
+        seen.extend(vector.0.iter().cloned());
+        // in print vectors are bold, for d is a letter of the table too
+        let left = |notation: &Notation<'_>| match notation.script {
+            Script::Latex if left.len() == 1 => notation.indexed(&format!("\\mathbf {left}"), &index.to_string()),
+            _ => notation.indexed(left, &index.to_string()),
+        };
+        let sums: Vec<_> = vector.0.iter().filter_map(|component| collector.collected(component)).collect();
+        composer.formula(left, Pieces::components(&sums, &composer.notation))
+    };
+    items.push(vector("g", 0, &form.table.gravity, &mut seen));
+    let links = arm::links(&form.table);
+    for (i, (link, row)) in links.iter().zip(&form.table.rows).enumerate() {
+        let index = i + 1;
+        let before = match form.table.convention {
+            Convention::Standard => i.checked_sub(1).and_then(|p| form.table.rows.get(p)).map(|row| (row, i)),
+            Convention::Modified => Some((row, i)),
+        };
+        let turns = composer.both(|notation| turns(notation, before, row, i));
+        items.push(composer.formula(|notation| notation.indexed("R", &index.to_string()), Pieces::of_terms(&[turns])));
+        items.push(vector("d", index, &link.d, &mut seen));
+        if index < links.len() {
+            items.push(vector("r", index, &link.r, &mut seen));
+        }
+        let own = |notation: &Notation<'_>| notation.indexed("m", &index.to_string());
+        let mass = written::polynomial(&form.table, &link.mass);
+        if mass != own(&composer.plain) {
+            let sums = Collector::new(composer.notation.constants).collected(&link.mass);
+            items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
+        }
+        seen.extend([link.mass.clone(), link.rotor.clone()]);
+        let rows = &link.inertia.0;
+        let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
+        let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);
+        if !diagonal.is_zero() || !products.is_zero() {
+            items.push(vector("(Ixx, Iyy, Izz)", index, &diagonal, &mut seen));
+        }
+        if !products.is_zero() {
+            items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
+        }
+    }
+    let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;
+    if script == Script::Unicode && form.table.rows.iter().filter(is_revolute).any(|row| !row.d.is_zero()) {
+        items.push(Item::Words(words(
+            "On the left d is the vector from the joint to the centre of mass, on the right the table's offset.",
+        )));
+    }
+    sections.push(Section { title: title("Of each link, in the frame at its joint, z along the joint's axis"), items });
+    sections.extend(letters(composer, &form.table, &used(seen.iter())));
+    sections
+}
+
+/// R_i as a product of turns about x and z.
+fn turns(notation: &Notation<'_>, before: Option<(&Row, usize)>, row: &Row, joint: usize) -> String {
+    let [about_x, about_z] = match notation.script {
+        Script::Unicode => ["Rx", "Rz"],
+        Script::Latex => ["R_x", "R_z"],
+    };
+    let right = |(sine, cosine): &(Polynomial, Polynomial)| -> Option<&'static str> {
+        let of = |x: &Polynomial| match x.single() {
+            None if x.is_zero() => Some(0.0),
+            Some((monomial, value)) if monomial.0.is_empty() => Some(crate::rational::nearest(value)),
+            _ => None,
+        };
+        let pi = |text: [&'static str; 2]| text[usize::from(notation.script == Script::Latex)];
+        match (of(sine)?, of(cosine)?) {
+            (1.0, _) => Some(pi(["π/2", r"\pi/2"])),
+            (-1.0, _) => Some(pi(["-π/2", r"-\pi/2"])),
+            (_, -1.0) => Some(pi(["π", r"\pi"])),
+            _ => Some(""),
+        }
+    };
+    let mut factors = Vec::new();
+    if let Some((before, index)) = before {
+        match right(&before.alpha) {
+            Some("") => {}
+            Some(angle) => factors.push(format!("{about_x}({angle})")),
+            None => {
+                let alpha = notation.indexed(notation.letter("α"), &index.to_string());
+                factors.push(format!("{about_x}({alpha})"));
+            }
+        }
+    }
+    let theta = notation.indexed(notation.letter("θ"), &(joint + 1).to_string());
+    match right(&row.theta) {
+        Some("") => {}
+        Some(angle) => factors.push(format!("{about_z}({angle})")),
+        None => factors.push(format!("{about_z}({theta})")),
+    }
+    if factors.is_empty() { "1".to_owned() } else { factors.join(notation.times()) }
+}

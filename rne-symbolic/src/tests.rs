@@ -1,0 +1,199 @@
+//! The seven steps over polynomials against Lagrange's equations, as polynomials; against the runtime, as numbers; and
+//! what is printed against both.
+
+use fastrand::Rng;
+use rne_model::Robot;
+use rne_runtime::DynArm;
+
+use crate::collected::Collector;
+use crate::equations::Equations;
+use crate::polynomial::Polynomial;
+use crate::seven_steps::TooLong;
+use crate::table::Table;
+use crate::{arm, lagrange, read, seven_steps};
+
+/// Uniform rods, the slide on a turning joint and the turning joint on a slide of the specification, in letters.
+const TEXTBOOK: [&str; 5] = [
+    "parameters: {m: 2.5, a: 0.8, g: 9.81}
+convention: standard
+gravity: [g, 0, 0]
+joints:
+  - {type: revolute, dh: {theta: 0, d: 0, a: a, alpha: 0},
+     link: {mass: m, com: [-a/2, 0, 0], inertia: {yy: m*a^2/12, zz: m*a^2/12}}}",
+    "parameters: {m1: 2.5, a1: 0.8, m2: 1.5, a2: 0.6, gx: 9.81, gy: 1.2}
+convention: standard
+gravity: [gx, gy, 0]
+joints:
+  - {type: revolute, dh: {theta: 0, d: 0, a: a1, alpha: 0},
+     link: {mass: m1, com: [-a1/2, 0, 0], inertia: {yy: m1*a1^2/12, zz: m1*a1^2/12}}}
+  - {type: revolute, dh: {theta: 0, d: 0, a: a2, alpha: 0},
+     link: {mass: m2, com: [-a2/2, 0, 0], inertia: {yy: m2*a2^2/12, zz: m2*a2^2/12}}}",
+    "parameters: {m1: 2.5, m2: 1.5, l: 0.3, J1: 0.12, J2: 0.05, g: 9.81}
+convention: standard
+gravity: [0, -g, 0]
+joints:
+  - {type: revolute, dh: {theta: 0, d: 0, a: 0, alpha: pi/2},
+     link: {mass: m1, com: [0, 0, l], inertia: {yy: J1}, physical: false}}
+  - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: m2, inertia: {yy: J2}, physical: false}}",
+    "parameters: {m1: 2.5, m2: 1.5, l: 0.3, J2: 0.05, g: 9.81}
+convention: standard
+gravity: [0, 0, -g]
+joints:
+  - {type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: m1}}
+  - {type: revolute, dh: {theta: 0, d: 0, a: 2*l, alpha: 0},
+     link: {mass: m2, com: [-l, 0, 0], inertia: {zz: J2}, physical: false}}",
+    // a parameter in a denominator, an offset, and a tensor about the origin that its parameters make
+    "parameters: {m: 2, r: 0.5, k: 4, l: 0.2}
+convention: modified
+gravity: [0, 0, -9.81]
+joints:
+  - {type: prismatic, dh: {theta: 0.3, d: l, a: 0, alpha: 0.4},
+     link: {mass: m, com: [r/k, 0, 0.1], inertia: {zz: m*r^2, yy: m*r^2, xx: 0.1}, inertia_about: origin}}
+  - {type: revolute, dh: {theta: pi/2, d: 0, a: r, alpha: -pi/2},
+     link: {mass: m/k, com: [0, 1/k - r/(k*l), 0.2], inertia: {xx: 0.1, yy: 0.1, zz: 0.1}}}",
+];
+
+pub(crate) fn robot(text: &str) -> Robot {
+    let text = format!("format: 1\nname: arm\nsource: a test\n{text}\n");
+    read("arm.yaml", text.as_bytes()).unwrap_or_else(|report| panic!("{report}\n{text}"))
+}
+
+fn shipped(name: &str) -> Robot {
+    let file = rne_robots::find(name).expect("it is shipped");
+    read(name, file.yaml.as_bytes()).expect("it is valid")
+}
+
+/// The same arm up to a joint.
+fn up_to(robot: &Robot, joints: usize) -> Robot {
+    let mut first = robot.clone();
+    first.joints.truncate(joints);
+    first
+}
+
+/// A table of any kind: both conventions, right and other angles, slides, zeros, tensors about either point.
+fn random_robot(rng: &mut Rng, joints: usize) -> Robot {
+    let convention = ["standard", "modified"][rng.usize(..2)];
+    let number = |rng: &mut Rng| format!("{:.3}", 0.1 + rng.f64());
+    let maybe = |rng: &mut Rng| if rng.u8(..3) == 0 { number(rng) } else { "0".to_owned() };
+    let angle = |rng: &mut Rng| ["0", "pi/2", "-pi/2", "pi", "0.7", "-1.1"][rng.usize(..6)];
+    let vector = |rng: &mut Rng| format!("[{}, {}, {}]", maybe(rng), maybe(rng), maybe(rng));
+    let mut text = format!("convention: {convention}\ngravity: {}\njoints:", vector(rng));
+    for _ in 0..joints {
+        let kind = ["revolute", "revolute", "prismatic"][rng.usize(..3)];
+        let (theta, alpha) = (angle(rng), angle(rng));
+        let (d, a, mass, com) = (maybe(rng), maybe(rng), number(rng), vector(rng));
+        let about = ["com", "origin"][rng.usize(..2)];
+        let products = format!("xy: {}, xz: {}, yz: {}", maybe(rng), maybe(rng), maybe(rng));
+        let moments = format!("xx: {}, yy: {}, zz: {}", maybe(rng), maybe(rng), number(rng));
+        let motor = format!("{{inertia: {}, gear_ratio: -2.5}}", number(rng));
+        let row = format!(
+            "\n  - {{type: {kind}, dh: {{theta: {theta}, d: {d}, a: {a}, alpha: {alpha}}}, motor: {motor}, link: \
+             {{mass: {mass}, com: {com}, inertia: {{{moments}, {products}}}, inertia_about: {about}, physical: \
+             false}}}}"
+        );
+        text.push_str(&row);
+    }
+    robot(&text)
+}
+
+fn random_robots(count: usize) -> Vec<Robot> {
+    let mut rng = Rng::with_seed(7);
+    let robots = (0..count).map(|index| {
+        let robot = random_robot(&mut rng, 1 + index % 3);
+        if index % 4 == 0 { robot.with_rotors() } else { robot }
+    });
+    robots.collect()
+}
+
+/// The arms of every test below: textbook, shipped, random.
+fn robots() -> Vec<Robot> {
+    let textbook = TEXTBOOK.map(robot);
+    let first = [("stanford", 3), ("puma560", 3), ("puma560_mdh", 3), ("ur5", 3), ("fr3", 2), ("jaco", 2)];
+    let first = first.map(|(name, joints)| up_to(&shipped(name), joints));
+    let whole = ["planar1", "planar2", "planar3", "cylindrical_rpp", "gantry_ppp", "scara_cobra600", "spherical_rrp"];
+    textbook.into_iter().chain(first).chain(whole.map(shipped)).chain(random_robots(60)).collect()
+}
+
+fn derived(table: &Table) -> Result<Equations, TooLong> {
+    seven_steps::inverse_dynamics(&arm::links(table), &table.gravity).map(|torques| Equations::sorted(&torques))
+}
+
+/// Two derivations that share the letters of the table alone. A sign of a recursion, of a Jacobian or of a Christoffel
+/// symbol that is wrong makes other polynomials.
+#[test]
+fn the_seven_steps_are_lagranges_equations() {
+    let mut robots_compared = 0;
+    for robot in robots() {
+        let table = Table::new(&robot, robot.dof());
+        let (Ok(steps), Ok(lagranges)) = (derived(&table), lagrange::equations(&table)) else { continue };
+        assert_eq!(steps, lagranges, "{robot:?}");
+        // symmetries that the recursion knows nothing of
+        for i in 0..robot.dof() {
+            for j in 0..robot.dof() {
+                assert_eq!(steps.mass_matrix[i][j], steps.mass_matrix[j][i]);
+                for k in 0..robot.dof() {
+                    // Ṁ - 2C is skew
+                    let [c, d] = [&steps.christoffel[i][j][k], &steps.christoffel[j][i][k]];
+                    assert_eq!(c + d, steps.mass_matrix[i][j].by_joint(k));
+                }
+            }
+        }
+        robots_compared += 1;
+    }
+    assert!(robots_compared >= 70, "{robots_compared} arms are short enough");
+}
+
+/// Sorting loses no term: there is none that belongs nowhere.
+#[test]
+fn the_parts_are_the_torque() {
+    for robot in robots() {
+        let table = Table::new(&robot, robot.dof());
+        let Ok(torques) = seven_steps::inverse_dynamics(&arm::links(&table), &table.gravity) else { continue };
+        let equations = Equations::sorted(&torques);
+        for (joint, torque) in torques.iter().enumerate() {
+            assert_eq!(equations.torque(joint), *torque);
+        }
+    }
+}
+
+#[test]
+fn the_numbers_are_those_of_the_runtime() {
+    let mut rng = Rng::with_seed(3);
+    let mut largest: f64 = 0.0;
+    for robot in robots() {
+        let table = Table::new(&robot, robot.dof());
+        let Ok(equations) = derived(&table) else { continue };
+        let arm = DynArm::from_robot(&robot);
+        for _ in 0..10 {
+            let mut state = || (0..robot.dof()).map(|_| 4.0 * rng.f64() - 2.0).collect::<Vec<_>>();
+            let (q, qd, qdd) = (state(), state(), state());
+            let expected = arm.inverse_dynamics(&q, &qd, &qdd).expect("lengths");
+            let scale = expected.iter().fold(1.0_f64, |scale, tau| scale.max(tau.abs()));
+            for (joint, expected) in expected.iter().enumerate() {
+                let found = equations.torque(joint).evaluate(|symbol| table.value(symbol, &q, &qd, &qdd));
+                largest = largest.max((found - expected).abs() / scale);
+            }
+        }
+    }
+    assert!(largest < 1e-12, "{largest:e} of the largest torque");
+}
+
+/// What is printed, multiplied out again.
+#[test]
+fn what_is_collected_is_what_was_derived() {
+    let mut compared = 0;
+    for robot in robots() {
+        let table = Table::new(&robot, robot.dof());
+        let Ok(equations) = derived(&table) else { continue };
+        let mut collector = Collector::new(&table.constants);
+        let h: Vec<Polynomial> = (0..robot.dof()).map(|joint| equations.velocity_torque(joint)).collect();
+        for polynomial in equations.all().chain(&h) {
+            let short = polynomial.terms().is_some_and(|terms| terms.len() < 120);
+            if let Some(sum) = collector.collected(polynomial).filter(|_| short) {
+                assert_eq!(sum.expanded(), *polynomial, "{sum:?}");
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 1000, "{compared} polynomials");
+}
