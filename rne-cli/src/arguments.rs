@@ -10,8 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, search, shell,
-    show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, report, search,
+    shell, show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -43,6 +43,7 @@ pub(crate) enum Command {
     Show(show::Arguments),
     Emit(emit::Arguments),
     Ops(ops::Arguments),
+    Report(report::Arguments),
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
     Search(search::Arguments),

@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 10] = [
+const CRATES: [&str; 11] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -36,6 +36,7 @@ const CRATES: [&str; 10] = [
     "rne-macro",
     "rne-diagnose",
     "rne-inspection",
+    "rne-report",
     "rne",
     "rne-convert",
     "rne-cli",
