@@ -143,6 +143,9 @@ class Arm {
     for (const [quantity] of LAYERS) {
       for (let joint = 1; joint <= dof; joint++) this.arrow(quantity, joint);
     }
+    this.down = this.plainArrow("gravity", "g");
+    this.tip = this.plainArrow("force", "tip force");
+    this.tipForce = [0, 0, 0];
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
     this.listen();
@@ -164,6 +167,39 @@ class Arm {
       this.arrows.set(key, { key, quantity, joint, of, isAxial, node, ...parts });
     }
     return this.arrows.get(key);
+  }
+
+  /** An arrow that belongs to no name. */
+  plainArrow(kind, text) {
+    const parts = [svg("path", { class: "shaft" }), svg("path", { class: "head" }), svg("text", {}, text)];
+    this.groups.labels.append(svg("g", { class: `arrow plain ${kind}`, role: "img", "aria-label": text }, ...parts));
+    return parts;
+  }
+
+  drawPlain([shaft, head, text], from, to) {
+    const heads = arrowhead(from, to, false);
+    shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
+    head.setAttribute("d", heads ? heads.path : dotAt(from));
+    text.setAttribute("x", round(to.x + 7));
+    text.setAttribute("y", round(to.y + 4));
+  }
+
+  /** Gravity, in the corner, and the force at the tip. */
+  drawForces(pose) {
+    const isHeavy = norm(this.gravityInWorld) > 0;
+    this.down[0].parentNode.toggleAttribute("hidden", !isHeavy);
+    if (isHeavy) {
+      const [from, to] = [this.centre, add(this.centre, times(this.up, -0.3 * this.size))].map((point) => this.project(point));
+      const corner = { x: 24 - Math.min(0, to.x - from.x), y: 20 };
+      this.drawPlain(this.down, corner, { x: corner.x + to.x - from.x, y: corner.y + to.y - from.y });
+    }
+    const size = norm(this.tipForce);
+    this.tip[0].parentNode.toggleAttribute("hidden", size === 0);
+    if (size > 0) {
+      const tip = this.inspection.dof + 1;
+      const along = times(turn(pose.rotations[tip], this.tipForce), (this.size * 0.5) / size);
+      this.drawPlain(this.tip, this.project(pose.joints[tip]), this.project(add(pose.joints[tip], along)));
+    }
   }
 
   /** The vector of an arrow: its numbers, in its own axes, or null where the arm has none. */
@@ -196,7 +232,7 @@ class Arm {
     const low = AXES.map((_, at) => Math.min(...points.map((point) => point[at])));
     const high = AXES.map((_, at) => Math.max(...points.map((point) => point[at])));
     this.centre = times(add(low, high), 0.5);
-    this.size = Math.max(norm(minusV(high, low)) / 2, 0.05);
+    this.size = Math.max(norm(minusV(high, low)) / 2, 0.05) * 1.05;
     this.extent = this.size;
   }
 
@@ -222,11 +258,12 @@ class Arm {
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
-    this.pixels = (0.45 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.pixels = (0.42 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
     this.drawArrows(pose);
+    this.drawForces(pose);
   }
 
   drawFloor() {
@@ -332,7 +369,8 @@ class Arm {
     // letters that would stand on each other: the lit ones are written, and then the first
     this.written = [];
     for (const arrow of [...this.arrows.values()].sort((a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)))) {
-      const isShown = arrow.isShown && arrow.numbers !== null && arrow.numbers !== undefined;
+      // a vector that is zero is told where it is pointed at
+      const isShown = arrow.isShown && arrow.numbers && (arrow.isLit || norm(arrow.numbers) > 0);
       arrow.node.toggleAttribute("hidden", !isShown);
       if (isShown) this.drawArrow(arrow, pose, largest[arrow.quantity]);
     }
@@ -425,6 +463,9 @@ class Arm {
     this.root.addEventListener("pointermove", (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
+      // a click on an arrow stays one, if the hand trembles
+      const isTurning = this.root.hasPointerCapture(event.pointerId);
+      if (!isTurning && Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
       const others = [...pointers.values()].filter((other) => other.pointerId !== event.pointerId);
       if (others.length) {
         const far = (of) => Math.hypot(of.clientX - others[0].clientX, of.clientY - others[0].clientY) || 1;
@@ -433,7 +474,7 @@ class Arm {
         this.turnBy(-(event.clientX - before.clientX) * 0.01, (event.clientY - before.clientY) * 0.01);
       }
       pointers.set(event.pointerId, event);
-      // from now on the turn goes on outside of the picture too; a click on an arrow stays one
+      // from now on the turn goes on outside of the picture too
       if (!this.root.hasPointerCapture(event.pointerId)) this.root.setPointerCapture(event.pointerId);
     });
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {

@@ -45,7 +45,7 @@ class Page {
     this.to = ordinaryPose(robot, [-0.9, 0.7, -0.3, 0.9, -0.8, -0.9, 1.0]);
     this.given = argumentsOf(this.state);
     this.equations.set(this.given);
-    this.arm.fit([this.state.q, this.to].map((q) => this.poseAt(q)));
+    this.arm.fit([this.poseAt(this.state.q)]);
     this.retime();
     this.open(this.cell);
     this.update();
@@ -79,6 +79,7 @@ class Page {
 
   /** Computes and paints everything that depends on the state. */
   update() {
+    this.arm.tipForce = this.wrench.f;
     this.given = argumentsOf(this.state);
     this.split = this.torques.split(this.state, this.wrench);
     this.equations.set(this.given);
@@ -246,17 +247,17 @@ class Page {
 
   makeGrid() {
     const { dof, cells } = this.inspection;
-    const most = Math.max(...cells.map((cell) => cell.after.products + cell.after.sums), 1);
+    const total = (of) => of.products + of.sums;
+    this.most = { unfolded: Math.max(...cells.map((cell) => total(cell.before)), 1), folded: Math.max(...cells.map((cell) => total(cell.after)), 1) };
     const head = element("tr", {}, element("td", {}, "operations of joint"), ...Array.from({ length: dof }, (_, joint) => element("th", { scope: "col" }, String(joint + 1))));
     const body = element("tbody");
     STEPS.forEach((title, index) => {
       const row = element("tr", {}, element("th", { scope: "row" }, element("span", { class: "step-number" }, String(index + 1)), element("span", { class: "step-letter" }, STEP_LETTERS[index]), element("span", { class: "step-title" }, title)));
       for (let joint = 1; joint <= dof; joint++) {
         const cell = this.inspection.cell(joint, index + 1);
-        const [before, after] = cell ? [cell.before, cell.after].map((of) => of.products + of.sums) : [0, 0];
+        const [before, after] = cell ? [total(cell.before), total(cell.after)] : [0, 0];
         const button = element("button", {
           type: "button", "data-cell": `${joint}-${index + 1}`, tabindex: "-1", disabled: !cell,
-          style: `--share:${(after / most).toFixed(3)}`,
           "aria-label": `joint ${joint}, step ${index + 1}, ${title}: ${before} operations, ${after} after folding`,
           title: `${before} operations, ${after} after folding`,
         }, element("b"));
@@ -289,7 +290,9 @@ class Page {
       const isOpen = this.form !== "reduced" && button.dataset.cell === `${cell.joint}-${cell.step}`;
       button.setAttribute("aria-pressed", String(isOpen));
       button.tabIndex = button.dataset.cell === `${cell.joint}-${cell.step}` ? 0 : -1;
-      button.firstChild.textContent = String(button.counts[this.form === "unfolded" ? "unfolded" : "folded"]);
+      const which = this.form === "unfolded" ? "unfolded" : "folded";
+      button.firstChild.textContent = String(button.counts[which]);
+      button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
     }
     const content = this.form === "reduced" ? this.reducedCode() : this.cellContent(cell);
     byId("cell").replaceChildren(...content);
@@ -491,7 +494,8 @@ class Page {
     const names = selection.tree !== undefined ? namesIn(selection.tree) : [selection.name];
     if (selection.tree !== undefined) {
       const all = names.map((name) => this.related({ name }));
-      return { names, arrows: all.flatMap((one) => one.arrows || []) };
+      const own = this.statementOf(selection.tree);
+      return { names: own ? [...names, own.name] : names, arrows: all.flatMap((one) => one.arrows || []) };
     }
     const { name } = selection;
     const meaning = this.inspection.meaning(name);
@@ -520,6 +524,12 @@ class Page {
       told.link = joint;
     }
     return told;
+  }
+
+  /** The statement that computes a term by itself, if there is one. */
+  statementOf(tree) {
+    const name = typeof tree === "string" ? tree : markOf(tree).name;
+    return (name && this.inspection.statements.get(name.replace(/^-/, ""))) || null;
   }
 
   /** Shows what is pointed at, or else what was chosen last. */
@@ -551,7 +561,8 @@ class Page {
       root.replaceChildren(
         line("name", `${selection.sign < 0 ? "−" : ""} ${codeOf(selection.tree)}`),
         line("value", isHidden ? "?" : short(selection.sign * this.equations.evaluate(selection.tree))),
-        line("meaning", isGone ? `gone: ${this.set.why(selection.tree)}` : "a term of the equation"));
+        line("meaning", isGone ? `gone: ${this.set.why(selection.tree)}` : this.inTerm(selection.tree)),
+        ...(isGone ? [] : [line("code", this.whereIs(selection.tree))]));
       return;
     }
     if (selection.arrow) {
@@ -593,6 +604,23 @@ class Page {
       line("code", code));
   }
 
+  /** The names of a term, in words. */
+  inTerm(tree) {
+    const words = [...new Set(namesIn(tree))].slice(0, 3).map((name) => {
+      const meaning = this.inspection.meaning(name);
+      return meaning ? `${name}: ${this.inspection.words(meaning)}` : name;
+    });
+    return words.join("; ") || "a number";
+  }
+
+  /** Where the code computes a term. */
+  whereIs(tree) {
+    const { fold, name } = markOf(tree);
+    if (fold === "shared" && name) return `computed before as ${name}`;
+    const statement = this.form === "unfolded" ? null : this.statementOf(tree);
+    return statement ? this.textOf(statement) : "a term of the statement";
+  }
+
   ofWhat({ of, joint }) {
     if (joint === 0) return "base";
     return joint > this.inspection.dof ? "tip" : `${of.drawn === "link" || of.axes ? "link" : "joint"} ${joint}`;
@@ -631,7 +659,10 @@ class Page {
       if (target && !byId("cell").contains(document.activeElement)) {
         const box = byId("cell");
         target.closest("details")?.setAttribute("open", "");
-        box.scrollTop += target.getBoundingClientRect().top - box.getBoundingClientRect().top - 8;
+        const reach = () => { box.scrollTop += target.getBoundingClientRect().top - box.getBoundingClientRect().top - 8; };
+        reach();
+        // what had not been laid out has its height only now
+        requestAnimationFrame(reach);
       }
     }
     byId("said").textContent = document.querySelector("[data-readout]").textContent;
