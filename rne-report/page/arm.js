@@ -258,7 +258,7 @@ class Arm {
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
-    this.pixels = (0.42 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);

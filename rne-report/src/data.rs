@@ -7,10 +7,10 @@ use serde_json::{Map, Value, json};
 
 /// The data of a page.
 ///
-/// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has equations.
-/// `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has its name, its
-/// equation and what became of it. `programs` are three: `folded`, with the tip wrench as arguments `with_wrench`, and
-/// `reduced` with names of its own, for its frames are not those of the lecture.
+/// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has
+/// equations. `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has
+/// its name, its equation and what became of it. `programs` are three: `folded`, with the tip wrench as arguments
+/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
