@@ -211,8 +211,12 @@ class Typesetter {
   }
 
   strike(node, tree, how = "gone") {
-    const why = this.why(tree);
-    return math("mrow", { class: `struck ${how}`, "data-why": why }, node);
+    const why = `${how === "one" ? "a factor of 1" : "gone"}: ${this.why(tree) || "it is zero"}`;
+    const struck = math("mrow", { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "button" }, node);
+    struck.setAttribute("aria-label", `${codeOf(tree)}, ${why}`);
+    struck.tree = tree;
+    struck.sign = 1;
+    return struck;
   }
 
   /** What is computed elsewhere or is never needed looks different, and is no strike. */

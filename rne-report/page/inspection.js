@@ -34,6 +34,9 @@ class Inspection {
       }
     }
     const folded = data.programs.folded;
+    for (const { became } of this.components.values()) {
+      if (became.why !== undefined) became.why = data.reasons[became.why];
+    }
     this.statements = new Map();
     for (const statement of [...folded.angles, ...folded.statements]) {
       this.statements.set(statement.name, statement);

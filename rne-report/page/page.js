@@ -573,7 +573,8 @@ class Page {
       root.replaceChildren(
         line("name", names.join(", ")),
         line("value", `(${names.map((name) => this.shown(name)).join(", ")}) ${unitOf}`),
-        line("meaning", `${this.inspection.words(arrow)}; ${this.ofWhat(arrow)}${this.axesWords(this.inspection.meaning(names[0]))}`));
+        line("meaning", `${this.inspection.words(arrow)}; ${this.ofWhat(arrow)}${this.axesWords(this.inspection.meaning(names[0]))}`),
+        ...this.inLecture(arrow, names));
       return;
     }
     const { name } = selection;
@@ -601,7 +602,8 @@ class Page {
       line("name", math("math", {}, this.set.symbol(name, false)), element("code", {}, name)),
       what,
       line("meaning", `${this.inspection.words(meaning)}${meaning.part ? ", a term of it" : ""}; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`),
-      line("code", code));
+      line("code", code),
+      ...(selection.why ? [line("why", `This term is ${selection.why.replace(/^a factor/, "left out as a factor")}`)] : []));
   }
 
   /** The names of a term, in words. */
@@ -619,6 +621,18 @@ class Page {
     if (fold === "shared" && name) return `computed before as ${name}`;
     const statement = this.form === "unfolded" ? null : this.statementOf(tree);
     return statement ? this.textOf(statement) : "a term of the statement";
+  }
+
+  /** The same vector in the lecture's axes: fixed to the link before, z along the joint, so turned by θ about z. */
+  inLecture({ of, joint }, names) {
+    if (of.axes !== "link" || names.length !== 3 || names.some((name) => this.exercise.hides(name, this.cell))) return [];
+    const row = this.inspection.robot.joints[joint - 1];
+    if (!row) return [];
+    const angle = row.theta + (row.kind === "revolute" ? this.state.q[joint - 1] : 0);
+    const [s, c] = [Math.sin(angle), Math.cos(angle)];
+    const inLink = names.map((name) => this.value(name));
+    const turned = turn([[c, -s, 0], [s, c, 0], [0, 0, 1]], inLink);
+    return [element("span", { class: "readout-meaning", "data-lecture": "" }, `in the lecture's axes, fixed to link ${joint - 1}: (${turned.map(short).join(", ")})`)];
   }
 
   ofWhat({ of, joint }) {
@@ -671,17 +685,18 @@ class Page {
 
   /** What stands under a node: a term, a name or an arrow. */
   selectionAt(node) {
-    const found = node instanceof Element ? node.closest("[data-name], [data-arrow], .term, [data-component]") : null;
+    const found = node instanceof Element ? node.closest("[data-name], [data-arrow], .term, .struck, [data-component]") : null;
     if (!found) return null;
     if (found.dataset.arrow) return { arrow: found.dataset.arrow };
-    if (found.dataset.name) return { name: found.dataset.name };
+    const why = found.closest("[data-why]")?.dataset.why;
+    if (found.dataset.name) return { name: found.dataset.name, why };
     if (found.tree !== undefined) return { tree: found.tree, sign: found.sign, term: found };
     return { name: found.dataset.component };
   }
 
   listen() {
     const point = (selection) => {
-      const key = (of) => of && (of.term || of.arrow || of.name);
+      const key = (of) => of && (of.term || of.arrow || `${of.name} ${of.why}`);
       if (key(selection) === key(this.pointed)) return;
       this.pointed = selection;
       this.relight();
