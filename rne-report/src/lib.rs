@@ -27,15 +27,19 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 9] = [
+pub const SCRIPTS: [(&str, &str); 13] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
     ("equation.js", include_str!("../page/equation.js")),
+    ("pose.js", include_str!("../page/pose.js")),
+    ("shape.js", include_str!("../page/shape.js")),
     ("arm.js", include_str!("../page/arm.js")),
     ("torque.js", include_str!("../page/torque.js")),
     ("motion.js", include_str!("../page/motion.js")),
     ("exercise.js", include_str!("../page/exercise.js")),
+    ("cell.js", include_str!("../page/cell.js")),
+    ("reading.js", include_str!("../page/reading.js")),
     ("page.js", include_str!("../page/page.js")),
 ];
 

@@ -20,7 +20,9 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
     Math.cos = cosine;
     equations.set(argumentsOf(state));
     return {
-      free: text(free), total: text(total), gravity: text(gravity),
+      free: text(free),
+      total: text(total),
+      gravity: text(gravity),
       own: text(folded.run(argumentsOf(state))),
       reduced: reduced ? text(reduced.run(argumentsOf(state))) : null,
       equations: text(state.q.map((_, joint) => equations.value(`tau${joint + 1}`))),
@@ -28,11 +30,25 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
   });
   // slips of the first steps, typed with six digits
   const exercise = new Exercise(inspection, equations);
-  const component = [...inspection.components.values()].find((of) => /^ddc\d+_x$/.test(of.name) && of.became.kind === "computed");
-  const slips = component ? exercise.slips(component.name).map((slip) => [slip.text, exercise.answer(component.name, slip.value.toPrecision(6)).text, String(slip.value)]) : [];
-  const right = component ? exercise.answer(component.name, equations.value(component.name).toPrecision(6)).text : "Right.";
+  const component = [...inspection.components.values()].find(
+    (of) => /^ddc\d+_x$/.test(of.name) && of.became.kind === "computed",
+  );
+  const slips = component
+    ? exercise
+        .slips(component.name)
+        .map((slip) => [
+          slip.text,
+          exercise.answer(component.name, slip.value.toPrecision(6)).text,
+          String(slip.value),
+        ])
+    : [];
+  const right = component
+    ? exercise.answer(component.name, equations.value(component.name).toPrecision(6)).text
+    : "Right.";
   return {
-    answers, slips, right,
+    answers,
+    slips,
+    right,
     value: component ? String(equations.value(component.name)) : "0",
     rust: data.programs.folded.statements.map(({ name, value, rust }) => [`let ${name} = ${codeOf(value)};`, rust]),
     c: data.programs.folded.statements.map(({ name, value }) => `const double ${name} = ${codeOf(value, true)};`),
