@@ -215,7 +215,12 @@ class Arm {
     const far = 5 * this.extent;
     const depth = dot(of, toViewer);
     const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
-    return { x: this.width / 2 + dot(of, right) * scale, y: this.height / 2 - dot(of, over) * scale, depth, scale };
+    return {
+      x: this.width / 2 + dot(of, right) * scale,
+      y: this.height * 0.53 - dot(of, over) * scale,
+      depth,
+      scale,
+    };
   }
 
   /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
@@ -366,7 +371,7 @@ class Arm {
     const start = quantity === "r" ? pose.coms[joint] : anchor[of.drawn];
     const size = norm(numbers);
     // the longest of a quantity has a fixed length, and what is short is still seen
-    const drawn = isLength ? size : size > 0 ? this.size * (0.08 + 0.47 * (size / largest)) : 0;
+    const drawn = isLength ? size : size > 0 ? this.size * (0.08 + 0.36 * (size / largest)) : 0;
     const along = size > 0 ? times(turn(pose.rotations[frame], numbers), drawn / size) : [0, 0, 0];
     const [from, to] = [this.project(start), this.project(add(start, along))];
     const heads = arrowhead(from, to, arrow.isAxial);

@@ -87,3 +87,17 @@ class Pose {
     this.frames.push({ at, axes: this.rotations[dof + 1] });
   }
 }
+
+/** A vector of a link, in axes fixed to it, in the lecture's axes, fixed to the link before: turned by θ about z. */
+function inLectureAxes(row, q, vector) {
+  const angle = row.theta + (row.kind === "revolute" ? q : 0);
+  const [s, c] = [Math.sin(angle), Math.cos(angle)];
+  return turn(
+    [
+      [c, -s, 0],
+      [s, c, 0],
+      [0, 0, 1],
+    ],
+    vector,
+  );
+}

@@ -183,16 +183,10 @@ class Reading {
     if (names.some((name) => this.page.exercise.hides(name, this.page.cell))) return [];
     const row = this.page.inspection.robot.joints[joint - 1];
     if (!row) return [];
-    const angle = row.theta + (row.kind === "revolute" ? this.page.state.q[joint - 1] : 0);
-    const [s, c] = [Math.sin(angle), Math.cos(angle)];
-    const inLink = names.map((name) => this.page.value(name));
-    const turned = turn(
-      [
-        [c, -s, 0],
-        [s, c, 0],
-        [0, 0, 1],
-      ],
-      inLink,
+    const turned = inLectureAxes(
+      row,
+      this.page.state.q[joint - 1],
+      names.map((name) => this.page.value(name)),
     );
     return [
       element(
