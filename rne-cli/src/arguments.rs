@@ -29,8 +29,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
-FILE is a robot file (docs/robot-file.md explains every key) or the name of a
-shipped robot, such as puma560; `rne list` has them.
+FILE: a robot file (docs/robot-file.md), or a name that `rne list` has: puma560.
 Exit status: `rne explain exit-status`. NO_COLOR turns colours off.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]

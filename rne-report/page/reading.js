@@ -248,9 +248,12 @@ class Reading {
         const reach = () => {
           box.scrollTop += target.getBoundingClientRect().top - box.getBoundingClientRect().top - 8;
         };
-        reach();
-        // what had not been laid out has its height only now
-        requestAnimationFrame(reach);
+        // what had not been laid out has its height only when it is in sight
+        const settle = (times) => {
+          reach();
+          if (times > 0) requestAnimationFrame(() => settle(times - 1));
+        };
+        settle(3);
       }
     }
     byId("said").textContent = document.querySelector("[data-readout]").textContent;
