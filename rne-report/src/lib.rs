@@ -17,6 +17,8 @@
 mod data;
 mod template;
 
+use std::fmt::Write as _;
+
 use rne_codegen::{CompileError, Compiler, Form, Function, Program, emit};
 use rne_model::Robot;
 
@@ -61,7 +63,7 @@ pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileE
     let data = data(robot, &torques, &with_wrench, reduced.or(own.as_ref()));
     let mut script = String::new();
     for (name, text) in SCRIPTS {
-        script.push_str(&format!("\n// ---- {name}\n\n{text}"));
+        let _ = write!(script, "\n// ---- {name}\n\n{text}");
     }
     let parts = [
         ("title", template::text(&emit::title(robot))),
