@@ -6,6 +6,7 @@ const KINDS = {
   omega_dot: ["turn", true],
   rate: ["turn", true],
   rate_dot: ["turn", true],
+  twice_rate: ["turn", true],
   angular_momentum: ["turn", true],
   joint_moment: ["moment", true],
   inertia_moment: ["moment", true],
@@ -18,6 +19,9 @@ const KINDS = {
   d: ["length", false],
   r: ["length", false],
 };
+
+/** What is along the axis of its joint: one number. */
+const AXIAL = ["torque", "rate", "rate_dot", "twice_rate"];
 
 /** The vectors that can be shown for all links at once, and the step that computes them. */
 const LAYERS = [
@@ -113,7 +117,9 @@ class Arm {
   arrow(quantity, joint) {
     const key = `${quantity}-${joint}`;
     if (!this.arrows.has(key)) {
-      const [kind, isAxial] = KINDS[quantity] || ["motion", false];
+      const isSlide = AXIAL.includes(quantity) && this.inspection.isPrismatic(joint);
+      const slides = quantity === "torque" ? ["force", false] : ["motion", false];
+      const [kind, isAxial] = isSlide ? slides : KINDS[quantity] || ["motion", false];
       const of = this.inspection.quantities[quantity];
       if (!of || !of.drawn || joint < 0) return null;
       const parts = {
@@ -173,7 +179,7 @@ class Arm {
   vector({ quantity, joint, of }) {
     if (of.drawn === "axis") {
       const name = this.inspection.nameOf(quantity, joint);
-      return name && of.units[0] && quantity !== "position" ? [0, 0, this.value(name)] : null;
+      return name && AXIAL.includes(quantity) ? [0, 0, this.value(name)] : null;
     }
     if (!of.axes) return null;
     const names = AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis));

@@ -233,18 +233,20 @@ class Typesetter {
   equation(left, tree, leaf, isStruck) {
     const right = this.tree(tree, { leaf, isStruck });
     const isSum = Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
+    // a formula as such is one thing to a screen reader; of this one the parts can be reached
+    const group = { role: "group" };
     const pieces = isSum ? [...right.children] : [right];
     return element(
       "div",
       { class: "equation" },
-      math("math", {}, left, math("mo", { form: "infix" }, "=")),
-      ...pieces.flatMap((piece) => [" ", math("math", {}, piece)]),
+      math("math", group, left, math("mo", { form: "infix" }, "=")),
+      ...pieces.flatMap((piece) => [" ", math("math", group, piece)]),
     );
   }
 
   /** A term of a sum, which can be pointed at. */
   term(node, tree, sign) {
-    const term = math("mrow", { class: "term pick", tabindex: "-1", role: "button" }, node);
+    const term = math("mrow", { class: "term pick", tabindex: "-1", role: "group" }, node);
     term.tree = tree;
     term.sign = sign;
     term.setAttribute("aria-label", codeOf(tree) + (this.isGone(tree) ? `, gone: ${this.why(tree)}` : ""));
@@ -255,7 +257,7 @@ class Typesetter {
     const why = `${how === "one" ? "a factor of 1" : "gone"}: ${this.why(tree) || "it is zero"}`;
     const struck = math(
       "mrow",
-      { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "button" },
+      { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "group" },
       node,
     );
     struck.setAttribute("aria-label", `${codeOf(tree)}, ${why}`);

@@ -157,8 +157,10 @@ class Page {
         const button = document.querySelector(`[data-switch="${name}"]`);
         if (name === "reduced" && !this.reduced) button.disabled = true;
         button.addEventListener("click", () => {
-          choose(group, name);
-          act[index](name);
+          // an exercise ends where it began
+          const chosen = name === "exercise" && this.exercise.isOn ? "shown" : name;
+          choose(group, chosen);
+          act[index](chosen);
         });
       }
       choose(group, ["folded", "rust", "shown", "auto"][index]);

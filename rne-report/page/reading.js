@@ -45,7 +45,7 @@ class Reading {
       told.frame = this.page.inspection.axes(meaning);
     } else if (of.drawn === "axis") {
       told.axis = joint;
-      if (["torque", "rate", "rate_dot"].includes(quantity)) told.arrows = [`${quantity}-${joint}`];
+      if (AXIAL.includes(quantity)) told.arrows = [`${quantity}-${joint}`];
     } else if (of.drawn === "frame") {
       told.frame = joint;
     } else if (of.drawn === "link") {

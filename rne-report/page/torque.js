@@ -53,7 +53,7 @@ class Bars {
       const name = `tau${index + 1}`;
       const label = element(
         "button",
-        { type: "button", class: "torque-name pick", "data-name": name },
+        { type: "button", class: "torque-name pick", "data-name": name, "aria-label": `torque ${index + 1}` },
         math("math", {}, math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1)))),
       );
       const [low, high] = [element("span", { class: "end low" }), element("span", { class: "end high" })];
