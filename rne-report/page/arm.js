@@ -211,22 +211,21 @@ class Arm {
     this.extent = this.size;
   }
 
-  project(point) {
+  /** From where the arm is seen: the axes of the screen in the world. */
+  seenFrom() {
     const { yaw, pitch } = this.look;
     const flat = add(times(this.east, Math.cos(yaw)), times(this.north, Math.sin(yaw)));
     const toViewer = add(times(flat, Math.cos(pitch)), times(this.up, Math.sin(pitch)));
     const right = cross(this.up, flat);
-    const over = cross(toViewer, right);
+    return { toViewer, right, over: cross(toViewer, right), far: 5 * this.extent };
+  }
+
+  project(point) {
+    const { toViewer, right, over, far } = this.view;
     const of = minusV(point, this.centre);
-    const far = 5 * this.extent;
     const depth = dot(of, toViewer);
     const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
-    return {
-      x: this.width / 2 + dot(of, right) * scale,
-      y: this.height * 0.53 - dot(of, over) * scale,
-      depth,
-      scale,
-    };
+    return { x: this.width / 2 + dot(of, right) * scale, y: this.height * 0.53 - dot(of, over) * scale, depth, scale };
   }
 
   /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
@@ -239,6 +238,7 @@ class Arm {
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
     this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.view = this.seenFrom();
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
