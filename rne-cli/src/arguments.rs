@@ -10,8 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, search,
-    shell, show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
+    search, shell, show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -29,8 +29,8 @@ Examples:
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
-FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
-Exit status: `rne explain exit-status`. Keys of a file: docs/robot-file.md.")]
+FILE: a robot file (docs/robot-file.md), or a name that `rne list` has: puma560.
+Exit status: `rne explain exit-status`.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -42,6 +42,7 @@ pub(crate) enum Command {
     Show(show::Arguments),
     Emit(emit::Arguments),
     Ops(ops::Arguments),
+    Report(report::Arguments),
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
     Plot(plot::Arguments),

@@ -36,6 +36,7 @@ mod output_file;
 mod physics;
 mod plan_file;
 mod plot;
+mod report;
 mod robot_file;
 mod search;
 mod shell;
@@ -91,6 +92,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),
         Some(Command::Convert(arguments)) => ("rne convert", convert::run(&arguments)),
         Some(Command::Export(arguments)) => ("rne export", export::run(&arguments)),
+        Some(Command::Report(arguments)) => ("rne report", report::run(&arguments)),
         Some(Command::Firmware(arguments)) => ("rne firmware", firmware::run(&arguments)),
         Some(Command::Explain(arguments)) => ("rne explain", explain::run(&arguments)),
         Some(Command::Completions(arguments)) => ("rne completions", Ok(shell::completions(&arguments))),

@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 12] = [
+const CRATES: [&str; 13] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -37,6 +37,7 @@ const CRATES: [&str; 12] = [
     "rne-diagnose",
     "rne-inspection",
     "rne-symbolic",
+    "rne-report",
     "rne",
     "rne-convert",
     "rne-plot",

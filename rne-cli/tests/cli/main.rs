@@ -16,6 +16,7 @@ mod hostile;
 mod import;
 mod plans;
 mod plot;
+mod report;
 mod search;
 mod shipped;
 mod show;

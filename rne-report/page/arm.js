@@ -1,0 +1,508 @@
+// The arm in three dimensions, from its table: links, joint axes, frames, centres of mass, and vectors as arrows.
+
+/** How the vectors of a quantity look: what they are of, and whether they are axial, with two heads. */
+const KINDS = {
+  omega: ["turn", true],
+  omega_dot: ["turn", true],
+  rate: ["turn", true],
+  rate_dot: ["turn", true],
+  twice_rate: ["turn", true],
+  angular_momentum: ["turn", true],
+  joint_moment: ["moment", true],
+  inertia_moment: ["moment", true],
+  child_moment: ["moment", true],
+  torque: ["moment", true],
+  joint_force: ["force", false],
+  inertia_force: ["force", false],
+  child_force: ["force", false],
+  gravity: ["gravity", false],
+  d: ["length", false],
+  r: ["length", false],
+};
+
+/** What is along the axis of its joint: one number. */
+const AXIAL = ["torque", "rate", "rate_dot", "twice_rate"];
+
+/** The vectors that can be shown for all links at once, and the step that computes them. */
+const LAYERS = [
+  ["omega", 1],
+  ["omega_dot", 2],
+  ["velocity", 3],
+  ["acceleration", 4],
+  ["gravity", 5],
+  ["joint_force", 6],
+  ["joint_moment", 6],
+  ["torque", 7],
+];
+
+class Arm {
+  constructor(root, inspection, value) {
+    this.root = root;
+    this.inspection = inspection;
+    this.value = value;
+    this.layers = new Set();
+    this.arrows = new Map();
+    this.showFrames = false;
+    this.showComs = true;
+    const { robot, dof } = inspection;
+    const gravity = turn(ofAngles(robot.base.rpy), robot.gravity);
+    this.up = norm(gravity) > 0 ? unit(times(gravity, -1)) : [0, 0, 1];
+    this.gravityInWorld = gravity;
+    const near = Math.abs(this.up[2]) > 0.9 ? [1, 0, 0] : [0, 0, 1];
+    this.east = unit(cross(cross(this.up, near), this.up));
+    this.north = cross(this.up, this.east);
+    this.groups = {};
+    for (const name of ["floor", "axes", "solids", "coms", "frames", "labels", "arrows"]) {
+      this.groups[name] = svg("g", { class: name });
+      root.append(this.groups[name]);
+    }
+    this.floor = svg("path", { class: "grid" });
+    this.groups.floor.append(this.floor);
+    this.axes = [];
+    this.solids = [];
+    this.coms = [];
+    this.labels = [];
+    this.triads = [];
+    for (let joint = 0; joint <= dof + 1; joint++) {
+      this.triads.push(
+        AXES.map((axis) => {
+          const of = {
+            line: svg("path", { class: `axis-${axis}`, "data-frame": joint }),
+            text: svg("text", { class: `axis-${axis}` }, axis),
+          };
+          this.groups.frames.append(of.line, of.text);
+          return of;
+        }),
+      );
+      if (joint > dof) break;
+      const solids = [
+        { kind: "link", joint },
+        ...(joint > 0 ? [{ kind: "joint", joint }] : [{ kind: "base", joint }]),
+      ];
+      for (const solid of solids) {
+        solid.body = svg("path", { class: "body" });
+        solid.cap = svg("path", { class: "cap" });
+        solid.node = svg("g", { class: `solid ${solid.kind}`, "data-link": joint }, solid.body, solid.cap);
+        this.groups.solids.append(solid.node);
+        this.solids.push(solid);
+      }
+      if (joint === 0) continue;
+      const axis = svg("path", { class: "joint-axis", "data-axis": joint });
+      this.groups.axes.append(axis);
+      this.axes.push(axis);
+      const com = svg(
+        "g",
+        { class: "com", "data-com": joint },
+        svg("circle", { r: 6 }),
+        svg("path", { d: "M0 0V-6A6 6 0 0 1 6 0ZM0 0V6A6 6 0 0 1 -6 0Z" }),
+      );
+      this.groups.coms.append(com);
+      this.coms.push(com);
+      const label = svg("text", { class: "joint-number" }, String(joint));
+      this.groups.labels.append(label);
+      this.labels.push(label);
+    }
+    for (const [quantity] of LAYERS) {
+      for (let joint = 1; joint <= dof; joint++) this.arrow(quantity, joint);
+    }
+    this.down = this.plainArrow("gravity", "g");
+    this.tip = this.plainArrow("force", "tip force");
+    this.tipForce = [0, 0, 0];
+    this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
+    this.home = this.look;
+    this.listen();
+  }
+
+  /** The arrow of a quantity of a joint; made when it is first wanted. */
+  arrow(quantity, joint) {
+    const key = `${quantity}-${joint}`;
+    if (!this.arrows.has(key)) {
+      const isSlide = AXIAL.includes(quantity) && this.inspection.isPrismatic(joint);
+      const slides = quantity === "torque" ? ["force", false] : ["motion", false];
+      const [kind, isAxial] = isSlide ? slides : KINDS[quantity] || ["motion", false];
+      const of = this.inspection.quantities[quantity];
+      if (!of || !of.drawn || joint < 0) return null;
+      const parts = {
+        hit: svg("path", { class: "hit" }),
+        shaft: svg("path", { class: "shaft" }),
+        head: svg("path", { class: "head" }),
+        part: svg("path", { class: "part" }),
+        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, String(joint))),
+      };
+      const node = svg(
+        "g",
+        { class: `arrow ${kind}`, "data-arrow": key, tabindex: "0", role: "button", hidden: "" },
+        ...Object.values(parts),
+      );
+      this.groups.arrows.append(node);
+      this.arrows.set(key, { key, quantity, joint, of, isAxial, node, ...parts });
+    }
+    return this.arrows.get(key);
+  }
+
+  /** An arrow that belongs to no name. */
+  plainArrow(kind, text) {
+    const parts = [svg("path", { class: "shaft" }), svg("path", { class: "head" }), svg("text", {}, text)];
+    this.groups.labels.append(svg("g", { class: `arrow plain ${kind}`, role: "img", "aria-label": text }, ...parts));
+    return parts;
+  }
+
+  drawPlain([shaft, head, text], from, to) {
+    const heads = arrowhead(from, to, false);
+    shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
+    head.setAttribute("d", heads ? heads.path : dotAt(from));
+    text.setAttribute("x", round(to.x + 7));
+    text.setAttribute("y", round(to.y + 4));
+  }
+
+  /** Gravity, in the corner, and the force at the tip. */
+  drawForces(pose) {
+    const isHeavy = norm(this.gravityInWorld) > 0;
+    this.down[0].parentNode.toggleAttribute("hidden", !isHeavy);
+    if (isHeavy) {
+      const [from, to] = [this.centre, add(this.centre, times(this.up, -0.3 * this.size))].map((point) =>
+        this.project(point),
+      );
+      const corner = { x: 24 - Math.min(0, to.x - from.x), y: 20 };
+      this.drawPlain(this.down, corner, { x: corner.x + to.x - from.x, y: corner.y + to.y - from.y });
+    }
+    const size = norm(this.tipForce);
+    this.tip[0].parentNode.toggleAttribute("hidden", size === 0);
+    if (size > 0) {
+      const tip = this.inspection.dof + 1;
+      const along = times(turn(pose.rotations[tip], this.tipForce), (this.size * 0.5) / size);
+      this.drawPlain(this.tip, this.project(pose.joints[tip]), this.project(add(pose.joints[tip], along)));
+    }
+  }
+
+  /** The vector of an arrow: its numbers, in its own axes, or null where the arm has none. */
+  vector({ quantity, joint, of }) {
+    if (of.drawn === "axis") {
+      const name = this.inspection.nameOf(quantity, joint);
+      return name && AXIAL.includes(quantity) ? [0, 0, this.value(name)] : null;
+    }
+    if (!of.axes) return null;
+    const names = AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis));
+    return names.every(Boolean) ? names.map((name) => this.value(name)) : null;
+  }
+
+  /** Chooses from where to look at first: along the axes of an arm whose joints are all parallel. */
+  fit(poses) {
+    const [first] = poses;
+    const last = this.inspection.dof;
+    const axes = first.rotations.slice(1, last + 1).map((turned) => column(turned, 2));
+    const isPlanar = axes.every(
+      (axis, joint) => !this.inspection.isPrismatic(joint + 1) && Math.abs(dot(axis, axes[0])) > 0.999,
+    );
+    if (isPlanar && Math.abs(dot(axes[0], this.up)) < 0.5) {
+      this.look = { yaw: Math.atan2(dot(axes[0], this.north), dot(axes[0], this.east)) - 0.35, pitch: 0.2, zoom: 1 };
+    } else {
+      // the arm from its side
+      const out = minusV(first.joints[last + 1], first.joints[1]);
+      const side = Math.atan2(dot(out, this.north), dot(out, this.east));
+      this.look = { yaw: Number.isFinite(side) && norm(out) > 1e-6 ? side - 1.15 : -0.9, pitch: 0.3, zoom: 1 };
+    }
+    this.home = this.look;
+    const points = poses.flatMap((pose) => [...pose.joints, ...pose.coms, ...pose.elbows]);
+    const low = AXES.map((_, at) => Math.min(...points.map((point) => point[at])));
+    const high = AXES.map((_, at) => Math.max(...points.map((point) => point[at])));
+    this.centre = times(add(low, high), 0.5);
+    this.size = Math.max(norm(minusV(high, low)) / 2, 0.05) * 1.05;
+    this.extent = this.size;
+  }
+
+  /** From where the arm is seen: the axes of the screen in the world. */
+  seenFrom() {
+    const { yaw, pitch } = this.look;
+    const flat = add(times(this.east, Math.cos(yaw)), times(this.north, Math.sin(yaw)));
+    const toViewer = add(times(flat, Math.cos(pitch)), times(this.up, Math.sin(pitch)));
+    const right = cross(this.up, flat);
+    return { toViewer, right, over: cross(toViewer, right), far: 5 * this.extent };
+  }
+
+  project(point) {
+    const { toViewer, right, over, far } = this.view;
+    const of = minusV(point, this.centre);
+    const depth = dot(of, toViewer);
+    const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
+    return { x: this.width / 2 + dot(of, right) * scale, y: this.height * 0.53 - dot(of, over) * scale, depth, scale };
+  }
+
+  /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
+  draw(q) {
+    this.width = this.root.clientWidth || 600;
+    this.height = this.root.clientHeight || 450;
+    this.root.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
+    const pose = (this.pose = new Pose(this.inspection, this.value, q));
+    if (!this.centre) this.fit([pose]);
+    const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
+    this.extent = Math.max(this.size, reach * 1.02);
+    this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.view = this.seenFrom();
+    this.drawFloor();
+    this.drawSolids(pose);
+    this.drawMarks(pose);
+    this.drawArrows(pose);
+    this.drawForces(pose);
+  }
+
+  drawFloor() {
+    const span = this.size * 0.95;
+    const step = niceAbove(span / 4);
+    const count = Math.ceil(span / step);
+    const at = (a, b) =>
+      this.project(add(this.inspection.robot.base.xyz, add(times(this.east, a * step), times(this.north, b * step))));
+    let path = "";
+    for (let line = -count; line <= count; line++) {
+      path += segment(at(line, -count), at(line, count)) + segment(at(-count, line), at(count, line));
+    }
+    this.floor.setAttribute("d", path);
+  }
+
+  drawSolids(pose) {
+    const { dof } = this.inspection;
+    const thick = (joint) => this.size * (0.062 - 0.03 * (joint / Math.max(dof, 4)));
+    for (const solid of this.solids) {
+      const { joint, kind } = solid;
+      const radius = thick(joint);
+      if (kind === "link") {
+        const from = joint === 0 ? this.inspection.robot.base.xyz : pose.joints[joint];
+        const to = pose.joints[joint + 1];
+        const path = [from, joint === 0 ? to : pose.elbows[joint], to];
+        const outline = path
+          .slice(1)
+          .map((end, at) => capsule(this.project(path[at]), this.project(end), radius * 0.62));
+        solid.body.setAttribute("d", outline.join(""));
+        solid.depth = path.reduce((sum, point) => sum + this.project(point).depth, 0) / 3;
+      } else {
+        const axis = kind === "base" ? this.up : column(pose.rotations[joint], 2);
+        const at = kind === "base" ? this.inspection.robot.base.xyz : pose.joints[joint];
+        const half = kind === "base" ? radius * 0.35 : radius * 1.25;
+        const wide = kind === "base" ? radius * 2.6 : radius;
+        const side = unit(cross(axis, Math.abs(axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
+        const other = cross(axis, side);
+        const corners = joint > 0 && this.inspection.isPrismatic(joint) ? 4 : 20;
+        const rim = (height) =>
+          Array.from({ length: corners }, (_, corner) => {
+            const angle = ((corner + 0.5) * 2 * Math.PI) / corners;
+            const out = add(times(side, Math.cos(angle) * wide), times(other, Math.sin(angle) * wide));
+            return this.project(add(add(at, times(axis, height)), out));
+          });
+        const [top, bottom] = [rim(half), rim(-half)];
+        solid.body.setAttribute("d", polygon(hull([...top, ...bottom])));
+        solid.cap.setAttribute("d", polygon(mean(top) > mean(bottom) ? top : bottom));
+        // a joint stands out of the links that meet there
+        solid.depth = this.project(at).depth + (kind === "base" ? -radius : radius * 1.1);
+      }
+    }
+    const order = [...this.solids].sort((a, b) => a.depth - b.depth);
+    if (!this.order || order.some((solid, at) => solid !== this.order[at])) {
+      this.groups.solids.append(...order.map((solid) => solid.node));
+      this.order = order;
+    }
+  }
+
+  drawMarks(pose) {
+    const long = this.size * 0.3;
+    const short = this.size * 0.17;
+    this.axes.forEach((axis, index) => {
+      const [at, z] = [pose.joints[index + 1], column(pose.rotations[index + 1], 2)];
+      axis.setAttribute("d", segment(this.project(add(at, times(z, -long))), this.project(add(at, times(z, long)))));
+      const com = this.project(pose.coms[index + 1]);
+      const node = this.coms[index];
+      node.toggleAttribute("hidden", !this.showComs || !(this.inspection.robot.joints[index].mass > 0));
+      node.setAttribute("transform", `translate(${round(com.x)} ${round(com.y)})`);
+      const label = this.project(at);
+      this.labels[index].setAttribute("x", round(label.x));
+      this.labels[index].setAttribute("y", round(label.y + 4));
+      // joints at one place get one label beside the other
+      const before = pose.joints.slice(1, index + 1).filter((other) => {
+        const there = this.project(other);
+        return Math.hypot(there.x - label.x, there.y - label.y) < 11;
+      });
+      this.labels[index].setAttribute("dx", 12 * before.length);
+    });
+    this.triads.forEach((triad, joint) => {
+      const { at, axes } = pose.frames[joint];
+      const link = pose.rotations[joint];
+      const isLit = this.litFrame === joint;
+      const [origin, turned] =
+        isLit && joint > 0 && joint <= this.inspection.dof ? [pose.joints[joint], link] : [at, axes];
+      triad.forEach((of, which) => {
+        const isShown = this.showFrames || isLit;
+        of.line.toggleAttribute("hidden", !isShown);
+        of.text.toggleAttribute("hidden", !isShown);
+        if (!isShown) return;
+        const [from, to] = [this.project(origin), this.project(add(origin, times(column(turned, which), short)))];
+        const end = this.project(add(origin, times(column(turned, which), short * 1.22)));
+        of.line.setAttribute("d", segment(from, to));
+        of.text.setAttribute("x", round(end.x));
+        of.text.setAttribute("y", round(end.y + 4));
+      });
+    });
+  }
+
+  drawArrows(pose) {
+    const largest = {};
+    for (const arrow of this.arrows.values()) {
+      const isShown = this.layers.has(arrow.quantity) || arrow.isLit;
+      arrow.isShown = isShown;
+      if (!isShown) continue;
+      arrow.numbers = this.vector(arrow);
+      if (arrow.numbers) largest[arrow.quantity] = Math.max(largest[arrow.quantity] || 0, norm(arrow.numbers));
+    }
+    // letters that would stand on each other: the lit ones are written, and then the first
+    this.written = [];
+    for (const arrow of [...this.arrows.values()].sort(
+      (a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)),
+    )) {
+      // a vector that is zero is told where it is pointed at
+      const isShown = arrow.isShown && arrow.numbers && (arrow.isLit || norm(arrow.numbers) > 0);
+      arrow.node.toggleAttribute("hidden", !isShown);
+      if (isShown) this.drawArrow(arrow, pose, largest[arrow.quantity]);
+    }
+  }
+
+  drawArrow(arrow, pose, largest) {
+    const { quantity, joint, of, numbers } = arrow;
+    const frame = of.axes === "parent" ? joint - 1 : joint;
+    const anchor = {
+      joint: pose.joints[joint],
+      axis: pose.joints[joint],
+      com: pose.coms[joint],
+      lever: pose.joints[joint + 1],
+      position: pose.joints[joint],
+    };
+    const isLength = KINDS[quantity]?.[0] === "length";
+    const start = quantity === "r" ? pose.coms[joint] : anchor[of.drawn];
+    const size = norm(numbers);
+    // the longest of a quantity has a fixed length, and what is short is still seen
+    const drawn = isLength ? size : size > 0 ? this.size * (0.08 + 0.36 * (size / largest)) : 0;
+    const along = size > 0 ? times(turn(pose.rotations[frame], numbers), drawn / size) : [0, 0, 0];
+    const [from, to] = [this.project(start), this.project(add(start, along))];
+    const heads = arrowhead(from, to, arrow.isAxial);
+    arrow.hit.setAttribute("d", segment(from, to));
+    arrow.shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
+    arrow.head.setAttribute("d", heads ? heads.path : dotAt(from));
+    arrow.text.setAttribute("x", round(to.x + 8 * heads_x(from, to)));
+    arrow.text.setAttribute("y", round(to.y + 4 + 10 * heads_y(from, to)));
+    const isFree = this.written.every((other) => Math.abs(other.x - to.x) > 20 || Math.abs(other.y - to.y) > 13);
+    if (isFree) this.written.push(to);
+    arrow.text.toggleAttribute("hidden", !isFree && !arrow.isLit);
+    arrow.text.setAttribute("text-anchor", to.x < from.x - 2 ? "end" : "start");
+    let part = "";
+    if (arrow.component !== null && arrow.component !== undefined && size > 0) {
+      const alone = [0, 0, 0];
+      alone[arrow.component] = (numbers[arrow.component] * drawn) / size;
+      const tip = this.project(add(start, turn(pose.rotations[frame], alone)));
+      part = segment(from, tip) + segment(tip, to);
+    }
+    arrow.part.setAttribute("d", part);
+    const unitOf = this.inspection.unitOf(quantity, joint);
+    const said = of.drawn === "axis" ? short(numbers[2]) : numbers.map(short).join(", ");
+    arrow.node.setAttribute("aria-label", `${of.meaning}, ${joint}: ${said} ${unitText(unitOf)}`);
+  }
+
+  /** Lights arrows, joints, links and frames: `what` has sets of their keys and numbers. */
+  light({ arrows = [], axis = null, link = null, frame = null, component = null }) {
+    for (const arrow of this.arrows.values()) {
+      arrow.isLit = false;
+      arrow.component = null;
+      arrow.node.classList.remove("lit");
+    }
+    for (const key of arrows) {
+      const at = key.lastIndexOf("-");
+      const arrow = this.arrow(key.slice(0, at), Number(key.slice(at + 1)));
+      if (!arrow) continue;
+      arrow.isLit = true;
+      arrow.component = component;
+      arrow.node.classList.add("lit");
+    }
+    this.litFrame = frame;
+    this.axes.forEach((node, index) => node.classList.toggle("lit", index + 1 === axis));
+    this.coms.forEach((node, index) => node.classList.toggle("lit", index + 1 === link));
+    for (const solid of this.solids)
+      solid.node.classList.toggle("lit", solid.joint === link && solid.kind === "link" && link > 0);
+    this.triads.forEach((triad, joint) => triad.forEach(({ line }) => line.classList.toggle("lit", joint === frame)));
+    if (this.pose) {
+      this.drawMarks(this.pose);
+      this.drawArrows(this.pose);
+    }
+  }
+
+  turnBy(yaw, pitch) {
+    const limit = Math.PI / 2 - 0.02;
+    this.look = {
+      ...this.look,
+      yaw: this.look.yaw + yaw,
+      pitch: Math.max(-limit, Math.min(limit, this.look.pitch + pitch)),
+    };
+    this.changed();
+  }
+
+  zoomBy(factor) {
+    this.look = { ...this.look, zoom: Math.max(0.4, Math.min(6, this.look.zoom * factor)) };
+    this.changed();
+  }
+
+  reset() {
+    this.look = this.home;
+    this.changed();
+  }
+
+  /** Replaced by the page. */
+  changed() {}
+
+  listen() {
+    const pointers = new Map();
+    this.root.addEventListener("pointerdown", (event) => {
+      pointers.set(event.pointerId, event);
+    });
+    this.root.addEventListener("pointermove", (event) => {
+      const before = pointers.get(event.pointerId);
+      if (!before) return;
+      // a click on an arrow stays one, if the hand trembles
+      const isTurning = this.root.hasPointerCapture(event.pointerId);
+      if (!isTurning && Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
+      const others = [...pointers.values()].filter((other) => other.pointerId !== event.pointerId);
+      if (others.length) {
+        const far = (of) => Math.hypot(of.clientX - others[0].clientX, of.clientY - others[0].clientY) || 1;
+        this.zoomBy(far(event) / far(before));
+      } else {
+        this.turnBy(-(event.clientX - before.clientX) * 0.01, (event.clientY - before.clientY) * 0.01);
+      }
+      pointers.set(event.pointerId, event);
+      // from now on the turn goes on outside of the picture too
+      if (!this.root.hasPointerCapture(event.pointerId)) this.root.setPointerCapture(event.pointerId);
+    });
+    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
+      this.root.addEventListener(end, (event) => pointers.delete(event.pointerId));
+    }
+    this.root.addEventListener(
+      "wheel",
+      (event) => {
+        // as maps do: the wheel alone scrolls the page
+        if (!event.ctrlKey) return;
+        event.preventDefault();
+        this.zoomBy(Math.exp(-event.deltaY * 0.005));
+      },
+      { passive: false },
+    );
+    this.root.addEventListener("keydown", (event) => {
+      const step = 0.12;
+      const keys = {
+        ArrowLeft: () => this.turnBy(-step, 0),
+        ArrowRight: () => this.turnBy(step, 0),
+        ArrowUp: () => this.turnBy(0, step),
+        ArrowDown: () => this.turnBy(0, -step),
+        "+": () => this.zoomBy(1.15),
+        "=": () => this.zoomBy(1.15),
+        "-": () => this.zoomBy(1 / 1.15),
+        0: () => this.reset(),
+      };
+      if (!keys[event.key] || event.altKey || event.metaKey) return;
+      event.preventDefault();
+      keys[event.key]();
+    });
+  }
+}

@@ -1,0 +1,139 @@
+// Exercises: a value is hidden, the student types it, and a wrong one is answered with the slip that gives it. Slips
+// are made in the component's own tree, which is then evaluated: nothing is guessed from the number alone.
+
+class Exercise {
+  constructor(inspection, equations) {
+    this.inspection = inspection;
+    this.equations = equations;
+    this.isOn = false;
+    this.solved = new Set();
+  }
+
+  /** Whether a value is not to be seen: one of the open cell that has not been found yet. */
+  hides(name, cell) {
+    if (!this.isOn || !cell) return false;
+    const owner = this.inspection.owner(name);
+    return (
+      owner !== null &&
+      owner.cell === cell &&
+      !this.solved.has(owner.name) &&
+      this.inspection.components.get(owner.name).became.kind !== "constant"
+    );
+  }
+
+  /** What to say of an answer. */
+  answer(name, text) {
+    const typed = Number(text.trim().replace(",", ".").replace("−", "-"));
+    if (!text.trim()) return { isRight: false, text: "" };
+    if (!Number.isFinite(typed)) return { isRight: false, text: "This is no number: write it as 0.123 or 1.2e-3." };
+    const right = this.equations.value(name);
+    if (isNear(typed, right)) {
+      this.solved.add(name);
+      return { isRight: true, text: "Right." };
+    }
+    const found = this.slips(name).filter((slip) => isNear(typed, slip.value) && !isNear(slip.value, right));
+    const words = [...new Set(found.map((slip) => slip.text))];
+    if (words.length) return { isRight: false, text: `Not yet. ${words.slice(0, 2).join("; or ")}.` };
+    if (isNear(typed, right, 0.03))
+      return { isRight: false, text: "Close: more digits are needed, three that count." };
+    return { isRight: false, text: "Not yet, and no usual slip gives this number: compute term by term." };
+  }
+
+  /** Each usual slip in a component, in words, with the value that it gives. */
+  slips(name) {
+    const { general, cell } = this.inspection.components.get(name);
+    const right = this.equations.value(name);
+    const all = [{ text: "The sign is the other one", value: -right }];
+    const terms = [];
+    collect(general, 1, terms);
+    for (const { tree, sign } of terms) {
+      const value = sign * this.equations.evaluate(tree);
+      if (value === 0) continue;
+      const term = codeOf(tree);
+      all.push({ text: `The term ${term} is left out`, value: right - value });
+      all.push({ text: `The term ${term} has the other sign`, value: right - 2 * value });
+    }
+    const joints = [...new Set(this.anglesOf(general, cell))].sort();
+    for (const joint of joints) {
+      const swapped = { [`s${joint}`]: `c${joint}`, [`c${joint}`]: `s${joint}` };
+      all.push({
+        text: `Sine stands for cosine of joint ${joint}, or cosine for sine`,
+        value: this.evaluate(general, cell, (of) => (swapped[of] ? this.equations.value(swapped[of]) : undefined)),
+      });
+    }
+    if (joints.length) {
+      const inDegrees = (of) => {
+        const found = /^([sc])(\d+)$/.exec(of);
+        if (!found) return undefined;
+        const angle = (this.angle(Number(found[2])) * Math.PI) / 180;
+        return found[1] === "s" ? Math.sin(angle) : Math.cos(angle);
+      };
+      all.push({
+        text: "The calculator takes degrees, and the angles are in radians",
+        value: this.evaluate(general, cell, inDegrees),
+      });
+    }
+    all.push({ text: "The number is in degrees", value: (right * 180) / Math.PI });
+    all.push({
+      text: "The rotation turns the other way: R instead of its transpose, or the transpose instead of R",
+      value: this.evaluate(general, cell, (of) => {
+        const found = /^(rot\d+_)([xyz])([xyz])$/.exec(of);
+        return found ? this.equations.value(found[1] + found[3] + found[2]) : undefined;
+      }),
+    });
+    const meaning = this.inspection.meaning(name);
+    for (const axis of AXES) {
+      const other = this.inspection.nameOf(meaning.quantity, meaning.joint, axis);
+      if (other && other !== name)
+        all.push({ text: `This is the ${axis} component`, value: this.equations.value(other) });
+    }
+    return all;
+  }
+
+  /** The angle whose sine and cosine are meant, rad. */
+  angle(joint) {
+    const sine = this.inspection.components.get(`s${joint}`);
+    return sine && Array.isArray(sine.general)
+      ? this.equations.evaluate(sine.general[1])
+      : this.equations.value(`q${joint}`);
+  }
+
+  /** A tree over other values; equations of the same cell are evaluated anew with these. */
+  evaluate(tree, cell, other) {
+    const value = (name) => () => {
+      const replaced = other(name);
+      if (replaced !== undefined) return replaced;
+      const component = this.inspection.components.get(name);
+      return component && component.cell === cell ? compiled(component.general, value)() : this.equations.value(name);
+    };
+    return compiled(tree, value)();
+  }
+
+  /** The joints whose sines and cosines stand in a tree, or in what it uses of its cell. */
+  anglesOf(tree, cell) {
+    return namesIn(tree).flatMap((name) => {
+      const found = /^[sc](\d+)$/.exec(name);
+      if (found) return [found[1]];
+      const component = this.inspection.components.get(name);
+      return component && component.cell === cell ? this.anglesOf(component.general, cell) : [];
+    });
+  }
+}
+
+/** The terms of sums inside sums, with their signs. */
+function collect(tree, sign, terms) {
+  if (Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-")) {
+    const [a, b] = operands(tree);
+    collect(a, sign, terms);
+    collect(b, tree[0] === "+" ? sign : -sign, terms);
+  } else if (Array.isArray(tree) && tree[0] === "neg") {
+    collect(tree[1], -sign, terms);
+  } else {
+    terms.push({ tree, sign });
+  }
+}
+
+/** Whether two numbers agree as well as an answer of three digits can. */
+function isNear(a, b, relative = 0.005) {
+  return Math.abs(a - b) <= Math.max(relative * Math.abs(b), 5e-5);
+}

@@ -1,0 +1,132 @@
+// The state of the arm, the sliders that set it, and a motion from one pose to another.
+
+const OF = ["q", "qd", "qdd"];
+const LETTERS = { q: "q", qd: "q̇", qdd: "q̈" };
+
+/** What the sliders of a joint reach: by the limits of the file, where it has them. */
+function rangeOf(joint, of) {
+  const isPrismatic = joint.kind === "prismatic";
+  if (of === "q") {
+    const [low, high] = joint.position_limits || (isPrismatic ? [0, 1] : [-Math.PI, Math.PI]);
+    return [Math.max(low, isPrismatic ? low : -2 * Math.PI), Math.min(high, isPrismatic ? high : 2 * Math.PI)];
+  }
+  const most = of === "qd" ? joint.velocity_limit || (isPrismatic ? 1 : 3) : isPrismatic ? 5 : 10;
+  return [-most, most];
+}
+
+/** A pose that is no special one, inside the limits. */
+function ordinaryPose(robot, pattern) {
+  return robot.joints.map((joint, index) => {
+    const [low, high] = rangeOf(joint, "q");
+    // not the same for all: two joints at their margins would make a special pose
+    const margin = (0.1 + 0.05 * (index % 3)) * (high - low);
+    const wished =
+      joint.kind === "prismatic"
+        ? low + (high - low) * (0.5 + 0.3 * pattern[index % pattern.length])
+        : pattern[index % pattern.length];
+    return Math.round(Math.max(low + margin, Math.min(high - margin, wished)) * 100) / 100;
+  });
+}
+
+/** The motion of least jerk from rest to rest: 10 s³ - 15 s⁴ + 6 s⁵ of the way. */
+class Trajectory {
+  constructor(from, to, seconds) {
+    Object.assign(this, { from, to, seconds });
+  }
+
+  /** The state at a time, s. */
+  at(time) {
+    const s = Math.max(0, Math.min(1, time / this.seconds));
+    const way = s ** 3 * (10 - 15 * s + 6 * s * s);
+    const rate = (30 * s * s * (1 - s) ** 2) / this.seconds;
+    const bend = (60 * s * (1 - s) * (1 - 2 * s)) / this.seconds ** 2;
+    const along = (factor) => this.from.map((from, joint) => (this.to[joint] - from) * factor);
+    return {
+      q: this.from.map((from, joint) => from + (this.to[joint] - from) * way),
+      qd: along(rate),
+      qdd: along(bend),
+    };
+  }
+}
+
+class Sliders {
+  constructor(table, inspection, state, changed) {
+    this.inputs = new Map();
+    this.outputs = new Map();
+    const { joints } = inspection.robot;
+    const head = element(
+      "tr",
+      {},
+      element("th", { scope: "col" }, "joint"),
+      ...OF.map((of) => element("th", { scope: "col" }, LETTERS[of])),
+    );
+    table.append(element("thead", {}, head));
+    const body = element("tbody");
+    joints.forEach((joint, index) => {
+      const row = element("tr", { "data-row": index + 1 });
+      const name = element(
+        "th",
+        { scope: "row" },
+        String(index + 1),
+        element("span", { class: "joint-name", dir: "auto" }, joint.name),
+      );
+      row.append(name);
+      for (const of of OF) {
+        const [low, high] = rangeOf(joint, of);
+        const quantity = { q: "position", qd: "rate", qdd: "rate_dot" }[of];
+        const unitOf = inspection.quantities[quantity]
+          ? inspection.unitOf(quantity, index + 1)
+          : { q: ["rad", "m"], qd: ["rad/s", "m/s"], qdd: ["rad/s²", "m/s²"] }[of][
+              joint.kind === "prismatic" ? 1 : 0
+            ];
+        const input = element("input", {
+          type: "range",
+          min: low,
+          max: high,
+          step: "any",
+          "data-joint": index + 1,
+          "data-of": of,
+          "aria-label": `${LETTERS[of]} of joint ${index + 1}, ${unitOf}`,
+        });
+        const output = element("output", { "data-name": `${of}${index + 1}`, class: "pick", tabindex: "-1" });
+        input.addEventListener("input", () => {
+          state[of][index] = Number(input.value);
+          this.tell(state, of, index);
+          changed(of, index);
+        });
+        // arrow keys by hundredths of the range; with "any" they would go by a tenth
+        input.addEventListener("keydown", (event) => {
+          const way = { ArrowRight: 1, ArrowUp: 1, ArrowLeft: -1, ArrowDown: -1 }[event.key];
+          if (!way) return;
+          event.preventDefault();
+          input.value = Number(input.value) + (way * (high - low)) / (event.shiftKey ? 1000 : 100);
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        });
+        this.inputs.set(`${of}${index}`, input);
+        this.outputs.set(`${of}${index}`, { output, unit: unitText(unitOf) });
+        row.append(element("td", {}, input, output));
+      }
+      body.append(row);
+    });
+    table.append(body);
+    this.show(state);
+  }
+
+  /** Sets the sliders to a state. */
+  show(state) {
+    for (const of of OF) {
+      state[of].forEach((value, index) => {
+        this.inputs.get(`${of}${index}`).value = value;
+        this.tell(state, of, index);
+      });
+    }
+  }
+
+  tell(state, of, index) {
+    const { output, unit } = this.outputs.get(`${of}${index}`);
+    const value = state[of][index];
+    output.textContent = minus(value.toFixed(2));
+    output.title = `${full(value)} ${unit}`;
+    this.inputs.get(`${of}${index}`).setAttribute("aria-valuetext", `${value.toFixed(3)} ${unit}`);
+  }
+}

@@ -1,0 +1,450 @@
+// The page: what stands where, what is open, what is lit, and what follows when the state changes.
+
+const STEPS = [
+  "angular velocity",
+  "angular acceleration",
+  "velocity",
+  "acceleration",
+  "gravity",
+  "forces and moments",
+  "torque",
+];
+const STEP_LETTERS = ["ω", "ω̇", "ċ", "c̈", "g", "f, n", "τ"];
+const byId = (id) => document.getElementById(id);
+
+class Page {
+  constructor(data) {
+    const inspection = (this.inspection = new Inspection(data));
+    const { robot } = inspection;
+    this.set = new Typesetter(inspection);
+    this.folded = new Program(data.programs.folded);
+    this.reduced = data.programs.reduced ? new Program(data.programs.reduced) : null;
+    this.equations = new Equations(inspection.components);
+    this.torques = new Torques(this.folded, new Program(data.programs.with_wrench));
+    this.exercise = new Exercise(inspection, this.equations);
+    this.initial = {
+      q: ordinaryPose(robot, [0.4, -0.6, 0.9, -0.8, 0.7, 0.5, -0.4]),
+      qd: robot.joints.map((_, index) => [0.5, 0.8, -0.6][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
+      qdd: robot.joints.map((_, index) => [1, -1.5, 2][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
+    };
+    this.state = structuredClone(this.initial);
+    this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
+    this.form = "folded";
+    this.language = "rust";
+    this.live = [];
+    this.cards = new Cards(this);
+    this.reading = new Reading(this);
+    this.cell = inspection.cell(Math.min(2, inspection.dof), 1);
+
+    this.arm = new Arm(byId("arm"), inspection, (name) => this.equations.value(name));
+    this.arm.changed = () => this.arm.draw(this.state.q);
+    this.sliders = new Sliders(byId("sliders"), inspection, this.state, () => {
+      this.stop();
+      this.update();
+    });
+    this.bars = new Bars(byId("bars"), inspection);
+    this.plot = new Plot(byId("plot"), inspection, this.torques);
+    this.describe();
+    this.makeSwitches();
+    this.makeLayers();
+    this.makeTip();
+    this.makeGrid();
+    this.makeMotion();
+    this.reading.listen();
+
+    this.from = [...this.initial.q];
+    this.to = ordinaryPose(robot, [-0.9, 0.7, -0.3, 0.9, -0.8, -0.9, 1.0]);
+    this.given = argumentsOf(this.state);
+    this.equations.set(this.given);
+    this.arm.fit([this.poseAt(this.state.q)]);
+    this.retime();
+    this.open(this.cell);
+    this.update();
+  }
+
+  poseAt(q) {
+    const equations = new Equations(this.inspection.components);
+    equations.set(argumentsOf({ ...this.state, q }));
+    return new Pose(this.inspection, (name) => equations.value(name), q);
+  }
+
+  describe() {
+    const { robot, generator, dof } = this.inspection;
+    const mass = robot.joints.reduce((sum, joint) => sum + joint.mass, 0);
+    byId("described").textContent = `${dof} joints, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
+    byId("source").textContent = `Numbers: ${robot.source}`;
+    byId("generator").textContent =
+      `Written by ${generator}. Vectors of link i are in axes fixed to link i, z along joint i. ` +
+      "The code is evaluated in your browser: + − × ÷ give the bits of Rust.";
+    byId("key").append(
+      ...PARTS.map(([part, meaning, formula]) =>
+        element("span", { title: formula }, element("i", { class: `swatch ${part}` }), meaning),
+      ),
+      element("span", {}, element("i", { class: "swatch total" }), "sum"),
+    );
+  }
+
+  // ---- the state
+
+  setState(state) {
+    for (const of of OF) {
+      if (state[of])
+        state[of].slice(0, this.inspection.dof).forEach((value, index) => {
+          this.state[of][index] = Number(value);
+        });
+    }
+    this.stop();
+    this.sliders.show(this.state);
+    this.update();
+  }
+
+  /** Computes and paints everything that depends on the state. */
+  update() {
+    this.arm.tipForce = this.wrench.f;
+    this.given = argumentsOf(this.state);
+    this.split = this.torques.split(this.state, this.wrench);
+    this.equations.set(this.given);
+    if (this.reduced) this.reduced.run(this.given);
+    this.arm.draw(this.state.q);
+    this.bars.update(this.split, (joint) => this.exercise.hides(`tau${joint}`, this.cell));
+    for (const paint of this.live) paint();
+    this.reading.readout();
+  }
+
+  /** The value of a name: the code's, or that of its equation where the code has none. */
+  value(name) {
+    return this.folded.has(name) ? this.folded.value(name) : this.equations.value(name);
+  }
+
+  shown(name, value = this.value(name)) {
+    return this.exercise.hides(name, this.cell) ? "?" : short(value);
+  }
+
+  // ---- controls
+
+  makeSwitches() {
+    const groups = [
+      ["unfolded", "folded", "reduced"],
+      ["rust", "c", "equations"],
+      ["shown", "exercise"],
+      ["auto", "light", "dark"],
+    ];
+    const choose = (group, name) => {
+      for (const other of group)
+        document.querySelector(`[data-switch="${other}"]`).setAttribute("aria-pressed", String(other === name));
+    };
+    const act = [
+      (name) => {
+        this.form = name;
+        this.reopen();
+      },
+      (name) => {
+        this.language = name;
+        this.reopen();
+      },
+      (name) => {
+        this.exercise.isOn = name === "exercise";
+        this.reopen();
+      },
+      (name) => {
+        name === "auto"
+          ? delete document.documentElement.dataset.theme
+          : (document.documentElement.dataset.theme = name);
+      },
+    ];
+    groups.forEach((group, index) => {
+      for (const name of group) {
+        const button = document.querySelector(`[data-switch="${name}"]`);
+        if (name === "reduced" && !this.reduced) button.disabled = true;
+        button.addEventListener("click", () => {
+          // an exercise ends where it began
+          const chosen = name === "exercise" && this.exercise.isOn ? "shown" : name;
+          choose(group, chosen);
+          act[index](chosen);
+        });
+      }
+      choose(group, ["folded", "rust", "shown", "auto"][index]);
+    });
+  }
+
+  makeLayers() {
+    const { quantities } = this.inspection;
+    this.layerButtons = new Map();
+    for (const [quantity] of LAYERS) {
+      if (!quantities[quantity]) continue;
+      const button = element(
+        "button",
+        {
+          type: "button",
+          "data-layer": quantity,
+          title: quantities[quantity].meaning,
+          "aria-label": quantities[quantity].meaning,
+          "aria-pressed": "false",
+        },
+        quantities[quantity].letter,
+      );
+      button.addEventListener("click", () => {
+        this.arm.layers.has(quantity) ? this.arm.layers.delete(quantity) : this.arm.layers.add(quantity);
+        this.paintLayers();
+      });
+      this.layerButtons.set(quantity, button);
+      byId("layers").append(button);
+    }
+    for (const [label, key, title] of [
+      ["frames", "showFrames", "frames of the table"],
+      ["masses", "showComs", "centres of mass"],
+    ]) {
+      const button = element("button", { type: "button", title, "aria-pressed": String(this.arm[key]) }, label);
+      button.addEventListener("click", () => {
+        this.arm[key] = !this.arm[key];
+        button.setAttribute("aria-pressed", String(this.arm[key]));
+        this.arm.draw(this.state.q);
+      });
+      byId("layers").append(button);
+    }
+  }
+
+  paintLayers() {
+    for (const [quantity, button] of this.layerButtons)
+      button.setAttribute("aria-pressed", String(this.arm.layers.has(quantity)));
+    if (this.arm.pose) this.arm.draw(this.state.q);
+  }
+
+  makeTip() {
+    const most = Math.max(10, ...this.inspection.robot.joints.map((joint) => joint.mass * 5));
+    AXES.forEach((axis, index) => {
+      const output = element("output", {}, "0 N");
+      const input = element("input", {
+        type: "range",
+        min: -niceAbove(most),
+        max: niceAbove(most),
+        step: "any",
+        value: 0,
+        "aria-label": `force at the tip along ${axis}, N`,
+        "data-tip": axis,
+      });
+      input.addEventListener("input", () => {
+        this.wrench.f[index] = Number(input.value);
+        output.textContent = `${short(this.wrench.f[index])} N`;
+        this.update();
+      });
+      byId("tip").append(element("label", {}, `f ${axis}`, input, output));
+    });
+    byId("rest").addEventListener("click", () =>
+      this.setState({ qd: this.state.qd.map(() => 0), qdd: this.state.qdd.map(() => 0) }),
+    );
+    byId("home").addEventListener("click", () => {
+      this.wrench.f.fill(0);
+      byId("tip")
+        .querySelectorAll("input")
+        .forEach((input) => {
+          input.value = 0;
+        });
+      byId("tip")
+        .querySelectorAll("output")
+        .forEach((output) => {
+          output.textContent = "0 N";
+        });
+      this.setState(this.initial);
+    });
+  }
+
+  // ---- the motion
+
+  makeMotion() {
+    byId("play").addEventListener("click", () => (this.playing ? this.stop() : this.play()));
+    byId("time").addEventListener("input", () => {
+      this.stop();
+      this.goTo(Number(byId("time").value) * this.trajectory.seconds);
+    });
+    byId("duration").addEventListener("input", () => this.retime());
+    byId("from").addEventListener("click", () => {
+      this.from = [...this.state.q];
+      this.retime();
+    });
+    byId("to").addEventListener("click", () => {
+      this.to = [...this.state.q];
+      this.retime();
+    });
+    for (let joint = 1; joint <= this.inspection.dof; joint++) {
+      const button = element(
+        "button",
+        { type: "button", "data-plot": joint, "aria-pressed": String(joint === 1) },
+        `τ${joint}`,
+      );
+      button.addEventListener("click", () => this.plotJoint(joint));
+      byId("joints").append(button);
+    }
+  }
+
+  plotJoint(joint) {
+    this.plot.joint = joint;
+    for (const button of byId("joints").children)
+      button.setAttribute("aria-pressed", String(Number(button.dataset.plot) === joint));
+    this.plot.draw();
+    byId("plot-words").textContent = this.plot.words();
+  }
+
+  retime() {
+    const seconds = Math.round(100 * 10 ** Number(byId("duration").value)) / 100;
+    byId("seconds").textContent = `${seconds.toFixed(2)} s`;
+    byId("duration").setAttribute("aria-valuetext", `${seconds} s`);
+    this.trajectory = new Trajectory(this.from, this.to, seconds);
+    this.plot.set(this.trajectory);
+    byId("plot-words").textContent = this.plot.words();
+    // the intermediates of the code belong to the state again
+    this.folded.run(this.given);
+  }
+
+  goTo(time) {
+    Object.assign(this.state, this.trajectory.at(time));
+    this.plot.point(time);
+    byId("time").value = time / this.trajectory.seconds;
+    byId("time").setAttribute("aria-valuetext", `${time.toFixed(2)} s`);
+    this.sliders.show(this.state);
+    this.update();
+  }
+
+  play() {
+    const begun = Number(byId("time").value) < 1 ? Number(byId("time").value) * this.trajectory.seconds : 0;
+    byId("play").textContent = "■ stop";
+    byId("play").setAttribute("aria-pressed", "true");
+    let first = null;
+    const frame = (now) => {
+      first ??= now;
+      const time = begun + (now - first) / 1000;
+      this.goTo(Math.min(time, this.trajectory.seconds));
+      if (time < this.trajectory.seconds) this.playing = requestAnimationFrame(frame);
+      else this.stop();
+    };
+    this.playing = requestAnimationFrame(frame);
+  }
+
+  stop() {
+    if (!this.playing) return;
+    cancelAnimationFrame(this.playing);
+    this.playing = null;
+    byId("play").textContent = "▶ play";
+    byId("play").setAttribute("aria-pressed", "false");
+  }
+
+  // ---- the seven steps
+
+  makeGrid() {
+    const { dof, cells } = this.inspection;
+    const total = (of) => of.products + of.sums;
+    this.most = {
+      unfolded: Math.max(...cells.map((cell) => total(cell.before)), 1),
+      folded: Math.max(...cells.map((cell) => total(cell.after)), 1),
+    };
+    const head = element(
+      "tr",
+      {},
+      element("td", {}, "operations of joint"),
+      ...Array.from({ length: dof }, (_, joint) => element("th", { scope: "col" }, String(joint + 1))),
+    );
+    const body = element("tbody");
+    STEPS.forEach((title, index) => {
+      const row = element(
+        "tr",
+        {},
+        element(
+          "th",
+          { scope: "row" },
+          element("span", { class: "step-number" }, String(index + 1)),
+          element("span", { class: "step-letter" }, STEP_LETTERS[index]),
+          element("span", { class: "step-title" }, title),
+        ),
+      );
+      for (let joint = 1; joint <= dof; joint++) {
+        const cell = this.inspection.cell(joint, index + 1);
+        const [before, after] = cell ? [total(cell.before), total(cell.after)] : [0, 0];
+        const button = element(
+          "button",
+          {
+            type: "button",
+            "data-cell": `${joint}-${index + 1}`,
+            tabindex: "-1",
+            disabled: !cell,
+            "aria-label": `joint ${joint}, step ${index + 1}, ${title}: ${before} operations, ${after} after folding`,
+            title: `${before} operations, ${after} after folding`,
+          },
+          element("b"),
+        );
+        button.counts = { unfolded: before, folded: after };
+        row.append(element("td", {}, button));
+      }
+      body.append(row);
+    });
+    byId("grid").append(
+      element(
+        "caption",
+        { class: "visually-hidden" },
+        "operations of each step of each joint; a cell opens its equations",
+      ),
+      element("thead", {}, head),
+      body,
+    );
+  }
+
+  reopen() {
+    this.open(this.cell);
+    this.update();
+  }
+
+  /** Opens a cell: its equations, its code, and its vectors on the arm. */
+  open(cell) {
+    const { counts, programs } = this.inspection;
+    const isOther = this.cell !== cell;
+    this.cell = cell;
+    this.live = [];
+    const body = document.documentElement.dataset;
+    Object.assign(body, { form: this.form, language: this.language, exercise: this.exercise.isOn ? "on" : "off" });
+    const told = (of) => `${of.products} products, ${of.sums} sums`;
+    const text = {
+      unfolded: `${told(counts.before)} before folding`,
+      folded: `${told(counts.after)}; before folding ${counts.before.products}, ${counts.before.sums}`,
+    };
+    if (this.reduced) {
+      const { products, sums } = counts.after;
+      text.reduced = `${told(programs.reduced.counts.after)}; in the seven steps ${products}, ${sums}`;
+    }
+    byId("counts").textContent = text[this.form];
+    for (const button of byId("grid").querySelectorAll("button")) {
+      const isOpen = this.form !== "reduced" && button.dataset.cell === `${cell.joint}-${cell.step}`;
+      button.setAttribute("aria-pressed", String(isOpen));
+      button.tabIndex = button.dataset.cell === `${cell.joint}-${cell.step}` ? 0 : -1;
+      const which = this.form === "unfolded" ? "unfolded" : "folded";
+      button.firstChild.textContent = String(button.counts[which]);
+      button.style.setProperty("--share", (button.counts[which] / this.most[which]).toFixed(3));
+    }
+    const content = this.form === "reduced" ? this.cards.reducedCode() : this.cards.cellContent(cell);
+    byId("cell").replaceChildren(...content);
+    if (isOther || this.arm.layers.size === 0) {
+      byId("cell").scrollTop = 0;
+      this.arm.layers = new Set(
+        LAYERS.filter(([quantity, step]) => step === cell.step && this.layerButtons.has(quantity)).map(
+          ([quantity]) => quantity,
+        ),
+      );
+      this.paintLayers();
+    }
+    for (const paint of this.live) paint();
+    this.reading.relight();
+  }
+
+  // ---- what is lit
+}
+
+const page = new Page(JSON.parse(byId("data").textContent));
+window.rne = {
+  setState: (state) => page.setState(state),
+  torques: () => page.folded.run(page.given),
+  value: (name) => page.value(name),
+  select: (name) => page.reading.select(name),
+};
+requestAnimationFrame(() =>
+  requestAnimationFrame(() => {
+    document.documentElement.dataset.ready = "1";
+  }),
+);

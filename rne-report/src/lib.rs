@@ -1,0 +1,75 @@
+//! One page of HTML in which a robot arm's dynamics can be inspected: the arm in 3-D, the seven steps joint by joint,
+//! equations beside code beside numbers, torques over a motion. The page is complete in itself: no network, nothing to
+//! install.
+//!
+//! [`page`] makes it. The page holds the inspection ([`rne_inspection`]) as JSON and evaluates that: it has no dynamics
+//! of its own. Data in, a text out: nothing here opens a file or prints.
+//!
+//! ```
+//! let file = rne_robots::find("planar2").expect("it is shipped");
+//! let robot = rne_model::Robot::from_yaml(file.yaml)?;
+//! let page = rne_report::page(&robot, None)?;
+//! assert!(page.starts_with("<!doctype html>"));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+#![forbid(unsafe_code)]
+
+mod data;
+mod template;
+
+use std::fmt::Write as _;
+
+use rne_codegen::{CompileError, Compiler, Form, Function, Program, emit};
+use rne_model::Robot;
+
+pub use crate::data::data;
+
+/// What every page consists of besides its data.
+const HTML: &str = include_str!("../page/index.html");
+const STYLE: &str = include_str!("../page/style.css");
+
+/// The scripts of the page, in the order in which they stand in it: each uses only those before it.
+pub const SCRIPTS: [(&str, &str); 13] = [
+    ("inspection.js", include_str!("../page/inspection.js")),
+    ("program.js", include_str!("../page/program.js")),
+    ("number.js", include_str!("../page/number.js")),
+    ("equation.js", include_str!("../page/equation.js")),
+    ("pose.js", include_str!("../page/pose.js")),
+    ("shape.js", include_str!("../page/shape.js")),
+    ("arm.js", include_str!("../page/arm.js")),
+    ("torque.js", include_str!("../page/torque.js")),
+    ("motion.js", include_str!("../page/motion.js")),
+    ("exercise.js", include_str!("../page/exercise.js")),
+    ("cell.js", include_str!("../page/cell.js")),
+    ("reading.js", include_str!("../page/reading.js")),
+    ("page.js", include_str!("../page/page.js")),
+];
+
+/// The page of an arm. Units are SI: m, rad, N, N m.
+///
+/// `reduced` is the program of the inverse dynamics in the reduced form, by whatever plan there is for the arm; without
+/// it the one is taken that the compiler makes without a plan.
+///
+/// # Errors
+/// When the inverse dynamics do not compile: [`Compiler::compile`].
+pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileError> {
+    let compiler = Compiler::new(robot);
+    let own = match reduced {
+        Some(_) => None,
+        None => Some(compiler.compile(Function::InverseDynamics, Form::Reduced)?),
+    };
+    let with_wrench = compiler.compile(Function::InverseDynamicsWithWrench, Form::SevenSteps)?;
+    let torques = Compiler::new(robot).with_equations().compile(Function::InverseDynamics, Form::SevenSteps)?;
+    let data = data(robot, &torques, &with_wrench, reduced.or(own.as_ref()));
+    let mut script = String::new();
+    for (name, text) in SCRIPTS {
+        let _ = write!(script, "\n// ---- {name}\n\n{text}");
+    }
+    let parts = [
+        ("title", template::text(&emit::title(robot))),
+        ("style", STYLE.to_owned()),
+        ("data", template::json(&data)),
+        ("script", script),
+    ];
+    Ok(template::filled(HTML, &parts))
+}

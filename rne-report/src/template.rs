@@ -1,0 +1,79 @@
+//! A page with gaps, and texts that stay what they are wherever they stand in it.
+
+use std::fmt::Write as _;
+
+/// The template with every `{{name}}` replaced, in one pass: what is put in is not searched for gaps.
+pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
+    let mut page = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once("{{") {
+        page.push_str(before);
+        let part = after.split_once("}}").and_then(|(name, behind)| {
+            let (_, text) = parts.iter().find(|(known, _)| *known == name)?;
+            Some((text, behind))
+        });
+        if let Some((text, behind)) = part {
+            page.push_str(text);
+            rest = behind;
+        } else {
+            page.push_str("{{");
+            rest = after;
+        }
+    }
+    page + rest
+}
+
+/// Text as the content of an element, or inside the quotes of an attribute.
+pub(crate) fn text(text: &str) -> String {
+    let mut inert = String::new();
+    for c in text.chars() {
+        match c {
+            '&' => inert.push_str("&amp;"),
+            '<' => inert.push_str("&lt;"),
+            '>' => inert.push_str("&gt;"),
+            '"' => inert.push_str("&quot;"),
+            '\'' => inert.push_str("&#39;"),
+            c => inert.push(c),
+        }
+    }
+    inert
+}
+
+/// JSON as the content of a `script` element: neither `</script>` nor `<!--` can stand in it, and nothing that a reader
+/// of HTML would take for the name of a character. In JSON these signs stand inside strings alone.
+pub(crate) fn json(value: &serde_json::Value) -> String {
+    let mut inert = String::new();
+    for c in value.to_string().chars() {
+        match c {
+            '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => {
+                let _ = write!(inert, "\\u{:04x}", u32::from(c));
+            }
+            c => inert.push(c),
+        }
+    }
+    inert
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_put_in_is_not_searched_for_gaps() {
+        let parts = [("a", "{{b}}".to_owned()), ("b", "B".to_owned())];
+        assert_eq!(filled("{{a}} {{b}} {{c}} {{", &parts), "{{b}} B {{c}} {{");
+    }
+
+    #[test]
+    fn json_ends_no_script_and_says_the_same() {
+        let value = serde_json::json!({ "</script><!--&amp;": "\u{2028}]]>" });
+        let inert = json(&value);
+        assert!(!inert.contains(['<', '>', '&', '\u{2028}']), "{inert}");
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&inert).ok(), Some(value));
+    }
+
+    #[test]
+    fn text_stays_text_in_quotes_too() {
+        assert_eq!(text("<b title='\"'>&"), "&lt;b title=&#39;&quot;&#39;&gt;&amp;");
+    }
+}
