@@ -29,8 +29,7 @@ Examples:
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
-FILE: a robot file (docs/robot-file.md), or a name that `rne list` has: puma560.
-Exit status: `rne explain exit-status`.")]
+FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
