@@ -108,8 +108,7 @@ fn torques(composer: &Composer<'_>, written: &Written) -> Section {
             return composer.formula(left, Pieces::of(&written.torques[i], notation));
         }
         let mut terms = Vec::new();
-        for (j, element) in written.mass_matrix[i].iter().enumerate().filter(|(_, element)| !element.is_zero()) {
-            let _ = element;
+        for (j, _) in written.mass_matrix[i].iter().enumerate().filter(|(_, element)| !element.is_zero()) {
             terms.push(composer.both(|notation| {
                 let name = notation.indexed("M", &notation.indices(&[i, j]));
                 format!("{name}{}{}", notation.times(), notation.variable(j, 2))
@@ -167,7 +166,7 @@ fn mass_matrix(composer: &Composer<'_>, equations: &Equations, written: &Written
 fn velocity(composer: &Composer<'_>, equations: &Equations, written: &Written) -> Section {
     let dof = written.christoffel.len();
     let mut items = Vec::new();
-    let mut symbols: Vec<(Vec<String>, usize, Option<Pieces>)> = Vec::new();
+    let mut symbols: Vec<Item> = Vec::new();
     let mut known: Vec<([usize; 3], &Polynomial)> = Vec::new();
     let name = |notation: &Notation<'_>, indices: [usize; 3]| notation.indexed("c", &notation.indices(&indices));
     for i in 0..dof {
@@ -190,27 +189,22 @@ fn velocity(composer: &Composer<'_>, equations: &Equations, written: &Written) -
                 let negative = -symbol;
                 let same = known.iter().find(|(_, other)| **other == *symbol);
                 let opposite = known.iter().find(|(_, other)| **other == negative);
-                let (own, wide) = composer.both(|notation| name(notation, [i, j, k]));
-                if let Some((indices, _)) = same.or(opposite) {
+                let own = |notation: &Notation<'_>| name(notation, [i, j, k]);
+                let right = if let Some((indices, _)) = same.or(opposite) {
                     let sign = if same.is_some() { "" } else { "-" };
-                    let indices = *indices;
-                    let (other, other_wide) = composer.both(|notation| format!("{sign}{}", name(notation, indices)));
-                    let pieces = Pieces::of_terms(&[(other, other_wide)]);
-                    symbols.push((vec![own], wide.width(), Some(pieces)));
+                    Pieces::of_terms(&[composer.both(|notation| format!("{sign}{}", name(notation, *indices)))])
                 } else {
                     known.push(([i, j, k], symbol));
-                    let pieces = Pieces::of(&written.christoffel[i][j][k], &composer.notation);
-                    symbols.push((vec![own], wide.width(), Some(pieces)));
-                }
+                    Pieces::of(&written.christoffel[i][j][k], &composer.notation)
+                };
+                symbols.push(composer.formula(own, right));
             }
         }
         let index = (i + 1).to_string();
         items.push(composer.formula(|notation| notation.indexed("h", &index), Pieces::of_terms(&terms)));
     }
     let are_some = !symbols.is_empty();
-    for (left, width, right) in symbols {
-        items.push(Item::Formula { left: left.join(" = "), width, right: right.unwrap_or_default() });
-    }
+    items.extend(symbols);
     if are_some {
         let rest = math(
             &composer.notation,

@@ -10,7 +10,6 @@ use crate::notation::{Script, latex_text};
 const COLUMNS: usize = 78;
 
 const HEAD: &str = r"\documentclass{article}
-\usepackage[T1]{fontenc}
 \usepackage{amsmath}
 \setlength{\textwidth}{17cm}
 \setlength{\oddsidemargin}{-0.6cm}

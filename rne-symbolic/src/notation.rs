@@ -195,7 +195,7 @@ pub(crate) fn latex_text(text: &str) -> String {
             '<' => inert.push_str(r"\textless{}"),
             '>' => inert.push_str(r"\textgreater{}"),
             '|' => inert.push_str(r"\textbar{}"),
-            '"' => inert.push_str(r"\textquotedbl{}"),
+            '"' => inert.push_str("''"),
             '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
                 inert.push('\\');
                 inert.push(c);

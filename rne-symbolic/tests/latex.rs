@@ -26,7 +26,7 @@ fn documents_compile() {
         return;
     };
     let folder = tempfile::tempdir().expect("a folder");
-    let hostile = r"50% \input{/etc/passwd} $x^2 ~ #1 & {_} -- Möbius";
+    let hostile = r#"50% \input{/etc/passwd} $x^2 ~ #1 & {_} -- "<Möbius>" |"#;
     for (name, joints, title) in [
         ("planar1", 1, hostile),
         ("planar2", 2, "two links"),
