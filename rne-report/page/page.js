@@ -269,7 +269,7 @@ class Page {
     for (let joint = 1; joint <= this.inspection.dof; joint++) {
       const button = element(
         "button",
-        { type: "button", "data-plot": joint, "aria-pressed": String(joint === 1) },
+        { type: "button", "data-plot": joint, "aria-pressed": String(joint === this.plot.joint) },
         `τ${joint}`,
       );
       button.addEventListener("click", () => this.plotJoint(joint));
