@@ -225,7 +225,12 @@ class Arm {
     const of = minusV(point, this.centre);
     const depth = dot(of, toViewer);
     const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
-    return { x: this.width / 2 + dot(of, right) * scale, y: this.height * 0.53 - dot(of, over) * scale, depth, scale };
+    return {
+      x: this.width / 2 + dot(of, right) * scale,
+      y: this.height * 0.53 - dot(of, over) * scale,
+      depth,
+      scale,
+    };
   }
 
   /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */

@@ -104,7 +104,7 @@ class Bars {
 /** The torque of one joint over a motion. */
 class Plot {
   constructor(root, inspection, torques) {
-    Object.assign(this, { root, inspection, torques, joint: 1, time: 0 });
+    Object.assign(this, { root, inspection, torques, joint: Math.min(2, inspection.dof), time: 0 });
     this.curves = {};
     this.axes = svg("g", { class: "plot-axes" });
     root.append(this.axes);
