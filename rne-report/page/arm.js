@@ -233,11 +233,16 @@ class Arm {
     };
   }
 
-  /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
-  draw(q) {
+  /** Asks for the size of the picture: only when it changed, for the answer waits for the layout of the page. */
+  measure() {
     this.width = this.root.clientWidth || 600;
     this.height = this.root.clientHeight || 450;
     this.root.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
+  }
+
+  /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
+  draw(q) {
+    if (!this.width) this.measure();
     const pose = (this.pose = new Pose(this.inspection, this.value, q));
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
@@ -252,6 +257,10 @@ class Arm {
   }
 
   drawFloor() {
+    // it stands still while the arm moves
+    const seen = [this.look.yaw, this.look.pitch, this.pixels, this.extent, this.width, this.height].join();
+    if (seen === this.floorSeen) return;
+    this.floorSeen = seen;
     const span = this.size * 0.95;
     const step = niceAbove(span / 4);
     const count = Math.ceil(span / step);

@@ -302,6 +302,7 @@ class Reading {
     });
     document.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => {
+      this.page.arm.measure();
       this.page.arm.draw(this.page.state.q);
       this.page.plot.draw();
     }).observe(byId("arm"));
