@@ -27,6 +27,44 @@ pub(crate) fn text(inspection: &Inspection, joint: Option<usize>, step: Option<u
     cells.join("\n")
 }
 
+/// What a name is: of a component its four lines, of anything else what it means, and what uses it.
+pub(crate) fn of_name(inspection: &Inspection, name: &str) -> Option<String> {
+    let (known, quantity) = inspection.meaning(name)?;
+    let place = match quantity.step {
+        Some(step) => format!("joint {}, step {step}\n\n", known.joint),
+        None => String::new(),
+    };
+    let equations = inspection.component(name).map(|component| of_component(inspection, component));
+    let mut text = equations.unwrap_or_else(|| of_other(inspection, name));
+    let users = inspection.statements.iter().filter(|statement| statement.value.names().contains(&name));
+    let turned = inspection.sines_and_cosines.iter().filter(|turn| turn.angle.names().contains(&name));
+    let turned = turned.flat_map(|turn| turn.sine.iter().chain(&turn.cosine)).map(String::as_str);
+    let users: Vec<&str> = turned.chain(users.map(|statement| statement.name.as_str())).collect();
+    if !users.is_empty() {
+        let users = users.join(", ");
+        let _ = writeln!(text, "{}", styled(QUIET, &fill(&users, "    used by   ", "              ")));
+    }
+    Some(place + &text)
+}
+
+/// A shared term, a number, an argument, or a name of a form that has no equations.
+fn of_other(inspection: &Inspection, name: &str) -> String {
+    let stated = inspection.angles.iter().chain(&inspection.statements).find(|statement| statement.name == name);
+    let mut text = opening(inspection, name);
+    if let Some(owner) = stated.and_then(|statement| statement.component.as_ref()) {
+        let _ = writeln!(text, "    part of   {owner}");
+    }
+    if let Some((_, value)) = inspection.constants.iter().find(|(constant, _)| constant == name) {
+        let _ = writeln!(text, "    number    {value}");
+    }
+    if let Some(statement) = stated {
+        let code = statement.rust.split_whitespace().collect::<Vec<_>>().join(" ");
+        let code = fill(&code, &format!("    {}", LABELS[3]), "                  ");
+        let _ = writeln!(text, "{}", styled(FOUND, &code));
+    }
+    text
+}
+
 fn of_cell(inspection: &Inspection, cell: &Cell) -> String {
     let Cell { joint, step, title, before, after, .. } = cell;
     let of = if *joint > inspection.robot.joints.len() { "payload".to_owned() } else { format!("joint {joint}") };
@@ -50,9 +88,7 @@ fn of_cell(inspection: &Inspection, cell: &Cell) -> String {
 
 fn of_component(inspection: &Inspection, component: &Component) -> String {
     let name = &component.name;
-    let mut text = format!("  {TITLE}{name}{TITLE:#}");
-    let _ = write!(text, "   {QUIET}{}{QUIET:#}", about(inspection, name));
-    text.push('\n');
+    let mut text = opening(inspection, name);
     let mut line = |label: &str, of: &str| {
         let _ = writeln!(text, "{}", fill(of, &format!("    {label}"), "                "));
     };
@@ -68,6 +104,13 @@ fn of_component(inspection: &Inspection, component: &Component) -> String {
         let _ = writeln!(text, "{}", styled(FOUND, &fill(code, &format!("    {label}"), "                  ")));
     }
     text
+}
+
+/// A name and what it is.
+fn opening(inspection: &Inspection, name: &str) -> String {
+    let all = fill(&format!("{name}   {}", about(inspection, name)), "  ", "      ");
+    let words = all.trim_start().strip_prefix(name).unwrap_or_default();
+    format!("  {TITLE}{name}{TITLE:#}{}\n", styled(QUIET, words))
 }
 
 /// What a name is: in words, with its unit and its axes.

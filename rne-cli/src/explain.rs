@@ -1,20 +1,25 @@
-//! `rne explain`: what is too long for a `--help`: functions, tricks, quantities, exit statuses.
+//! `rne explain`: what is too long for a `--help`: functions, tricks, quantities, exit statuses, and what a name in the
+//! code of a robot is.
 
 use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use rne_codegen::plan::Trick;
-use rne_codegen::{Argument, Function};
+use rne_codegen::{Argument, Compiler, Form, Function};
+use rne_inspection::Inspection;
+use rne_model::did_you_mean;
 
 use crate::layout::wrap;
-use crate::outcome::Outcome;
+use crate::outcome::{Failure, Outcome};
 use crate::show::Kept;
 use crate::terminal::{self, TYPED};
+use crate::{arguments, equations, plan_file, robot_file};
 
 /// More columns of prose are hard to read.
 const WIDTH: usize = 80;
 
-/// Explain the words that options take, and the exit statuses
+/// Explain words of options, exit statuses, names in the code
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -22,11 +27,23 @@ Examples:
   rne explain arguments     which function takes which options of `rne eval`
   rne explain tricks        the tricks of the reduced form: --without
   rne explain quantities    what `rne show --keep` keeps
-  rne explain exit-status   what a script can rely on")]
+  rne explain exit-status   what a script can rely on
+  rne explain w2_z puma560  what that name in the code of a robot is")]
 pub(crate) struct Arguments {
-    /// What to explain
-    #[arg(value_enum, value_name = "TOPIC")]
-    topic: Topic,
+    /// What to explain: functions, arguments, tricks, quantities, exit-status, or a name in the code of FILE
+    #[arg(value_name = "TOPIC")]
+    topic: String,
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// With FILE: in which function
+    #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true,
+        default_value = Function::InverseDynamics.name(), requires = "file")]
+    function: Function,
+    /// With FILE: in which form, seven_steps or reduced
+    #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true, requires = "file")]
+    form: Form,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -38,14 +55,53 @@ enum Topic {
     ExitStatus,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Outcome {
-    Outcome::text(match arguments.topic {
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if let Some(file) = &arguments.file {
+        return name_in_code(arguments, file);
+    }
+    let topic = Topic::from_str(&arguments.topic, false).map_err(|_| {
+        let topics: Vec<_> = Topic::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
+        let topics: Vec<&str> = topics.iter().map(clap::builder::PossibleValue::get_name).collect();
+        let word = &arguments.topic;
+        let meant = did_you_mean(word, topics.iter().copied())
+            .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
+        Failure::usage(format_args!(
+            "there is no topic `{word}`{meant}; expected {}, or a name in the code of a robot and its file, as in \
+             {TYPED}rne explain w2_z puma560{TYPED:#}",
+            topics.join(", ")
+        ))
+    })?;
+    Ok(Outcome::text(match topic {
         Topic::Functions => entries(Function::ALL.map(|function| (function.name(), function.summary().to_owned()))),
         Topic::Arguments => of_eval(),
         Topic::Tricks => entries(Trick::ALL.map(|trick| (trick.name(), trick.formula().to_owned()))),
         Topic::Quantities => quantities(),
         Topic::ExitStatus => EXIT_STATUS.to_owned(),
-    })
+    }))
+}
+
+/// What a name in the code of a robot is.
+fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
+    let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
+    let robot = robot_file::robot(path)?;
+    let program = match form {
+        Form::SevenSteps => Compiler::new(&robot)
+            .with_equations()
+            .compile(function, form)
+            .map_err(|error| Failure::compile(&path.display().to_string(), &error))?,
+        Form::Reduced => plan_file::Compiler::new(path, &robot).compile(function, form)?,
+    };
+    let inspection = Inspection::new(&robot, &program);
+    if let Some(text) = equations::of_name(&inspection, name) {
+        return Ok(Outcome::text(text));
+    }
+    let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
+        .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
+    Err(Failure::usage(format_args!(
+        "nothing is called `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
+         code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
+        robot.name
+    )))
 }
 
 const EXIT_STATUS: &str = "\

@@ -78,7 +78,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Export(arguments)) => ("rne export", export::run(&arguments)),
         Some(Command::Report(arguments)) => ("rne report", report::run(&arguments)),
         Some(Command::Firmware(arguments)) => ("rne firmware", firmware::run(&arguments)),
-        Some(Command::Explain(arguments)) => ("rne explain", Ok(explain::run(&arguments))),
+        Some(Command::Explain(arguments)) => ("rne explain", explain::run(&arguments)),
         Some(Command::Completions(arguments)) => ("rne completions", Ok(shell::completions(&arguments))),
         Some(Command::Man(arguments)) => ("rne man", shell::man(&arguments)),
     }

@@ -21,18 +21,14 @@ use crate::{arguments, base_parameters, equations, heading, highlight};
 #[command(after_help = "\
 Examples:
   rne show robots/puma560.yaml --joint 2 --step 4
-  rne show robots/scara_cobra600.yaml --function gravity_torques
   rne show robots/planar2.yaml --step 3            what no torque needs
   rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
   rne show robots/puma560.yaml --function mass_matrix --form reduced
-  rne show robots/puma560.yaml --form reduced --without rewriting
   rne show robots/puma560.yaml --base-parameters   what the torques can see
   rne show puma560 --joint 2 --step 1 --equations  of what the code is left
   rne show puma560 --json                          all of it, for programs
 
-Vectors of link i are in frame i, at joint i and fixed to link i: w2_z is ω of
-link 2 along z, dw ω̇, dc ċ, ddc c̈, f1_2_x and n1_2_x what link 1 exerts on
-link 2. `rne emit` writes a file with the meaning of every name.")]
+`rne explain w2_z puma560` tells what a name in the code is.")]
 pub(crate) struct Arguments {
     /// Robot file
     #[arg(value_name = "FILE")]
@@ -57,13 +53,11 @@ pub(crate) struct Arguments {
     /// velocity
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Leave these tricks out of the reduced form: `rne explain tricks`; a recursion that can be read is left
-    /// `--without rewriting`
+    /// Leave these tricks out of the reduced form: `rne explain tricks`; rewriting leaves nothing to read
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,
-    /// Component by component: the equation in general, with this robot's numbers, what folded away and why, and the
-    /// code that is left
+    /// By component: its equation, this robot's, what is gone and why, the code left
     #[arg(long, conflicts_with_all = ["keep", "without"])]
     equations: bool,
     /// The same as JSON, with units, frames and counts: docs/inspection.md

@@ -15,6 +15,7 @@ mod machine;
 mod mutants;
 mod mutate;
 mod package;
+mod page;
 mod performance;
 mod prose;
 mod single_calls;
@@ -62,6 +63,7 @@ enum Task {
     Features(features::Features),
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
+    Page(page::Page),
 }
 
 /// What a task found.
@@ -96,6 +98,7 @@ impl Task {
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
+            Self::Page(task) => ("page", task.install, task.run()),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Tools of cargo that are no part of this repository.
+//! Tools that are no part of this repository.
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
@@ -7,14 +7,15 @@ use xshell::cmd;
 use crate::Verdict;
 use crate::machine::{self, Missing};
 
-/// Runs a tool over the manifests: dependencies and their licences, the public interface
+/// Runs a tool: dependencies and their licences, the public interface, the book of the lecture
 #[derive(Args)]
 #[command(after_help = "\
 Exit status: 1 when the tool finds fault.
 
 Examples:
   cargo xtask tool deny --install        licences, sources and duplicates of dependencies: deny.toml; takes minutes
-  cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install")]
+  cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install
+  cargo xtask tool book --install        docs/lecture as a book in target/book; takes minutes to install")]
 pub(crate) struct Tool {
     /// Which one
     tool: Name,
@@ -29,6 +30,8 @@ enum Name {
     Deny,
     /// cargo-semver-checks
     Semver,
+    /// mdBook
+    Book,
 }
 
 impl Tool {
@@ -37,6 +40,7 @@ impl Tool {
         let program = match self.tool {
             Name::Deny => "cargo-deny",
             Name::Semver => "cargo-semver-checks",
+            Name::Book => "mdbook",
         };
         let tag = cmd!(shell, "git describe --tags --abbrev=0").quiet().ignore_stderr().read();
         if self.tool == Name::Semver && tag.is_err() {
@@ -67,6 +71,7 @@ impl Tool {
                 let advisories = has_advisories.then_some("advisories");
                 cmd!(shell, "cargo deny --workspace --log-level error check bans licenses sources {advisories...}")
             }
+            Name::Book => cmd!(shell, "mdbook build docs/lecture"),
             Name::Semver => {
                 let tag = tag?;
                 cmd!(shell, "cargo semver-checks --baseline-rev {tag} --package rne --package rne-model")

@@ -113,6 +113,20 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "page",
+        about: "the page of `rne report` in headless Chromium, which is fetched",
+        variables: &[],
+        command: &["cargo", "xtask", "page", "--install"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "book",
+        about: "the lecture as a book",
+        variables: &[],
+        command: &["cargo", "xtask", "tool", "book"],
+        needs: Needs::Program("mdbook"),
+    },
+    Step {
         name: "urdf",
         about: "real arms imported from URDF beside Pinocchio, which is fetched",
         variables: &[],

@@ -11,12 +11,23 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 6] = [
+const DOCUMENTS: [&str; 17] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/command-line.md",
     "docs/firmware.md",
+    "docs/inspection.md",
+    "docs/lecture/README.md",
+    "docs/lecture/errata.md",
+    "docs/lecture/exercises.md",
+    "docs/lecture/folding.md",
+    "docs/lecture/frames.md",
+    "docs/lecture/one-link.md",
+    "docs/lecture/prismatic.md",
+    "docs/lecture/reduced.md",
+    "docs/lecture/two-links.md",
     "docs/robot-file.md",
+    "docs/teaching.md",
     "robots/README.md",
 ];
 
@@ -35,6 +46,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
+    ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
     // its page is checked, and it breaks sources
@@ -98,7 +110,8 @@ fn of_rne(command: &str) -> Option<String> {
 
 /// Whether words stand for others: `FILE…`, `[--joint I]`, `COMMAND`.
 fn is_pattern(command: &str) -> bool {
-    command.contains(['…', '[']) || ["COMMAND", "FILE", "TOPIC", "SHELL"].iter().any(|word| command.contains(word))
+    command.contains(['…', '['])
+        || ["COMMAND", "FILE", "TOPIC", "SHELL", "ROBOT"].iter().any(|word| command.contains(word))
 }
 
 /// The file of a test that `cargo test … --test NAME` asks for.

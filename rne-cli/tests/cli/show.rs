@@ -1,11 +1,98 @@
 //! `rne show` and `rne ops`: listings and counts.
 
+use std::collections::BTreeSet;
+
 use crate::call::{ROOT, fails, fine, rne_reading};
 use serde_json::Value;
+use unicode_width::UnicodeWidthStr;
 
 #[test]
 fn one_joint_of_the_lectures_arm() {
     insta::assert_snapshot!(fine(&["show", "robots/planar1.yaml", "--joint", "1"]));
+}
+
+#[test]
+fn every_component_with_what_it_is_left_of() {
+    insta::assert_snapshot!("equations_of_one_link", fine(&["show", "planar1", "--equations"]));
+    insta::assert_snapshot!("equations_of_two_links", fine(&["show", "planar2", "--equations"]));
+    insta::assert_snapshot!(
+        "equations_of_a_prismatic_joint",
+        fine(&["show", "stanford", "--equations", "--joint", "3"])
+    );
+    let puma = ["show", "puma560", "--equations", "--joint", "2", "--step", "4"];
+    insta::assert_snapshot!("equations_of_a_step_of_puma560", fine(&puma));
+    for arguments in [&puma[..], &["show", "cylindrical_rpp", "--equations"], &["explain", "f1_2_x", "fr3"]] {
+        let text = fine(arguments);
+        // below the heading with the counts
+        let equations = text.split_once(" statements\n").map_or(text.as_str(), |(_, equations)| equations);
+        let long = equations.lines().find(|line| line.width() > 80);
+        assert_eq!(long, None, "lines of a projector");
+    }
+}
+
+#[test]
+fn equations_are_of_the_seven_steps() {
+    fails(2, &["show", "puma560", "--equations", "--form", "reduced"], &["only the seven steps", "rne explain tricks"]);
+    fails(2, &["show", "puma560", "--equations", "--joint", "7"], &["has no joint 7"]);
+    let none = fine(&["show", "puma560", "--equations", "--function", "mass_matrix"]);
+    assert!(none.contains("mass_matrix has no equations there"), "{none}");
+}
+
+#[test]
+fn an_inspection_for_programs() {
+    for form in ["seven_steps", "reduced"] {
+        let json: Value = serde_json::from_str(&fine(&["show", "puma560", "--json", "--form", form])).expect("JSON");
+        assert_eq!(json["schema"], "rne-inspection");
+        assert_eq!((&json["version"], &json["form"]), (&1.into(), &form.into()));
+        assert_eq!(json["outputs"].as_array().map(Vec::len), Some(6));
+        assert_eq!(json["cells"].as_array().map(Vec::len), Some(if form == "reduced" { 0 } else { 42 }));
+    }
+}
+
+/// docs/inspection.md tells every field there is, and no other.
+#[test]
+fn the_fields_of_an_inspection_are_written_down() {
+    let page = std::fs::read_to_string(std::path::Path::new(ROOT).join("docs/inspection.md")).expect("the page");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| `"));
+    let told: BTreeSet<String> =
+        rows.filter_map(|row| Some(row.split_once('`')?.0.rsplit('.').next()?.to_owned())).collect();
+    let mut found = BTreeSet::new();
+    for arguments in [&["show", "stanford", "--json"][..], &["show", "ur5", "--json"]] {
+        let mut json: Value = serde_json::from_str(&fine(arguments)).expect("JSON");
+        // keys that are names, not fields
+        for table in ["names", "quantities"] {
+            let values: Vec<Value> = json[table].as_object().expect("a table").values().cloned().collect();
+            json[table] = values.into();
+        }
+        fields(&json, &mut found);
+    }
+    assert_eq!(told, found);
+}
+
+fn fields(json: &Value, found: &mut BTreeSet<String>) {
+    match json {
+        Value::Array(list) => list.iter().for_each(|value| fields(value, found)),
+        Value::Object(table) => {
+            for (key, value) in table {
+                found.insert(key.clone());
+                fields(value, found);
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn what_a_name_in_the_code_is() {
+    insta::assert_snapshot!("explain_a_component", fine(&["explain", "ddc2_x", "puma560"]));
+    insta::assert_snapshot!("explain_a_shared_term", fine(&["explain", "wxd2_y_1", "puma560"]));
+    let q = fine(&["explain", "q2", "puma560"]);
+    assert!(q.contains("joint position, rad") && q.contains("used by   s2, c2"), "{q}");
+    let reduced = fine(&["explain", "tau6", "puma560", "--form", "reduced"]);
+    assert!(reduced.contains("let tau6 = "), "{reduced}");
+    fails(2, &["explain", "w2z", "puma560"], &["nothing is called `w2z`", "did you mean w2_z"]);
+    fails(2, &["explain", "functons"], &["did you mean functions", "rne explain w2_z puma560"]);
+    fails(1, &["explain", "w2_z", "nowhere.yaml"], &["nowhere.yaml"]);
 }
 
 #[test]

@@ -1,0 +1,72 @@
+//! The page of `rne report` in a real browser.
+
+use anyhow::Result;
+use clap::Args;
+use xshell::cmd;
+
+use crate::Verdict;
+use crate::machine::{self, Missing};
+
+/// What is installed for it: Debian's Chromium with its driver, and a client that is current.
+const BROWSER: [&str; 2] = ["chromium", "chromium-driver"];
+const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pillow==12.0.0"];
+
+/// Opens the page of `rne report` in headless Chromium and uses it
+///
+/// Torques beside those of `rne eval`, every statement of the PUMA 560 to its equation, value, unit and arrow and back,
+/// sliders, keyboard, exercises, axe's rules of accessibility, widths of a desk and a phone, sizes and times.
+/// `xtask/page.py` has all of it.
+#[derive(Args)]
+#[command(after_help = "\
+Needs chromium, chromedriver and python3 with venv; what it fetches is below
+target/page, and so are the pages and their pictures.
+
+Examples:
+  cargo xtask page                with what is installed there
+  cargo xtask page --install      install it first
+  cargo xtask page --pictures     write the pictures of docs/pictures anew")]
+pub(crate) struct Page {
+    /// Install what is missing: the browser by apt, the client by pip below target/
+    #[arg(long)]
+    pub(crate) install: bool,
+    /// Write the pictures of the documents anew
+    #[arg(long)]
+    pictures: bool,
+}
+
+impl Page {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        let target = machine::target_folder("target")?;
+        let venv = target.join("page/venv");
+        let python = venv.join("bin/python");
+        if !(machine::has("chromium") && machine::has("chromedriver")) {
+            machine::packages(&BROWSER, self.install)?;
+        }
+        let can_import = || {
+            python.exists()
+                && cmd!(shell, "{python} -c 'import selenium, axe_core_python, PIL'")
+                    .quiet()
+                    .ignore_stderr()
+                    .run()
+                    .is_ok()
+        };
+        if !can_import() {
+            if !self.install {
+                return Err(Missing::error("there is no Selenium; `cargo xtask page --install` gets it"));
+            }
+            if cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
+                return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
+            }
+            let packages = PACKAGES;
+            let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
+            if install.quiet().run().is_err() {
+                return Err(Missing::error("Selenium cannot be fetched"));
+            }
+        }
+        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+        let (rne, folder) = (target.join("debug/rne"), target.join("page"));
+        let pictures: &[&str] = if self.pictures { &["docs/pictures"] } else { &[] };
+        Ok(Verdict::from(cmd!(shell, "{python} xtask/page.py {rne} {folder} {pictures...}").quiet().run().is_ok()))
+    }
+}
