@@ -222,7 +222,7 @@ class Arm {
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
-    this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.pixels = (0.45 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
@@ -230,7 +230,7 @@ class Arm {
   }
 
   drawFloor() {
-    const span = this.size * 1.1;
+    const span = this.size * 0.95;
     const step = niceAbove(span / 4);
     const count = Math.ceil(span / step);
     const at = (a, b) => this.project(add(this.inspection.robot.base.xyz, add(times(this.east, a * step), times(this.north, b * step))));
@@ -329,7 +329,9 @@ class Arm {
       arrow.numbers = this.vector(arrow);
       if (arrow.numbers) largest[arrow.quantity] = Math.max(largest[arrow.quantity] || 0, norm(arrow.numbers));
     }
-    for (const arrow of this.arrows.values()) {
+    // letters that would stand on each other: the lit ones are written, and then the first
+    this.written = [];
+    for (const arrow of [...this.arrows.values()].sort((a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)))) {
       const isShown = arrow.isShown && arrow.numbers !== null && arrow.numbers !== undefined;
       arrow.node.toggleAttribute("hidden", !isShown);
       if (isShown) this.drawArrow(arrow, pose, largest[arrow.quantity]);
@@ -353,6 +355,9 @@ class Arm {
     arrow.head.setAttribute("d", heads ? heads.path : dotAt(from));
     arrow.text.setAttribute("x", round(to.x + 8 * heads_x(from, to)));
     arrow.text.setAttribute("y", round(to.y + 4 + 10 * heads_y(from, to)));
+    const isFree = this.written.every((other) => Math.abs(other.x - to.x) > 20 || Math.abs(other.y - to.y) > 13);
+    if (isFree) this.written.push(to);
+    arrow.text.toggleAttribute("hidden", !isFree && !arrow.isLit);
     arrow.text.setAttribute("text-anchor", to.x < from.x - 2 ? "end" : "start");
     let part = "";
     if (arrow.component !== null && arrow.component !== undefined && size > 0) {

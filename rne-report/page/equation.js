@@ -158,18 +158,15 @@ class Typesetter {
     switch (tree[0]) {
       case "+":
       case "-": {
-        const row = [];
-        for (const { sign, part } of isRoot ? summands(tree) : [{ sign: 1, part: parts[0] }, { sign: tree[0] === "+" ? 1 : -1, part: parts[1] }]) {
-          const isFirst = row.length === 0;
-          const operator = isFirst && sign > 0 ? null : math("mo", isFirst ? { form: "prefix" } : {}, sign > 0 ? "+" : "−");
+        const chain = isRoot ? summands(tree) : [{ sign: 1, part: parts[0] }, { sign: tree[0] === "+" ? 1 : -1, part: parts[1] }];
+        const row = chain.map(({ sign, part }, at) => {
+          const operator = at === 0 && sign > 0 ? null : math("mo", { form: at === 0 ? "prefix" : "infix" }, sign > 0 ? "+" : "−");
           const isSum = Array.isArray(part) && (part[0] === "+" || part[0] === "-");
-          const node = isSum && (!isFirst || isRoot) || (!isFirst && rank(part, this.inspection) < 1)
-            ? math("mrow", {}, paren("("), this.tree(part, inner), paren(")"))
-            : this.tree(part, inner);
-          const piece = math("mrow", {}, operator, node);
-          const done = struck(part, piece);
-          row.push(isRoot ? this.term(done, part, sign) : done);
-        }
+          const isBare = isSum ? at === 0 && !isRoot : at === 0 || rank(part, this.inspection) >= 1;
+          const node = isBare ? this.tree(part, inner) : math("mrow", {}, paren("("), this.tree(part, inner), paren(")"));
+          const piece = struck(part, math("mrow", {}, operator, node));
+          return isRoot ? this.term(piece, part, sign) : piece;
+        });
         return math("mrow", {}, ...row);
       }
       case "*": {
@@ -194,6 +191,14 @@ class Typesetter {
       default:
         return math("mrow", {}, math("mi", {}, tree[0]), paren("("), ...parts.flatMap((part, at) => [at ? math("mo", {}, ",") : null, this.tree(part, inner)]), paren(")"));
     }
+  }
+
+  /** An equation as a line that breaks between its terms, which MathML by itself does not. */
+  equation(left, tree, leaf, isStruck) {
+    const right = this.tree(tree, { leaf, isStruck });
+    const isSum = Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
+    const pieces = isSum ? [...right.children] : [right];
+    return element("div", { class: "equation" }, math("math", {}, left, math("mo", { form: "infix" }, "=")), ...pieces.flatMap((piece) => [" ", math("math", {}, piece)]));
   }
 
   /** A term of a sum, which can be pointed at. */

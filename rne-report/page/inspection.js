@@ -58,6 +58,12 @@ class Inspection {
     return { name, quantity, joint, component, part, of: this.quantities[quantity] };
   }
 
+  /** What a name is, in words with its own numbers. */
+  words({ of, joint }) {
+    const numbers = { "h = i - 1": joint - 1, "i-1": joint - 1, i: joint };
+    return of.meaning.replace(/^[^ ]*: /, "").replace(/\b(link|joint|frame) (h = i - 1|i-1|i)\b/g, (_, what, which) => `${what} ${numbers[which]}`);
+  }
+
   /** The component of the lecture that a name is, or is a part of. */
   owner(name) {
     const statement = this.statements.get(name);

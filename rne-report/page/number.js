@@ -46,5 +46,5 @@ function niceAbove(value) {
   if (!(value > 0)) return 1;
   const power = 10 ** Math.floor(Math.log10(value));
   const step = [1, 2, 2.5, 5, 10].find((of) => of * power >= value * (1 - 1e-9));
-  return step * power;
+  return Number((step * power).toPrecision(3));
 }

@@ -247,7 +247,7 @@ class Page {
   makeGrid() {
     const { dof, cells } = this.inspection;
     const most = Math.max(...cells.map((cell) => cell.after.products + cell.after.sums), 1);
-    const head = element("tr", {}, element("td"), ...Array.from({ length: dof }, (_, joint) => element("th", { scope: "col" }, String(joint + 1))));
+    const head = element("tr", {}, element("td", {}, "operations of joint"), ...Array.from({ length: dof }, (_, joint) => element("th", { scope: "col" }, String(joint + 1))));
     const body = element("tbody");
     STEPS.forEach((title, index) => {
       const row = element("tr", {}, element("th", { scope: "row" }, element("span", { class: "step-number" }, String(index + 1)), element("span", { class: "step-letter" }, STEP_LETTERS[index]), element("span", { class: "step-title" }, title)));
@@ -281,9 +281,9 @@ class Page {
     this.live = [];
     const body = document.documentElement.dataset;
     Object.assign(body, { form: this.form, language: this.language, exercise: this.exercise.isOn ? "on" : "off" });
-    const told = (of) => `${of.products} × and ${of.sums} + −`;
-    const text = { unfolded: told(counts.before), folded: `${told(counts.after)}, of ${told(counts.before)} before folding` };
-    if (this.reduced) text.reduced = `${told(programs.reduced.counts.after)}, of ${told(counts.after)} in the seven steps`;
+    const told = (of) => `${of.products} products, ${of.sums} sums`;
+    const text = { unfolded: `${told(counts.before)} before folding`, folded: `${told(counts.after)}; before folding ${counts.before.products}, ${counts.before.sums}` };
+    if (this.reduced) text.reduced = `${told(programs.reduced.counts.after)}; in the seven steps ${counts.after.products}, ${counts.after.sums}`;
     byId("counts").textContent = text[this.form];
     for (const button of byId("grid").querySelectorAll("button")) {
       const isOpen = this.form !== "reduced" && button.dataset.cell === `${cell.joint}-${cell.step}`;
@@ -318,7 +318,7 @@ class Page {
       const of = this.inspection.quantities[quantity];
       const formula = formulas.get(quantity);
       const cards = groups.get(quantity).map((component) => this.card(component));
-      const heading = element("h4", {}, formula ? this.set.formula(formula) : letterIn(of.letter), element("span", { class: "group-meaning" }, of.meaning.replace(/^[^ ]*: /, "")));
+      const heading = element("h4", {}, formula ? this.set.formula(formula) : letterIn(of.letter), element("span", { class: "group-meaning" }, this.inspection.words({ of, joint: cell.joint })));
       const before = !formula && !isOnTheWay ? [element("p", { class: "on-the-way" }, "On the way")] : [];
       isOnTheWay ||= !formula;
       if (quantity === "rotation") {
@@ -335,7 +335,7 @@ class Page {
     const isUnfolded = this.form === "unfolded";
     const isStruck = !isUnfolded;
     const symbol = (of) => this.set.symbol(of);
-    const equation = (leaf) => math("math", { display: "block" }, math("mrow", {}, this.set.symbol(name), math("mo", {}, "="), this.set.tree(general, { leaf, isStruck })));
+    const equation = (leaf) => this.set.equation(this.set.symbol(name), general, leaf, isStruck);
     const value = element("output", { class: "live value", "data-name": name });
     const unitOf = unitText(this.inspection.unit(name));
     this.live.push(() => {
@@ -414,7 +414,7 @@ class Page {
   /** A statement in the language of choice, and below it the same with numbers. */
   codeLine(statement, program = this.folded, isKnown) {
     const { name, value } = statement;
-    const text = this.language === "c" ? `const double ${name} = ${codeOf(value, true)};` : statement.rust;
+    const text = this.textOf(statement);
     const read = (of) => (program === this.folded ? this.shown(of) : short(program.value(of)));
     const pieces = [];
     const numbers = codeOf(value).split(/([A-Za-z_][A-Za-z_0-9]*)/).map((piece) => {
@@ -434,6 +434,11 @@ class Page {
     return element("div", { class: "statement" },
       element("code", { "data-name": name, class: "line pick", tabindex: "-1" }, ...this.set.code(text, isKnown)),
       element("span", { class: "numbers", "aria-hidden": "true" }, "= ", ...numbers, " = ", result));
+  }
+
+  /** A statement in the language of choice, in one line: it breaks where the page is narrow. */
+  textOf({ name, value, rust }) {
+    return this.language === "c" ? `const double ${name} = ${codeOf(value, true)};` : rust.replace(/\n\s*/g, " ");
   }
 
   reducedCode() {
@@ -557,7 +562,7 @@ class Page {
       root.replaceChildren(
         line("name", names.join(", ")),
         line("value", `(${names.map((name) => this.shown(name)).join(", ")}) ${unitOf}`),
-        line("meaning", `${arrow.of.meaning}; link ${arrow.joint}${this.axesWords(this.inspection.meaning(names[0]))}`));
+        line("meaning", `${this.inspection.words(arrow)}; ${this.ofWhat(arrow)}${this.axesWords(this.inspection.meaning(names[0]))}`));
       return;
     }
     const { name } = selection;
@@ -570,7 +575,7 @@ class Page {
       const statement = this.inspection.programs.reduced.statements.find((one) => one.name === name);
       root.replaceChildren(
         line("name", name), line("value", withUnit(this.reduced.value(name), of.units[0])),
-        line("meaning", `${of.meaning}; ${own[1]}`), line("code", statement ? statement.rust : "an argument"));
+        line("meaning", `${of.meaning}; ${own[1]}`), line("code", statement ? this.textOf(statement) : "an argument"));
       return;
     }
     const unitOf = this.inspection.unit(name);
@@ -578,13 +583,13 @@ class Page {
     const statement = this.inspection.statements.get(name);
     const owner = this.inspection.owner(name);
     const value = this.value(name);
-    const code = statement ? (this.language === "c" ? `const double ${name} = ${codeOf(statement.value, true)};` : statement.rust) : this.withoutStatement(name, owner);
+    const code = statement ? this.textOf(statement) : this.withoutStatement(name, owner);
     const what = line("value", isHidden ? `? ${unitText(unitOf)}` : withUnit(value, unitOf));
     what.title = isHidden ? "" : full(value);
     root.replaceChildren(
       line("name", math("math", {}, this.set.symbol(name, false)), element("code", {}, name)),
       what,
-      line("meaning", `${meaning.of.meaning}${meaning.part ? ", a term of it" : ""}; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`),
+      line("meaning", `${this.inspection.words(meaning)}${meaning.part ? ", a term of it" : ""}; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`),
       line("code", code));
   }
 

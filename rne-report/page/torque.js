@@ -52,8 +52,8 @@ class Bars {
       // an end that moved with every number would hide what grows
       if (most > row.end || most < row.end / 6) {
         row.end = niceAbove(most * 1.05);
-        row.low.textContent = short(-row.end);
-        row.high.textContent = `${short(row.end)} ${row.unit}`;
+        row.low.textContent = exact(-row.end);
+        row.high.textContent = `${exact(row.end)} ${row.unit}`;
       }
       const stack = { up: 0, down: 0 };
       values.forEach((value, part) => {

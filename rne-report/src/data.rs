@@ -67,7 +67,12 @@ fn names(inspection: &Inspection) -> Value {
 
 fn components(all: &[Component]) -> Value {
     let told = |component: &Component| {
-        json!({ "name": component.name, "general": component.general, "became": component.became })
+        let mut told = json!({ "name": component.name, "general": component.general, "became": component.became });
+        // that a number is one of the table goes without saying
+        if told["became"]["why"] == "of the table" {
+            told["became"].as_object_mut().and_then(|became| became.remove("why"));
+        }
+        told
     };
     all.iter().map(told).collect()
 }

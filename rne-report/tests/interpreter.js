@@ -1,0 +1,41 @@
+// Run by interpreter.rs behind the page's own scripts: reads questions, prints answers, numbers as text.
+"use strict";
+const fs = require("fs");
+const text = (list) => list.map((value) => String(value));
+const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, states }) => {
+  const inspection = new Inspection(data);
+  const [folded, withWrench] = [data.programs.folded, data.programs.with_wrench].map((record) => new Program(record));
+  const reduced = data.programs.reduced ? new Program(data.programs.reduced) : null;
+  const equations = new Equations(inspection.components);
+  const torques = new Torques(folded, withWrench);
+  const [sine, cosine] = [Math.sin, Math.cos];
+  const answers = states.map(({ state, wrench, turns }) => {
+    // sine and cosine of the runtime: then everything else has to be the same bits
+    const known = new Map(turns.map(([angle, s, c]) => [angle, [s, c]]));
+    const turn = (angle, which) => (known.has(angle) ? known.get(angle)[which] : NaN);
+    Math.sin = (angle) => turn(angle, 0);
+    Math.cos = (angle) => turn(angle, 1);
+    const { free, total, gravity } = torques.split(state, wrench);
+    Math.sin = sine;
+    Math.cos = cosine;
+    equations.set(argumentsOf(state));
+    return {
+      free: text(free), total: text(total), gravity: text(gravity),
+      own: text(folded.run(argumentsOf(state))),
+      reduced: reduced ? text(reduced.run(argumentsOf(state))) : null,
+      equations: text(state.q.map((_, joint) => equations.value(`tau${joint + 1}`))),
+    };
+  });
+  // slips of the first steps, typed with six digits
+  const exercise = new Exercise(inspection, equations);
+  const component = [...inspection.components.values()].find((of) => /^ddc\d+_x$/.test(of.name) && of.became.kind === "computed");
+  const slips = component ? exercise.slips(component.name).map((slip) => [slip.text, exercise.answer(component.name, slip.value.toPrecision(6)).text, String(slip.value)]) : [];
+  const right = component ? exercise.answer(component.name, equations.value(component.name).toPrecision(6)).text : "Right.";
+  return {
+    answers, slips, right,
+    value: component ? String(equations.value(component.name)) : "0",
+    rust: data.programs.folded.statements.map(({ name, value, rust }) => [`let ${name} = ${codeOf(value)};`, rust]),
+    c: data.programs.folded.statements.map(({ name, value }) => `const double ${name} = ${codeOf(value, true)};`),
+  };
+});
+console.log(JSON.stringify(said));

@@ -1,0 +1,166 @@
+//! The page's scripts, run by node, against the runtime, whose recursion shares no code with the compiler: the
+//! interpreter's torques are its bits, and code in the page is the code that is emitted.
+
+use std::process::Command;
+
+use rne_codegen::{Compiler, Form, Function, emit};
+use rne_inspection::{Inspection, Tree};
+use rne_model::Robot;
+use rne_runtime::{DynArm, Scalar};
+use serde_json::{Value, json};
+
+const STATES: usize = 4;
+
+struct Asked {
+    robot: Robot,
+    /// Torques, with a wrench at the tip, and of gravity alone.
+    states: Vec<[Vec<f64>; 3]>,
+}
+
+/// The sines and cosines of the runtime at a state, by their angles.
+fn turns(inspection: &Inspection, q: &[f64]) -> Vec<[f64; 3]> {
+    let constants = &inspection.constants;
+    let given = |name: &str| -> f64 {
+        let joint = name.strip_prefix('q').and_then(|joint| joint.parse::<usize>().ok());
+        match joint {
+            Some(joint) => q[joint - 1],
+            None => constants.iter().find(|(known, _)| known == name).map_or(f64::NAN, |(_, value)| *value),
+        }
+    };
+    let angles: Vec<(&str, f64)> = inspection.angles.iter().map(|of| (&*of.name, of.value.evaluate(&given))).collect();
+    let value = |name: &str| angles.iter().find(|(known, _)| *known == name).map_or_else(|| given(name), |of| of.1);
+    let turn = |angle: &Tree| {
+        let angle = angle.evaluate(&value);
+        let (sine, cosine) = Scalar::sin_cos(angle);
+        [angle, sine, cosine]
+    };
+    inspection.sines_and_cosines.iter().map(|of| turn(&of.angle)).collect()
+}
+
+fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
+    let dof = robot.dof();
+    let program = |function| Compiler::new(&robot).with_equations().compile(function, Form::SevenSteps).expect("compiles");
+    let torques = program(Function::InverseDynamics);
+    let with_wrench = program(Function::InverseDynamicsWithWrench);
+    let reduced = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("compiles");
+    let data = rne_report::data(&robot, &torques, &with_wrench, Some(&reduced));
+    let inspection = Inspection::new(&robot, &with_wrench);
+    let arm = DynArm::from_robot(&robot);
+    let (mut states, mut asked) = (Vec::new(), Vec::new());
+    for _ in 0..STATES {
+        let mut list = |count: usize| (0..count).map(|_| random.f64() * 4.0 - 2.0).collect::<Vec<f64>>();
+        let (q, qd, qdd, force, moment) = (list(dof), list(dof), list(dof), list(3), list(3));
+        let triple = |list: &[f64]| [list[0], list[1], list[2]];
+        let wrench = rne_runtime::Wrench { force: triple(&force), moment: triple(&moment) };
+        let still = vec![0.0; dof];
+        states.push([
+            arm.inverse_dynamics(&q, &qd, &qdd).expect("one number per joint"),
+            arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench).expect("one number per joint"),
+            arm.inverse_dynamics(&q, &still, &still).expect("one number per joint"),
+        ]);
+        asked.push(json!({
+            "turns": turns(&inspection, &q),
+            "state": { "q": q, "qd": qd, "qdd": qdd },
+            "wrench": { "f": force, "n": moment },
+        }));
+    }
+    (Asked { robot, states }, json!({ "data": data, "states": asked }))
+}
+
+/// What node says to the questions; nothing where there is no node.
+fn answers(questions: &[Value]) -> Option<Vec<Value>> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let scripts = rne_report::SCRIPTS.iter().filter(|(name, _)| *name != "page.js").map(|(_, text)| *text);
+    let script: String = scripts.chain([include_str!("interpreter.js")]).collect();
+    let (program, input) = (folder.path().join("all.js"), folder.path().join("questions.json"));
+    std::fs::write(&program, script).expect("it can be written");
+    std::fs::write(&input, Value::from(questions.to_vec()).to_string()).expect("it can be written");
+    let Ok(output) = Command::new("node").arg(&program).arg(&input).output() else {
+        println!("there is no node: the page's scripts are not run");
+        return None;
+    };
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).expect("UTF-8");
+    Some(serde_json::from_str(&text).expect("JSON"))
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    let texts = value.as_array().expect("a list").iter().map(|text| text.as_str().expect("a text"));
+    texts.map(|text| text.parse().unwrap_or(f64::NAN)).collect()
+}
+
+fn close(found: &[f64], torques: &[f64], tolerance: f64, what: &str) {
+    let largest = torques.iter().fold(1.0_f64, |largest, torque| largest.max(torque.abs()));
+    assert_eq!(found.len(), torques.len(), "{what}");
+    for (found, torque) in found.iter().zip(torques) {
+        assert!((found - torque).abs() <= tolerance * largest, "{what}: {found} {torque}");
+    }
+}
+
+fn without_blanks(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ").replace("( ", "(").replace(" )", ")")
+}
+
+#[test]
+fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitted() {
+    let mut random = fastrand::Rng::with_seed(38);
+    let robots = rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
+    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
+    let Some(answers) = answers(&questions) else { return };
+    assert_eq!(answers.len(), asked.len());
+    let mut named = (0, 0);
+    for (Asked { robot, states }, answer) in asked.iter().zip(&answers) {
+        let name = &robot.name;
+        for ([free, with_wrench, gravity], said) in states.iter().zip(answer["answers"].as_array().expect("a list")) {
+            // with the runtime's sine and cosine the same bits
+            assert_eq!(&numbers(&said["free"]), free, "{name}");
+            assert_eq!(&numbers(&said["total"]), with_wrench, "{name}");
+            assert_eq!(&numbers(&said["gravity"]), gravity, "{name}");
+            // those of node differ in the last digit
+            close(&numbers(&said["own"]), free, 1e-14, name);
+            close(&numbers(&said["equations"]), free, 1e-13, name);
+            close(&numbers(&said["reduced"]), free, 1e-11, name);
+        }
+        for pair in answer["rust"].as_array().expect("a list") {
+            let text = |index: usize| without_blanks(pair[index].as_str().expect("a text"));
+            assert_eq!(text(0), text(1), "{name}");
+        }
+        let value: f64 = answer["value"].as_str().and_then(|text| text.parse().ok()).expect("a number");
+        assert_eq!(answer["right"], "Right.", "{name}");
+        for slip in answer["slips"].as_array().expect("a list") {
+            let (what, said) = (slip[0].as_str().expect("a text"), slip[1].as_str().expect("a text"));
+            let of: f64 = slip[2].as_str().and_then(|text| text.parse().ok()).expect("a number");
+            // what gives nearly the right number, or nothing at all, tells nothing
+            if (of - value).abs() <= 0.05 * value.abs() + 1e-4 || of.abs() < 1e-3 {
+                continue;
+            }
+            named.1 += 1;
+            named.0 += usize::from(said.contains(what));
+        }
+    }
+    println!("{} slips of {} are named by what they are; two are named at most", named.0, named.1);
+    assert!(named.1 > 100 && named.0 * 10 >= named.1 * 9, "{named:?}");
+}
+
+#[test]
+fn c_in_the_page_is_the_c_that_is_emitted() {
+    let mut random = fastrand::Rng::with_seed(39);
+    let shipped = |name: &str| Robot::from_yaml(rne_robots::find(name).expect("shipped").yaml).expect("valid");
+    let robots = ["puma560", "stanford", "panda", "ur5"].map(shipped);
+    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.into_iter().map(|of| question(of, &mut random)).unzip();
+    let Some(answers) = answers(&questions) else { return };
+    for (Asked { robot, .. }, answer) in asked.iter().zip(&answers) {
+        let program = Compiler::new(robot).compile(Function::InverseDynamics, Form::SevenSteps).expect("compiles");
+        let emitted = without_blanks(&c_code(robot, &program));
+        for line in answer["c"].as_array().expect("a list") {
+            let line = without_blanks(line.as_str().expect("a text"));
+            assert!(emitted.contains(&line), "{}: {line}", robot.name);
+        }
+    }
+}
+
+fn c_code(robot: &Robot, program: &rne_codegen::Program) -> String {
+    let programs = std::slice::from_ref(program);
+    let code = emit::c_code(robot, programs, emit::Precision::Double, &emit::Prefix::of(robot)).expect("it is emitted");
+    code.one_file()
+}
