@@ -731,5 +731,7 @@ window.rne = {
   torques: () => page.folded.run(page.given),
   value: (name) => page.value(name),
   select: (name) => page.select(name),
+  view: () => viewOf(page),
+  show: (view) => showView(page, view),
 };
 requestAnimationFrame(() => requestAnimationFrame(() => { document.documentElement.dataset.ready = "1"; }));

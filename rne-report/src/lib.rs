@@ -27,7 +27,7 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 9] = [
+pub const SCRIPTS: [(&str, &str); 10] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
@@ -36,6 +36,7 @@ pub const SCRIPTS: [(&str, &str); 9] = [
     ("torque.js", include_str!("../page/torque.js")),
     ("motion.js", include_str!("../page/motion.js")),
     ("exercise.js", include_str!("../page/exercise.js")),
+    ("view.js", include_str!("../page/view.js")),
     ("page.js", include_str!("../page/page.js")),
 ];
 
