@@ -117,7 +117,7 @@ class Editor {
       const found = this.marks.findIndex(({ from, to }) => from <= start && end <= to && from < to);
       const of = document.createElement("span");
       of.textContent = piece.slice(start - at, end - at);
-      if (kind) of.className = kind;
+      if (kind) of.className = `of-${kind}`;
       if (found >= 0) this.underline(of, found);
       return of;
     });
