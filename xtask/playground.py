@@ -116,16 +116,9 @@ def messages(driver):
     return told
 
 
-def mistakes(driver, rne, puma):
-    """A wrong key is underlined, told as `rne check` tells it, and the page stays; mended, the page follows."""
-    at = puma.index("mass:")
-    wrong = puma.replace("mass:", "masss:", 1)
-    shown = driver.execute_script("return document.documentElement.dataset.shown")
-    check(typed(driver, wrong) == "wrong", "`masss` is taken")
-    said, right = messages(driver), complaints(rne, wrong)
-    check(right and [of[:4] for of in said] == right, f"`masss`: the page says {said}, `rne check` {right}")
-    check(any("did you mean `mass`?" in of[4] for of in said), f"`masss`: no `did you mean`: {said}")
-    marked = driver.execute_script(
+def underlined(driver):
+    """What is underlined as a mistake: where its first character is, the text, and how."""
+    return driver.execute_script(
         """
         const marks = [...document.querySelectorAll("#ink .mark.error")];
         const before = (of) => {
@@ -136,6 +129,18 @@ def mistakes(driver, rne, puma):
         };
         return marks.map(of => [before(of), of.textContent, getComputedStyle(of).textDecorationLine]);
         """)
+
+
+def mistakes(driver, rne, puma):
+    """A wrong key is underlined, told as `rne check` tells it, and the page stays; mended, the page follows."""
+    at = puma.index("mass:")
+    wrong = puma.replace("mass:", "masss:", 1)
+    shown = driver.execute_script("return document.documentElement.dataset.shown")
+    check(typed(driver, wrong) == "wrong", "`masss` is taken")
+    said, right = messages(driver), complaints(rne, wrong)
+    check(right and [of[:4] for of in said] == right, f"`masss`: the page says {said}, `rne check` {right}")
+    check(any("did you mean `mass`?" in of[4] for of in said), f"`masss`: no `did you mean`: {said}")
+    marked = underlined(driver)
     check([at, "masss", "underline"] in marked, f"`masss` at {at} is not underlined: {marked}")
     check(driver.find_element(By.ID, "shown").get_attribute("data-state") == "stale", "the last good page is not dimmed")
     check("shown is the last text without" in status(driver), f"the status is {status(driver)!r}")
@@ -153,11 +158,16 @@ def mistakes(driver, rne, puma):
     check(driver.find_element(By.ID, "shown").get_attribute("data-state") == "good", "the page stays dimmed")
     check(not driver.find_elements(By.CSS_SELECTOR, "#ink .mark.error"), "what is mended stays underlined")
     # characters beyond ASCII and beyond the first plane before the mistake, in its line and above
-    odd = "# \U0001f916 ärm\n" + puma.replace("link: {mass:", "link: {com: [0, 0, 0], masss:")
+    odd = "# \U0001f916 ärm\n" + puma.replace("- name: j1", '- {name: "\U0001f916 ä", tpye: revolute}', 1)
     for wrong in (odd, puma.replace("format: 1", "format: 1\n\tname"), "", "joints: [", puma + "\nnames: 3\n"):
         typed(driver, wrong)
         said, right = messages(driver), complaints(rne, wrong)
         check(right and [of[:4] for of in said] == right, f"{wrong[:30]!r}…: the page says {said}, `rne check` {right}")
+        if wrong == odd:
+            # the page counts in units of UTF-16, of which the first letter has two
+            at = len(odd[:odd.index("tpye")].encode("utf-16-le")) // 2
+            marked = underlined(driver)
+            check([at, "tpye", "underline"] in marked, f"`tpye` at {at} is not underlined: {marked}")
     print("  mistakes: underlined, told as `rne check` tells them, mended")
 
 

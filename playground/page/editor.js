@@ -85,13 +85,18 @@ class Editor {
     const starts = lineStarts(text);
     const ink = document.createDocumentFragment();
     const rank = { error: 2, warning: 1, note: 0 };
+    // how far the key is indented whose lines of prose these are
+    let prose = null;
     starts.forEach((start, number) => {
       let at = start;
       const end = number + 1 < starts.length ? starts[number + 1] - 1 : text.length;
-      for (const [kind, piece] of piecesOf(text.slice(start, end))) {
+      const line = text.slice(start, end);
+      if (line.trim() && prose !== null && /^ */.exec(line)[0].length <= prose) prose = null;
+      for (const [kind, piece] of prose === null ? piecesOf(line) : [["", line]]) {
         ink.append(...this.marked(kind, piece, at));
         at += piece.length;
       }
+      if (prose === null && /:\s+[|>][-+\d]*\s*(#.*)?$/.test(line)) prose = /^ */.exec(line)[0].length;
       ink.append(...this.behind(end), "\n");
     });
     byId("ink").replaceChildren(ink);

@@ -111,7 +111,7 @@ class Playground {
 
   stale(errors = 1) {
     if (this.page) byId("shown").dataset.state = "stale";
-    const last = this.page ? "; shown is the last text without" : "";
+    const last = this.page ? "; shown is the last text without one" : "";
     this.tell("wrong", `${errors} mistake${errors > 1 ? "s" : ""}${last}${this.problem ? `; ${this.problem}` : ""}`);
   }
 

@@ -75,3 +75,18 @@ fn end(text: &str, span: &Range<usize>, start: (usize, usize)) -> (usize, usize)
     let spanned = text.get(span.clone()).unwrap_or_default();
     spanned.chars().fold(start, |(line, column), c| if c == '\n' { (line + 1, 1) } else { (line, column + 1) })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No short text is known whose torques cannot be compiled, so the answer is looked at by itself.
+    #[test]
+    fn what_has_no_place_is_told_as_what_has_one() {
+        let keys = |told: &Value| told.as_object().expect("an object").keys().cloned().collect::<Vec<_>>();
+        let said = answer("format: 2");
+        let (with, without) = (&said["diagnostics"][0], without_place("a constant is too large"));
+        assert_eq!(keys(with), keys(&without));
+        assert!(with["line"] == 1 && without["line"].is_null() && without["message"] == "a constant is too large");
+    }
+}

@@ -39,7 +39,8 @@ fn turns(inspection: &Inspection, q: &[f64]) -> Vec<[f64; 3]> {
 
 fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
     let dof = robot.dof();
-    let program = |function| Compiler::new(&robot).with_equations().compile(function, Form::SevenSteps).expect("compiles");
+    let program =
+        |function| Compiler::new(&robot).with_equations().compile(function, Form::SevenSteps).expect("compiles");
     let torques = program(Function::InverseDynamics);
     let with_wrench = program(Function::InverseDynamicsWithWrench);
     let reduced = Compiler::new(&robot).compile(Function::InverseDynamics, Form::Reduced).expect("compiles");

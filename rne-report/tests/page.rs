@@ -79,7 +79,8 @@ fn the_data_of_a_page_are_the_inspection() {
     let (cells, all) = (data["cells"].as_array().expect("cells"), whole["cells"].as_array().expect("cells"));
     assert_eq!(cells.len(), all.len());
     for (cell, of) in cells.iter().zip(all) {
-        let (components, of) = (cell["components"].as_array().expect("some"), of["components"].as_array().expect("some"));
+        let (components, of) =
+            (cell["components"].as_array().expect("some"), of["components"].as_array().expect("some"));
         assert_eq!(components.len(), of.len());
         for (component, of) in components.iter().zip(of) {
             assert_eq!((&component["name"], &component["general"]), (&of["name"], &of["general"]));
@@ -120,7 +121,9 @@ fn texts_of_a_robot_file_stay_texts() {
 #[test]
 fn the_scripts_write_no_html() {
     for (name, script) in rne_report::SCRIPTS {
-        for writes in ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function", "</script"] {
+        for writes in
+            ["innerHTML", "outerHTML", "insertAdjacentHTML", "document.write", "eval(", "new Function", "</script"]
+        {
             assert!(!script.contains(writes), "{name}: {writes}");
         }
     }

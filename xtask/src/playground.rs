@@ -130,7 +130,8 @@ fn module(folder: &Path) -> Result<Vec<u8>> {
     );
     // where the sources lie is in the places of panics, and nobody's business
     let sources = format!("--remap-path-prefix={}=", machine::root().display());
-    let home = std::env::var("CARGO_HOME").ok().or_else(|| std::env::var("HOME").ok().map(|home| format!("{home}/.cargo")));
+    let home =
+        std::env::var("CARGO_HOME").ok().or_else(|| std::env::var("HOME").ok().map(|home| format!("{home}/.cargo")));
     let flags = home.map_or(sources.clone(), |home| format!("{sources} --remap-path-prefix={home}="));
     machine::without_flags(build).env("RUSTFLAGS", flags).env_remove("CARGO_TARGET_DIR").quiet().run()?;
     let path = folder.join(TARGET).join("release/rne_playground.wasm");
