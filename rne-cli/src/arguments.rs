@@ -29,9 +29,8 @@ Examples:
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
-FILE may be the name of a shipped robot, such as puma560; `rne list` has them.
-Exit status: `rne explain exit-status`. NO_COLOR turns colours off.
-docs/robot-file.md explains every key of a robot file.")]
+FILE: a robot file (docs/robot-file.md), or a name that `rne list` has: puma560.
+Exit status: `rne explain exit-status`. NO_COLOR turns colours off.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,

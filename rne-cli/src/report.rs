@@ -10,7 +10,7 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file;
 use crate::plan_file::Compiler;
 
-/// Write a page that shows an arm, its equations, its code and its torques
+/// Write a page that shows an arm, its equations and its torques
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

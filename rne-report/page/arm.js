@@ -1,89 +1,34 @@
 // The arm in three dimensions, from its table: links, joint axes, frames, centres of mass, and vectors as arrows.
 
-const SVG = "http://www.w3.org/2000/svg";
-
-function svg(tag, attributes = {}, ...children) {
-  return filledElement(document.createElementNS(SVG, tag), attributes, children);
-}
-
-// ---- vectors of three numbers, and matrices of three rows
-
-const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
-const minusV = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
-const norm = (a) => Math.hypot(...a);
-const unit = (a) => times(a, 1 / (norm(a) || 1));
-const turn = (m, v) => [dot(m[0], v), dot(m[1], v), dot(m[2], v)];
-const column = (m, at) => [m[0][at], m[1][at], m[2][at]];
-const product = (a, b) => a.map((row) => [0, 1, 2].map((at) => dot(row, column(b, at))));
-
-function turnX(angle) {
-  const [s, c] = [Math.sin(angle), Math.cos(angle)];
-  return [[1, 0, 0], [0, c, -s], [0, s, c]];
-}
-
-/** Rz(yaw) Ry(pitch) Rx(roll). */
-function ofAngles([roll, pitch, yaw]) {
-  const [sp, cp, sy, cy] = [Math.sin(pitch), Math.cos(pitch), Math.sin(yaw), Math.cos(yaw)];
-  return product(product([[cy, -sy, 0], [sy, cy, 0], [0, 0, 1]], [[cp, 0, sp], [0, 1, 0], [-sp, 0, cp]]), turnX(roll));
-}
-
-const AXES = ["x", "y", "z"];
-
-/** Where everything stands in the world, by the rotations and lengths of the equations. */
-class Pose {
-  constructor(inspection, value, q) {
-    const { robot, dof } = inspection;
-    const isModified = robot.convention === "modified";
-    const vector = (stem) => AXES.map((axis) => value(`${stem}_${axis}`));
-    // a rotation that is none is not in the code
-    const rotation = (joint) => AXES.map((row) => AXES.map((of) => {
-      const found = value(`rot${joint}_${row}${of}`);
-      return Number.isNaN(found) ? Number(row === of) : found;
-    }));
-    const base = ofAngles(robot.base.rpy);
-    this.rotations = [base];
-    this.joints = [robot.base.xyz];
-    this.coms = [robot.base.xyz];
-    this.elbows = [robot.base.xyz];
-    this.frames = [{ at: robot.base.xyz, axes: base }];
-    let at = isModified ? add(robot.base.xyz, times(column(base, 0), robot.joints[0].a)) : robot.base.xyz;
-    for (let joint = 1; joint <= dof; joint++) {
-      const row = robot.joints[joint - 1];
-      const turned = product(this.rotations[joint - 1], rotation(joint));
-      const [d, r] = [vector(`d${joint}`), vector(`r${joint}`)];
-      const b = row.d + (row.kind === "prismatic" ? q[joint - 1] : 0);
-      const here = (local) => add(at, turn(turned, local));
-      this.rotations.push(turned);
-      this.joints.push(at);
-      this.elbows.push(here([0, 0, b]));
-      this.coms.push(here(d));
-      this.frames.push(isModified
-        ? { at: here([0, 0, b]), axes: turned }
-        : { at: here([row.a, 0, b]), axes: product(turned, turnX(row.alpha)) });
-      at = here(add(d, r));
-    }
-    this.joints.push(at);
-    this.rotations.push(product(this.rotations[dof], rotation(dof + 1)));
-    this.frames.push({ at, axes: this.rotations[dof + 1] });
-  }
-}
-
 /** How the vectors of a quantity look: what they are of, and whether they are axial, with two heads. */
 const KINDS = {
-  omega: ["turn", true], omega_dot: ["turn", true], rate: ["turn", true], rate_dot: ["turn", true],
-  angular_momentum: ["turn", true], joint_moment: ["moment", true], inertia_moment: ["moment", true],
-  child_moment: ["moment", true], torque: ["moment", true], joint_force: ["force", false],
-  inertia_force: ["force", false], child_force: ["force", false], gravity: ["gravity", false],
-  d: ["length", false], r: ["length", false],
+  omega: ["turn", true],
+  omega_dot: ["turn", true],
+  rate: ["turn", true],
+  rate_dot: ["turn", true],
+  angular_momentum: ["turn", true],
+  joint_moment: ["moment", true],
+  inertia_moment: ["moment", true],
+  child_moment: ["moment", true],
+  torque: ["moment", true],
+  joint_force: ["force", false],
+  inertia_force: ["force", false],
+  child_force: ["force", false],
+  gravity: ["gravity", false],
+  d: ["length", false],
+  r: ["length", false],
 };
 
 /** The vectors that can be shown for all links at once, and the step that computes them. */
 const LAYERS = [
-  ["omega", 1], ["omega_dot", 2], ["velocity", 3], ["acceleration", 4], ["gravity", 5],
-  ["joint_force", 6], ["joint_moment", 6], ["torque", 7],
+  ["omega", 1],
+  ["omega_dot", 2],
+  ["velocity", 3],
+  ["acceleration", 4],
+  ["gravity", 5],
+  ["joint_force", 6],
+  ["joint_moment", 6],
+  ["torque", 7],
 ];
 
 class Arm {
@@ -115,13 +60,21 @@ class Arm {
     this.labels = [];
     this.triads = [];
     for (let joint = 0; joint <= dof + 1; joint++) {
-      this.triads.push(AXES.map((axis) => {
-        const of = { line: svg("path", { class: `axis-${axis}`, "data-frame": joint }), text: svg("text", { class: `axis-${axis}` }, axis) };
-        this.groups.frames.append(of.line, of.text);
-        return of;
-      }));
+      this.triads.push(
+        AXES.map((axis) => {
+          const of = {
+            line: svg("path", { class: `axis-${axis}`, "data-frame": joint }),
+            text: svg("text", { class: `axis-${axis}` }, axis),
+          };
+          this.groups.frames.append(of.line, of.text);
+          return of;
+        }),
+      );
       if (joint > dof) break;
-      const solids = [{ kind: "link", joint }, ...(joint > 0 ? [{ kind: "joint", joint }] : [{ kind: "base", joint }])];
+      const solids = [
+        { kind: "link", joint },
+        ...(joint > 0 ? [{ kind: "joint", joint }] : [{ kind: "base", joint }]),
+      ];
       for (const solid of solids) {
         solid.body = svg("path", { class: "body" });
         solid.cap = svg("path", { class: "cap" });
@@ -133,7 +86,12 @@ class Arm {
       const axis = svg("path", { class: "joint-axis", "data-axis": joint });
       this.groups.axes.append(axis);
       this.axes.push(axis);
-      const com = svg("g", { class: "com", "data-com": joint }, svg("circle", { r: 6 }), svg("path", { d: "M0 0V-6A6 6 0 0 1 6 0ZM0 0V6A6 6 0 0 1 -6 0Z" }));
+      const com = svg(
+        "g",
+        { class: "com", "data-com": joint },
+        svg("circle", { r: 6 }),
+        svg("path", { d: "M0 0V-6A6 6 0 0 1 6 0ZM0 0V6A6 6 0 0 1 -6 0Z" }),
+      );
       this.groups.coms.append(com);
       this.coms.push(com);
       const label = svg("text", { class: "joint-number" }, String(joint));
@@ -143,6 +101,9 @@ class Arm {
     for (const [quantity] of LAYERS) {
       for (let joint = 1; joint <= dof; joint++) this.arrow(quantity, joint);
     }
+    this.down = this.plainArrow("gravity", "g");
+    this.tip = this.plainArrow("force", "tip force");
+    this.tipForce = [0, 0, 0];
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
     this.listen();
@@ -156,14 +117,56 @@ class Arm {
       const of = this.inspection.quantities[quantity];
       if (!of || !of.drawn || joint < 0) return null;
       const parts = {
-        hit: svg("path", { class: "hit" }), shaft: svg("path", { class: "shaft" }), head: svg("path", { class: "head" }),
-        part: svg("path", { class: "part" }), text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, String(joint))),
+        hit: svg("path", { class: "hit" }),
+        shaft: svg("path", { class: "shaft" }),
+        head: svg("path", { class: "head" }),
+        part: svg("path", { class: "part" }),
+        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, String(joint))),
       };
-      const node = svg("g", { class: `arrow ${kind}`, "data-arrow": key, tabindex: "0", role: "button", hidden: "" }, ...Object.values(parts));
+      const node = svg(
+        "g",
+        { class: `arrow ${kind}`, "data-arrow": key, tabindex: "0", role: "button", hidden: "" },
+        ...Object.values(parts),
+      );
       this.groups.arrows.append(node);
       this.arrows.set(key, { key, quantity, joint, of, isAxial, node, ...parts });
     }
     return this.arrows.get(key);
+  }
+
+  /** An arrow that belongs to no name. */
+  plainArrow(kind, text) {
+    const parts = [svg("path", { class: "shaft" }), svg("path", { class: "head" }), svg("text", {}, text)];
+    this.groups.labels.append(svg("g", { class: `arrow plain ${kind}`, role: "img", "aria-label": text }, ...parts));
+    return parts;
+  }
+
+  drawPlain([shaft, head, text], from, to) {
+    const heads = arrowhead(from, to, false);
+    shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
+    head.setAttribute("d", heads ? heads.path : dotAt(from));
+    text.setAttribute("x", round(to.x + 7));
+    text.setAttribute("y", round(to.y + 4));
+  }
+
+  /** Gravity, in the corner, and the force at the tip. */
+  drawForces(pose) {
+    const isHeavy = norm(this.gravityInWorld) > 0;
+    this.down[0].parentNode.toggleAttribute("hidden", !isHeavy);
+    if (isHeavy) {
+      const [from, to] = [this.centre, add(this.centre, times(this.up, -0.3 * this.size))].map((point) =>
+        this.project(point),
+      );
+      const corner = { x: 24 - Math.min(0, to.x - from.x), y: 20 };
+      this.drawPlain(this.down, corner, { x: corner.x + to.x - from.x, y: corner.y + to.y - from.y });
+    }
+    const size = norm(this.tipForce);
+    this.tip[0].parentNode.toggleAttribute("hidden", size === 0);
+    if (size > 0) {
+      const tip = this.inspection.dof + 1;
+      const along = times(turn(pose.rotations[tip], this.tipForce), (this.size * 0.5) / size);
+      this.drawPlain(this.tip, this.project(pose.joints[tip]), this.project(add(pose.joints[tip], along)));
+    }
   }
 
   /** The vector of an arrow: its numbers, in its own axes, or null where the arm has none. */
@@ -182,7 +185,9 @@ class Arm {
     const [first] = poses;
     const last = this.inspection.dof;
     const axes = first.rotations.slice(1, last + 1).map((turned) => column(turned, 2));
-    const isPlanar = axes.every((axis, joint) => !this.inspection.isPrismatic(joint + 1) && Math.abs(dot(axis, axes[0])) > 0.999);
+    const isPlanar = axes.every(
+      (axis, joint) => !this.inspection.isPrismatic(joint + 1) && Math.abs(dot(axis, axes[0])) > 0.999,
+    );
     if (isPlanar && Math.abs(dot(axes[0], this.up)) < 0.5) {
       this.look = { yaw: Math.atan2(dot(axes[0], this.north), dot(axes[0], this.east)) - 0.35, pitch: 0.2, zoom: 1 };
     } else {
@@ -196,7 +201,7 @@ class Arm {
     const low = AXES.map((_, at) => Math.min(...points.map((point) => point[at])));
     const high = AXES.map((_, at) => Math.max(...points.map((point) => point[at])));
     this.centre = times(add(low, high), 0.5);
-    this.size = Math.max(norm(minusV(high, low)) / 2, 0.05);
+    this.size = Math.max(norm(minusV(high, low)) / 2, 0.05) * 1.05;
     this.extent = this.size;
   }
 
@@ -210,7 +215,12 @@ class Arm {
     const far = 5 * this.extent;
     const depth = dot(of, toViewer);
     const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
-    return { x: this.width / 2 + dot(of, right) * scale, y: this.height / 2 - dot(of, over) * scale, depth, scale };
+    return {
+      x: this.width / 2 + dot(of, right) * scale,
+      y: this.height * 0.53 - dot(of, over) * scale,
+      depth,
+      scale,
+    };
   }
 
   /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
@@ -218,22 +228,24 @@ class Arm {
     this.width = this.root.clientWidth || 600;
     this.height = this.root.clientHeight || 450;
     this.root.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
-    const pose = this.pose = new Pose(this.inspection, this.value, q);
+    const pose = (this.pose = new Pose(this.inspection, this.value, q));
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
-    this.pixels = (0.45 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
     this.drawArrows(pose);
+    this.drawForces(pose);
   }
 
   drawFloor() {
     const span = this.size * 0.95;
     const step = niceAbove(span / 4);
     const count = Math.ceil(span / step);
-    const at = (a, b) => this.project(add(this.inspection.robot.base.xyz, add(times(this.east, a * step), times(this.north, b * step))));
+    const at = (a, b) =>
+      this.project(add(this.inspection.robot.base.xyz, add(times(this.east, a * step), times(this.north, b * step))));
     let path = "";
     for (let line = -count; line <= count; line++) {
       path += segment(at(line, -count), at(line, count)) + segment(at(-count, line), at(count, line));
@@ -251,7 +263,9 @@ class Arm {
         const from = joint === 0 ? this.inspection.robot.base.xyz : pose.joints[joint];
         const to = pose.joints[joint + 1];
         const path = [from, joint === 0 ? to : pose.elbows[joint], to];
-        const outline = path.slice(1).map((end, at) => capsule(this.project(path[at]), this.project(end), radius * 0.62));
+        const outline = path
+          .slice(1)
+          .map((end, at) => capsule(this.project(path[at]), this.project(end), radius * 0.62));
         solid.body.setAttribute("d", outline.join(""));
         solid.depth = path.reduce((sum, point) => sum + this.project(point).depth, 0) / 3;
       } else {
@@ -262,11 +276,12 @@ class Arm {
         const side = unit(cross(axis, Math.abs(axis[0]) < 0.8 ? [1, 0, 0] : [0, 1, 0]));
         const other = cross(axis, side);
         const corners = joint > 0 && this.inspection.isPrismatic(joint) ? 4 : 20;
-        const rim = (height) => Array.from({ length: corners }, (_, corner) => {
-          const angle = ((corner + 0.5) * 2 * Math.PI) / corners;
-          const out = add(times(side, Math.cos(angle) * wide), times(other, Math.sin(angle) * wide));
-          return this.project(add(add(at, times(axis, height)), out));
-        });
+        const rim = (height) =>
+          Array.from({ length: corners }, (_, corner) => {
+            const angle = ((corner + 0.5) * 2 * Math.PI) / corners;
+            const out = add(times(side, Math.cos(angle) * wide), times(other, Math.sin(angle) * wide));
+            return this.project(add(add(at, times(axis, height)), out));
+          });
         const [top, bottom] = [rim(half), rim(-half)];
         solid.body.setAttribute("d", polygon(hull([...top, ...bottom])));
         solid.cap.setAttribute("d", polygon(mean(top) > mean(bottom) ? top : bottom));
@@ -305,7 +320,8 @@ class Arm {
       const { at, axes } = pose.frames[joint];
       const link = pose.rotations[joint];
       const isLit = this.litFrame === joint;
-      const [origin, turned] = isLit && joint > 0 && joint <= this.inspection.dof ? [pose.joints[joint], link] : [at, axes];
+      const [origin, turned] =
+        isLit && joint > 0 && joint <= this.inspection.dof ? [pose.joints[joint], link] : [at, axes];
       triad.forEach((of, which) => {
         const isShown = this.showFrames || isLit;
         of.line.toggleAttribute("hidden", !isShown);
@@ -331,8 +347,11 @@ class Arm {
     }
     // letters that would stand on each other: the lit ones are written, and then the first
     this.written = [];
-    for (const arrow of [...this.arrows.values()].sort((a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)))) {
-      const isShown = arrow.isShown && arrow.numbers !== null && arrow.numbers !== undefined;
+    for (const arrow of [...this.arrows.values()].sort(
+      (a, b) => Number(Boolean(b.isLit)) - Number(Boolean(a.isLit)),
+    )) {
+      // a vector that is zero is told where it is pointed at
+      const isShown = arrow.isShown && arrow.numbers && (arrow.isLit || norm(arrow.numbers) > 0);
       arrow.node.toggleAttribute("hidden", !isShown);
       if (isShown) this.drawArrow(arrow, pose, largest[arrow.quantity]);
     }
@@ -341,12 +360,18 @@ class Arm {
   drawArrow(arrow, pose, largest) {
     const { quantity, joint, of, numbers } = arrow;
     const frame = of.axes === "parent" ? joint - 1 : joint;
-    const anchor = { joint: pose.joints[joint], axis: pose.joints[joint], com: pose.coms[joint], lever: pose.joints[joint + 1], position: pose.joints[joint] };
+    const anchor = {
+      joint: pose.joints[joint],
+      axis: pose.joints[joint],
+      com: pose.coms[joint],
+      lever: pose.joints[joint + 1],
+      position: pose.joints[joint],
+    };
     const isLength = KINDS[quantity]?.[0] === "length";
     const start = quantity === "r" ? pose.coms[joint] : anchor[of.drawn];
     const size = norm(numbers);
     // the longest of a quantity has a fixed length, and what is short is still seen
-    const drawn = isLength ? size : size > 0 ? this.size * (0.08 + 0.47 * (size / largest)) : 0;
+    const drawn = isLength ? size : size > 0 ? this.size * (0.08 + 0.36 * (size / largest)) : 0;
     const along = size > 0 ? times(turn(pose.rotations[frame], numbers), drawn / size) : [0, 0, 0];
     const [from, to] = [this.project(start), this.project(add(start, along))];
     const heads = arrowhead(from, to, arrow.isAxial);
@@ -390,7 +415,8 @@ class Arm {
     this.litFrame = frame;
     this.axes.forEach((node, index) => node.classList.toggle("lit", index + 1 === axis));
     this.coms.forEach((node, index) => node.classList.toggle("lit", index + 1 === link));
-    for (const solid of this.solids) solid.node.classList.toggle("lit", solid.joint === link && solid.kind === "link" && link > 0);
+    for (const solid of this.solids)
+      solid.node.classList.toggle("lit", solid.joint === link && solid.kind === "link" && link > 0);
     this.triads.forEach((triad, joint) => triad.forEach(({ line }) => line.classList.toggle("lit", joint === frame)));
     if (this.pose) {
       this.drawMarks(this.pose);
@@ -400,7 +426,11 @@ class Arm {
 
   turnBy(yaw, pitch) {
     const limit = Math.PI / 2 - 0.02;
-    this.look = { ...this.look, yaw: this.look.yaw + yaw, pitch: Math.max(-limit, Math.min(limit, this.look.pitch + pitch)) };
+    this.look = {
+      ...this.look,
+      yaw: this.look.yaw + yaw,
+      pitch: Math.max(-limit, Math.min(limit, this.look.pitch + pitch)),
+    };
     this.changed();
   }
 
@@ -425,6 +455,9 @@ class Arm {
     this.root.addEventListener("pointermove", (event) => {
       const before = pointers.get(event.pointerId);
       if (!before) return;
+      // a click on an arrow stays one, if the hand trembles
+      const isTurning = this.root.hasPointerCapture(event.pointerId);
+      if (!isTurning && Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
       const others = [...pointers.values()].filter((other) => other.pointerId !== event.pointerId);
       if (others.length) {
         const far = (of) => Math.hypot(of.clientX - others[0].clientX, of.clientY - others[0].clientY) || 1;
@@ -433,87 +466,37 @@ class Arm {
         this.turnBy(-(event.clientX - before.clientX) * 0.01, (event.clientY - before.clientY) * 0.01);
       }
       pointers.set(event.pointerId, event);
-      // from now on the turn goes on outside of the picture too; a click on an arrow stays one
+      // from now on the turn goes on outside of the picture too
       if (!this.root.hasPointerCapture(event.pointerId)) this.root.setPointerCapture(event.pointerId);
     });
     for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
       this.root.addEventListener(end, (event) => pointers.delete(event.pointerId));
     }
-    this.root.addEventListener("wheel", (event) => {
-      // as maps do: the wheel alone scrolls the page
-      if (!event.ctrlKey) return;
-      event.preventDefault();
-      this.zoomBy(Math.exp(-event.deltaY * 0.005));
-    }, { passive: false });
+    this.root.addEventListener(
+      "wheel",
+      (event) => {
+        // as maps do: the wheel alone scrolls the page
+        if (!event.ctrlKey) return;
+        event.preventDefault();
+        this.zoomBy(Math.exp(-event.deltaY * 0.005));
+      },
+      { passive: false },
+    );
     this.root.addEventListener("keydown", (event) => {
       const step = 0.12;
       const keys = {
-        ArrowLeft: () => this.turnBy(-step, 0), ArrowRight: () => this.turnBy(step, 0),
-        ArrowUp: () => this.turnBy(0, step), ArrowDown: () => this.turnBy(0, -step),
-        "+": () => this.zoomBy(1.15), "=": () => this.zoomBy(1.15), "-": () => this.zoomBy(1 / 1.15), 0: () => this.reset(),
+        ArrowLeft: () => this.turnBy(-step, 0),
+        ArrowRight: () => this.turnBy(step, 0),
+        ArrowUp: () => this.turnBy(0, step),
+        ArrowDown: () => this.turnBy(0, -step),
+        "+": () => this.zoomBy(1.15),
+        "=": () => this.zoomBy(1.15),
+        "-": () => this.zoomBy(1 / 1.15),
+        0: () => this.reset(),
       };
       if (!keys[event.key] || event.altKey || event.metaKey) return;
       event.preventDefault();
       keys[event.key]();
     });
   }
-}
-
-// ---- paths
-
-const round = (value) => Math.round(value * 10) / 10;
-const segment = (a, b) => `M${round(a.x)} ${round(a.y)}L${round(b.x)} ${round(b.y)}`;
-const polygon = (points) => `M${points.map((point) => `${round(point.x)} ${round(point.y)}`).join("L")}Z`;
-const mean = (points) => points.reduce((sum, point) => sum + point.depth, 0) / points.length;
-const dotAt = (at) => `M${round(at.x - 3)} ${round(at.y)}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0Z`;
-
-function direction(from, to) {
-  const [x, y] = [to.x - from.x, to.y - from.y];
-  const length = Math.hypot(x, y);
-  return { x: length > 0 ? x / length : 0, y: length > 0 ? y / length : 0, length };
-}
-
-const heads_x = (from, to) => direction(from, to).x;
-const heads_y = (from, to) => direction(from, to).y;
-
-/** The head of an arrow, or two of them; null where the arrow points at the viewer. */
-function arrowhead(from, to, isDouble) {
-  const { x, y, length } = direction(from, to);
-  if (length < 3) return null;
-  const long = Math.min(11, length * 0.6);
-  const wide = long * 0.42;
-  const triangle = (tip) => {
-    const back = { x: tip.x - x * long, y: tip.y - y * long };
-    return `M${round(tip.x)} ${round(tip.y)}L${round(back.x - y * wide)} ${round(back.y + x * wide)}L${round(back.x + y * wide)} ${round(back.y - x * wide)}Z`;
-  };
-  const second = { x: to.x - x * long * 0.75, y: to.y - y * long * 0.75 };
-  const neck = { x: to.x - x * long * 0.9, y: to.y - y * long * 0.9 };
-  return { path: triangle(to) + (isDouble && length > 12 ? triangle(second) : ""), neck };
-}
-
-/** The outline of a rod with round ends. */
-function capsule(a, b, radius) {
-  const points = [];
-  for (const end of [a, b]) {
-    for (let corner = 0; corner < 14; corner++) {
-      const angle = (corner * 2 * Math.PI) / 14;
-      points.push({ x: end.x + Math.cos(angle) * radius * end.scale, y: end.y + Math.sin(angle) * radius * end.scale });
-    }
-  }
-  return polygon(hull(points));
-}
-
-/** The convex hull of points in the plane (Andrew's monotone chain). */
-function hull(points) {
-  const sorted = [...points].sort((a, b) => a.x - b.x || a.y - b.y);
-  const side = (o, a, b) => (a.x - o.x) * (b.y - o.y) - (a.y - o.y) * (b.x - o.x);
-  const half = (list) => {
-    const chain = [];
-    for (const point of list) {
-      while (chain.length >= 2 && side(chain[chain.length - 2], chain[chain.length - 1], point) <= 0) chain.pop();
-      chain.push(point);
-    }
-    return chain.slice(0, -1);
-  };
-  return [...half(sorted), ...half(sorted.reverse())];
 }

@@ -73,7 +73,11 @@ class Typesetter {
     if (meaning.quantity.startsWith("child")) base = math("mrow", {}, base, math("mo", {}, "′"));
     const symbol = math("msub", {}, base, index(meaning));
     if (!isPickable) return symbol;
-    return math("mrow", { "data-name": name, class: "pick", tabindex: "-1", role: "button", "aria-label": this.label(name) }, symbol);
+    return math(
+      "mrow",
+      { "data-name": name, class: "pick", tabindex: "-1", role: "button", "aria-label": this.label(name) },
+      symbol,
+    );
   }
 
   /** A name as a screen reader should say it. */
@@ -91,12 +95,16 @@ class Typesetter {
     const { fold } = markOf(tree);
     if (fold === "cancelled") return true;
     switch (tree[0]) {
-      case "*": return fold === "zero" || parts.some((part) => this.isGone(part));
+      case "*":
+        return fold === "zero" || parts.some((part) => this.isGone(part));
       case "/":
-      case "neg": return this.isGone(parts[0]);
+      case "neg":
+        return this.isGone(parts[0]);
       case "+":
-      case "-": return parts.every((part) => this.isGone(part));
-      default: return false;
+      case "-":
+        return parts.every((part) => this.isGone(part));
+      default:
+        return false;
     }
   }
 
@@ -110,7 +118,11 @@ class Typesetter {
     const mark = markOf(tree);
     if (mark.fold === "cancelled") return "its terms cancel";
     if (mark.why !== undefined) return this.inspection.reasons[mark.why];
-    return operands(tree).map((part) => (this.isGone(part) ? this.why(part) : "")).find(Boolean) || "";
+    return (
+      operands(tree)
+        .map((part) => (this.isGone(part) ? this.why(part) : ""))
+        .find(Boolean) || ""
+    );
   }
 
   /** What folded away in a tree: each largest term, what is left of it, and why. */
@@ -125,7 +137,8 @@ class Typesetter {
     if (mark.fold === "constant") return [{ tree, left: null, why: "constants" }];
     const own = [];
     const unit = this.unitFactor(tree);
-    if (unit !== null) own.push({ tree, left: parts[1 - unit], sign: this.inspection.constant(parts[unit]), why: this.why(tree) });
+    if (unit !== null)
+      own.push({ tree, left: parts[1 - unit], sign: this.inspection.constant(parts[unit]), why: this.why(tree) });
     return [...own, ...parts.flatMap((part, at) => (at === unit ? [] : this.gone(part)))];
   }
 
@@ -158,12 +171,20 @@ class Typesetter {
     switch (tree[0]) {
       case "+":
       case "-": {
-        const chain = isRoot ? summands(tree) : [{ sign: 1, part: parts[0] }, { sign: tree[0] === "+" ? 1 : -1, part: parts[1] }];
+        const chain = isRoot
+          ? summands(tree)
+          : [
+              { sign: 1, part: parts[0] },
+              { sign: tree[0] === "+" ? 1 : -1, part: parts[1] },
+            ];
         const row = chain.map(({ sign, part }, at) => {
-          const operator = at === 0 && sign > 0 ? null : math("mo", { form: at === 0 ? "prefix" : "infix" }, sign > 0 ? "+" : "−");
+          const operator =
+            at === 0 && sign > 0 ? null : math("mo", { form: at === 0 ? "prefix" : "infix" }, sign > 0 ? "+" : "−");
           const isSum = Array.isArray(part) && (part[0] === "+" || part[0] === "-");
           const isBare = isSum ? at === 0 && !isRoot : at === 0 || rank(part, this.inspection) >= 1;
-          const node = isBare ? this.tree(part, inner) : math("mrow", {}, paren("("), this.tree(part, inner), paren(")"));
+          const node = isBare
+            ? this.tree(part, inner)
+            : math("mrow", {}, paren("("), this.tree(part, inner), paren(")"));
           const piece = struck(part, math("mrow", {}, operator, node));
           return isRoot ? this.term(piece, part, sign) : piece;
         });
@@ -187,9 +208,24 @@ class Typesetter {
         return math("mrow", {}, math("mo", { form: "prefix" }, "−"), set(parts[0], 1));
       case "sin":
       case "cos":
-        return math("mrow", {}, math("mi", {}, tree[0]), math("mo", {}, "\u2061"), paren("("), this.tree(parts[0], inner), paren(")"));
+        return math(
+          "mrow",
+          {},
+          math("mi", {}, tree[0]),
+          math("mo", {}, "\u2061"),
+          paren("("),
+          this.tree(parts[0], inner),
+          paren(")"),
+        );
       default:
-        return math("mrow", {}, math("mi", {}, tree[0]), paren("("), ...parts.flatMap((part, at) => [at ? math("mo", {}, ",") : null, this.tree(part, inner)]), paren(")"));
+        return math(
+          "mrow",
+          {},
+          math("mi", {}, tree[0]),
+          paren("("),
+          ...parts.flatMap((part, at) => [at ? math("mo", {}, ",") : null, this.tree(part, inner)]),
+          paren(")"),
+        );
     }
   }
 
@@ -198,7 +234,12 @@ class Typesetter {
     const right = this.tree(tree, { leaf, isStruck });
     const isSum = Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
     const pieces = isSum ? [...right.children] : [right];
-    return element("div", { class: "equation" }, math("math", {}, left, math("mo", { form: "infix" }, "=")), ...pieces.flatMap((piece) => [" ", math("math", {}, piece)]));
+    return element(
+      "div",
+      { class: "equation" },
+      math("math", {}, left, math("mo", { form: "infix" }, "=")),
+      ...pieces.flatMap((piece) => [" ", math("math", {}, piece)]),
+    );
   }
 
   /** A term of a sum, which can be pointed at. */
@@ -211,14 +252,26 @@ class Typesetter {
   }
 
   strike(node, tree, how = "gone") {
-    const why = this.why(tree);
-    return math("mrow", { class: `struck ${how}`, "data-why": why }, node);
+    const why = `${how === "one" ? "a factor of 1" : "gone"}: ${this.why(tree) || "it is zero"}`;
+    const struck = math(
+      "mrow",
+      { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "button" },
+      node,
+    );
+    struck.setAttribute("aria-label", `${codeOf(tree)}, ${why}`);
+    struck.tree = tree;
+    struck.sign = 1;
+    return struck;
   }
 
   /** What is computed elsewhere or is never needed looks different, and is no strike. */
   marked(node, mark, isStruck) {
     if (!isStruck || !["shared", "constant", "unused"].includes(mark.fold)) return node;
-    const why = { shared: `computed before${mark.name ? ` as ${mark.name}` : ""}`, constant: "constants", unused: "nothing that is returned needs it" };
+    const why = {
+      shared: `computed before${mark.name ? ` as ${mark.name}` : ""}`,
+      constant: "constants",
+      unused: "nothing that is returned needs it",
+    };
     return math("mrow", { class: `folded ${mark.fold}`, "data-why": why[mark.fold] }, node);
   }
 
@@ -232,7 +285,15 @@ class Typesetter {
         const base = letter(found[1]);
         const low = found[2] ? math("mn", {}, found[2]) : null;
         const high = found[3] ? math("mi", { mathvariant: "normal" }, "T") : null;
-        row.push(low && high ? math("msubsup", {}, base, low, high) : low ? math("msub", {}, base, low) : high ? math("msup", {}, base, high) : base);
+        row.push(
+          low && high
+            ? math("msubsup", {}, base, low, high)
+            : low
+              ? math("msub", {}, base, low)
+              : high
+                ? math("msup", {}, base, high)
+                : base,
+        );
         row.push(math("mspace", { width: "0.1em" }));
       } else if (/^\d+$/.test(piece)) {
         row.push(math("mn", {}, piece));
@@ -289,13 +350,17 @@ function codeOf(tree, isC = false) {
   switch (tree[0]) {
     case "+":
     case "-": {
-      const side = (part, least) => (isC && Array.isArray(part) && "*/".includes(part[0]) ? `(${codeOf(part, isC)})` : inner(part, least));
+      const side = (part, least) =>
+        isC && Array.isArray(part) && "*/".includes(part[0]) ? `(${codeOf(part, isC)})` : inner(part, least);
       const first = Array.isArray(parts[0]) && parts[0][0] === "neg" ? codeOf(parts[0], isC) : side(parts[0], 0);
       return `${first} ${tree[0]} ${side(parts[1], 1)}`;
     }
     case "*":
-    case "/": return `${inner(parts[0], 1)} ${tree[0]} ${inner(parts[1], 2)}`;
-    case "neg": return `-${inner(parts[0], 2)}`;
-    default: return `${tree[0]}(${parts.map((part) => codeOf(part, isC)).join(", ")})`;
+    case "/":
+      return `${inner(parts[0], 1)} ${tree[0]} ${inner(parts[1], 2)}`;
+    case "neg":
+      return `-${inner(parts[0], 2)}`;
+    default:
+      return `${tree[0]}(${parts.map((part) => codeOf(part, isC)).join(", ")})`;
   }
 }

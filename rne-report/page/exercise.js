@@ -1,5 +1,5 @@
-// Exercises: a value is hidden, the student types it, and a wrong one is answered with the slip that gives it. Slips are
-// made in the component's own tree, which is then evaluated: nothing is guessed from the number alone.
+// Exercises: a value is hidden, the student types it, and a wrong one is answered with the slip that gives it. Slips
+// are made in the component's own tree, which is then evaluated: nothing is guessed from the number alone.
 
 class Exercise {
   constructor(inspection, equations) {
@@ -13,7 +13,12 @@ class Exercise {
   hides(name, cell) {
     if (!this.isOn || !cell) return false;
     const owner = this.inspection.owner(name);
-    return owner !== null && owner.cell === cell && !this.solved.has(owner.name) && this.inspection.components.get(owner.name).became.kind !== "constant";
+    return (
+      owner !== null &&
+      owner.cell === cell &&
+      !this.solved.has(owner.name) &&
+      this.inspection.components.get(owner.name).became.kind !== "constant"
+    );
   }
 
   /** What to say of an answer. */
@@ -29,7 +34,8 @@ class Exercise {
     const found = this.slips(name).filter((slip) => isNear(typed, slip.value) && !isNear(slip.value, right));
     const words = [...new Set(found.map((slip) => slip.text))];
     if (words.length) return { isRight: false, text: `Not yet. ${words.slice(0, 2).join("; or ")}.` };
-    if (isNear(typed, right, 0.03)) return { isRight: false, text: "Close: more digits are needed, three that count." };
+    if (isNear(typed, right, 0.03))
+      return { isRight: false, text: "Close: more digits are needed, three that count." };
     return { isRight: false, text: "Not yet, and no usual slip gives this number: compute term by term." };
   }
 
@@ -50,7 +56,10 @@ class Exercise {
     const joints = [...new Set(this.anglesOf(general, cell))].sort();
     for (const joint of joints) {
       const swapped = { [`s${joint}`]: `c${joint}`, [`c${joint}`]: `s${joint}` };
-      all.push({ text: `Sine stands for cosine of joint ${joint}, or cosine for sine`, value: this.evaluate(general, cell, (of) => (swapped[of] ? this.equations.value(swapped[of]) : undefined)) });
+      all.push({
+        text: `Sine stands for cosine of joint ${joint}, or cosine for sine`,
+        value: this.evaluate(general, cell, (of) => (swapped[of] ? this.equations.value(swapped[of]) : undefined)),
+      });
     }
     if (joints.length) {
       const inDegrees = (of) => {
@@ -59,7 +68,10 @@ class Exercise {
         const angle = (this.angle(Number(found[2])) * Math.PI) / 180;
         return found[1] === "s" ? Math.sin(angle) : Math.cos(angle);
       };
-      all.push({ text: "The calculator takes degrees, and the angles are in radians", value: this.evaluate(general, cell, inDegrees) });
+      all.push({
+        text: "The calculator takes degrees, and the angles are in radians",
+        value: this.evaluate(general, cell, inDegrees),
+      });
     }
     all.push({ text: "The number is in degrees", value: (right * 180) / Math.PI });
     all.push({
@@ -72,7 +84,8 @@ class Exercise {
     const meaning = this.inspection.meaning(name);
     for (const axis of AXES) {
       const other = this.inspection.nameOf(meaning.quantity, meaning.joint, axis);
-      if (other && other !== name) all.push({ text: `This is the ${axis} component`, value: this.equations.value(other) });
+      if (other && other !== name)
+        all.push({ text: `This is the ${axis} component`, value: this.equations.value(other) });
     }
     return all;
   }
@@ -80,7 +93,9 @@ class Exercise {
   /** The angle whose sine and cosine are meant, rad. */
   angle(joint) {
     const sine = this.inspection.components.get(`s${joint}`);
-    return sine && Array.isArray(sine.general) ? this.equations.evaluate(sine.general[1]) : this.equations.value(`q${joint}`);
+    return sine && Array.isArray(sine.general)
+      ? this.equations.evaluate(sine.general[1])
+      : this.equations.value(`q${joint}`);
   }
 
   /** A tree over other values; equations of the same cell are evaluated anew with these. */

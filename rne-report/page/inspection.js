@@ -34,6 +34,9 @@ class Inspection {
       }
     }
     const folded = data.programs.folded;
+    for (const { became } of this.components.values()) {
+      if (became.why !== undefined) became.why = data.reasons[became.why];
+    }
     this.statements = new Map();
     for (const statement of [...folded.angles, ...folded.statements]) {
       this.statements.set(statement.name, statement);
@@ -61,7 +64,9 @@ class Inspection {
   /** What a name is, in words with its own numbers. */
   words({ of, joint }) {
     const numbers = { "h = i - 1": joint - 1, "i-1": joint - 1, i: joint };
-    return of.meaning.replace(/^[^ ]*: /, "").replace(/\b(link|joint|frame) (h = i - 1|i-1|i)\b/g, (_, what, which) => `${what} ${numbers[which]}`);
+    return of.meaning
+      .replace(/^[^ ]*: /, "")
+      .replace(/\b(link|joint|frame) (h = i - 1|i-1|i)\b/g, (_, what, which) => `${what} ${numbers[which]}`);
   }
 
   /** The component of the lecture that a name is, or is a part of. */

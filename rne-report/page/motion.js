@@ -18,8 +18,12 @@ function rangeOf(joint, of) {
 function ordinaryPose(robot, pattern) {
   return robot.joints.map((joint, index) => {
     const [low, high] = rangeOf(joint, "q");
-    const margin = 0.12 * (high - low);
-    const wished = joint.kind === "prismatic" ? low + (high - low) * (0.5 + 0.3 * pattern[index % pattern.length]) : pattern[index % pattern.length];
+    // not the same for all: two joints at their margins would make a special pose
+    const margin = (0.1 + 0.05 * (index % 3)) * (high - low);
+    const wished =
+      joint.kind === "prismatic"
+        ? low + (high - low) * (0.5 + 0.3 * pattern[index % pattern.length])
+        : pattern[index % pattern.length];
     return Math.round(Math.max(low + margin, Math.min(high - margin, wished)) * 100) / 100;
   });
 }
@@ -37,7 +41,11 @@ class Trajectory {
     const rate = (30 * s * s * (1 - s) ** 2) / this.seconds;
     const bend = (60 * s * (1 - s) * (1 - 2 * s)) / this.seconds ** 2;
     const along = (factor) => this.from.map((from, joint) => (this.to[joint] - from) * factor);
-    return { q: this.from.map((from, joint) => from + (this.to[joint] - from) * way), qd: along(rate), qdd: along(bend) };
+    return {
+      q: this.from.map((from, joint) => from + (this.to[joint] - from) * way),
+      qd: along(rate),
+      qdd: along(bend),
+    };
   }
 }
 
@@ -46,21 +54,38 @@ class Sliders {
     this.inputs = new Map();
     this.outputs = new Map();
     const { joints } = inspection.robot;
-    const head = element("tr", {}, element("th", { scope: "col" }, "joint"), ...OF.map((of) => element("th", { scope: "col" }, LETTERS[of])));
+    const head = element(
+      "tr",
+      {},
+      element("th", { scope: "col" }, "joint"),
+      ...OF.map((of) => element("th", { scope: "col" }, LETTERS[of])),
+    );
     table.append(element("thead", {}, head));
     const body = element("tbody");
     joints.forEach((joint, index) => {
       const row = element("tr", { "data-row": index + 1 });
-      const name = element("th", { scope: "row" }, String(index + 1), element("span", { class: "joint-name", dir: "auto" }, joint.name));
+      const name = element(
+        "th",
+        { scope: "row" },
+        String(index + 1),
+        element("span", { class: "joint-name", dir: "auto" }, joint.name),
+      );
       row.append(name);
       for (const of of OF) {
         const [low, high] = rangeOf(joint, of);
         const quantity = { q: "position", qd: "rate", qdd: "rate_dot" }[of];
         const unitOf = inspection.quantities[quantity]
           ? inspection.unitOf(quantity, index + 1)
-          : { q: ["rad", "m"], qd: ["rad/s", "m/s"], qdd: ["rad/s²", "m/s²"] }[of][joint.kind === "prismatic" ? 1 : 0];
+          : { q: ["rad", "m"], qd: ["rad/s", "m/s"], qdd: ["rad/s²", "m/s²"] }[of][
+              joint.kind === "prismatic" ? 1 : 0
+            ];
         const input = element("input", {
-          type: "range", min: low, max: high, step: "any", "data-joint": index + 1, "data-of": of,
+          type: "range",
+          min: low,
+          max: high,
+          step: "any",
+          "data-joint": index + 1,
+          "data-of": of,
           "aria-label": `${LETTERS[of]} of joint ${index + 1}, ${unitOf}`,
         });
         const output = element("output", { "data-name": `${of}${index + 1}`, class: "pick", tabindex: "-1" });

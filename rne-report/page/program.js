@@ -1,5 +1,5 @@
-// The interpreter. A statement is a tree of names, numbers and operators; + - * / are those of IEEE 754 here as they are
-// in Rust, so the values are the same bits. Sine and cosine are the browser's and may differ in the last digit.
+// The interpreter. A statement is a tree of names, numbers and operators; + - * / are those of IEEE 754 here as they
+// are in Rust, so the values are the same bits. Sine and cosine are the browser's and may differ in the last digit.
 
 /** A tree as a function without arguments; `read(name)` gives a function that returns the value of a name. */
 function compiled(tree, read) {
@@ -7,18 +7,27 @@ function compiled(tree, read) {
   if (typeof tree === "string") return read(tree);
   const [a, b, c] = operands(tree).map((operand) => compiled(operand, read));
   switch (tree[0]) {
-    case "+": return () => a() + b();
-    case "-": return () => a() - b();
-    case "*": return () => a() * b();
-    case "/": return () => a() / b();
-    case "neg": return () => -a();
-    case "sin": return () => Math.sin(a());
-    case "cos": return () => Math.cos(a());
-    case "sign": return () => {
-      const by = a();
-      return by > 0 ? b() : by < 0 ? c() : 0;
-    };
-    default: throw new Error(`there is no operator ${tree[0]}`);
+    case "+":
+      return () => a() + b();
+    case "-":
+      return () => a() - b();
+    case "*":
+      return () => a() * b();
+    case "/":
+      return () => a() / b();
+    case "neg":
+      return () => -a();
+    case "sin":
+      return () => Math.sin(a());
+    case "cos":
+      return () => Math.cos(a());
+    case "sign":
+      return () => {
+        const by = a();
+        return by > 0 ? b() : by < 0 ? c() : 0;
+      };
+    default:
+      throw new Error(`there is no operator ${tree[0]}`);
   }
 }
 
@@ -39,7 +48,9 @@ class Program {
     };
     const assign = (name, value) => {
       const at = slot(name);
-      return () => { this.values[at] = value(); };
+      return () => {
+        this.values[at] = value();
+      };
     };
     this.arguments = record.arguments.map((name) => [name, slot(name)]);
     for (const [name, value] of record.constants) slot(name, value);
@@ -115,7 +126,9 @@ class Equations {
 function argumentsOf(state, wrench = null) {
   const given = {};
   for (const of of ["q", "qd", "qdd"]) {
-    state[of].forEach((value, index) => { given[`${of}${index + 1}`] = value; });
+    state[of].forEach((value, index) => {
+      given[`${of}${index + 1}`] = value;
+    });
   }
   if (wrench) {
     const ends = `${state.q.length}_${state.q.length + 1}`;

@@ -20,9 +20,19 @@ class Torques {
     const moving = this.folded.run(argumentsOf({ q: state.q, qd: state.qd, qdd: still }));
     // last, so that the program's intermediates are those of the state
     const free = this.folded.run(argumentsOf(state));
-    const total = wrench && [...wrench.f, ...wrench.n].some((of) => of !== 0) ? this.withWrench.run(argumentsOf(state, wrench)) : free;
+    const total =
+      wrench && [...wrench.f, ...wrench.n].some((of) => of !== 0)
+        ? this.withWrench.run(argumentsOf(state, wrench))
+        : free;
     const less = (a, b) => a.map((value, joint) => value - b[joint]);
-    return { total, free, gravity, velocity: less(moving, gravity), inertia: less(free, moving), tip: less(total, free) };
+    return {
+      total,
+      free,
+      gravity,
+      velocity: less(moving, gravity),
+      inertia: less(free, moving),
+      tip: less(total, free),
+    };
   }
 }
 
@@ -32,12 +42,33 @@ class Bars {
       const unitOf = unitText(inspection.unitOf("torque", index + 1));
       const segments = PARTS.map(([part, meaning]) => element("span", { class: `bar ${part}`, title: meaning }));
       const total = element("span", { class: "bar-total" });
-      const track = element("div", { class: "track", "aria-hidden": "true" }, element("span", { class: "zero" }), ...segments, total);
+      const track = element(
+        "div",
+        { class: "track", "aria-hidden": "true" },
+        element("span", { class: "zero" }),
+        ...segments,
+        total,
+      );
       const text = element("output", { "data-torque": index + 1, class: "torque-value" });
       const name = `tau${index + 1}`;
-      const label = element("button", { type: "button", class: "torque-name pick", "data-name": name }, math("math", {}, math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1)))));
+      const label = element(
+        "button",
+        { type: "button", class: "torque-name pick", "data-name": name },
+        math("math", {}, math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1)))),
+      );
       const [low, high] = [element("span", { class: "end low" }), element("span", { class: "end high" })];
-      const row = element("li", {}, label, element("div", { class: "scale" }, track, element("div", { class: "ends", "aria-hidden": "true" }, low, element("span", { class: "end" }, "0"), high)), text);
+      const row = element(
+        "li",
+        {},
+        label,
+        element(
+          "div",
+          { class: "scale" },
+          track,
+          element("div", { class: "ends", "aria-hidden": "true" }, low, element("span", { class: "end" }, "0"), high),
+        ),
+        text,
+      );
       list.append(row);
       return { segments, total, text, low, high, unit: unitOf, end: 0, effort: joint.effort_limit };
     });
@@ -100,10 +131,17 @@ class Plot {
   /** The sample at which the joint's torque is largest, and the largest part of speed in it. */
   largest(joint = this.joint) {
     const at = joint - 1;
-    const by = (of) => this.samples.reduce((most, sample) => (Math.abs(of(sample)) > Math.abs(of(most)) ? sample : most));
+    const by = (of) =>
+      this.samples.reduce((most, sample) => (Math.abs(of(sample)) > Math.abs(of(most)) ? sample : most));
     const peak = by((sample) => sample.total[at]);
     const fastest = by((sample) => sample.velocity[at]);
-    return { time: peak.time, value: peak.total[at], velocity: fastest.velocity[at], velocityTime: fastest.time, velocityAtPeak: peak.velocity[at] };
+    return {
+      time: peak.time,
+      value: peak.total[at],
+      velocity: fastest.velocity[at],
+      velocityTime: fastest.time,
+      velocityAtPeak: peak.velocity[at],
+    };
   }
 
   draw() {
@@ -111,28 +149,39 @@ class Plot {
     this.root.setAttribute("viewBox", `0 0 ${width} ${height}`);
     const box = { left: 52, right: width - 14, top: 30, bottom: height - 34 };
     const at = this.joint - 1;
-    const all = this.samples.flatMap((sample) => ["gravity", "velocity", "inertia", "total"].map((part) => sample[part][at]));
+    const all = this.samples.flatMap((sample) =>
+      ["gravity", "velocity", "inertia", "total"].map((part) => sample[part][at]),
+    );
     const [least, most] = [Math.min(0, ...all), Math.max(0, ...all)];
     const step = niceAbove((most - least || 1) / 4);
     const [low, high] = [Math.floor(least / step) * step, Math.ceil(most / step + 1e-9) * step || step];
-    const x = this.x = (time) => box.left + ((box.right - box.left) * time) / this.trajectory.seconds;
+    const x = (this.x = (time) => box.left + ((box.right - box.left) * time) / this.trajectory.seconds);
     const y = (value) => box.bottom - ((box.bottom - box.top) * (value - low)) / (high - low);
     const unitOf = unitText(this.inspection.unitOf("torque", this.joint));
     const marks = [];
     for (let value = low; value <= high + step / 2; value += step) {
       const tidy = Math.abs(value) < step / 1e6 ? 0 : value;
       marks.push(svg("path", { d: `M${box.left} ${y(tidy)}H${box.right}`, class: tidy === 0 ? "zero" : "" }));
-      marks.push(svg("text", { x: box.left - 7, y: y(tidy) + 4, class: "end" }, minus(String(Number(tidy.toPrecision(4))))));
+      marks.push(
+        svg("text", { x: box.left - 7, y: y(tidy) + 4, class: "end" }, minus(String(Number(tidy.toPrecision(4))))),
+      );
     }
     const seconds = niceAbove(this.trajectory.seconds / 6);
     for (let time = 0; time <= this.trajectory.seconds * (1 + 1e-9); time += seconds) {
-      marks.push(svg("text", { x: x(time), y: box.bottom + 16, class: "middle" }, String(Number(time.toPrecision(3)))));
+      marks.push(
+        svg("text", { x: x(time), y: box.bottom + 16, class: "middle" }, String(Number(time.toPrecision(3)))),
+      );
     }
     marks.push(svg("text", { x: box.right, y: box.bottom + 30, class: "end" }, "time, s"));
     marks.push(svg("text", { x: 4, y: 14 }, `τ${this.joint}, ${unitOf}`));
     this.axes.replaceChildren(...marks);
     for (const [part, curve] of Object.entries(this.curves)) {
-      curve.setAttribute("d", this.samples.map((sample, index) => `${index ? "L" : "M"}${round(x(sample.time))} ${round(y(sample[part][at]))}`).join(""));
+      curve.setAttribute(
+        "d",
+        this.samples
+          .map((sample, index) => `${index ? "L" : "M"}${round(x(sample.time))} ${round(y(sample[part][at]))}`)
+          .join(""),
+      );
     }
     const peak = this.largest();
     const [circle, text] = this.peak.children;
@@ -159,7 +208,9 @@ class Plot {
     const unitOf = unitText(this.inspection.unitOf("torque", this.joint));
     const peak = this.largest();
     const share = Math.abs(peak.value) > 0 ? Math.round((100 * Math.abs(peak.velocity)) / Math.abs(peak.value)) : 0;
-    return `Joint ${this.joint}: peak ${short(peak.value)} ${unitOf} at ${short(peak.time)} s. `
-      + `The velocity terms reach ${short(peak.velocity)} ${unitOf}, ${share} % of that.`;
+    return (
+      `Joint ${this.joint}: peak ${short(peak.value)} ${unitOf} at ${short(peak.time)} s. ` +
+      `The velocity terms reach ${short(peak.velocity)} ${unitOf}, ${share} % of that.`
+    );
   }
 }

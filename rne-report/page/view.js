@@ -5,11 +5,24 @@ const kindsOf = (page) => page.inspection.robot.joints.map((joint) => joint.kind
 /** What a page shows and how. */
 function viewOf(page) {
   return structuredClone({
-    kinds: kindsOf(page), state: page.state, force: page.wrench.f, from: page.from, to: page.to,
-    duration: byId("duration").value, time: byId("time").value, plot: page.plot.joint, form: page.form, language: page.language,
-    exercise: page.exercise.isOn, theme: document.documentElement.dataset.theme || "auto",
-    cell: [page.cell.joint, page.cell.step], layers: [...page.arm.layers], look: page.arm.look, pinned: page.pinned?.name || null,
-    tip: document.querySelector(".tip").open, scrolled: [window.scrollX, window.scrollY, byId("cell").scrollTop],
+    kinds: kindsOf(page),
+    state: page.state,
+    force: page.wrench.f,
+    from: page.from,
+    to: page.to,
+    duration: byId("duration").value,
+    time: byId("time").value,
+    plot: page.plot.joint,
+    form: page.form,
+    language: page.language,
+    exercise: page.exercise.isOn,
+    theme: document.documentElement.dataset.theme || "auto",
+    cell: [page.cell.joint, page.cell.step],
+    layers: [...page.arm.layers],
+    look: page.arm.look,
+    pinned: page.reading.pinned?.name || null,
+    tip: document.querySelector(".tip").open,
+    scrolled: [window.scrollX, window.scrollY, byId("cell").scrollTop],
   });
 }
 
@@ -38,7 +51,7 @@ function showView(page, view) {
   page.paintLayers();
   page.arm.look = view.look;
   page.setState(view.state);
-  if (view.pinned) page.select(view.pinned);
+  if (view.pinned) page.reading.select(view.pinned);
   window.scrollTo(view.scrolled[0], view.scrolled[1]);
   byId("cell").scrollTop = view.scrolled[2];
 }

@@ -1,16 +1,16 @@
 //! What a page knows of its arm: the inspection, without what the page can derive of the rest.
 
 use rne_codegen::Program;
-use rne_inspection::{Component, Inspection, Name, Statement};
+use rne_inspection::{Became, Component, Inspection, Name, Statement};
 use rne_model::Robot;
 use serde_json::{Map, Value, json};
 
 /// The data of a page.
 ///
-/// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has equations.
-/// `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has its name, its
-/// equation and what became of it. `programs` are three: `folded`, with the tip wrench as arguments `with_wrench`, and
-/// `reduced` with names of its own, for its frames are not those of the lecture.
+/// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has
+/// equations. `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has
+/// its name, its equation and what became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
+/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
@@ -29,6 +29,8 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
         quantities.extend(inspection.quantities);
         programs.insert("reduced".to_owned(), told);
     }
+    let mut reasons = folded.reasons.clone();
+    let table = components(&folded.table, &mut reasons);
     let cells = folded.cells.iter().map(|cell| {
         json!({
             "joint": cell.joint,
@@ -37,9 +39,10 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
             "formulas": cell.formulas,
             "before": cell.before,
             "after": cell.after,
-            "components": components(&cell.components),
+            "components": components(&cell.components, &mut reasons),
         })
     });
+    let cells = cells.collect::<Vec<_>>();
     json!({
         "schema": "rne-report",
         "version": 1,
@@ -48,9 +51,9 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
         "counts": folded.counts,
         "quantities": quantities,
         "names": names(&folded),
-        "reasons": folded.reasons,
-        "table": components(&folded.table),
-        "cells": cells.collect::<Vec<_>>(),
+        "reasons": reasons,
+        "table": table,
+        "cells": cells,
         "programs": programs,
     })
 }
@@ -65,16 +68,27 @@ fn names(inspection: &Inspection) -> Value {
     Value::Object(all)
 }
 
-fn components(all: &[Component]) -> Value {
-    let told = |component: &Component| {
-        let mut told = json!({ "name": component.name, "general": component.general, "became": component.became });
-        // that a number is one of the table goes without saying
-        if told["became"]["why"] == "of the table" {
-            told["became"].as_object_mut().and_then(|became| became.remove("why"));
+/// Components; why one became a number is told by the number of an entry of `reasons`.
+fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
+    let mut told = |component: &Component| {
+        let mut became = json!(component.became);
+        match &component.became {
+            // that a number is one of the table goes without saying
+            Became::Constant { why, .. } if why == "of the table" => {
+                became.as_object_mut().and_then(|became| became.remove("why"));
+            }
+            Became::Constant { why, .. } => {
+                let at = reasons.iter().position(|known| known == why).unwrap_or_else(|| {
+                    reasons.push(why.clone());
+                    reasons.len() - 1
+                });
+                became["why"] = json!(at);
+            }
+            _ => {}
         }
-        told
+        json!({ "name": component.name, "general": component.general, "became": became })
     };
-    all.iter().map(told).collect()
+    all.iter().map(&mut told).collect()
 }
 
 /// The code that computes the outputs, with its text where that is shown.

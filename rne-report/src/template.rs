@@ -1,5 +1,7 @@
 //! A page with gaps, and texts that stay what they are wherever they stand in it.
 
+use std::fmt::Write as _;
+
 /// The template with every `{{name}}` replaced, in one pass: what is put in is not searched for gaps.
 pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
     let mut page = String::new();
@@ -10,15 +12,12 @@ pub(crate) fn filled(template: &str, parts: &[(&str, String)]) -> String {
             let (_, text) = parts.iter().find(|(known, _)| *known == name)?;
             Some((text, behind))
         });
-        match part {
-            Some((text, behind)) => {
-                page.push_str(text);
-                rest = behind;
-            }
-            None => {
-                page.push_str("{{");
-                rest = after;
-            }
+        if let Some((text, behind)) = part {
+            page.push_str(text);
+            rest = behind;
+        } else {
+            page.push_str("{{");
+            rest = after;
         }
     }
     page + rest
@@ -46,7 +45,9 @@ pub(crate) fn json(value: &serde_json::Value) -> String {
     let mut inert = String::new();
     for c in value.to_string().chars() {
         match c {
-            '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => inert.push_str(&format!("\\u{:04x}", u32::from(c))),
+            '<' | '>' | '&' | '\u{2028}' | '\u{2029}' => {
+                let _ = write!(inert, "\\u{:04x}", u32::from(c));
+            }
             c => inert.push(c),
         }
     }

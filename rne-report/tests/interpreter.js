@@ -2,6 +2,8 @@
 "use strict";
 const fs = require("fs");
 const text = (list) => list.map((value) => String(value));
+// ω, ω̇, ċ, c̈, g, f and n of joint i and the link h before it
+const VECTORS = ["wi", "dwi", "dci", "ddci", "gi", "fh_i", "nh_i"];
 const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, states }) => {
   const inspection = new Inspection(data);
   const [folded, withWrench] = [data.programs.folded, data.programs.with_wrench].map((record) => new Program(record));
@@ -12,15 +14,34 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
   const answers = states.map(({ state, wrench, turns }) => {
     // sine and cosine of the runtime: then everything else has to be the same bits
     const known = new Map(turns.map(([angle, s, c]) => [angle, [s, c]]));
-    const turn = (angle, which) => (known.has(angle) ? known.get(angle)[which] : NaN);
-    Math.sin = (angle) => turn(angle, 0);
-    Math.cos = (angle) => turn(angle, 1);
+    const runtime = (angle, which) => (known.has(angle) ? known.get(angle)[which] : NaN);
+    Math.sin = (angle) => runtime(angle, 0);
+    Math.cos = (angle) => runtime(angle, 1);
     const { free, total, gravity } = torques.split(state, wrench);
     Math.sin = sine;
     Math.cos = cosine;
     equations.set(argumentsOf(state));
+    const pose = new Pose(inspection, (name) => equations.value(name), state.q);
+    const links = inspection.robot.joints.map((row, index) => {
+      const joint = index + 1;
+      const vectors = VECTORS.map((stem) => {
+        const names = AXES.map((axis) => `${stem.replace("i", joint).replace("h", index)}_${axis}`);
+        return names.map((name) => equations.value(name));
+      });
+      const inWorld = vectors.map((vector) => turn(pose.rotations[joint], vector));
+      const lecture = vectors.map((vector) => inLectureAxes(row, state.q[index], vector));
+      return {
+        world: text(inWorld.flat()),
+        lecture: text(lecture.flat()),
+        com: text(pose.coms[joint]),
+        next: text(pose.joints[joint + 1]),
+      };
+    });
     return {
-      free: text(free), total: text(total), gravity: text(gravity),
+      links,
+      free: text(free),
+      total: text(total),
+      gravity: text(gravity),
       own: text(folded.run(argumentsOf(state))),
       reduced: reduced ? text(reduced.run(argumentsOf(state))) : null,
       equations: text(state.q.map((_, joint) => equations.value(`tau${joint + 1}`))),
@@ -28,11 +49,25 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
   });
   // slips of the first steps, typed with six digits
   const exercise = new Exercise(inspection, equations);
-  const component = [...inspection.components.values()].find((of) => /^ddc\d+_x$/.test(of.name) && of.became.kind === "computed");
-  const slips = component ? exercise.slips(component.name).map((slip) => [slip.text, exercise.answer(component.name, slip.value.toPrecision(6)).text, String(slip.value)]) : [];
-  const right = component ? exercise.answer(component.name, equations.value(component.name).toPrecision(6)).text : "Right.";
+  const component = [...inspection.components.values()].find(
+    (of) => /^ddc\d+_x$/.test(of.name) && of.became.kind === "computed",
+  );
+  const slips = component
+    ? exercise
+        .slips(component.name)
+        .map((slip) => [
+          slip.text,
+          exercise.answer(component.name, slip.value.toPrecision(6)).text,
+          String(slip.value),
+        ])
+    : [];
+  const right = component
+    ? exercise.answer(component.name, equations.value(component.name).toPrecision(6)).text
+    : "Right.";
   return {
-    answers, slips, right,
+    answers,
+    slips,
+    right,
     value: component ? String(equations.value(component.name)) : "0",
     rust: data.programs.folded.statements.map(({ name, value, rust }) => [`let ${name} = ${codeOf(value)};`, rust]),
     c: data.programs.folded.statements.map(({ name, value }) => `const double ${name} = ${codeOf(value, true)};`),

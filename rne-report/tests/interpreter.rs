@@ -6,7 +6,7 @@ use std::process::Command;
 use rne_codegen::{Compiler, Form, Function, emit};
 use rne_inspection::{Inspection, Tree};
 use rne_model::Robot;
-use rne_runtime::{DynArm, Scalar};
+use rne_runtime::{DynArm, DynTrace, LinkTrace, Scalar};
 use serde_json::{Value, json};
 
 const STATES: usize = 4;
@@ -15,6 +15,8 @@ struct Asked {
     robot: Robot,
     /// Torques, with a wrench at the tip, and of gravity alone.
     states: Vec<[Vec<f64>; 3]>,
+    /// All vectors of the links.
+    traces: Vec<DynTrace<f64>>,
 }
 
 /// The sines and cosines of the runtime at a state, by their angles.
@@ -47,7 +49,7 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
     let data = rne_report::data(&robot, &torques, &with_wrench, Some(&reduced));
     let inspection = Inspection::new(&robot, &with_wrench);
     let arm = DynArm::from_robot(&robot);
-    let (mut states, mut asked) = (Vec::new(), Vec::new());
+    let (mut states, mut traces, mut asked) = (Vec::new(), Vec::new(), Vec::new());
     for _ in 0..STATES {
         let mut list = |count: usize| (0..count).map(|_| random.f64() * 4.0 - 2.0).collect::<Vec<f64>>();
         let (q, qd, qdd, force, moment) = (list(dof), list(dof), list(dof), list(3), list(3));
@@ -59,13 +61,15 @@ fn question(robot: Robot, random: &mut fastrand::Rng) -> (Asked, Value) {
             arm.inverse_dynamics_with_wrench(&q, &qd, &qdd, &wrench).expect("one number per joint"),
             arm.inverse_dynamics(&q, &still, &still).expect("one number per joint"),
         ]);
+        let trace = arm.trace(&q, &qd, &qdd, &arm.fixed_base(), None);
+        traces.push(trace.expect("one number per joint"));
         asked.push(json!({
             "turns": turns(&inspection, &q),
             "state": { "q": q, "qd": qd, "qdd": qdd },
             "wrench": { "f": force, "n": moment },
         }));
     }
-    (Asked { robot, states }, json!({ "data": data, "states": asked }))
+    (Asked { robot, states, traces }, json!({ "data": data, "states": asked }))
 }
 
 /// What node says to the questions; nothing where there is no node.
@@ -110,7 +114,7 @@ fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitt
     let Some(answers) = answers(&questions) else { return };
     assert_eq!(answers.len(), asked.len());
     let mut named = (0, 0);
-    for (Asked { robot, states }, answer) in asked.iter().zip(&answers) {
+    for (Asked { robot, states, .. }, answer) in asked.iter().zip(&answers) {
         let name = &robot.name;
         for ([free, with_wrench, gravity], said) in states.iter().zip(answer["answers"].as_array().expect("a list")) {
             // with the runtime's sine and cosine the same bits
@@ -141,6 +145,51 @@ fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitt
     }
     println!("{} slips of {} are named by what they are; two are named at most", named.0, named.1);
     assert!(named.1 > 100 && named.0 * 10 >= named.1 * 9, "{named:?}");
+}
+
+/// Rz(yaw) Ry(pitch) Rx(roll), column by column, times a vector.
+fn turned([roll, pitch, yaw]: [f64; 3], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let about = |angle: f64, a: f64, b: f64| (angle.cos() * a - angle.sin() * b, angle.sin() * a + angle.cos() * b);
+    let (y, z) = about(roll, y, z);
+    let (z, x) = about(pitch, z, x);
+    let (x, y) = about(yaw, x, y);
+    [x, y, z]
+}
+
+fn vectors(link: &LinkTrace<f64>) -> [[f64; 3]; 7] {
+    let of = (link.omega, link.omega_dot, link.velocity, link.acceleration);
+    [of.0, of.1, of.2, of.3, link.gravity, link.joint_force, link.joint_moment]
+}
+
+/// The arm is drawn where the runtime has it: centres of mass and ends of links by its d and r in base axes, arrows by
+/// its vectors there; and what is told in the lecture's axes is what it has there.
+#[test]
+fn links_and_arrows_are_where_the_runtime_has_them() {
+    let mut random = fastrand::Rng::with_seed(40);
+    let robots = rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
+    let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
+    let Some(answers) = answers(&questions) else { return };
+    for (Asked { robot, traces, .. }, answer) in asked.iter().zip(&answers) {
+        let name = &robot.name;
+        let rpy = robot.base.rpy.map(|angle| angle.radians);
+        let sum = |a: [f64; 3], b: [f64; 3]| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        for (trace, said) in traces.iter().zip(answer["answers"].as_array().expect("a list")) {
+            let mut at = robot.base.xyz;
+            if robot.convention == rne_model::Convention::Modified {
+                at = sum(at, turned(rpy, [robot.joints[0].row.dh.a, 0.0, 0.0]));
+            }
+            let links = trace.to_base().into_iter().zip(trace.to_lecture());
+            for ((link, lecture), said) in links.zip(said["links"].as_array().expect("a list")) {
+                let com = sum(at, turned(rpy, link.d));
+                at = sum(com, turned(rpy, link.r));
+                close(&numbers(&said["com"]), &com, 1e-13, name);
+                close(&numbers(&said["next"]), &at, 1e-13, name);
+                let in_world = vectors(&link).map(|vector| turned(rpy, vector));
+                close(&numbers(&said["world"]), in_world.as_flattened(), 1e-12, name);
+                close(&numbers(&said["lecture"]), vectors(&lecture).as_flattened(), 1e-12, name);
+            }
+        }
+    }
 }
 
 #[test]

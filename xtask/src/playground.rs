@@ -1,7 +1,8 @@
 //! The playground: the page of `rne report` with the compiler inside, `playground/`.
 
+use std::fmt::Write as _;
 use std::fs;
-use std::io::{BufRead, BufReader, Read, Write};
+use std::io::{BufRead, BufReader, Read, Write as _};
 use std::net::{TcpListener, TcpStream};
 use std::path::Path;
 use std::process::Command;
@@ -172,7 +173,7 @@ fn page(module: &[u8]) -> Result<String> {
     let (packed, files) = (packed(module)?, packed(&serde_json::to_vec(&shipped()?)?)?);
     let mut script = String::new();
     for name in SCRIPTS {
-        script.push_str(&format!("\n// ---- {name}\n\n{}", read(name)?));
+        let _ = write!(script, "\n// ---- {name}\n\n{}", read(name)?);
     }
     let worker = read("worker.js")?;
     println!("  {:>7} the compiler: {} bytes of WebAssembly, compressed, in base64", packed.len(), module.len());
@@ -219,15 +220,15 @@ fn serve(html: &str, port: u16) -> Result<()> {
     println!("http://localhost:{}/ (Ctrl-C ends it)", listener.local_addr()?.port());
     for stream in listener.incoming() {
         // a browser that goes away is none of our trouble
-        let _ = stream.and_then(|stream| respond(stream, html));
+        let _ = stream.and_then(|stream| respond(&stream, html));
     }
     Ok(())
 }
 
 /// Answers one request: the page for `/`, nothing else.
-fn respond(stream: TcpStream, html: &str) -> std::io::Result<()> {
+fn respond(mut stream: &TcpStream, html: &str) -> std::io::Result<()> {
     stream.set_read_timeout(Some(Duration::from_secs(2)))?;
-    let mut request = BufReader::new((&stream).take(16 * 1024));
+    let mut request = BufReader::new(stream.take(16 * 1024));
     let mut first = String::new();
     request.read_line(&mut first)?;
     let mut line = String::new();
@@ -244,6 +245,6 @@ fn respond(stream: TcpStream, html: &str) -> std::io::Result<()> {
         "HTTP/1.1 {status}\r\nContent-Type: {kind}; charset=utf-8\r\nContent-Length: {length}\r\n\
          Cache-Control: no-store\r\nConnection: close\r\n\r\n"
     );
-    (&stream).write_all(head.as_bytes())?;
-    (&stream).write_all(body.as_bytes())
+    stream.write_all(head.as_bytes())?;
+    stream.write_all(body.as_bytes())
 }

@@ -14,6 +14,7 @@ mod help;
 mod hostile;
 mod import;
 mod plans;
+mod report;
 mod search;
 mod shipped;
 mod show;

@@ -1,0 +1,292 @@
+// What a cell of the seven steps opens: each component as equation, with numbers, what is gone, and code.
+
+class Cards {
+  constructor(page) {
+    this.page = page;
+  }
+
+  cellContent(cell) {
+    const head = element(
+      "header",
+      { class: "cell-head" },
+      element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
+    );
+    const groups = new Map();
+    for (const component of cell.components) {
+      const { quantity } = this.page.inspection.meaning(component.name);
+      if (!groups.has(quantity)) groups.set(quantity, []);
+      groups.get(quantity).push(component);
+    }
+    const formulas = new Map(cell.formulas.map(({ quantity, text }) => [quantity, text]));
+    // what the step is for comes first, what is needed on the way behind it
+    const order = [...groups.keys()].sort((a, b) => Number(formulas.has(b)) - Number(formulas.has(a)));
+    let isOnTheWay = false;
+    const sections = order.flatMap((quantity) => {
+      const of = this.page.inspection.quantities[quantity];
+      const formula = formulas.get(quantity);
+      const cards = groups.get(quantity).map((component) => this.card(component));
+      const heading = element(
+        "h4",
+        {},
+        formula ? this.page.set.formula(formula) : letterIn(of.letter),
+        element("span", { class: "group-meaning" }, this.page.inspection.words({ of, joint: cell.joint })),
+      );
+      const before = !formula && !isOnTheWay ? [element("p", { class: "on-the-way" }, "On the way")] : [];
+      isOnTheWay ||= !formula;
+      if (quantity === "rotation") {
+        return [...before, element("details", { class: "group" }, element("summary", {}, heading), ...cards)];
+      }
+      return [...before, element("section", { class: "group" }, heading, ...cards)];
+    });
+    return [head, ...sections];
+  }
+
+  /** A component: general, with this robot's numbers, what is gone and why, code; and its value. */
+  card(component) {
+    const { name, general, became, statements = [] } = component;
+    const isUnfolded = this.page.form === "unfolded";
+    const isStruck = !isUnfolded;
+    const symbol = (of) => this.page.set.symbol(of);
+    const equation = (leaf) => this.page.set.equation(this.page.set.symbol(name), general, leaf, isStruck);
+    const value = element("output", { class: "live value", "data-name": name });
+    const unitOf = unitText(this.page.inspection.unit(name));
+    this.page.live.push(() => {
+      const isHidden = this.page.exercise.hides(name, this.page.cell);
+      value.textContent = isHidden ? `? ${unitOf}` : withUnit(this.page.value(name), unitOf);
+      value.title = this.page.exercise.hides(name, this.page.cell) ? "" : full(this.page.value(name));
+    });
+    const lines = [["general", "in general", equation(symbol)]];
+    if (namesIn(general).some((of) => !Number.isNaN(this.page.inspection.constant(of)) || this.alias(of) !== of)) {
+      lines.push(["here", "this robot", equation((of) => this.here(of))]);
+    }
+    const gone = isUnfolded ? [] : this.page.set.gone(general);
+    if (gone.length) {
+      const byReason = new Map();
+      for (const one of gone) {
+        const why = one.why || "it vanishes";
+        if (!byReason.has(why)) byReason.set(why, []);
+        byReason.get(why).push(one);
+      }
+      const items = [...byReason].map(([why, all]) =>
+        element(
+          "li",
+          {},
+          ...all.flatMap((one, at) => [at ? ", " : null, this.goneTerm(one)]),
+          element("span", { class: "why" }, why),
+        ),
+      );
+      lines.push(["gone", "gone, why", element("ul", {}, ...items)]);
+    }
+    lines.push(["code", "code", this.codeOf(component, isUnfolded)]);
+    const rows = lines.map(([kind, label, content]) => [
+      element("dt", { class: kind }, label),
+      element("dd", { class: kind }, content),
+    ]);
+    const answer = this.page.exercise.isOn && became.kind !== "constant" ? this.question(name, unitOf) : null;
+    const head = element(
+      "header",
+      {},
+      math("math", {}, this.page.set.symbol(name)),
+      element("code", { class: "own-name pick", "data-name": name, tabindex: "-1" }, name),
+      value,
+      answer,
+    );
+    return element(
+      "article",
+      {
+        class: `component ${became.kind}`,
+        "data-component": name,
+        tabindex: "0",
+        "aria-label": this.page.set.label(name),
+      },
+      head,
+      element("dl", {}, ...rows.flat()),
+    );
+  }
+
+  goneTerm({ tree, left, sign }) {
+    const leaf = (of) => this.page.set.symbol(of);
+    const value = left === null ? short(this.page.equations.evaluate(tree)) : null;
+    const right =
+      typeof left === "string"
+        ? left === "0"
+          ? number("0")
+          : this.page.set.symbol(left.replace(/^-/, ""))
+        : left === null
+          ? number(value)
+          : this.page.set.tree(left, { leaf, isStruck: false, isRoot: false });
+    const isNegative = sign < 0 || (typeof left === "string" && left.startsWith("-"));
+    return math(
+      "math",
+      {},
+      math(
+        "mrow",
+        {},
+        this.page.set.tree(tree, { leaf, isStruck: false, isRoot: false }),
+        math("mo", {}, "="),
+        isNegative ? math("mo", { form: "prefix" }, "−") : null,
+        right,
+      ),
+    );
+  }
+
+  /** The name under which a value stands in the code, with a minus sign for its negative. */
+  alias(name) {
+    const component = this.page.inspection.components.get(name);
+    return component && component.became.kind === "same" ? component.became.name : name;
+  }
+
+  /** What stands in the place of a name for this robot: its number, or its other name. */
+  here(name) {
+    const constant = this.page.inspection.constant(name);
+    if (!Number.isNaN(constant)) {
+      const node = number(exact(constant));
+      const whole = constant < 0 ? math("mrow", {}, paren("("), node, paren(")")) : node;
+      return math(
+        "mrow",
+        { "data-name": name, class: "pick", tabindex: "-1", role: "button", "aria-label": `${name} = ${constant}` },
+        whole,
+      );
+    }
+    const alias = this.alias(name);
+    if (!alias.startsWith("-")) return this.page.set.symbol(alias);
+    return math(
+      "mrow",
+      {},
+      paren("("),
+      math("mo", { form: "prefix" }, "−"),
+      this.page.set.symbol(alias.slice(1)),
+      paren(")"),
+    );
+  }
+
+  /** The code of a component and its numbers, or why there is none. */
+  codeOf({ name, general, became, statements = [] }, isUnfolded) {
+    if (isUnfolded) return this.codeLine({ name, value: general, rust: `let ${name} = ${codeOf(general)};` });
+    if (statements.length) return element("div", {}, ...statements.map((statement) => this.codeLine(statement)));
+    const said = {
+      same: () => [
+        `it is `,
+        element("code", { "data-name": became.name.replace(/^-/, ""), class: "pick", tabindex: "-1" }, became.name),
+        ": no statement",
+      ],
+      constant: () => [`it is ${exact(became.value)} in every state: no statement`],
+      inside: () => ["inside the statement that uses it: ", ...this.users(name)],
+      unused: () => ["no torque needs it: no statement"],
+    }[became.kind];
+    return element("p", { class: "no-code" }, ...(said ? said() : []));
+  }
+
+  users(name) {
+    const computed = (this.page.inspection.usedBy.get(name) || []).filter(
+      (user) => this.page.inspection.components.get(user).statements,
+    );
+    return computed
+      .slice(0, 4)
+      .flatMap((user, at) => [
+        at ? ", " : "",
+        element("code", { class: "pick", "data-name": user, tabindex: "-1" }, user),
+      ]);
+  }
+
+  /** A statement in the language of choice, and below it the same with numbers. */
+  codeLine(statement, program = this.page.folded, isKnown) {
+    const { name, value } = statement;
+    const text = this.textOf(statement);
+    const read = (of) => (program === this.page.folded ? this.page.shown(of) : short(program.value(of)));
+    const pieces = [];
+    const numbers = codeOf(value)
+      .split(/([A-Za-z_][A-Za-z_0-9]*)/)
+      .map((piece) => {
+        if (!/^[A-Za-z_]/.test(piece) || piece === "sin" || piece === "cos")
+          return piece.replaceAll("*", "×").replaceAll("-", "−");
+        const at = element("span", { "data-name": piece });
+        pieces.push([at, piece]);
+        return at;
+      });
+    const result = element("b", {});
+    this.page.live.push(() => {
+      for (const [at, piece] of pieces) {
+        const told = read(piece);
+        at.textContent = told.startsWith("−") ? `(${told})` : told;
+      }
+      result.textContent = read(name);
+    });
+    return element(
+      "div",
+      { class: "statement" },
+      element(
+        "code",
+        { "data-name": name, class: "line pick", tabindex: "-1" },
+        ...this.page.set.code(text, isKnown),
+      ),
+      element("span", { class: "numbers", "aria-hidden": "true" }, "= ", ...numbers, " = ", result),
+    );
+  }
+
+  /** A statement in the language of choice, in one line: it breaks where the page is narrow. */
+  textOf({ name, value, rust }) {
+    return this.page.language === "c"
+      ? `const double ${name} = ${codeOf(value, true)};`
+      : rust.replace(/\n\s*/g, " ");
+  }
+
+  reducedCode() {
+    const { programs } = this.page.inspection;
+    const known = (name) => Object.hasOwn(programs.reduced.names, name);
+    const lines = programs.reduced.statements.map((statement) => this.codeLine(statement, this.page.reduced, known));
+    const torques = element("p", { class: "hint" });
+    this.page.live.push(() => {
+      const result = this.page.reduced.outputs.map((output) => output());
+      const [own, others] = [result, this.page.split.free].map((torques) => torques.map(short).join(", "));
+      torques.textContent = `Its torques here: ${own}; those of the seven steps: ${others}.`;
+    });
+    return [
+      element("header", { class: "cell-head" }, element("h3", {}, "The reduced form")),
+      element(
+        "p",
+        { class: "hint" },
+        "The same torques with the fewest operations that are known. Only the torques keep a meaning: " +
+          "its vectors are in frames of its own, of matter that is regrouped.",
+      ),
+      torques,
+      element(
+        "div",
+        { class: "listing", tabindex: "0", role: "group", "aria-label": "statements of the reduced form" },
+        ...lines,
+      ),
+    ];
+  }
+
+  question(name, unitOf) {
+    const input = element("input", {
+      type: "text",
+      inputmode: "text",
+      autocomplete: "off",
+      "data-exercise": name,
+      "aria-label": `value of ${name}, ${unitOf}`,
+      size: "9",
+      placeholder: "?",
+    });
+    const said = element("span", { class: "answer", role: "status" });
+    const check = () => {
+      const { isRight, text } = this.page.exercise.answer(name, input.value);
+      said.textContent = text;
+      said.className = `answer ${text ? (isRight ? "right" : "wrong") : ""}`;
+      input.setAttribute("aria-invalid", String(Boolean(text) && !isRight));
+      this.page.bars.update(this.page.split, (joint) => this.page.exercise.hides(`tau${joint}`, this.page.cell));
+      for (const paint of this.page.live) paint();
+      this.page.reading.readout();
+    };
+    input.addEventListener("change", check);
+    input.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") check();
+    });
+    return element("span", { class: "question" }, input, said);
+  }
+}
+
+/** A letter by itself in a line of text. */
+function letterIn(text) {
+  return math("math", {}, letter(text));
+}

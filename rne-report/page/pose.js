@@ -1,0 +1,103 @@
+// Where the links are, by the rotations and lengths of the equations: what is needed to draw, and no dynamics.
+
+// ---- vectors of three numbers, and matrices of three rows
+
+const add = (a, b) => [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+const minusV = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const times = (a, s) => [a[0] * s, a[1] * s, a[2] * s];
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const norm = (a) => Math.hypot(...a);
+const unit = (a) => times(a, 1 / (norm(a) || 1));
+const turn = (m, v) => [dot(m[0], v), dot(m[1], v), dot(m[2], v)];
+const column = (m, at) => [m[0][at], m[1][at], m[2][at]];
+const product = (a, b) => a.map((row) => [0, 1, 2].map((at) => dot(row, column(b, at))));
+
+function turnX(angle) {
+  const [s, c] = [Math.sin(angle), Math.cos(angle)];
+  return [
+    [1, 0, 0],
+    [0, c, -s],
+    [0, s, c],
+  ];
+}
+
+/** Rz(yaw) Ry(pitch) Rx(roll). */
+function ofAngles([roll, pitch, yaw]) {
+  const [sp, cp, sy, cy] = [Math.sin(pitch), Math.cos(pitch), Math.sin(yaw), Math.cos(yaw)];
+  return product(
+    product(
+      [
+        [cy, -sy, 0],
+        [sy, cy, 0],
+        [0, 0, 1],
+      ],
+      [
+        [cp, 0, sp],
+        [0, 1, 0],
+        [-sp, 0, cp],
+      ],
+    ),
+    turnX(roll),
+  );
+}
+
+const AXES = ["x", "y", "z"];
+
+/** Where everything stands in the world, by the rotations and lengths of the equations. */
+class Pose {
+  constructor(inspection, value, q) {
+    const { robot, dof } = inspection;
+    const isModified = robot.convention === "modified";
+    const vector = (stem) => AXES.map((axis) => value(`${stem}_${axis}`));
+    // a rotation that is none is not in the code
+    const rotation = (joint) =>
+      AXES.map((row) =>
+        AXES.map((of) => {
+          const found = value(`rot${joint}_${row}${of}`);
+          return Number.isNaN(found) ? Number(row === of) : found;
+        }),
+      );
+    const base = ofAngles(robot.base.rpy);
+    this.rotations = [base];
+    this.joints = [robot.base.xyz];
+    this.coms = [robot.base.xyz];
+    this.elbows = [robot.base.xyz];
+    this.frames = [{ at: robot.base.xyz, axes: base }];
+    let at = isModified ? add(robot.base.xyz, times(column(base, 0), robot.joints[0].a)) : robot.base.xyz;
+    for (let joint = 1; joint <= dof; joint++) {
+      const row = robot.joints[joint - 1];
+      const turned = product(this.rotations[joint - 1], rotation(joint));
+      const [d, r] = [vector(`d${joint}`), vector(`r${joint}`)];
+      const b = row.d + (row.kind === "prismatic" ? q[joint - 1] : 0);
+      const here = (local) => add(at, turn(turned, local));
+      this.rotations.push(turned);
+      this.joints.push(at);
+      this.elbows.push(here([0, 0, b]));
+      this.coms.push(here(d));
+      this.frames.push(
+        isModified
+          ? { at: here([0, 0, b]), axes: turned }
+          : { at: here([row.a, 0, b]), axes: product(turned, turnX(row.alpha)) },
+      );
+      at = here(add(d, r));
+    }
+    this.joints.push(at);
+    this.rotations.push(product(this.rotations[dof], rotation(dof + 1)));
+    this.frames.push({ at, axes: this.rotations[dof + 1] });
+  }
+}
+
+/** A vector of a link, in axes fixed to it, in the lecture's axes, fixed to the link before: turned by θ about z. */
+function inLectureAxes(row, q, vector) {
+  const angle = row.theta + (row.kind === "revolute" ? q : 0);
+  const [s, c] = [Math.sin(angle), Math.cos(angle)];
+  return turn(
+    [
+      [c, -s, 0],
+      [s, c, 0],
+      [0, 0, 1],
+    ],
+    vector,
+  );
+}
