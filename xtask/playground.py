@@ -158,7 +158,8 @@ def mistakes(driver, rne, puma):
     check(driver.find_element(By.ID, "shown").get_attribute("data-state") == "good", "the page stays dimmed")
     check(not driver.find_elements(By.CSS_SELECTOR, "#ink .mark.error"), "what is mended stays underlined")
     # characters beyond ASCII and beyond the first plane before the mistake, in its line and above
-    odd = "# \U0001f916 ärm\n" + puma.replace("- name: j1", '- {name: "\U0001f916 ä", tpye: revolute}', 1)
+    odd = ("format: 1\nname: odd\nsource: \U0001f916 ä\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n"
+           '  - {name: "\U0001f916 ä", tpye: revolute, dh: {theta: 0, d: 0, a: 0.5, alpha: 0}, link: {mass: 1}}\n')
     for wrong in (odd, puma.replace("format: 1", "format: 1\n\tname"), "", "joints: [", puma + "\nnames: 3\n"):
         typed(driver, wrong)
         said, right = messages(driver), complaints(rne, wrong)

@@ -4,8 +4,8 @@
 //! bytes the answer has, then [`word`] for each four of them. Only integers cross: no address, no memory that both
 //! sides write, and so nothing that the compiler of Rust could not check.
 //!
-//! `unsafe` is here the attribute alone that keeps the names of the exports, and it is sound: what it asks for is that no
-//! other symbol of the module has these names. They start with `rne_`, and the linker refuses two of one name.
+//! `unsafe` is here the attribute alone that keeps the names of the exports, and it is sound: what it asks for is that
+//! no other symbol of the module has these names. They start with `rne_`, and the linker refuses two of one name.
 #![allow(unsafe_code)]
 
 use std::cell::RefCell;

@@ -30,8 +30,8 @@ const SCRIPTS: [&str; 4] = ["compiler.js", "editor.js", "share.js", "playground.
 
 /// Builds the playground, one page of HTML with the compiler as WebAssembly inside, and serves it
 ///
-/// A robot file is edited in the browser; what is wrong with it is underlined, and the page of `rne report` follows. The
-/// page is target/playground/index.html. It loads nothing, so any web site can have it, and it opens as a file too.
+/// A robot file is edited in the browser; what is wrong with it is underlined, and the page of `rne report` follows.
+/// The page is target/playground/index.html. It loads nothing, so any web site can have it, and it opens as a file too.
 #[derive(Args)]
 #[command(after_help = "\
 Needs the target wasm32-unknown-unknown of rustup's compiler. --test needs what
