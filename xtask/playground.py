@@ -3,6 +3,7 @@
 Usage: python playground.py RNE PAGE     RNE is the binary; `cargo xtask playground --test` calls it.
 """
 
+import base64
 import pathlib
 import random
 import re
@@ -11,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import zlib
 from functools import partial
 from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
@@ -202,12 +204,21 @@ def links(driver, address, heavier):
     opened(driver, link)
     check(text(driver) == odd, "the text of a link is another one")
     check("Ärm" in driver.title, f"the title of a link is {driver.title!r}")
+    chosen(driver, "ur5")
+    driver.back()
+    WebDriverWait(driver, 30).until(lambda driver: text(driver) == odd)
+    settled(driver)
     print(f"  a link of {len(odd)} characters has {len(link)}")
     opened(driver, address + "#robot=planar2")
     check(driver.find_element(By.ID, "robots").get_attribute("value") == "planar2", "#robot=planar2 opens another one")
     driver.execute_script("location.hash = '#robot=stanford'")
     WebDriverWait(driver, 30).until(lambda driver: "stanford" in text(driver))
     settled(driver)
+    # `format: 2`, deflated by another program
+    deflated = zlib.compress(b"format: 2", wbits=-15)
+    opened(driver, address + "#text=" + base64.urlsafe_b64encode(deflated).decode().rstrip("="))
+    check(text(driver) == "format: 2", f"a link made elsewhere is {text(driver)!r}")
+    check(len(messages(driver)) > 0 and "1 mistake" in status(driver), f"a link to a mistake: {status(driver)!r}")
     for damaged in ("#text=AAAA", "#text=%%%", "#robot=nobody"):
         opened(driver, address + damaged)
         check(re.search("damaged|is shipped", status(driver)), f"{damaged}: {status(driver)!r}")

@@ -42,13 +42,19 @@ class Playground {
       problem = error.message;
     }
     this.problem = problem;
+    this.fragment = location.hash;
     this.take(text ?? this.robots.find(({ name }) => name === FIRST).text);
   }
 
   choose(name) {
     const robot = this.robots.find((one) => one.name === name);
-    if (robot) this.take(robot.text);
-    else this.tellRobot();
+    if (!robot) {
+      this.tellRobot();
+      return;
+    }
+    // the way back in the browser leads to the text that was here
+    history.pushState(null, "", location.hash);
+    this.take(robot.text);
   }
 
   /** Takes another text as a whole. */

@@ -125,10 +125,9 @@ fn module(folder: &Path) -> Result<Vec<u8>> {
     if !fetched.status.success() {
         return Err(Missing::error("its crates cannot be downloaded (cargo fetch in playground/ says why)"));
     }
-    let build = cmd!(
-        shell,
-        "cargo build --quiet --locked --release --lib --manifest-path {manifest} --target {TARGET} --target-dir {folder}"
-    );
+    let build =
+        cmd!(shell, "cargo build --quiet --locked --release --lib --manifest-path {manifest} --target {TARGET}");
+    let build = build.arg("--target-dir").arg(folder);
     // where the sources lie is in the places of panics, and nobody's business
     let sources = format!("--remap-path-prefix={}=", machine::root().display());
     let home =
