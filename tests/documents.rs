@@ -524,8 +524,9 @@ fn no_test_asks_the_clock_but_to_print() {
 #[test]
 fn unsafe_stands_in_one_module() {
     let mut found = files_that_say(&[concat!("allow(", "unsafe_code)"), concat!("expect(", "unsafe_code)")]);
-    found.retain(|name| name.starts_with("rne-") || name.starts_with("src/"));
-    assert_eq!(found, ["rne-runtime/src/batch/x86_register.rs"]);
+    found.retain(|name| ["rne-", "src/", "playground/"].iter().any(|folder| name.starts_with(folder)));
+    // the other is an attribute, the name of an export
+    assert_eq!(found, ["playground/src/border.rs", "rne-runtime/src/batch/x86_register.rs"]);
 }
 
 #[test]

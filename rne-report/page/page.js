@@ -442,6 +442,8 @@ window.rne = {
   torques: () => page.folded.run(page.given),
   value: (name) => page.value(name),
   select: (name) => page.reading.select(name),
+  view: () => viewOf(page),
+  show: (view) => showView(page, view),
 };
 requestAnimationFrame(() =>
   requestAnimationFrame(() => {

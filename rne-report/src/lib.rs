@@ -29,7 +29,7 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 13] = [
+pub const SCRIPTS: [(&str, &str); 14] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
@@ -42,6 +42,7 @@ pub const SCRIPTS: [(&str, &str); 13] = [
     ("exercise.js", include_str!("../page/exercise.js")),
     ("cell.js", include_str!("../page/cell.js")),
     ("reading.js", include_str!("../page/reading.js")),
+    ("view.js", include_str!("../page/view.js")),
     ("page.js", include_str!("../page/page.js")),
 ];
 

@@ -17,6 +17,7 @@ mod mutate;
 mod package;
 mod page;
 mod performance;
+mod playground;
 mod prose;
 mod single_calls;
 mod tool;
@@ -64,6 +65,7 @@ enum Task {
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Page(page::Page),
+    Playground(playground::Playground),
 }
 
 /// What a task found.
@@ -99,6 +101,7 @@ impl Task {
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
+            Self::Playground(task) => ("playground", task.install, task.run()),
         }
     }
 }

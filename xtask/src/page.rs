@@ -1,8 +1,10 @@
 //! The page of `rne report` in a real browser.
 
+use std::path::PathBuf;
+
 use anyhow::Result;
 use clap::Args;
-use xshell::cmd;
+use xshell::{Shell, cmd};
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
@@ -37,36 +39,43 @@ pub(crate) struct Page {
 impl Page {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
-        let target = machine::target_folder("target")?;
-        let venv = target.join("page/venv");
-        let python = venv.join("bin/python");
-        if !(machine::has("chromium") && machine::has("chromedriver")) {
-            machine::packages(&BROWSER, self.install)?;
-        }
-        let can_import = || {
-            python.exists()
-                && cmd!(shell, "{python} -c 'import selenium, axe_core_python, PIL'")
-                    .quiet()
-                    .ignore_stderr()
-                    .run()
-                    .is_ok()
-        };
-        if !can_import() {
-            if !self.install {
-                return Err(Missing::error("there is no Selenium; `cargo xtask page --install` gets it"));
-            }
-            if cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
-                return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
-            }
-            let packages = PACKAGES;
-            let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
-            if install.quiet().run().is_err() {
-                return Err(Missing::error("Selenium cannot be fetched"));
-            }
-        }
-        machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
-        let (rne, folder) = (target.join("debug/rne"), target.join("page"));
+        let python = python(&shell, self.install)?;
+        let rne = rne(&shell)?;
+        let folder = machine::target_folder("target")?.join("page");
         let pictures: &[&str] = if self.pictures { &["docs/pictures"] } else { &[] };
         Ok(Verdict::from(cmd!(shell, "{python} xtask/page.py {rne} {folder} {pictures...}").quiet().run().is_ok()))
     }
+}
+
+/// Python with a client of the browser, and the browser; with `install`, what is missing is got.
+pub(crate) fn python(shell: &Shell, install: bool) -> Result<PathBuf> {
+    let venv = machine::target_folder("target")?.join("page/venv");
+    let python = venv.join("bin/python");
+    if !(machine::has("chromium") && machine::has("chromedriver")) {
+        machine::packages(&BROWSER, install)?;
+    }
+    let can_import = || {
+        let imports = cmd!(shell, "{python} -c 'import selenium, axe_core_python, PIL'");
+        python.exists() && imports.quiet().ignore_stderr().run().is_ok()
+    };
+    if !can_import() {
+        if !install {
+            return Err(Missing::error("there is no Selenium; `cargo xtask page --install` gets it"));
+        }
+        if cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
+            return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
+        }
+        let packages = PACKAGES;
+        let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
+        if install.quiet().run().is_err() {
+            return Err(Missing::error("Selenium cannot be fetched"));
+        }
+    }
+    Ok(python)
+}
+
+/// The command line, built anew.
+pub(crate) fn rne(shell: &Shell) -> Result<PathBuf> {
+    machine::without_flags(cmd!(shell, "cargo build --quiet --package rne-cli")).quiet().run()?;
+    Ok(machine::target_folder("target")?.join("debug/rne"))
 }

@@ -120,6 +120,13 @@ const STEPS: &[Step] = &[
         needs: Needs::Nothing,
     },
     Step {
+        name: "playground",
+        about: "the compiler as WebAssembly in a page, in headless Chromium",
+        variables: &[],
+        command: &["cargo", "xtask", "playground", "--install", "--no-serve", "--test"],
+        needs: Needs::Nothing,
+    },
+    Step {
         name: "book",
         about: "the lecture as a book",
         variables: &[],
