@@ -6,6 +6,7 @@ const KINDS = {
   omega_dot: ["turn", true],
   rate: ["turn", true],
   rate_dot: ["turn", true],
+  twice_rate: ["turn", true],
   angular_momentum: ["turn", true],
   joint_moment: ["moment", true],
   inertia_moment: ["moment", true],
@@ -18,6 +19,9 @@ const KINDS = {
   d: ["length", false],
   r: ["length", false],
 };
+
+/** What is along the axis of its joint: one number. */
+const AXIAL = ["torque", "rate", "rate_dot", "twice_rate"];
 
 /** The vectors that can be shown for all links at once, and the step that computes them. */
 const LAYERS = [
@@ -113,7 +117,9 @@ class Arm {
   arrow(quantity, joint) {
     const key = `${quantity}-${joint}`;
     if (!this.arrows.has(key)) {
-      const [kind, isAxial] = KINDS[quantity] || ["motion", false];
+      const isSlide = AXIAL.includes(quantity) && this.inspection.isPrismatic(joint);
+      const slides = quantity === "torque" ? ["force", false] : ["motion", false];
+      const [kind, isAxial] = isSlide ? slides : KINDS[quantity] || ["motion", false];
       const of = this.inspection.quantities[quantity];
       if (!of || !of.drawn || joint < 0) return null;
       const parts = {
@@ -173,7 +179,7 @@ class Arm {
   vector({ quantity, joint, of }) {
     if (of.drawn === "axis") {
       const name = this.inspection.nameOf(quantity, joint);
-      return name && of.units[0] && quantity !== "position" ? [0, 0, this.value(name)] : null;
+      return name && AXIAL.includes(quantity) ? [0, 0, this.value(name)] : null;
     }
     if (!of.axes) return null;
     const names = AXES.map((axis) => this.inspection.nameOf(quantity, joint, axis));
@@ -205,14 +211,18 @@ class Arm {
     this.extent = this.size;
   }
 
-  project(point) {
+  /** From where the arm is seen: the axes of the screen in the world. */
+  seenFrom() {
     const { yaw, pitch } = this.look;
     const flat = add(times(this.east, Math.cos(yaw)), times(this.north, Math.sin(yaw)));
     const toViewer = add(times(flat, Math.cos(pitch)), times(this.up, Math.sin(pitch)));
     const right = cross(this.up, flat);
-    const over = cross(toViewer, right);
+    return { toViewer, right, over: cross(toViewer, right), far: 5 * this.extent };
+  }
+
+  project(point) {
+    const { toViewer, right, over, far } = this.view;
     const of = minusV(point, this.centre);
-    const far = 5 * this.extent;
     const depth = dot(of, toViewer);
     const scale = (this.pixels * far) / Math.max(far - depth, far / 10);
     return {
@@ -223,16 +233,22 @@ class Arm {
     };
   }
 
-  /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
-  draw(q) {
+  /** Asks for the size of the picture: only when it changed, for the answer waits for the layout of the page. */
+  measure() {
     this.width = this.root.clientWidth || 600;
     this.height = this.root.clientHeight || 450;
     this.root.setAttribute("viewBox", `0 0 ${this.width} ${this.height}`);
+  }
+
+  /** Draws the arm at a state; `lit` are the keys of arrows that are shown whatever layers there are. */
+  draw(q) {
+    if (!this.width) this.measure();
     const pose = (this.pose = new Pose(this.inspection, this.value, q));
     if (!this.centre) this.fit([pose]);
     const reach = Math.max(...pose.joints.map((point) => norm(minusV(point, this.centre))));
     this.extent = Math.max(this.size, reach * 1.02);
     this.pixels = (0.39 * Math.min(this.width, this.height * 1.1) * this.look.zoom) / this.extent;
+    this.view = this.seenFrom();
     this.drawFloor();
     this.drawSolids(pose);
     this.drawMarks(pose);
@@ -241,6 +257,10 @@ class Arm {
   }
 
   drawFloor() {
+    // it stands still while the arm moves
+    const seen = [this.look.yaw, this.look.pitch, this.pixels, this.extent, this.width, this.height].join();
+    if (seen === this.floorSeen) return;
+    this.floorSeen = seen;
     const span = this.size * 0.95;
     const step = niceAbove(span / 4);
     const count = Math.ceil(span / step);

@@ -86,7 +86,7 @@ class Cards {
     const head = element(
       "header",
       {},
-      math("math", {}, this.page.set.symbol(name)),
+      math("math", { "data-name": name }, this.page.set.symbol(name, false)),
       element("code", { class: "own-name pick", "data-name": name, tabindex: "-1" }, name),
       value,
       answer,
@@ -118,7 +118,7 @@ class Cards {
     const isNegative = sign < 0 || (typeof left === "string" && left.startsWith("-"));
     return math(
       "math",
-      {},
+      { role: "group" },
       math(
         "mrow",
         {},

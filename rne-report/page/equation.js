@@ -194,7 +194,9 @@ class Typesetter {
         const unit = this.unitFactor(tree);
         const factors = parts.map((part, at) => {
           const node = set(part, 2);
-          return isStruck && at === unit ? this.strike(node, tree, "one") : node;
+          if (!isStruck || at !== unit) return node;
+          // of a factor -1 the sign is left
+          return this.inspection.constant(part) < 0 ? this.sign(node, tree) : this.strike(node, tree, "one");
         });
         const isNumeric = factors.some((factor) => factor.querySelector?.("mn.value") || factor.matches("mn"));
         const times = math("mo", isNumeric ? { lspace: "0.12em", rspace: "0.12em" } : {}, isNumeric ? "·" : "\u2062");
@@ -233,18 +235,20 @@ class Typesetter {
   equation(left, tree, leaf, isStruck) {
     const right = this.tree(tree, { leaf, isStruck });
     const isSum = Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
+    // a formula as such is one thing to a screen reader; of this one the parts can be reached
+    const group = { role: "group" };
     const pieces = isSum ? [...right.children] : [right];
     return element(
       "div",
       { class: "equation" },
-      math("math", {}, left, math("mo", { form: "infix" }, "=")),
-      ...pieces.flatMap((piece) => [" ", math("math", {}, piece)]),
+      math("math", group, left, math("mo", { form: "infix" }, "=")),
+      ...pieces.flatMap((piece) => [" ", math("math", group, piece)]),
     );
   }
 
   /** A term of a sum, which can be pointed at. */
   term(node, tree, sign) {
-    const term = math("mrow", { class: "term pick", tabindex: "-1", role: "button" }, node);
+    const term = math("mrow", { class: "term pick", tabindex: "-1", role: "group" }, node);
     term.tree = tree;
     term.sign = sign;
     term.setAttribute("aria-label", codeOf(tree) + (this.isGone(tree) ? `, gone: ${this.why(tree)}` : ""));
@@ -255,13 +259,17 @@ class Typesetter {
     const why = `${how === "one" ? "a factor of 1" : "gone"}: ${this.why(tree) || "it is zero"}`;
     const struck = math(
       "mrow",
-      { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "button" },
+      { class: `struck ${how} pick`, "data-why": why, tabindex: "-1", role: "group" },
       node,
     );
     struck.setAttribute("aria-label", `${codeOf(tree)}, ${why}`);
     struck.tree = tree;
     struck.sign = 1;
     return struck;
+  }
+
+  sign(node, tree) {
+    return math("mrow", { class: "folded", "data-why": `a sign, no product: ${this.why(tree)}` }, node);
   }
 
   /** What is computed elsewhere or is never needed looks different, and is no strike. */
@@ -277,31 +285,27 @@ class Typesetter {
 
   /** A formula between vectors, such as ω2 = R2ᵀ ω1 + q̇2 e. */
   formula(text) {
-    const row = [];
+    // a line of terms, which breaks between them
+    const terms = [[]];
+    let depth = 0;
     const pieces = text.normalize("NFD").match(/[A-Za-zα-ω][\u0300-\u036f]*(?:\d+(?:,\d+)?)?ᵀ?|\d+|\s+|./gu) || [];
     for (const piece of pieces) {
+      depth += { "(": 1, ")": -1 }[piece] || 0;
+      const isOperator = ["+", "-", "="].includes(piece);
+      if (isOperator && depth === 0) terms.push([]);
+      const row = terms[terms.length - 1];
       const found = /^([A-Za-zα-ω][\u0300-\u036f]*)(\d+(?:,\d+)?)?(ᵀ)?$/u.exec(piece);
       if (found) {
-        const base = letter(found[1]);
-        const low = found[2] ? math("mn", {}, found[2]) : null;
-        const high = found[3] ? math("mi", { mathvariant: "normal" }, "T") : null;
-        row.push(
-          low && high
-            ? math("msubsup", {}, base, low, high)
-            : low
-              ? math("msub", {}, base, low)
-              : high
-                ? math("msup", {}, base, high)
-                : base,
-        );
-        row.push(math("mspace", { width: "0.1em" }));
+        row.push(withIndices(letter(found[1]), found[2], found[3]), math("mspace", { width: "0.1em" }));
       } else if (/^\d+$/.test(piece)) {
         row.push(math("mn", {}, piece));
+      } else if (/[()]/.test(piece)) {
+        row.push(paren(piece));
       } else if (piece.trim()) {
-        row.push(/[()]/.test(piece) ? paren(piece) : math("mo", {}, piece === "-" ? "−" : piece));
+        row.push(math("mo", isOperator ? { form: "infix" } : {}, piece === "-" ? "−" : piece));
       }
     }
-    return math("math", {}, math("mrow", {}, ...row));
+    return element("span", { class: "formula" }, ...terms.flatMap((row) => [math("math", {}, ...row), " "]));
   }
 
   /** A line of code whose names can be pointed at. */
@@ -313,6 +317,15 @@ class Typesetter {
       return element("span", { "data-name": piece, class: "pick", tabindex: "-1", role: "button" }, piece);
     });
   }
+}
+
+/** A letter with its index and the sign of the transpose, where it has them. */
+function withIndices(base, low, isTransposed) {
+  const index = low ? math("mn", {}, low) : null;
+  const transposed = isTransposed ? math("mi", { mathvariant: "normal" }, "T") : null;
+  if (index && transposed) return math("msubsup", {}, base, index, transposed);
+  if (index) return math("msub", {}, base, index);
+  return transposed ? math("msup", {}, base, transposed) : base;
 }
 
 function paren(text) {

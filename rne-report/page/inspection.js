@@ -34,7 +34,8 @@ class Inspection {
       }
     }
     const folded = data.programs.folded;
-    for (const { became } of this.components.values()) {
+    for (const component of this.components.values()) {
+      const became = (component.became ||= { kind: "computed" });
       if (became.why !== undefined) became.why = data.reasons[became.why];
     }
     this.statements = new Map();

@@ -53,7 +53,7 @@ class Page {
     this.reading.listen();
 
     this.from = [...this.initial.q];
-    this.to = ordinaryPose(robot, [-0.9, 0.7, -0.3, 0.9, -0.8, -0.9, 1.0]);
+    this.to = ordinaryPose(robot, [-0.9, 1.1, -0.3, 0.9, -0.8, -0.9, 1.0]);
     this.given = argumentsOf(this.state);
     this.equations.set(this.given);
     this.arm.fit([this.poseAt(this.state.q)]);
@@ -157,8 +157,10 @@ class Page {
         const button = document.querySelector(`[data-switch="${name}"]`);
         if (name === "reduced" && !this.reduced) button.disabled = true;
         button.addEventListener("click", () => {
-          choose(group, name);
-          act[index](name);
+          // an exercise ends where it began
+          const chosen = name === "exercise" && this.exercise.isOn ? "shown" : name;
+          choose(group, chosen);
+          act[index](chosen);
         });
       }
       choose(group, ["folded", "rust", "shown", "auto"][index]);
@@ -267,7 +269,7 @@ class Page {
     for (let joint = 1; joint <= this.inspection.dof; joint++) {
       const button = element(
         "button",
-        { type: "button", "data-plot": joint, "aria-pressed": String(joint === 1) },
+        { type: "button", "data-plot": joint, "aria-pressed": String(joint === this.plot.joint) },
         `τ${joint}`,
       );
       button.addEventListener("click", () => this.plotJoint(joint));

@@ -55,13 +55,18 @@ class Program {
     this.arguments = record.arguments.map((name) => [name, slot(name)]);
     for (const [name, value] of record.constants) slot(name, value);
     this.steps = [];
-    for (const angle of record.angles) this.steps.push(assign(angle.name, compiled(angle.value, read)));
+    // a statement whose text is not shown is its name and its value
+    const state = (of) => {
+      const [name, value] = Array.isArray(of) ? of : [of.name, of.value];
+      this.steps.push(assign(name, compiled(value, read)));
+    };
+    record.angles.forEach(state);
     for (const { sine, cosine, angle } of record.sines_and_cosines) {
       const of = compiled(angle, read);
       if (sine) this.steps.push(assign(sine, () => Math.sin(of())));
       if (cosine) this.steps.push(assign(cosine, () => Math.cos(of())));
     }
-    for (const { name, value } of record.statements) this.steps.push(assign(name, compiled(value, read)));
+    record.statements.forEach(state);
     this.outputs = record.outputs.map(([, value]) => compiled(value, read));
     this.values = new Float64Array(values);
   }

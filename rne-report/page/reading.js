@@ -45,7 +45,7 @@ class Reading {
       told.frame = this.page.inspection.axes(meaning);
     } else if (of.drawn === "axis") {
       told.axis = joint;
-      if (["torque", "rate", "rate_dot"].includes(quantity)) told.arrows = [`${quantity}-${joint}`];
+      if (AXIAL.includes(quantity)) told.arrows = [`${quantity}-${joint}`];
     } else if (of.drawn === "frame") {
       told.frame = joint;
     } else if (of.drawn === "link") {
@@ -302,6 +302,7 @@ class Reading {
     });
     document.addEventListener("keydown", (event) => this.key(event));
     new ResizeObserver(() => {
+      this.page.arm.measure();
       this.page.arm.draw(this.page.state.q);
       this.page.plot.draw();
     }).observe(byId("arm"));

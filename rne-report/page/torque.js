@@ -53,7 +53,7 @@ class Bars {
       const name = `tau${index + 1}`;
       const label = element(
         "button",
-        { type: "button", class: "torque-name pick", "data-name": name },
+        { type: "button", class: "torque-name pick", "data-name": name, "aria-label": `torque ${index + 1}` },
         math("math", {}, math("msub", {}, math("mi", {}, "τ"), math("mn", {}, String(index + 1)))),
       );
       const [low, high] = [element("span", { class: "end low" }), element("span", { class: "end high" })];
@@ -104,7 +104,7 @@ class Bars {
 /** The torque of one joint over a motion. */
 class Plot {
   constructor(root, inspection, torques) {
-    Object.assign(this, { root, inspection, torques, joint: 1, time: 0 });
+    Object.assign(this, { root, inspection, torques, joint: Math.min(2, inspection.dof), time: 0 });
     this.curves = {};
     this.axes = svg("g", { class: "plot-axes" });
     root.append(this.axes);

@@ -9,8 +9,9 @@ use serde_json::{Map, Value, json};
 ///
 /// `robot`, `counts`, `quantities`, `reasons` and `cells` are those of the inspection of `torques`, which has
 /// equations. `names` has arrays of quantity, joint, component (or null) and part (where it is one). A component has
-/// its name, its equation and what became of it, with its reason by number. `programs` are three: `folded`, with the tip wrench as arguments
-/// `with_wrench`, and `reduced` with names of its own, for its frames are not those of the lecture.
+/// its name, its equation and, unless it is computed, what became of it, with its reason by number. `programs` are
+/// three: `folded`, with the tip wrench as arguments `with_wrench`, and `reduced` with names of its own, for its frames
+/// are not those of the lecture.
 #[must_use]
 pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Option<&Program>) -> Value {
     let folded = Inspection::new(robot, torques);
@@ -84,6 +85,8 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
                 });
                 became["why"] = json!(at);
             }
+            // nor is it told that one is computed
+            Became::Computed => return json!({ "name": component.name, "general": component.general }),
             _ => {}
         }
         json!({ "name": component.name, "general": component.general, "became": became })
@@ -91,13 +94,13 @@ fn components(all: &[Component], reasons: &mut Vec<String>) -> Value {
     all.iter().map(&mut told).collect()
 }
 
-/// The code that computes the outputs, with its text where that is shown.
+/// The code that computes the outputs, with its text where that is shown; else a statement is its name and its value.
 fn program(inspection: &Inspection, with_text: bool) -> Value {
     let told = |statement: &Statement| {
-        let mut told = json!({ "name": statement.name, "value": statement.value });
-        if with_text {
-            told["rust"] = json!(statement.rust);
+        if !with_text {
+            return json!([statement.name, statement.value]);
         }
+        let mut told = json!({ "name": statement.name, "value": statement.value, "rust": statement.rust });
         if let Some(component) = statement.component.as_ref().filter(|component| **component != statement.name) {
             told["component"] = json!(component);
         }
