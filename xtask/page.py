@@ -249,6 +249,13 @@ def exercise(driver, robot):
         field.send_keys(typed, Keys.ENTER)
         answer = driver.find_element(By.CSS_SELECTOR, '[data-component="w1_z"]').text.lower()
         check(told in answer, f"{robot}: {typed} for w1_z is answered without `{told}`: {answer!r}")
+    if robot == "stanford":
+        # q̇ ω × e of the slide, which counts twice
+        driver.find_element(By.CSS_SELECTOR, '[data-cell="3-4"]').click()
+        once = driver.execute_script("return rne.value('ddc3_x') - rne.value('w3_y') * rne.value('qd3')")
+        driver.find_element(By.CSS_SELECTOR, '[data-exercise="ddc3_x"]').send_keys(f"{once:.6f}", Keys.ENTER)
+        answer = driver.find_element(By.CSS_SELECTOR, '[data-component="ddc3_x"]').text
+        check("lost its factor 2" in answer, f"{robot}: half a Coriolis term is answered by {answer!r}")
     driver.execute_script("arguments[0].click()", driver.find_element(By.CSS_SELECTOR, '[data-switch="exercise"]'))
 
 
