@@ -6,6 +6,7 @@ Usage: python page.py RNE FOLDER [PICTURES]     RNE is the binary, pages go to F
 import json
 import pathlib
 import random
+import re
 import shutil
 import statistics
 import subprocess
@@ -124,6 +125,33 @@ def statements(driver, robot, inspection):
     print(f"  {back} arrows lead back")
 
 
+def reasons(driver, robot, inspection):
+    """What a card calls gone, and what uses it, are what the inspection says of the component."""
+    code = {of["name"]: re.findall(r"\w+", of["rust"].split("=", 1)[1]) for of in inspection["statements"]}
+    told = used = 0
+    for cell in inspection["cells"]:
+        driver.find_element(By.CSS_SELECTOR, f'[data-cell="{cell["joint"]}-{cell["step"]}"]').click()
+        cards = driver.execute_script(
+            """
+            const texts = (card, of) => [...card.querySelectorAll(of)].map(found => found.textContent);
+            return Object.fromEntries([...document.querySelectorAll("[data-component]")].map(card =>
+              [card.dataset.component, [texts(card, "dd.gone .why"), texts(card, "dd.users code")]]));
+            """)
+        for component in cell["components"]:
+            name = component["name"]
+            whys, users = cards[name]
+            right = {of["why"] for of in component["folded"]}
+            # `rne show` names products alone; a term that is one name stands on the page, too
+            check(right <= set(whys), f"{robot}: {name} is gone because {sorted(right)}, on the page {whys}")
+            told += len(right)
+            own = set(component["statements"])
+            readers = [reader for reader, names in code.items() if reader not in own and own & set(names)]
+            check(users == readers, f"{robot}: {name} is used by {readers}, on the page by {users}")
+            used += bool(users)
+    check(told > 0 and used > 0, f"{robot}: no card tells a reason or a user")
+    print(f"  {told} reasons and the users of {used} components are those of the inspection")
+
+
 def sliders(driver, robot):
     slider = driver.find_element(By.CSS_SELECTOR, 'input[type=range][data-joint="1"][data-of="qdd"]')
     torque = driver.find_element(By.CSS_SELECTOR, '[data-torque="1"]')
@@ -221,6 +249,13 @@ def exercise(driver, robot):
         field.send_keys(typed, Keys.ENTER)
         answer = driver.find_element(By.CSS_SELECTOR, '[data-component="w1_z"]').text.lower()
         check(told in answer, f"{robot}: {typed} for w1_z is answered without `{told}`: {answer!r}")
+    if robot == "stanford":
+        # q̇ ω × e of the slide, which counts twice
+        driver.find_element(By.CSS_SELECTOR, '[data-cell="3-4"]').click()
+        once = driver.execute_script("return rne.value('ddc3_x') - rne.value('w3_y') * rne.value('qd3')")
+        driver.find_element(By.CSS_SELECTOR, '[data-exercise="ddc3_x"]').send_keys(f"{once:.6f}", Keys.ENTER)
+        answer = driver.find_element(By.CSS_SELECTOR, '[data-component="ddc3_x"]').text
+        check("lost its factor 2" in answer, f"{robot}: half a Coriolis term is answered by {answer!r}")
     driver.execute_script("arguments[0].click()", driver.find_element(By.CSS_SELECTOR, '[data-switch="exercise"]'))
 
 
@@ -270,6 +305,7 @@ def main():
             torques(driver, rne, robot, len(inspection["robot"]["joints"]))
             sliders(driver, robot)
             statements(driver, robot, inspection)
+            reasons(driver, robot, inspection)
             hover(driver, robot)
             keyboard(driver, robot)
             exercise(driver, robot)

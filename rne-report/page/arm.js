@@ -127,7 +127,7 @@ class Arm {
         shaft: svg("path", { class: "shaft" }),
         head: svg("path", { class: "head" }),
         part: svg("path", { class: "part" }),
-        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, String(joint))),
+        text: svg("text", {}, of.letter, svg("tspan", { class: "sub", dy: "0.3em" }, indexText({ quantity, joint }))),
       };
       const node = svg(
         "g",
@@ -414,7 +414,7 @@ class Arm {
     arrow.part.setAttribute("d", part);
     const unitOf = this.inspection.unitOf(quantity, joint);
     const said = of.drawn === "axis" ? short(numbers[2]) : numbers.map(short).join(", ");
-    arrow.node.setAttribute("aria-label", `${of.meaning}, ${joint}: ${said} ${unitText(unitOf)}`);
+    arrow.node.setAttribute("aria-label", `${this.inspection.words(arrow)}, ${joint}: ${said} ${unitText(unitOf)}`);
   }
 
   /** Lights arrows, joints, links and frames: `what` has sets of their keys and numbers. */

@@ -10,6 +10,7 @@ class Cards {
       "header",
       { class: "cell-head" },
       element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
+      element("p", { class: "hint" }, this.counts(cell)),
     );
     const groups = new Map();
     for (const component of cell.components) {
@@ -29,7 +30,12 @@ class Cards {
         "h4",
         {},
         formula ? this.page.set.formula(formula) : letterIn(of.letter),
-        element("span", { class: "group-meaning" }, this.page.inspection.words({ of, joint: cell.joint })),
+        element(
+          "span",
+          { class: "group-meaning" },
+          this.page.inspection.words({ of, joint: cell.joint }),
+          / e($| )/.test(formula || "") ? "; e = (0, 0, 1), the joint axis" : "",
+        ),
       );
       const before = !formula && !isOnTheWay ? [element("p", { class: "on-the-way" }, "On the way")] : [];
       isOnTheWay ||= !formula;
@@ -39,6 +45,13 @@ class Cards {
       return [...before, element("section", { class: "group" }, heading, ...cards)];
     });
     return [head, ...sections];
+  }
+
+  /** How many operations a cell has. */
+  counts({ before, after }) {
+    if (before.products + before.sums === 0) return "no operations";
+    if (this.page.form === "unfolded") return `${before.products} products, ${before.sums} sums`;
+    return `${after.products} of ${before.products} products left, ${after.sums} of ${before.sums} sums`;
   }
 
   /** A component: general, with this robot's numbers, what is gone and why, code; and its value. */
@@ -78,6 +91,8 @@ class Cards {
       lines.push(["gone", "gone, why", element("ul", {}, ...items)]);
     }
     lines.push(["code", "code", this.codeOf(component, isUnfolded)]);
+    const readers = isUnfolded ? [] : this.page.inspection.readersOf(component);
+    if (readers.length) lines.push(["users", "used by", element("span", {}, ...this.named(readers))]);
     const rows = lines.map(([kind, label, content]) => [
       element("dt", { class: kind }, label),
       element("dd", { class: kind }, content),
@@ -181,12 +196,15 @@ class Cards {
     const computed = (this.page.inspection.usedBy.get(name) || []).filter(
       (user) => this.page.inspection.components.get(user).statements,
     );
-    return computed
-      .slice(0, 4)
-      .flatMap((user, at) => [
-        at ? ", " : "",
-        element("code", { class: "pick", "data-name": user, tabindex: "-1" }, user),
-      ]);
+    return this.named(computed.slice(0, 4));
+  }
+
+  /** Names of the code in a line, each of which can be pointed at. */
+  named(names) {
+    return names.flatMap((name, at) => [
+      at ? ", " : "",
+      element("code", { class: "pick", "data-name": name, tabindex: "-1" }, name),
+    ]);
   }
 
   /** A statement in the language of choice, and below it the same with numbers. */

@@ -40,23 +40,22 @@ function letter(text) {
 
 /** The index of a name: 2x, or 1,2 x for what link 1 exerts on link 2. */
 function index(meaning) {
-  const { quantity, joint, component } = meaning;
+  const { component } = meaning;
   const of = [];
-  if (JOINTS_OF_BOTH.includes(quantity)) {
-    const end = quantity.startsWith("child") ? joint + 1 : joint;
-    of.push(math("mn", {}, String(end - 1)), math("mo", { separator: "true", lspace: "0", rspace: "0" }, ","));
-    of.push(math("mn", {}, String(end)));
-  } else {
-    of.push(math("mn", {}, String(joint)));
+  const [first, second] = indexText(meaning).split(",");
+  of.push(math("mn", {}, first));
+  if (second) {
+    of.push(math("mo", { separator: "true", lspace: "0", rspace: "0" }, ","), math("mn", {}, second));
   }
   if (component) of.push(math("mspace", { width: "0.12em" }), math("mi", {}, component));
   return math("mrow", {}, ...of);
 }
 
-/** The letters of a name, in text: ω2x. */
-function plainSymbol(meaning) {
-  const prime = meaning.quantity.startsWith("child") ? "′" : "";
-  return `${meaning.of.letter}${prime}${meaning.joint}${meaning.component || ""}`;
+/** The number of a name, in text: 2, or 1,2 for what link 1 exerts on link 2, whose own f2 is m c̈. */
+function indexText({ quantity, joint }) {
+  if (!JOINTS_OF_BOTH.includes(quantity)) return String(joint);
+  const end = quantity.startsWith("child") ? joint + 1 : joint;
+  return `${end - 1},${end}`;
 }
 
 class Typesetter {
@@ -85,7 +84,7 @@ class Typesetter {
     const meaning = this.inspection.meaning(name);
     if (!meaning) return name;
     const component = meaning.component ? `, ${meaning.component}` : "";
-    return `${name}: ${meaning.of.meaning}, ${meaning.joint}${component}`;
+    return `${name}: ${this.inspection.words(meaning)}, ${meaning.joint}${component}`;
   }
 
   /** Whether a term is zero for this robot whatever its state is. */
@@ -117,17 +116,22 @@ class Typesetter {
     if (!Array.isArray(tree)) return "it is a number";
     const mark = markOf(tree);
     if (mark.fold === "cancelled") return "its terms cancel";
-    if (mark.why !== undefined) return this.inspection.reasons[mark.why];
-    return (
+    const ofParts = () =>
       operands(tree)
         .map((part) => (this.isGone(part) ? this.why(part) : ""))
-        .find(Boolean) || ""
-    );
+        .filter(Boolean);
+    // a sum vanishes because each of its terms does, each for its own reason
+    if (isSum(tree) && this.isGone(tree)) return [...new Set(ofParts().flatMap((why) => why.split("; ")))].join("; ");
+    if (mark.why !== undefined) return this.inspection.reasons[mark.why];
+    return ofParts()[0] || "";
   }
 
   /** What folded away in a tree: each largest term, what is left of it, and why. */
   gone(tree) {
     if (this.isGone(tree)) {
+      // terms that vanish for different reasons stand apart
+      if (isSum(tree) && markOf(tree).fold !== "cancelled" && this.why(tree).includes("; "))
+        return operands(tree).flatMap((part) => this.gone(part));
       return typeof tree === "number" ? [] : [{ tree, left: "0", why: this.why(tree) }];
     }
     if (!Array.isArray(tree)) return [];
@@ -180,8 +184,7 @@ class Typesetter {
         const row = chain.map(({ sign, part }, at) => {
           const operator =
             at === 0 && sign > 0 ? null : math("mo", { form: at === 0 ? "prefix" : "infix" }, sign > 0 ? "+" : "−");
-          const isSum = Array.isArray(part) && (part[0] === "+" || part[0] === "-");
-          const isBare = isSum ? at === 0 && !isRoot : at === 0 || rank(part, this.inspection) >= 1;
+          const isBare = isSum(part) ? at === 0 && !isRoot : at === 0 || rank(part, this.inspection) >= 1;
           const node = isBare
             ? this.tree(part, inner)
             : math("mrow", {}, paren("("), this.tree(part, inner), paren(")"));
@@ -234,10 +237,9 @@ class Typesetter {
   /** An equation as a line that breaks between its terms, which MathML by itself does not. */
   equation(left, tree, leaf, isStruck) {
     const right = this.tree(tree, { leaf, isStruck });
-    const isSum = Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
     // a formula as such is one thing to a screen reader; of this one the parts can be reached
     const group = { role: "group" };
-    const pieces = isSum ? [...right.children] : [right];
+    const pieces = isSum(tree) ? [...right.children] : [right];
     return element(
       "div",
       { class: "equation" },
@@ -334,6 +336,10 @@ function paren(text) {
 
 function number(text) {
   return math("mn", { class: "value" }, text);
+}
+
+function isSum(tree) {
+  return Array.isArray(tree) && (tree[0] === "+" || tree[0] === "-");
 }
 
 /** The summands of a sum that is computed from left to right; parentheses stay what they are. */

@@ -52,6 +52,8 @@ class Exercise {
       const term = codeOf(tree);
       all.push({ text: `The term ${term} is left out`, value: right - value });
       all.push({ text: `The term ${term} has the other sign`, value: right - 2 * value });
+      if (namesIn(tree).some((of) => of.startsWith("twice_")))
+        all.push({ text: `The term ${term} has lost its factor 2`, value: right - value / 2 });
     }
     const joints = [...new Set(this.anglesOf(general, cell))].sort();
     for (const joint of joints) {

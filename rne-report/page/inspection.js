@@ -54,6 +54,15 @@ class Inspection {
     }
   }
 
+  /** The statements that read a component or a part of it, by name, in the order of the code. */
+  readersOf({ name, statements = [] }) {
+    const own = new Set(statements.map((statement) => statement.name));
+    if (!own.size) return [];
+    return [...this.statements.values()]
+      .filter((other) => !own.has(other.name) && namesIn(other.value).some((of) => own.has(of)))
+      .map((other) => other.name);
+  }
+
   /** What a name means: its quantity, joint and component, and what there is to know of the quantity. */
   meaning(name) {
     const found = Object.hasOwn(this.names, name) ? this.names[name] : null;

@@ -172,13 +172,14 @@ class Page {
     this.layerButtons = new Map();
     for (const [quantity] of LAYERS) {
       if (!quantities[quantity]) continue;
+      const meaning = quantities[quantity].meaning.replace("h = i - 1", "i-1");
       const button = element(
         "button",
         {
           type: "button",
           "data-layer": quantity,
-          title: quantities[quantity].meaning,
-          "aria-label": quantities[quantity].meaning,
+          title: meaning,
+          "aria-label": meaning,
           "aria-pressed": "false",
         },
         quantities[quantity].letter,

@@ -197,7 +197,8 @@ class Reading {
     ];
   }
 
-  ofWhat({ of, joint }) {
+  ofWhat({ of, joint, quantity }) {
+    if (quantity === "joint_force" && joint <= this.page.inspection.dof) return `drawn at joint ${joint}`;
     if (joint === 0) return "base";
     return joint > this.page.inspection.dof ? "tip" : `${of.drawn === "link" || of.axes ? "link" : "joint"} ${joint}`;
   }

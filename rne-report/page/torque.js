@@ -92,6 +92,8 @@ class Bars {
         const { style } = row.segments[part];
         style.left = `${value >= 0 ? 50 + stack.up : 50 - stack.down - size}%`;
         style.width = `${size}%`;
+        const told = isHidden(joint + 1) ? "" : `: ${short(value)} ${row.unit}`;
+        row.segments[part].title = `${PARTS[part][1]}${told}`;
         stack[value >= 0 ? "up" : "down"] += size;
       });
       row.total.style.left = `${50 + (50 * split.total[joint]) / row.end}%`;
