@@ -207,6 +207,8 @@ pub(crate) fn latex_text(text: &str) -> String {
             '>' => inert.push_str(r"\textgreater{}"),
             '|' => inert.push_str(r"\textbar{}"),
             '"' => inert.push_str("''"),
+            // neither a quote with the one behind it, nor a mark turned over with the one before it
+            '`' => inert.push_str("{}`{}"),
             '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
                 inert.push('\\');
                 inert.push(c);
@@ -245,5 +247,6 @@ mod tests {
     fn texts_stay_texts() {
         assert_eq!(latex_text(r"50% of \input{x}"), r"50\% of \textbackslash{}input\{x\}");
         assert_eq!(latex_text("Möbius $x$"), r"M?bius \$x\$");
+        assert_eq!(latex_text("?``"), "?{}`{}{}`{}");
     }
 }
