@@ -26,7 +26,8 @@ pub(crate) struct Wanted {
 }
 
 /// Options of the listing, which a closed form has no use for.
-const OTHERS: [&str; 7] = ["joint", "step", "form", "function", "keep", "without", "base_parameters"];
+const OTHERS: [&str; 9] =
+    ["joint", "step", "form", "function", "keep", "without", "base_parameters", "equations", "json"];
 
 impl Wanted {
     /// Whether a closed form is asked for.

@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let _ = writeln!(remark, "{QUIET}{}{QUIET:#}", rounding(&difference));
     match &arguments.out {
         Some(out) => {
-            remark += &output_file::write_new(out, &text, &arguments.file, arguments.force)?;
+            remark += &output_file::write_new(out, &text, &[&arguments.file], arguments.force)?;
             Ok(Outcome::remark(remark))
         }
         None => Ok(Outcome { text, remark, ..Outcome::default() }),

@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     match &arguments.out {
         Some(out) => {
-            remark += &output_file::write_new(out, &exported.text, &arguments.file, arguments.force)?;
+            remark += &output_file::write_new(out, &exported.text, &[&arguments.file], arguments.force)?;
             Ok(Outcome::remark(remark))
         }
         None => Ok(Outcome { text: exported.text, remark, ..Outcome::default() }),

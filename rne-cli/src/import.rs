@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
     match &arguments.out {
         Some(out) => {
-            remark += &output_file::write_new(out, &text, &arguments.file, arguments.force)?;
+            remark += &output_file::write_new(out, &text, &[&arguments.file], arguments.force)?;
             Ok(Outcome::remark(remark))
         }
         None => Ok(Outcome { text, remark, ..Outcome::default() }),

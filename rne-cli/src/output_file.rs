@@ -83,11 +83,11 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
     Ok(Written::Anew)
 }
 
-/// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise. Returns what
-/// was done, for the reader.
-pub(crate) fn write_new(path: &Path, text: &str, source: &Path, force: bool) -> Result<String, Failure> {
+/// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise, and
+/// `sources`, which were read for it, stay in any case. Returns what was done, for the reader.
+pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool) -> Result<String, Failure> {
     let shown = path.display();
-    if is_same(path, source) {
+    if sources.iter().any(|source| is_same(path, source)) {
         return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
     }
     match existing(path) {

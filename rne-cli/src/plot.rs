@@ -1,7 +1,7 @@
 //! `rne plot`: torques along a trajectory, and what they are made of.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_model::{JointKind, Robot};
@@ -80,8 +80,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     match &arguments.output {
         None => Ok(Outcome::text(text)),
         Some(path) => {
-            let source = arguments.trajectory.as_deref().unwrap_or_else(|| arguments.arm.file());
-            let written = output_file::write_new(path, &text, source, arguments.force)?;
+            let sources: Vec<&Path> =
+                arguments.trajectory.as_deref().into_iter().chain([arguments.arm.file()]).collect();
+            let written = output_file::write_new(path, &text, &sources, arguments.force)?;
             Ok(Outcome::text(written + &peaks(&robot, &history)))
         }
     }

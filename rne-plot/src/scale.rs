@@ -1,5 +1,8 @@
 //! Axes of a chart: from numbers to pixels, and where their ticks are.
 
+/// A span that is smaller has no steps that are numbers of full precision.
+const SMALLEST: f64 = 1e-300;
+
 /// A linear axis.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Scale {
@@ -15,15 +18,20 @@ impl Scale {
         Self { low, high, from, to }
     }
 
-    /// Pixels of a number.
+    /// Pixels of a number; the middle of an axis whose ends are too close together to tell numbers apart.
     pub(crate) fn at(&self, value: f64) -> f64 {
-        let part = (value / 2.0 - self.low / 2.0) / (self.high / 2.0 - self.low / 2.0);
+        let half = self.high / 2.0 - self.low / 2.0;
+        let part = if half < SMALLEST { 0.5 } else { (value / 2.0 - self.low / 2.0) / half };
         self.from + part * (self.to - self.from)
     }
 
     /// Round numbers on the axis, about so many.
     pub(crate) fn ticks(&self, about: f64) -> Vec<f64> {
-        let step = step(self.high - self.low, about);
+        let span = self.high - self.low;
+        if !span.is_finite() || span < SMALLEST {
+            return Vec::new();
+        }
+        let step = step(span, about);
         let first = (self.low / step - 1e-9).ceil();
         let last = (self.high / step + 1e-9).floor();
         let mut ticks = Vec::new();
@@ -40,7 +48,7 @@ impl Scale {
 /// Both ends of an axis that has room for values and 0, at round numbers.
 pub(crate) fn range(values: impl Iterator<Item = f64>, about: f64) -> (f64, f64) {
     let (low, high) = values.fold((0.0_f64, 0.0_f64), |(low, high), value| (low.min(value), high.max(value)));
-    if high - low == 0.0 || !(high - low).is_finite() {
+    if high - low < SMALLEST || !(high - low).is_finite() {
         return (-1.0, 1.0);
     }
     let step = step(high - low, about);
@@ -104,6 +112,17 @@ mod tests {
     fn the_ends_of_an_axis_are_its_pixels() {
         let scale = Scale::new(-2.0, 6.0, 300.0, 100.0);
         assert_eq!([-2.0, 0.0, 6.0].map(|value| scale.at(value)), [300.0, 250.0, 100.0]);
-        assert!(Scale::new(-1e308, 1e308, 0.0, 1.0).at(1e308).is_finite());
+    }
+
+    #[test]
+    fn an_axis_of_any_length_has_places() {
+        for (low, high) in [(-1e308, 1e308), (0.0, 5e-324), (-5e-324, 1e-310), (1e17, 1e17 + 16.0)] {
+            let scale = Scale::new(low, high, 0.0, 100.0);
+            let values = [low, high].into_iter().chain(scale.ticks(5.0));
+            let places: Vec<f64> = values.map(|value| scale.at(value)).collect();
+            assert!(places.iter().all(|place| (-1e-6..=100.0 + 1e-6).contains(place)), "{low} {high}: {places:?}");
+            let (low, high) = range([low, high].into_iter(), 5.0);
+            assert!(low < high && low.is_finite() && high.is_finite(), "{low} {high}");
+        }
     }
 }

@@ -159,21 +159,32 @@ const GREEK: [&str; 22] = [
     "rho", "sigma", "tau", "phi", "chi", "psi", "omega", "pi",
 ];
 
-/// The name of a constant in LaTeX: m1 is m with an index, longer words stay words. Names are letters, digits and
-/// underscores, and primes behind them.
-fn latex_name(name: &str) -> String {
+/// Characters of a word in LaTeX: a line of the page holds several.
+const LONGEST_WORD: usize = 32;
+
+/// A word as it is printed: its beginning alone, where it is so long that TeX could not even measure the line.
+fn shortened(word: &str) -> String {
+    if word.len() <= LONGEST_WORD {
+        return word.to_owned();
+    }
+    word.chars().take(LONGEST_WORD).chain("\\ldots ".chars()).collect()
+}
+
+/// The name of a constant in LaTeX: m1 is m with an index, longer words stay words, of which much too long ones have
+/// their beginning alone. Names are letters, digits and underscores, and primes behind them.
+pub(crate) fn latex_name(name: &str) -> String {
     let primes = name.len() - name.trim_end_matches('\'').len();
     let (name, primes) = name.split_at(name.len() - primes);
     let (head, tail) = name.split_once('_').unwrap_or((name, ""));
     let letters = head.trim_end_matches(|c: char| c.is_ascii_digit());
     let digits = head.strip_prefix(letters).unwrap_or("");
     let tail = tail.replace('_', ",");
-    let tail = if tail.len() > 1 { format!("\\mathit{{{tail}}}") } else { tail };
-    let index = [digits.to_owned(), tail].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join(",");
+    let tail = if tail.len() > 1 { format!("\\mathit{{{}}}", shortened(&tail)) } else { tail };
+    let index = [shortened(digits), tail].iter().filter(|part| !part.is_empty()).cloned().collect::<Vec<_>>().join(",");
     let letter = match letters {
         greek if GREEK.contains(&greek) => format!("\\{greek}"),
         single if single.len() <= 1 => single.to_owned(),
-        word => format!("\\mathit{{{word}}}"),
+        word => format!("\\mathit{{{}}}", shortened(word)),
     };
     // a name that begins with an underscore
     let letter = if letter.is_empty() { "\\_".to_owned() } else { letter };
@@ -196,6 +207,8 @@ pub(crate) fn latex_text(text: &str) -> String {
             '>' => inert.push_str(r"\textgreater{}"),
             '|' => inert.push_str(r"\textbar{}"),
             '"' => inert.push_str("''"),
+            // neither a quote with the one behind it, nor a mark turned over with the one before it
+            '`' => inert.push_str("{}`{}"),
             '#' | '$' | '%' | '&' | '_' | '{' | '}' => {
                 inert.push('\\');
                 inert.push(c);
@@ -225,11 +238,15 @@ mod tests {
         ] {
             assert_eq!(latex_name(name), latex);
         }
+        for long in ["x".repeat(4000), format!("m{}", "1".repeat(4000)), format!("m_{}", "a".repeat(4000))] {
+            assert!(latex_name(&long).len() < 100, "{}", latex_name(&long));
+        }
     }
 
     #[test]
     fn texts_stay_texts() {
         assert_eq!(latex_text(r"50% of \input{x}"), r"50\% of \textbackslash{}input\{x\}");
         assert_eq!(latex_text("Möbius $x$"), r"M?bius \$x\$");
+        assert_eq!(latex_text("?``"), "?{}`{}{}`{}");
     }
 }

@@ -1,5 +1,9 @@
 //! The letters of a closed form.
 
+use std::collections::HashSet;
+
+use crate::notation::latex_name;
+
 /// An angle whose sine and cosine are letters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Angle {
@@ -60,16 +64,28 @@ pub(crate) struct Constant {
 pub(crate) struct Constants(pub(crate) Vec<Constant>);
 
 impl Constants {
-    pub(crate) fn find(&self, name: &str) -> Option<usize> {
-        self.0.iter().position(|known| known.name == name)
-    }
-
-    /// A letter that no other constant has: a table's `m1` is `m1'` beside a parameter of that name.
-    pub(crate) fn add(&mut self, mut constant: Constant) -> Symbol {
-        while self.find(&constant.name).is_some() {
-            constant.name.push('\'');
-        }
+    pub(crate) fn add(&mut self, constant: Constant) -> Symbol {
         self.0.push(constant);
         Symbol::Constant(self.0.len() - 1)
+    }
+
+    /// Gives every constant a letter that nothing else in the equations has, neither on a terminal nor in print, where
+    /// `m_1` looks like `m1` and `theta1` like θ1: a table's `m1` is `m1'` beside a parameter of that name, which keeps
+    /// it wherever it first occurs, and a parameter `d2` is `d2'` where the second joint slides. `structure` are the
+    /// names that the equations have for variables, matrices and torques.
+    pub(crate) fn distinguish(&mut self, structure: impl IntoIterator<Item = String>) {
+        let looks = |name: &str| latex_name(name).replace("\\mathit", "").replace(['{', '}'], "");
+        let mut taken: HashSet<String> = structure.into_iter().map(|name| looks(&name)).collect();
+        let mut own = |name: &mut String| {
+            while !taken.insert(looks(name)) {
+                name.push('\'');
+            }
+        };
+        for is_parameter in [true, false] {
+            for constant in self.0.iter_mut().filter(|constant| constant.is_parameter == is_parameter) {
+                own(&mut constant.name);
+                constant.also.iter_mut().for_each(&mut own);
+            }
+        }
     }
 }

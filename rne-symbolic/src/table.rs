@@ -225,7 +225,8 @@ impl Table {
             let rotor = rotors[i].clone();
             rows.push(Row { kind: row.kind, theta, d, d_constant, a, alpha, mass, com, inertia, rotor });
         }
-        let Letters { constants, angles, .. } = letters;
+        let Letters { mut constants, angles, .. } = letters;
+        constants.distinguish(structure(&robot_rows.iter().map(|row| row.kind).collect::<Vec<_>>()));
         Self { convention: robot.convention, rows, gravity, constants, angles, offsets }
     }
 
@@ -248,6 +249,26 @@ impl Table {
             Symbol::Acceleration(joint) => of(qdd, joint),
         }
     }
+}
+
+/// What the equations call variables, matrices and torques, as a parameter might be called too.
+fn structure(kinds: &[JointKind]) -> Vec<String> {
+    let joints = 1..=kinds.len();
+    let mut names: Vec<String> = joints
+        .clone()
+        .flat_map(|i| ["h", "theta", "tau", "gamma", "alpha"].map(|letter| format!("{letter}{i}")))
+        .chain(["alpha0".to_owned()])
+        .collect();
+    let slides = joints.clone().zip(kinds).filter(|(_, kind)| **kind == JointKind::Prismatic);
+    names.extend(slides.map(|(i, _)| format!("d{i}")));
+    // more joints than that have commas between their indices
+    if kinds.len() < 10 {
+        for (i, j) in joints.clone().flat_map(|i| joints.clone().map(move |j| (i, j))) {
+            names.push(format!("M{i}{j}"));
+            names.extend(joints.clone().map(|k| format!("c{i}{j}{k}")));
+        }
+    }
+    names
 }
 
 /// G² Jm, where rotors belong to the arm; a gear ratio of 1 is no letter.

@@ -197,3 +197,35 @@ fn what_is_collected_is_what_was_derived() {
     }
     assert!(compared > 1000, "{compared} polynomials");
 }
+
+/// Every letter of the list at the end stands there once, with one value, and is no variable: on a terminal and in print.
+#[test]
+fn letters_that_look_alike_are_told_apart() {
+    let form = crate::ClosedForm::of(
+        &robot(
+            "parameters: {d2: 0.7, m_1: 3, m1: 2, c111: 0.5, c211: 0.6, M11: 0.25, h1: 0.3, theta1: 0.2, tau1: 0.11, g: 4}
+convention: standard
+gravity: [0, -9.81, 0]
+joints:
+  - {type: revolute, dh: {theta: 0, d: 0, a: d2, alpha: pi/2},
+     link: {mass: 7, com: [-c211, M11, c111], inertia: {yy: h1, zz: theta1}, physical: false}}
+  - {type: prismatic, dh: {theta: 0.3, d: 0.4, a: tau1, alpha: 0},
+     link: {mass: m1, com: [-g, 0.1, m_1], inertia: {yy: 1, zz: 1}}}",
+        ),
+        2,
+    );
+    let text = form.text();
+    // d2' is the parameter, d2 the slide; m1 the parameter, m1' the mass of the table beside it and beside m_1
+    for part in ["d2' = 0.7", "m1 = 2", "c211' = 0.6", "h1' = 0.3", "g = 4", "m1'' = 7 kg", "g' = 9.81 m/s²"] {
+        assert!(text.contains(part), "{part} is not in\n{text}");
+    }
+    assert!(text.contains("h1 = 2 c112 θ̇1 ḋ2") && !text.contains("d2² + d2²"), "{text}");
+    let latex = form.latex("letters");
+    let values: Vec<&str> = latex.lines().filter_map(|line| line.strip_prefix('$')?.strip_suffix("$%")).collect();
+    let letters: Vec<&str> = values.iter().flat_map(|value| value.split(" = ")).collect();
+    assert!(values.len() >= 8, "{values:?}");
+    for letter in letters.iter().filter(|letter| letter.starts_with(|c: char| c.is_alphabetic() || c == '\\')) {
+        assert_eq!(letters.iter().filter(|other| other == &letter).count(), 1, "{letter} in {values:?}");
+        assert!(![r"\theta_{1}", r"\tau_{1}", "M_{11}", "c_{211}", "h_{1}"].contains(letter), "{letter}");
+    }
+}

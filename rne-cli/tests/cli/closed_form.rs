@@ -53,6 +53,10 @@ fn what_a_closed_form_has_no_use_for() {
             fails(2, &["show", "robots/planar2.yaml", form, other[0], other[1]], &[form, other[0]]);
         }
     }
+    for other in ["--equations", "--json", "--base-parameters"] {
+        fails(2, &["show", "robots/planar2.yaml", "--symbolic", other], &["--symbolic", other]);
+        fails(2, &["show", "robots/planar2.yaml", "--first", "1", other], &["--first", other]);
+    }
     fails(2, &["show", "robots/planar2.yaml", "--first", "3"], &["planar2 has 2 joints", "--first takes 1 to 2"]);
     fails(2, &["show", "robots/planar2.yaml", "--first", "0", "--latex"], &["--first takes 1 to 2"]);
     fails(1, &["show", "robots/planar7.yaml", "--symbolic"], &["there is no robot file"]);

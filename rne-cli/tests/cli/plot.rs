@@ -76,6 +76,14 @@ fn pictures_are_written() {
     fs::copy(format!("{}/robots/planar1.yaml", crate::call::ROOT), &file).expect("a copy");
     let file = file.to_str().expect("UTF-8");
     fails(2, &["plot", file, "-o", file, "--force"], &["is the file that is read"]);
+    // with a trajectory two files are read
+    let csv = &format!("{file}.csv");
+    fs::write(csv, "t,q1,qd1,qdd1\n-1e308,0,0,1\n1e308,0,0,1\n").expect("a trajectory");
+    for read in [file, csv] {
+        let before = fs::read(read).expect("a file");
+        fails(2, &["plot", file, "--trajectory", csv, "-o", read, "--force"], &["is the file that is read"]);
+        assert_eq!(fs::read(read).expect("a file"), before);
+    }
 }
 
 /// Every shipped robot has a picture.
