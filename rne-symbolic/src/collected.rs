@@ -124,7 +124,9 @@ impl<'c> Collector<'c> {
             _ => 0,
         };
         // a² + a b is no shorter as a (a + b)
-        let repeated = counts.into_iter().filter(|(factor, count)| *count >= 2 && rank(factor) > 0);
+        // what all have, in unlike powers, tells none of them apart: m a + m² b, where a mass is a length too
+        let tells = 2..terms.len();
+        let repeated = counts.into_iter().filter(|(factor, count)| tells.contains(count) && rank(factor) > 0);
         // of equals the first
         let (best, _) = repeated.rev().max_by_key(|(factor, count)| (rank(factor), *count))?;
         let best = best.clone();

@@ -198,12 +198,12 @@ fn what_is_collected_is_what_was_derived() {
     assert!(compared > 1000, "{compared} polynomials");
 }
 
-/// Every letter of the list at the end stands there once, with one value, and is no variable: on a terminal and in print.
+/// Every letter of the list at the end stands there once, with one value, and is no variable.
 #[test]
 fn letters_that_look_alike_are_told_apart() {
     let form = crate::ClosedForm::of(
         &robot(
-            "parameters: {d2: 0.7, m_1: 3, m1: 2, c111: 0.5, c211: 0.6, M11: 0.25, h1: 0.3, theta1: 0.2, tau1: 0.11, g: 4}
+            "parameters: {d2: 0.7, m_1: 3, m1: 2, c111: 1, c211: 0.6, M11: 0.25, h1: 0.3, theta1: 0.2, tau1: 0.11, g: 4}
 convention: standard
 gravity: [0, -9.81, 0]
 joints:
@@ -228,4 +228,24 @@ joints:
         assert_eq!(letters.iter().filter(|other| other == &letter).count(), 1, "{letter} in {values:?}");
         assert!(![r"\theta_{1}", r"\tau_{1}", "M_{11}", "c_{211}", "h_{1}"].contains(letter), "{letter}");
     }
+}
+
+/// A parameter that is a mass and a length: all terms have it, in unlike powers.
+#[test]
+fn a_mass_may_be_a_length_too() {
+    let form = crate::ClosedForm::of(
+        &robot(
+            "parameters: {k: 0.4, l: 1.3}
+convention: standard
+gravity: [9.81, 0, 0]
+joints:
+  - {type: revolute, dh: {theta: 0, d: -0.87, a: 0.5, alpha: deg(60)},
+     link: {mass: k, com: [-k/2, l, 0.15], inertia: {xx: 0.02, yy: 0.2, zz: 0.4}, physical: false}}",
+        ),
+        1,
+    );
+    assert_eq!(form.is_lagranges(), Some(true));
+    // by hand: com at x = 0.5 - k/2 along the link, g along x
+    let tau = form.torques(&[std::f64::consts::FRAC_PI_2], &[0.0], &[0.0]).expect("a closed form");
+    assert!((tau[0] - 0.4 * 9.81 * (0.5 - 0.2)).abs() < 1e-12, "{tau:?}");
 }
