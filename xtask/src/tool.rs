@@ -34,6 +34,7 @@ enum Name {
     /// cargo-semver-checks
     Semver,
     /// mdBook
+    #[value(alias = "mdbook")]
     Book,
 }
 
