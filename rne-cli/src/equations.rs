@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 
 use rne_inspection::{Became, Cell, Component, Inspection, Operations};
-use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 
+use crate::layout::wrap;
 use crate::terminal::{self, FORMULA, FOUND, QUIET, TITLE};
 
 /// Columns where the output is no terminal.
@@ -142,15 +142,9 @@ fn code(inspection: &Inspection, component: &Component) -> Vec<String> {
     lines
 }
 
+/// Text behind `first`, its further lines behind `others`.
 fn fill(text: &str, first: &str, others: &str) -> String {
-    let options = Options::new(terminal::width(WIDTH))
-        .initial_indent(first)
-        .subsequent_indent(others)
-        .break_words(false)
-        .word_separator(WordSeparator::AsciiSpace)
-        .word_splitter(WordSplitter::NoHyphenation)
-        .wrap_algorithm(WrapAlgorithm::FirstFit);
-    textwrap::fill(text, options)
+    wrap(&format!("{first}{text}"), terminal::width(WIDTH), others)
 }
 
 /// A style for each of several lines.

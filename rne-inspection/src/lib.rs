@@ -22,7 +22,7 @@ mod name;
 mod record;
 mod tree;
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use rne_codegen::emit::{self, Line, Selection};
 use rne_codegen::{self as codegen, CompileError, Compiler, Form, Function, Program};
@@ -55,6 +55,7 @@ impl Inspection {
         let mut equations = Equations::new(robot, program);
         let (before, after) = (program.before(), program.operations());
         let statements = rust(robot, program);
+        let components: HashSet<codegen::Name> = program.equations.iter().map(|equation| equation.name).collect();
         let table = equations.components(|equation| equation.place.is_none());
         let cells = cells(robot, program, &mut equations);
         let names = names(program);
@@ -80,12 +81,12 @@ impl Inspection {
             reasons: equations.into_reasons(),
             arguments: program.arguments.iter().map(ToString::to_string).collect(),
             constants: program.constants.iter().map(|constant| (constant.name.to_string(), constant.value)).collect(),
-            angles: program.angles.iter().map(|statement| of_statement(program, statement, &statements)).collect(),
+            angles: program.angles.iter().map(|statement| of_statement(&components, statement, &statements)).collect(),
             sines_and_cosines: program.sines_and_cosines.iter().map(sine_and_cosine).collect(),
             statements: program
                 .statements
                 .iter()
-                .map(|statement| of_statement(program, statement, &statements))
+                .map(|statement| of_statement(&components, statement, &statements))
                 .collect(),
             outputs: program
                 .outputs
@@ -197,12 +198,15 @@ fn rust(robot: &rne_model::Robot, program: &Program) -> BTreeMap<String, String>
     lines.filter_map(statement).collect()
 }
 
-fn of_statement(program: &Program, statement: &codegen::Statement, rust: &BTreeMap<String, String>) -> Statement {
+fn of_statement(
+    components: &HashSet<codegen::Name>,
+    statement: &codegen::Statement,
+    rust: &BTreeMap<String, String>,
+) -> Statement {
     let (name, owner) = (statement.name.to_string(), owner(statement));
-    let is_component = program.equations.iter().any(|equation| equation.name == owner);
     let value = Tree::of_expression(&statement.value);
     Statement {
-        component: is_component.then(|| owner.to_string()),
+        component: components.contains(&owner).then(|| owner.to_string()),
         rust: rust.get(&name).cloned().unwrap_or_else(|| format!("let {name} = {value};")),
         name,
         value,
