@@ -43,6 +43,8 @@ mod link_frame;
 mod link_state;
 #[cfg(all(feature = "arm", feature = "std"))]
 mod load;
+#[cfg(feature = "machine")]
+pub mod machine;
 #[cfg(feature = "arm")]
 mod mass_matrix;
 #[cfg(feature = "arm")]

@@ -3,7 +3,7 @@
 use core::ops::Range;
 
 use super::scalar::Register;
-use super::vector::Vector;
+use super::vector::{Vector, Work};
 use super::{BatchScalar, Torques};
 use crate::Scalar;
 use crate::sin_cos::{Float, kernel};
@@ -30,14 +30,17 @@ pub(super) struct States<'a, R, T, const DOF: usize> {
     pub(super) tau: [&'a mut [T]; DOF],
 }
 
-impl<R, T: BatchScalar, const DOF: usize> States<'_, R, T, DOF> {
+/// The torques of states, which depend on so many angles.
+pub(super) struct TorquesOf<'a, R, T, const DOF: usize, const ANGLES: usize>(pub(super) States<'a, R, T, DOF>);
+
+impl<R, T: BatchScalar, const DOF: usize, const ANGLES: usize> Work<T> for TorquesOf<'_, R, T, DOF, ANGLES>
+where
+    R: Torques<DOF, ANGLES>,
+{
     /// Writes the torques, computed in registers `V`.
     #[inline(always)]
-    pub(super) fn run<V: Vector<Element = T>, const ANGLES: usize>(self, unit: V::Unit)
-    where
-        R: Torques<DOF, ANGLES>,
-    {
-        let Self { robot, count, inputs, tau } = self;
+    fn run<V: Vector<Element = T>>(self, unit: V::Unit) {
+        let States { robot, count, inputs, tau } = self.0;
         let lanes = size_of::<V::Numbers>() / size_of::<T>();
         let (full, last) = (count / lanes, count % lanes);
         // The last register is filled up with zeros, which are states like any other.

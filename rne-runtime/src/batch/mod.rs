@@ -56,7 +56,7 @@ mod mismatch;
 mod parallel;
 mod scalar;
 mod unit;
-mod vector;
+pub(crate) mod vector;
 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
 mod x86_register;
 
@@ -69,9 +69,9 @@ use core::array::from_fn;
 #[cfg(feature = "arm")]
 use crate::{Arm, Constant};
 use crate::{InverseDynamics, Scalar};
-use blocks::States;
 #[cfg(feature = "arm")]
 use blocks::one_by_one;
+use blocks::{States, TorquesOf};
 
 /// Torques from motion for many states at once.
 ///
@@ -150,7 +150,7 @@ pub fn run<R: Torques<DOF, ANGLES>, T: BatchScalar, const DOF: usize, const ANGL
     qdd: [&[T]; DOF],
     tau: [&mut [T]; DOF],
 ) -> Result<(), LengthMismatch> {
-    for_each_part(robot, [q, qd, qdd], tau, |states| unit.run(states))
+    for_each_part(robot, [q, qd, qdd], tau, |states| unit.run(TorquesOf::<_, _, _, ANGLES>(states)))
 }
 
 /// Runs the states, all at once or divided among threads.

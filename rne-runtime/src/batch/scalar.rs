@@ -102,7 +102,14 @@ mod sealed {
         /// Those of a unit that was looked for.
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
         type Detected<S: super::super::x86_register::Shift>: Vector<Element = Self, Unit = S>;
+        /// Lends so many numbers of memory, aligned to a line of the cache, which the thread keeps.
+        #[cfg(feature = "machine")]
+        fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R;
     }
+
+    /// Bytes of a line of the cache, and of the widest register.
+    #[cfg(feature = "machine")]
+    const LINE: usize = 64;
 
     macro_rules! machine {
         ($type:ident, $Register:ident) => {
@@ -113,6 +120,23 @@ mod sealed {
                 type Compiled = $type;
                 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
                 type Detected<S: super::super::x86_register::Shift> = super::super::x86_register::$Register<S>;
+
+                #[cfg(feature = "machine")]
+                fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R {
+                    std::thread_local! {
+                        static MEMORY: core::cell::Cell<Vec<$type>> = const { core::cell::Cell::new(Vec::new()) };
+                    }
+                    // Taken, not borrowed: work within the work gets memory of its own.
+                    let mut memory = MEMORY.take();
+                    let space = length + LINE / size_of::<Self>();
+                    if memory.len() < space {
+                        memory.resize(space, 0.0);
+                    }
+                    let aligned = memory.as_ptr().align_offset(LINE).min(space - length);
+                    let result = work(&mut memory[aligned..aligned + length]);
+                    MEMORY.set(memory);
+                    result
+                }
             }
         };
     }

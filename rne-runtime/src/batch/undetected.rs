@@ -1,7 +1,7 @@
 //! Where no vector unit is looked for: there is none beyond the compiled target.
 
-use super::blocks::States;
-use super::{BatchScalar, Torques};
+use super::BatchScalar;
+use super::vector::Work;
 
 /// None.
 #[derive(Clone, Copy)]
@@ -20,11 +20,7 @@ impl Detected {
         match self {}
     }
 
-    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, _: States<'_, R, T, DOF>)
-    where
-        R: Torques<DOF, ANGLES>,
-        T: BatchScalar,
-    {
+    pub(super) fn run<T: BatchScalar, W: Work<T>>(self, _: W) {
         match self {}
     }
 }

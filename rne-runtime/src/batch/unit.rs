@@ -2,9 +2,9 @@
 
 use core::fmt;
 
-use super::blocks::States;
+use super::BatchScalar;
 use super::detected::Detected;
-use super::{BatchScalar, Torques};
+use super::vector::Work;
 
 /// A vector unit of the processor this runs on. To have one is to have looked: every value can be computed with.
 ///
@@ -53,15 +53,11 @@ impl VectorUnit {
         }
     }
 
-    /// Computes the states with this unit.
-    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, states: States<'_, R, T, DOF>)
-    where
-        R: Torques<DOF, ANGLES>,
-        T: BatchScalar,
-    {
+    /// Does work with this unit.
+    pub(crate) fn run<T: BatchScalar, W: Work<T>>(self, work: W) {
         match self.0 {
-            Unit::Target => states.run::<T::Compiled, ANGLES>(()),
-            Unit::Detected(unit) => unit.run(states),
+            Unit::Target => work.run::<T::Compiled>(()),
+            Unit::Detected(unit) => unit.run(work),
         }
     }
 }

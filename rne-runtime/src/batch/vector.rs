@@ -2,6 +2,7 @@
 
 use core::fmt::Debug;
 
+use super::BatchScalar;
 use crate::sin_cos::Lanes;
 
 /// The registers of a vector unit that hold numbers of one type.
@@ -28,4 +29,10 @@ pub trait Vector: Lanes + Debug + PartialEq + 'static {
     fn load(unit: Self::Unit, numbers: &Self::Numbers) -> Self;
 
     fn store(self) -> Self::Numbers;
+}
+
+/// What is computed in registers, on a unit that is chosen when the program runs.
+pub(crate) trait Work<T: BatchScalar> {
+    /// Does it in registers `V`, `#[inline(always)]`.
+    fn run<V: Vector<Element = T>>(self, unit: V::Unit);
 }

@@ -1,11 +1,13 @@
 //! The vector units that an x86 processor may have beyond the compiled target.
 
+use core::marker::PhantomData;
+
 use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
 
-use super::blocks::States;
+use super::BatchScalar;
+use super::vector::Work;
 use super::x86_register::Shift;
-use super::{BatchScalar, Torques};
 
 /// A unit and, in pulp's token, the proof that the processor has it.
 #[derive(Clone, Copy)]
@@ -32,34 +34,26 @@ impl Detected {
         }
     }
 
-    pub(super) fn run<R, T, const DOF: usize, const ANGLES: usize>(self, states: States<'_, R, T, DOF>)
-    where
-        R: Torques<DOF, ANGLES>,
-        T: BatchScalar,
-    {
+    pub(super) fn run<T: BatchScalar, W: Work<T>>(self, work: W) {
         match self {
-            Self::Avx2(unit) => unit.vectorize(Call::<_, _, ANGLES> { states, unit }),
-            Self::Avx512(unit) => unit.vectorize(Call::<_, _, ANGLES> { states, unit }),
+            Self::Avx2(unit) => unit.vectorize(Call { work, unit, number: PhantomData }),
+            Self::Avx512(unit) => unit.vectorize(Call { work, unit, number: PhantomData }),
         }
     }
 }
 
-/// States and a unit as what pulp calls. Not a closure: this can be inlined always.
-struct Call<States, Unit, const ANGLES: usize> {
-    states: States,
+/// Work and a unit as what pulp calls. Not a closure: this can be inlined always.
+struct Call<W, Unit, T> {
+    work: W,
     unit: Unit,
+    number: PhantomData<T>,
 }
 
-impl<R, T, S, const DOF: usize, const ANGLES: usize> NullaryFnOnce for Call<States<'_, R, T, DOF>, S, ANGLES>
-where
-    R: Torques<DOF, ANGLES>,
-    T: BatchScalar,
-    S: Shift,
-{
+impl<T: BatchScalar, W: Work<T>, S: Shift> NullaryFnOnce for Call<W, S, T> {
     type Output = ();
 
     #[inline(always)]
     fn call(self) {
-        self.states.run::<T::Detected<S>, ANGLES>(self.unit);
+        self.work.run::<T::Detected<S>>(self.unit);
     }
 }

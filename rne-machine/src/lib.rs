@@ -1,0 +1,63 @@
+//! Compiled functions of a robot, run where they are: for arms that are known at run time only.
+//!
+//! A [`Machine`] is made of a [`Program`], in some ten microseconds and without trusting it with anything: safe code
+//! interprets it over blocks of states, on the widest vector unit of the processor.
+//!
+//! ```
+//! use rne_codegen::{Compiler, Form, Function, Target};
+//! use rne_machine::{Machine, Source, Destination};
+//! use rne_runtime::VectorUnit;
+//!
+//! # let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+//! #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
+//! let robot = rne_model::Robot::from_yaml(yaml).unwrap();
+//! let compiler = Compiler::new(&robot).for_target(Target::Throughput);
+//! let machine = Machine::new(&compiler.compile(Function::GravityTorques, Form::Reduced)?).expect("a small program");
+//! let q = [0.0_f64, 0.1, 0.2];
+//! let mut tau = [0.0; 3];
+//! machine.code().run(VectorUnit::widest(), 3, &[Source::Column(&q)], Destination::Rows(&mut tau)).unwrap();
+//! assert!((tau[0] - 2.5 * 9.81 * 0.4).abs() < 1e-12);
+//! # Ok::<(), rne_codegen::CompileError>(())
+//! ```
+#![warn(missing_debug_implementations)]
+#![forbid(unsafe_code)]
+
+mod dataflow;
+mod schedule;
+mod selection;
+
+use rne_codegen::{Name, Program};
+use rne_runtime::machine::Code;
+pub use rne_runtime::machine::{Destination, Source, WrongArrays};
+
+use dataflow::Dataflow;
+
+/// A program made ready to run over many states.
+#[derive(Clone, Debug)]
+pub struct Machine {
+    code: Code,
+    inputs: Vec<Name>,
+}
+
+impl Machine {
+    /// Makes a machine of a program; those for [`Target::Throughput`](rne_codegen::Target) are the fastest. `None` when
+    /// it would need more than 2³² values at once.
+    #[must_use]
+    pub fn new(program: &Program) -> Option<Self> {
+        let dataflow = Dataflow::of(program);
+        let code = schedule::code(&dataflow)?;
+        Some(Self { code, inputs: dataflow.inputs })
+    }
+
+    /// What it runs.
+    #[must_use]
+    pub fn code(&self) -> &Code {
+        &self.code
+    }
+
+    /// What each input is, in order: those that the program uses.
+    #[must_use]
+    pub fn inputs(&self) -> &[Name] {
+        &self.inputs
+    }
+}

@@ -1,0 +1,114 @@
+//! Which operation of the machine computes a value, by where its operands are.
+
+use rne_codegen::Operator;
+use rne_runtime::machine::{Operation, Slot};
+
+use crate::dataflow::{Definition, Fused, Value};
+
+/// Where an operand is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Place {
+    Accumulator,
+    Slot(Slot),
+    Constant(f64),
+}
+
+/// The operation that computes a definition from operands at these places; `None` when the machine has none: then an
+/// operand must be in a slot.
+pub(crate) fn operation(definition: &Definition, place: impl Fn(Value) -> Place) -> Option<Operation> {
+    use Operation as O;
+    use Place::{Accumulator as A, Constant as K, Slot as S};
+    Some(match *definition {
+        Definition::Input(index) => O::Input(u32::try_from(index).ok()?),
+        Definition::Constant(k) => O::Constant(k),
+        Definition::Sine(_) | Definition::Cosine(_) => return None,
+        Definition::Negative(x) => match place(x) {
+            A => O::NegativeA(),
+            S(x) => O::NegativeS(x),
+            K(k) => O::Constant(-k),
+        },
+        Definition::BySign(operands) => match operands.map(place) {
+            [S(x), S(a), S(b)] => O::BySign(x, a, b),
+            _ => return None,
+        },
+        Definition::Binary(operator, x, y) => match (operator, place(x), place(y)) {
+            (Operator::Sum, S(x), S(y)) => O::SumSS(x, y),
+            (Operator::Sum, A, S(x)) | (Operator::Sum, S(x), A) => O::SumAS(x),
+            (Operator::Sum, S(x), K(k)) | (Operator::Sum, K(k), S(x)) => O::SumSK(x, k),
+            (Operator::Sum, A, K(k)) | (Operator::Sum, K(k), A) => O::SumAK(k),
+            (Operator::Difference, S(x), S(y)) => O::DifferenceSS(x, y),
+            (Operator::Difference, A, S(y)) => O::DifferenceAS(y),
+            (Operator::Difference, S(x), A) => O::DifferenceSA(x),
+            // x - k is x + (-k), to the bit
+            (Operator::Difference, S(x), K(k)) => O::SumSK(x, -k),
+            (Operator::Difference, A, K(k)) => O::SumAK(-k),
+            (Operator::Difference, K(k), S(y)) => O::DifferenceKS(y, k),
+            (Operator::Difference, K(k), A) => O::DifferenceKA(k),
+            (Operator::Product, S(x), S(y)) => O::ProductSS(x, y),
+            (Operator::Product, A, S(x)) | (Operator::Product, S(x), A) => O::ProductAS(x),
+            (Operator::Product, S(x), K(k)) | (Operator::Product, K(k), S(x)) => O::ProductSK(x, k),
+            (Operator::Product, A, K(k)) | (Operator::Product, K(k), A) => O::ProductAK(k),
+            (Operator::Quotient, S(x), S(y)) => O::QuotientSS(x, y),
+            (Operator::Quotient, A, S(y)) => O::QuotientAS(y),
+            (Operator::Quotient, S(x), A) => O::QuotientSA(x),
+            (Operator::Quotient, K(k), S(y)) => O::QuotientKS(y, k),
+            (Operator::Quotient, K(k), A) => O::QuotientKA(k),
+            _ => return None,
+        },
+        Definition::Fused(fused, [z, x, y]) => {
+            let (z, x, y) = (place(z), place(x), place(y));
+            // of two factors one that is in a slot stands last, one that is constant very last
+            let (x, y) = match (x, y) {
+                (K(_), _) | (S(_), A) => (y, x),
+                _ => (x, y),
+            };
+            match (fused, z, x, y) {
+                (Fused::Plus, A, S(x), S(y)) => O::PlusASS(x, y),
+                (Fused::Plus, A, S(x), K(k)) => O::PlusASK(x, k),
+                (Fused::Plus, S(z), S(x), S(y)) => O::PlusSSS(z, x, y),
+                (Fused::Plus, S(z), A, S(y)) => O::PlusSAS(z, y),
+                (Fused::Plus, S(z), S(x), K(k)) => O::PlusSSK(z, x, k),
+                (Fused::Plus, S(z), A, K(k)) => O::PlusSAK(z, k),
+                (Fused::Plus, K(k), S(x), S(y)) => O::PlusKSS(x, y, k),
+                (Fused::Plus, K(k), A, S(y)) => O::PlusKAS(y, k),
+                (Fused::Minus, A, S(x), S(y)) => O::MinusASS(x, y),
+                (Fused::Minus, S(z), S(x), S(y)) => O::MinusSSS(z, x, y),
+                (Fused::Minus, S(z), A, S(y)) => O::MinusSAS(z, y),
+                (Fused::Minus, K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
+                (Fused::Minus, K(k), A, S(y)) => O::MinusKAS(y, k),
+                // z - x k is z + x (-k), to the bit
+                (Fused::Minus, A, S(x), K(k)) => O::PlusASK(x, -k),
+                (Fused::Minus, S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
+                (Fused::Minus, S(z), A, K(k)) => O::PlusSAK(z, -k),
+                (Fused::Less, A, S(x), S(y)) => O::LessASS(x, y),
+                (Fused::Less, A, S(x), K(k)) => O::LessASK(x, k),
+                (Fused::Less, S(z), S(x), S(y)) => O::LessSSS(z, x, y),
+                (Fused::Less, S(z), A, S(y)) => O::LessSAS(z, y),
+                (Fused::Less, S(z), S(x), K(k)) => O::LessSSK(z, x, k),
+                (Fused::Less, S(z), A, K(k)) => O::LessSAK(z, k),
+                // x y - k is x y + (-k), to the bit
+                (Fused::Less, K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
+                (Fused::Less, K(k), A, S(y)) => O::PlusKAS(y, -k),
+                _ => return None,
+            }
+        }
+    })
+}
+
+/// Which operands of a definition can stay constants, wherever the others are.
+pub(crate) fn constants(definition: &Definition, constant: impl Fn(Value) -> Option<f64>) -> Vec<Value> {
+    let place = |left_out: &[Value], value: Value| match constant(value) {
+        Some(k) if !left_out.contains(&value) => Place::Constant(k),
+        _ => Place::Slot(0),
+    };
+    let candidates: Vec<Value> =
+        definition.operands().into_iter().filter(|operand| constant(*operand).is_some()).collect();
+    // all, all but one, none
+    let mut tries = std::iter::once(Vec::new())
+        .chain(candidates.iter().map(|candidate| vec![*candidate]))
+        .chain(std::iter::once(candidates.clone()));
+    let left_out = tries
+        .find(|left_out| operation(definition, |value| place(left_out, value)).is_some())
+        .unwrap_or_else(|| candidates.clone());
+    candidates.into_iter().filter(|candidate| !left_out.contains(candidate)).collect()
+}

@@ -1,0 +1,239 @@
+//! What the machine runs: three-address instructions on slots and an accumulator.
+
+use core::fmt;
+
+/// A place of the machine's memory: one value for each state of a block.
+pub type Slot = u32;
+
+/// No slot.
+pub const NOWHERE: Slot = Slot::MAX;
+
+/// One instruction: what the accumulator becomes, and where it is kept.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instruction {
+    /// What is computed.
+    pub operation: Operation,
+    /// Where the accumulator is stored afterwards; [`NOWHERE`] when the next instruction alone needs it.
+    pub store: Slot,
+}
+
+macro_rules! operations {
+    ($($(#[$about:meta])* $Operation:ident($($slot:ident),*; $($number:ident)?) $text:literal,)*) => {
+        /// What the accumulator becomes. In the names stands what an operand is, from left to right: `A` the
+        /// accumulator, `S` a slot, `K` a constant. A factor and an addend are one operation, rounded once where the
+        /// vector unit rounds it once.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub enum Operation {
+            /// An input.
+            Input(u32),
+            /// Positive, negative or zero by the sign of a slot: slots of the sign, of the value above and below 0.
+            BySign(Slot, Slot, Slot),
+            /// The accumulator is written as an output and kept.
+            Output(u32),
+            $($(#[$about])* $Operation($(operations!(@slot $slot),)* $(operations!(@number $number))?),)*
+        }
+
+        impl Operation {
+            /// The slots that are read.
+            fn slots(&self) -> [Slot; 3] {
+                let mut read = [NOWHERE; 3];
+                match *self {
+                    Self::Input(_) | Self::Output(_) => {}
+                    Self::BySign(x, a, b) => read = [x, a, b],
+                    $(Self::$Operation($($slot,)* $($number)?) => {
+                        let slots: &[Slot] = &[$($slot),*];
+                        read[..slots.len()].copy_from_slice(slots);
+                        $(let _ = $number;)?
+                    })*
+                }
+                read
+            }
+        }
+
+        impl fmt::Display for Operation {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                match *self {
+                    Self::Input(index) => write!(f, "input {index}"),
+                    Self::Output(index) => write!(f, "output {index}"),
+                    Self::BySign(x, a, b) => write!(f, "s{a} or s{b} by the sign of s{x}"),
+                    $(Self::$Operation($($slot,)* $($number)?) => write!(f, $text),)*
+                }
+            }
+        }
+    };
+    (@slot $slot:ident) => { Slot };
+    (@number $number:ident) => { f64 };
+}
+operations! {
+    /// k
+    Constant(; k) "{k:?}",
+    /// x
+    CopyS(x;) "s{x}",
+    /// -x
+    NegativeS(x;) "-s{x}",
+    /// -acc
+    NegativeA(;) "-acc",
+    /// x + y
+    SumSS(x, y;) "s{x} + s{y}",
+    /// acc + y
+    SumAS(y;) "acc + s{y}",
+    /// x + k
+    SumSK(x; k) "s{x} + {k:?}",
+    /// acc + k
+    SumAK(; k) "acc + {k:?}",
+    /// x - y
+    DifferenceSS(x, y;) "s{x} - s{y}",
+    /// acc - y
+    DifferenceAS(y;) "acc - s{y}",
+    /// x - acc
+    DifferenceSA(x;) "s{x} - acc",
+    /// k - y
+    DifferenceKS(y; k) "{k:?} - s{y}",
+    /// k - acc
+    DifferenceKA(; k) "{k:?} - acc",
+    /// x y
+    ProductSS(x, y;) "s{x}*s{y}",
+    /// acc y
+    ProductAS(y;) "acc*s{y}",
+    /// x k
+    ProductSK(x; k) "s{x}*{k:?}",
+    /// acc k
+    ProductAK(; k) "acc*{k:?}",
+    /// x / y
+    QuotientSS(x, y;) "s{x}/s{y}",
+    /// acc / y
+    QuotientAS(y;) "acc/s{y}",
+    /// x / acc
+    QuotientSA(x;) "s{x}/acc",
+    /// k / y
+    QuotientKS(y; k) "{k:?}/s{y}",
+    /// k / acc
+    QuotientKA(; k) "{k:?}/acc",
+    /// acc + x y
+    PlusASS(x, y;) "acc + s{x}*s{y}",
+    /// acc + x k
+    PlusASK(x; k) "acc + s{x}*{k:?}",
+    /// z + x y
+    PlusSSS(z, x, y;) "s{z} + s{x}*s{y}",
+    /// z + acc y
+    PlusSAS(z, y;) "s{z} + acc*s{y}",
+    /// z + x k
+    PlusSSK(z, x; k) "s{z} + s{x}*{k:?}",
+    /// z + acc k
+    PlusSAK(z; k) "s{z} + acc*{k:?}",
+    /// k + x y
+    PlusKSS(x, y; k) "{k:?} + s{x}*s{y}",
+    /// k + acc y
+    PlusKAS(y; k) "{k:?} + acc*s{y}",
+    /// acc - x y
+    MinusASS(x, y;) "acc - s{x}*s{y}",
+    /// z - x y
+    MinusSSS(z, x, y;) "s{z} - s{x}*s{y}",
+    /// z - acc y
+    MinusSAS(z, y;) "s{z} - acc*s{y}",
+    /// k - x y
+    MinusKSS(x, y; k) "{k:?} - s{x}*s{y}",
+    /// k - acc y
+    MinusKAS(y; k) "{k:?} - acc*s{y}",
+    /// x y - acc
+    LessASS(x, y;) "s{x}*s{y} - acc",
+    /// x k - acc
+    LessASK(x; k) "s{x}*{k:?} - acc",
+    /// x y - z
+    LessSSS(z, x, y;) "s{x}*s{y} - s{z}",
+    /// acc y - z
+    LessSAS(z, y;) "acc*s{y} - s{z}",
+    /// x k - z
+    LessSSK(z, x; k) "s{x}*{k:?} - s{z}",
+    /// acc k - z
+    LessSAK(z; k) "acc*{k:?} - s{z}",
+}
+
+/// The sine and the cosine of a slot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Turn {
+    /// The angle, rad.
+    pub angle: Slot,
+    /// Where its sine goes; [`NOWHERE`] when nothing uses it.
+    pub sine: Slot,
+    /// Where its cosine goes.
+    pub cosine: Slot,
+}
+
+/// A program of the machine. First the angles are computed, then all sines and cosines, then the rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Code {
+    pub(super) angles: Vec<Instruction>,
+    pub(super) turns: Vec<Turn>,
+    pub(super) rest: Vec<Instruction>,
+    pub(super) slots: usize,
+    pub(super) inputs: usize,
+    pub(super) outputs: usize,
+}
+
+impl Code {
+    /// Code on so many slots, with so many inputs and outputs; `None` when an instruction names one that is not there,
+    /// or an output is not written just once.
+    #[must_use]
+    pub fn new(
+        angles: Vec<Instruction>,
+        turns: Vec<Turn>,
+        rest: Vec<Instruction>,
+        [slots, inputs, outputs]: [usize; 3],
+    ) -> Option<Self> {
+        let is_slot = |slot: Slot| slot == NOWHERE || (slot as usize) < slots;
+        let mut written = vec![0_usize; outputs];
+        for Instruction { operation, store } in angles.iter().chain(&rest) {
+            match *operation {
+                Operation::Input(index) if index as usize >= inputs => return None,
+                Operation::Output(index) => *written.get_mut(index as usize)? += 1,
+                _ => {}
+            }
+            if !operation.slots().into_iter().chain([*store]).all(is_slot) {
+                return None;
+            }
+        }
+        let are_slots = turns
+            .iter()
+            .all(|turn| turn.angle != NOWHERE && [turn.angle, turn.sine, turn.cosine].into_iter().all(is_slot));
+        let is_each_once = written.iter().all(|times| *times == 1);
+        (are_slots && is_each_once).then_some(Self { angles, turns, rest, slots, inputs, outputs })
+    }
+
+    /// How many instructions a block of states takes, without sines and cosines.
+    #[must_use]
+    pub fn instructions(&self) -> usize {
+        self.angles.len() + self.rest.len()
+    }
+
+    /// How many values are in memory at once.
+    #[must_use]
+    pub fn slots(&self) -> usize {
+        self.slots
+    }
+}
+
+impl fmt::Display for Instruction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.store != NOWHERE {
+            write!(f, "s{} = ", self.store)?;
+        }
+        write!(f, "acc = {}", self.operation)
+    }
+}
+
+impl fmt::Display for Turn {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let slot = |slot: Slot| if slot == NOWHERE { "_".to_owned() } else { format!("s{slot}") };
+        write!(f, "{}, {} = sin_cos({})", slot(self.sine), slot(self.cosine), slot(self.angle))
+    }
+}
+
+/// One instruction a line.
+impl fmt::Display for Code {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.angles.iter().try_for_each(|instruction| writeln!(f, "{instruction}"))?;
+        self.turns.iter().try_for_each(|turn| writeln!(f, "{turn}"))?;
+        self.rest.iter().try_for_each(|instruction| writeln!(f, "{instruction}"))
+    }
+}
