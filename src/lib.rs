@@ -80,6 +80,7 @@
 //! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own |
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
+//! | `compiled` | any arm at run time, nearly as fast as a derived one: [`compiled::CompiledArm`]; it brings the compiler |
 //! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
 //! | `rayon` | batches on all cores |
 //! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler (a stable one says E0554) |
@@ -134,6 +135,33 @@ pub use rne_runtime::{
 // Derived code names them.
 #[doc(hidden)]
 pub use rne_runtime::{RunTimeParameter, batch, testing};
+
+/// Any arm at run time, nearly as fast as a derived one: read, compiled to the code of a machine, and run over blocks
+/// of states on the widest vector unit.
+///
+/// ```
+/// use rne::compiled::{Arguments, Array, CompiledArm, Destination, Function};
+///
+/// let arm = CompiledArm::from_file("robots/puma560.yaml")?;
+/// let tau = arm.inverse_dynamics(&[0.0, 0.8, -0.4, 0.0, 0.5, 0.0], &[0.1; 6], &[0.0; 6])?; // N m
+///
+/// // ten thousand states, numbers of a state beside each other
+/// let (q, zeros) = (vec![0.5; 60_000], vec![0.0; 60_000]);
+/// let arguments = Arguments::new().q(Array::Rows(&q)).qd(Array::Rows(&zeros)).qdd(Array::Rows(&zeros));
+/// let mut torques = vec![0.0; 60_000];
+/// arm.run(Function::InverseDynamics, 10_000, &arguments, Destination::Rows(&mut torques))?;
+/// # assert_eq!((tau.len(), &torques[..6]), (6, &torques[6..12]));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[cfg(feature = "compiled")]
+#[cfg_attr(docsrs, doc(cfg(feature = "compiled")))]
+pub mod compiled {
+    #[doc(inline)]
+    pub use rne_machine::{
+        ARGUMENTS, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
+        EvaluationError, Form, Function, Machine,
+    };
+}
 
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]

@@ -5,6 +5,7 @@ use std::array::from_fn;
 use std::fmt::Debug;
 
 use fastrand::Rng;
+use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function};
 use rne::{BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
 
 macro_rules! robots {
@@ -78,6 +79,44 @@ impl<T: BatchScalar, const DOF: usize> States<T, DOF> {
         robot.inverse_dynamics_batch_on(unit, q, qd, qdd, slices).expect("arrays of one length");
         tau
     }
+}
+
+/// An arm that is read when the program runs computes what is derived from its file, to the bit, on every unit.
+#[test]
+fn a_robot_read_at_run_time_has_the_bits_of_the_derived_one() {
+    fn check<const DOF: usize>(file: &str, robot: &impl BatchInverseDynamics<DOF>, form: Form) {
+        let arm = CompiledArm::from_file(format!("robots/{file}.yaml")).expect("a shipped robot").in_form(form);
+        check_of::<f64, DOF>(file, robot, &arm);
+        check_of::<f32, DOF>(file, robot, &arm);
+    }
+    fn check_of<T: BatchScalar, const DOF: usize>(
+        file: &str,
+        robot: &impl BatchInverseDynamics<DOF>,
+        arm: &CompiledArm,
+    ) {
+        let compiled = arm.function(Function::InverseDynamics).expect("a function that compiles");
+        for length in LENGTHS {
+            let states = States::<T, DOF>::random(length);
+            let [q, qd, qdd] = states.slices();
+            let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
+            for unit in VectorUnit::all() {
+                let mut tau: [Vec<T>; DOF] = from_fn(|_| vec![T::from_f64(f64::NAN); length]);
+                let room = Destination::Columns(tau.iter_mut().map(Vec::as_mut_slice).collect());
+                compiled.run(unit, length, &arguments, room).expect("arrays of one length");
+                assert_eq!(tau, states.batch(robot, unit), "{file}, {}, {unit}, {length} states", arm.form());
+            }
+        }
+    }
+    check("planar1", &Pendulum, Form::SevenSteps);
+    check("gantry_ppp", &Gantry, Form::SevenSteps);
+    check("scara_cobra600", &Scara, Form::SevenSteps);
+    check("stanford", &Stanford, Form::SevenSteps);
+    check("puma560", &Puma560, Form::SevenSteps);
+    check("panda", &Panda, Form::SevenSteps);
+    check("gantry_ppp", &ReducedGantry, Form::Reduced);
+    check("scara_cobra600", &ReducedScara, Form::Reduced);
+    check("puma560", &ReducedPuma560, Form::Reduced);
+    check("panda", &ReducedPanda, Form::Reduced);
 }
 
 /// The largest difference of two torques, in units of the largest torque of their state.

@@ -22,9 +22,21 @@
 #![warn(missing_debug_implementations)]
 #![forbid(unsafe_code)]
 
+mod arguments;
+mod compiled_arm;
+mod compiled_function;
 mod dataflow;
+mod error;
+mod one_state;
 mod schedule;
 mod selection;
+
+pub use arguments::{ARGUMENTS, Arguments, Array};
+pub use compiled_arm::CompiledArm;
+pub use compiled_function::CompiledFunction;
+pub use error::{ArmError, EvaluationError};
+pub use one_state::Derivatives;
+pub use rne_codegen::{Form, Function};
 
 use rne_codegen::{Name, Program};
 use rne_runtime::machine::Code;

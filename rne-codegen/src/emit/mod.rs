@@ -27,6 +27,7 @@ pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
 pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
 pub use own_tests::{Golden, c_tests, rust_tests};
+pub use signature::ArgumentArray;
 pub use syntax::Precision;
 pub use table::{angle, operations_table};
 pub use text::{rust_file, rust_file_with_sin_cos};

@@ -6,9 +6,20 @@ use crate::ir::quantity::{Axis, Quantity};
 use crate::program::Program;
 
 /// An argument array and the names of its elements; `None` for an element that is not used.
-pub(super) struct ArgumentArray {
-    pub(super) name: &'static str,
-    pub(super) elements: Vec<Option<Name>>,
+#[derive(Clone, Debug, PartialEq)]
+pub struct ArgumentArray {
+    /// The array's name in emitted code: `q`, `qd`, `force`, ….
+    pub name: &'static str,
+    /// Its elements, in order.
+    pub elements: Vec<Option<Name>>,
+}
+
+impl Program {
+    /// The argument arrays of its function in order, those of the run-time parameters last.
+    #[must_use]
+    pub fn argument_arrays(&self) -> Vec<ArgumentArray> {
+        arguments(self).into_iter().chain(parameters(self)).collect()
+    }
 }
 
 /// The argument arrays of a program's function, in order, without run-time parameters.
@@ -51,7 +62,7 @@ pub(super) fn arguments(program: &Program) -> Vec<ArgumentArray> {
 }
 
 /// The array of the run-time parameters, where the robot has some.
-pub(super) fn parameters(program: &Program) -> Option<ArgumentArray> {
+fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
     let elements = names.map(|name| program.arguments.contains(&name).then_some(name)).collect();
     (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements })

@@ -6,7 +6,7 @@ use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
 use quote::{ToTokens, quote};
 
 use super::expression::{Position, needs_parentheses};
-use super::signature::{ArgumentArray, arguments, parameters};
+use super::signature::ArgumentArray;
 use super::syntax::Syntax;
 use crate::fma::{Contraction, Negated};
 use crate::function::Record;
@@ -105,7 +105,7 @@ impl<'a> Body<'a> {
     }
 
     fn arguments(&self, is_asked: impl Fn(&str) -> bool, is_used: impl Fn(Name) -> bool) -> TokenStream {
-        let arrays = arguments(self.program).into_iter().chain(parameters(self.program));
+        let arrays = self.program.argument_arrays().into_iter();
         arrays
             .filter(|array| is_asked(array.name))
             .map(|ArgumentArray { name, elements }| {

@@ -1,0 +1,145 @@
+//! The arguments of many states, in a caller's arrays.
+
+use rne_runtime::machine::Source;
+
+/// An argument of many states: its elements, a number per joint most often, for each of them.
+#[derive(Clone, Copy, Debug)]
+pub enum Array<'a, T> {
+    /// All elements of a state one after the other, then the next state's: `q[state][joint]`.
+    Rows(&'a [T]),
+    /// One slice per element, and in it one number per state: `q[joint][state]`. It is read fastest.
+    Columns(&'a [&'a [T]]),
+    /// The elements of every state.
+    Same(&'a [T]),
+    /// Element `j` of state `s` is at `s * state + j * element`.
+    Strided {
+        /// The numbers, the first state's first element first.
+        numbers: &'a [T],
+        /// How far apart states are.
+        state: usize,
+        /// How far apart elements are.
+        element: usize,
+    },
+}
+
+impl<'a, T> Array<'a, T> {
+    /// One element of so many states, of an array that has so many elements; `None` when it does not reach as far.
+    pub(crate) fn source(&self, element: usize, elements: usize, states: usize) -> Option<Source<'a, T>> {
+        match *self {
+            Array::Rows(numbers) => {
+                (numbers.len() == states.checked_mul(elements)?).then(|| strided(numbers, element, elements))
+            }
+            Array::Columns(columns) => {
+                let column =
+                    columns.get(element).filter(|column| columns.len() == elements && column.len() == states)?;
+                Some(Source::Column(column))
+            }
+            Array::Same(numbers) => (numbers.len() == elements).then(|| strided(numbers, element, 0)),
+            Array::Strided { numbers, state, element: apart } => {
+                let last = |count: usize, apart: usize| count.saturating_sub(1).checked_mul(apart);
+                let reached = last(states, state)?.checked_add(last(elements, apart)?)?;
+                (states == 0 || reached < numbers.len()).then(|| strided(numbers, element * apart, state))
+            }
+        }
+    }
+
+    /// One element of the first state, of an array that has so many elements.
+    pub(crate) fn first(&self, element: usize, elements: usize) -> Option<&'a T> {
+        match self.source(element, elements, 1)? {
+            Source::Column(numbers) | Source::Strided(numbers, _) => numbers.first(),
+        }
+    }
+}
+
+fn strided<T>(numbers: &[T], start: usize, stride: usize) -> Source<'_, T> {
+    let numbers = numbers.get(start..).unwrap_or_default();
+    if stride == 1 { Source::Column(numbers) } else { Source::Strided(numbers, stride) }
+}
+
+macro_rules! arguments {
+    ($($(#[$about:meta])* $name:ident,)*) => {
+        /// The arguments of a function, by name. What it does not take may be there and is not read.
+        ///
+        /// ```
+        /// use rne_machine::{Arguments, Array};
+        ///
+        /// let q = [0.1, 0.2, 0.3, 0.4]; // two states of two joints
+        /// let arguments = Arguments::new().q(Array::Rows(&q)).qd(Array::Same(&[0.0, 0.0]));
+        /// # let _: Arguments<'_, f64> = arguments;
+        /// ```
+        #[derive(Clone, Copy, Debug)]
+        pub struct Arguments<'a, T> {
+            $($name: Option<Array<'a, T>>,)*
+        }
+
+        impl<'a, T> Arguments<'a, T> {
+            /// None yet.
+            #[must_use]
+            pub const fn new() -> Self {
+                Self { $($name: None,)* }
+            }
+
+            $($(#[$about])*
+            #[must_use]
+            pub fn $name(self, $name: Array<'a, T>) -> Self {
+                Self { $name: Some($name), ..self }
+            })*
+
+            /// The argument of a name; `None` when there is no such argument, and nothing has changed then.
+            #[must_use]
+            pub fn with(self, name: &str, array: Array<'a, T>) -> Option<Self> {
+                match name {
+                    $(stringify!($name) => Some(self.$name(array)),)*
+                    _ => None,
+                }
+            }
+
+            pub(crate) fn get(&self, name: &str) -> Option<&Array<'a, T>> {
+                match name {
+                    $(stringify!($name) => self.$name.as_ref(),)*
+                    _ => None,
+                }
+            }
+        }
+
+        /// The names of all arguments.
+        pub const ARGUMENTS: &[&str] = &[$(stringify!($name)),*];
+    };
+}
+arguments! {
+    /// Joint positions, rad or m.
+    q,
+    /// Joint velocities, rad/s or m/s.
+    qd,
+    /// Joint accelerations, rad/s² or m/s².
+    qdd,
+    /// Joint torques, N m or N.
+    tau,
+    /// Sines of the joint positions.
+    sin,
+    /// Cosines of the joint positions.
+    cos,
+    /// Force that the last link exerts at the tip, in tip axes, N: three elements.
+    force,
+    /// Moment that it exerts about the origin of the tip frame, N m: three elements.
+    moment,
+    /// What is fixed to the tip: mass, kg; centre of mass x, y, z, m; inertia about it xx, yy, zz, xy, xz, yz, kg m²:
+    /// ten elements, in tip axes.
+    payload,
+    /// Angular velocity of the base, rad/s, in the axes of frame 0: three elements.
+    base_omega,
+    /// Angular acceleration of the base, rad/s²: three elements.
+    base_omega_dot,
+    /// Acceleration of the base, gravity not included, m/s²: three elements.
+    base_acceleration,
+    /// Acceleration of gravity, m/s², pointing down: three elements.
+    base_gravity,
+    /// The parameters of the robot file that are known at run time only, in their order.
+    parameters,
+}
+
+impl<T> Default for Arguments<'_, T> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

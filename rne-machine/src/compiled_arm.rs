@@ -1,0 +1,203 @@
+//! An arm that is known at run time only, with all its functions.
+
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+use rne_codegen::plan::{PlanFile, PlanSet};
+use rne_codegen::{CompileError, Compiler, Form, Function, Target};
+use rne_model::{Reader, Robot, plan_of, read_file};
+use rne_runtime::machine::Destination;
+use rne_runtime::{BatchScalar, VectorUnit};
+
+use crate::{Arguments, ArmError, CompiledFunction, EvaluationError};
+
+/// An arm that is read when the program runs, and computes nearly as fast as one that is derived: every function is
+/// compiled when it is first called, once, from whatever thread, and runs on the widest vector unit.
+///
+/// [`run`](Self::run) computes many states of any function. The methods with the functions' own names compute one, and
+/// take and return what `DynArm` does. Clones share what has been compiled.
+///
+/// ```
+/// use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
+///
+/// let rod = "
+/// format: 1
+/// name: rod
+/// source: own
+/// convention: standard
+/// gravity: [0, -9.81, 0]
+/// joints: [{type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]
+/// ";
+/// let arm = CompiledArm::from_yaml(rod)?;
+/// let tau = arm.gravity_torques(&[0.0_f64])?;
+/// assert!((tau[0] - 2.5 * 9.81 * 0.4).abs() < 1e-12);
+///
+/// let q = [0.0, 0.1, 0.2]; // rad, three states
+/// let mut many = [0.0; 3];
+/// arm.run(Function::GravityTorques, 3, &Arguments::new().q(Array::Rows(&q)), Destination::Rows(&mut many))?;
+/// assert_eq!(many[0], tau[0]);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct CompiledArm(Arc<Compiled>);
+
+#[derive(Debug)]
+struct Compiled {
+    robot: Robot,
+    form: Form,
+    /// Those of a plan file, or those that are chosen when they are first needed.
+    plans: OnceLock<PlanSet>,
+    functions: [OnceLock<Result<CompiledFunction, CompileError>>; Function::ALL.len()],
+}
+
+/// Arms that were read before, the latest last, by what was read: the same text gives the same arm, compiled.
+static READ: Mutex<VecDeque<(Content, CompiledArm)>> = Mutex::new(VecDeque::new());
+
+/// How many of them are kept.
+const KEPT: usize = 32;
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Content {
+    robot: Vec<u8>,
+    plan: Option<Vec<u8>>,
+}
+
+impl CompiledArm {
+    /// The arm of the text of a robot file. An arm that this process has read before is there at once.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the text.
+    pub fn from_yaml(text: &str) -> Result<Self, ArmError> {
+        Self::read("robot file", Content { robot: text.into(), plan: None }, "")
+    }
+
+    /// The arm of a robot file, by the choices of its plan file where there is one beside it. A relative `path` starts
+    /// at the working directory.
+    ///
+    /// # Errors
+    /// When a file cannot be read, or everything that is wrong with it.
+    pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ArmError> {
+        let path = path.as_ref();
+        let read = |path: &Path| read_file(path).map_err(|error| ArmError::Unreadable { path: path.to_owned(), error });
+        let robot = read(path)?;
+        let beside = plan_of(path);
+        let plan = if beside.exists() { Some(read(&beside)?) } else { None };
+        Self::read(&path.display().to_string(), Content { robot, plan }, &beside.display().to_string())
+    }
+
+    /// The arm of the text of a robot file, by the choices of the text of its plan file.
+    ///
+    /// # Errors
+    /// Everything that is wrong with the texts.
+    pub fn with_plan(robot: &str, plan: &str) -> Result<Self, ArmError> {
+        Self::read("robot file", Content { robot: robot.into(), plan: Some(plan.into()) }, "plan")
+    }
+
+    fn read(name: &str, content: Content, name_of_plan: &str) -> Result<Self, ArmError> {
+        let known = |read: &VecDeque<(Content, Self)>| {
+            read.iter().find(|(other, _)| *other == content).map(|(_, arm)| arm.clone())
+        };
+        if let Some(arm) = known(&READ.lock().unwrap_or_else(PoisonError::into_inner)) {
+            return Ok(arm);
+        }
+        let robot = Reader::new(name).read(&content.robot)?.robot;
+        let plan = match &content.plan {
+            Some(plan) => Some(PlanFile::read(name_of_plan, &String::from_utf8_lossy(plan), &robot)?),
+            None => None,
+        };
+        let arm = Self::new(robot, Form::Reduced, plan.map(PlanSet::from));
+        let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
+        // another thread may have read it meanwhile: one arm for all
+        if let Some(arm) = known(&read) {
+            return Ok(arm);
+        }
+        if read.len() == KEPT {
+            read.pop_front();
+        }
+        read.push_back((content, arm.clone()));
+        Ok(arm)
+    }
+
+    /// The arm of a robot file that has been read otherwise, with parameters that stay free, say.
+    #[must_use]
+    pub fn from_robot(robot: &Robot) -> Self {
+        Self::new(robot.clone(), Form::Reduced, None)
+    }
+
+    fn new(robot: Robot, form: Form, plans: Option<PlanSet>) -> Self {
+        let plans = plans.map_or_else(OnceLock::new, OnceLock::from);
+        Self(Arc::new(Compiled { robot, form, plans, functions: [const { OnceLock::new() }; Function::ALL.len()] }))
+    }
+
+    /// The same arm in another form: the default is the reduced one, with the fewest operations.
+    #[must_use]
+    pub fn in_form(&self, form: Form) -> Self {
+        if form == self.0.form {
+            return self.clone();
+        }
+        Self::new(self.0.robot.clone(), form, self.0.plans.get().cloned())
+    }
+
+    /// The same arm by the choices of a plan file, such as a search has found.
+    #[must_use]
+    pub fn by_plan(&self, plan: PlanFile) -> Self {
+        Self::new(self.0.robot.clone(), self.0.form, Some(plan.into()))
+    }
+
+    /// The table.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.0.robot
+    }
+
+    /// Number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.0.robot.dof()
+    }
+
+    /// How its functions are computed.
+    #[must_use]
+    pub fn form(&self) -> Form {
+        self.0.form
+    }
+
+    /// A function, compiled now if it has not been before.
+    ///
+    /// # Errors
+    /// When it cannot be compiled for this robot: its numbers overflow, say.
+    pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
+        let Compiled { robot, form, plans, functions } = &*self.0;
+        let compiled = functions[function as usize].get_or_init(|| {
+            let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
+            if *form == Form::Reduced {
+                compiler = compiler.with_plans(plans.get_or_init(|| PlanSet::default_of(robot)).clone());
+            }
+            CompiledFunction::new(compiler.compile(function, *form)?)
+        });
+        compiled.as_ref().map_err(|error| error.clone().into())
+    }
+
+    /// Computes a function for so many states on the widest vector unit.
+    ///
+    /// The numbers of a result stand in the order of the function's [layout](Function::layout), matrices row by row.
+    ///
+    /// # Errors
+    /// When the function cannot be compiled, an argument is missing or has another size, or the room for the results.
+    pub fn run<T: BatchScalar>(
+        &self,
+        function: Function,
+        states: usize,
+        arguments: &Arguments<'_, T>,
+        results: Destination<'_, T>,
+    ) -> Result<(), EvaluationError> {
+        self.function(function)?.run(VectorUnit::widest(), states, arguments, results)
+    }
+}
+
+impl From<&Robot> for CompiledArm {
+    fn from(robot: &Robot) -> Self {
+        Self::from_robot(robot)
+    }
+}

@@ -1,0 +1,120 @@
+//! One function of one arm, ready to run.
+
+use rne_codegen::{CompileError, Program};
+use rne_runtime::machine::{Destination, Source};
+use rne_runtime::{BatchScalar, VectorUnit};
+
+use crate::{Arguments, EvaluationError, Machine};
+
+/// A function of an arm that was compiled when it was first asked for.
+#[derive(Clone, Debug)]
+pub struct CompiledFunction {
+    program: Program,
+    machine: Machine,
+    arrays: Vec<(&'static str, usize)>,
+    /// Of each input of the machine: which array, and which element of it.
+    inputs: Vec<(usize, usize)>,
+}
+
+impl CompiledFunction {
+    /// Of a program.
+    pub(crate) fn new(program: Program) -> Result<Self, CompileError> {
+        let (function, dof) = (program.function, program.dof);
+        let too_large = || CompileError::TooLarge { function, dof, most: u32::MAX as usize };
+        let machine = Machine::new(&program).ok_or_else(too_large)?;
+        let arrays = program.argument_arrays();
+        let place = |name| {
+            let places = arrays.iter().enumerate();
+            let mut places = places.filter_map(|(index, array)| {
+                Some((index, array.elements.iter().position(|element| *element == Some(name))?))
+            });
+            places.next()
+        };
+        let inputs = machine.inputs().iter().map(|name| place(*name)).collect::<Option<_>>().ok_or_else(too_large)?;
+        let arrays = arrays.iter().map(|array| (array.name, array.elements.len())).collect();
+        Ok(Self { program, machine, arrays, inputs })
+    }
+
+    /// The program that it runs: its statements, counts, constants.
+    #[must_use]
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// What the machine makes of the program.
+    #[must_use]
+    pub fn machine(&self) -> &Machine {
+        &self.machine
+    }
+
+    /// The arguments that it takes and how many elements each has, in order.
+    #[must_use]
+    pub fn arguments(&self) -> &[(&'static str, usize)] {
+        &self.arrays
+    }
+
+    /// How many numbers it returns for a state.
+    #[must_use]
+    pub fn outputs(&self) -> usize {
+        self.program.outputs.len()
+    }
+
+    /// Computes so many states, on all cores with the feature `rayon`.
+    ///
+    /// # Errors
+    /// When an argument is missing or has another size, or the room for the results.
+    pub fn run<T: BatchScalar>(
+        &self,
+        unit: VectorUnit,
+        states: usize,
+        arguments: &Arguments<'_, T>,
+        results: Destination<'_, T>,
+    ) -> Result<(), EvaluationError> {
+        self.check(states, arguments)?;
+        let sources: Vec<Source<'_, T>> = self
+            .inputs
+            .iter()
+            .filter_map(|&(array, element)| {
+                let (name, elements) = self.arrays[array];
+                arguments.get(name)?.source(element, elements, states)
+            })
+            .collect();
+        let room = EvaluationError::Room { outputs: self.outputs(), states };
+        self.machine.code().run(unit, states, &sources, results).map_err(|_| room)
+    }
+
+    /// Computes one state, the first of the arguments.
+    ///
+    /// # Errors
+    /// When an argument is missing or has another size, or the room for the results.
+    pub fn run_one<T: BatchScalar>(
+        &self,
+        unit: VectorUnit,
+        arguments: &Arguments<'_, T>,
+        results: &mut [T],
+    ) -> Result<(), EvaluationError> {
+        self.check(1, arguments)?;
+        let inputs: Vec<T> = self
+            .inputs
+            .iter()
+            .filter_map(|&(array, element)| {
+                let (name, elements) = self.arrays[array];
+                arguments.get(name)?.first(element, elements).copied()
+            })
+            .collect();
+        let room = EvaluationError::Room { outputs: self.outputs(), states: 1 };
+        self.machine.code().run_one(unit, &inputs, results).map_err(|_| room)
+    }
+
+    /// Refuses arguments that are not there or have another size, whether the program uses them or not.
+    fn check<T>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
+        for &(argument, elements) in &self.arrays {
+            let function = self.program.function;
+            let array = arguments.get(argument).ok_or(EvaluationError::Missing { function, argument })?;
+            if (0..elements).any(|element| array.source(element, elements, states).is_none()) {
+                return Err(EvaluationError::Argument { argument, elements, states });
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,116 @@
+//! What can be wrong with an arm at run time, or with a call.
+
+use std::error::Error;
+use std::fmt;
+use std::io;
+use std::path::PathBuf;
+
+use rne_codegen::{CompileError, Function};
+use rne_model::Report;
+
+/// Why a file gave no arm.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ArmError {
+    /// A file cannot be read.
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the operating system says.
+        error: io::Error,
+    },
+    /// The robot file or its plan is wrong; the report has line, column and what is allowed.
+    Invalid(Report),
+}
+
+impl fmt::Display for ArmError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Unreadable { path, error } => write!(f, "cannot read {}: {error}", path.display()),
+            Self::Invalid(report) => report.fmt(f),
+        }
+    }
+}
+
+impl Error for ArmError {
+    /// What the operating system says; a report is shown as it is, without words of this error.
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Unreadable { error, .. } => Some(error),
+            Self::Invalid(report) => report.source(),
+        }
+    }
+}
+
+impl From<Report> for ArmError {
+    fn from(report: Report) -> Self {
+        Self::Invalid(report)
+    }
+}
+
+/// Why a function computed nothing. Nothing has been written then.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum EvaluationError {
+    /// The function cannot be compiled for this robot.
+    Compile(CompileError),
+    /// An argument that the function takes is not there.
+    Missing {
+        /// The function.
+        function: Function,
+        /// The argument.
+        argument: &'static str,
+    },
+    /// An argument has another size.
+    Argument {
+        /// The argument.
+        argument: &'static str,
+        /// How many elements it has for each state.
+        elements: usize,
+        /// How many states there are.
+        states: usize,
+    },
+    /// The room for the results has another size.
+    Room {
+        /// How many numbers the function returns for each state.
+        outputs: usize,
+        /// How many states there are.
+        states: usize,
+    },
+}
+
+impl fmt::Display for EvaluationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Compile(error) => error.fmt(f),
+            Self::Missing { function, argument } => write!(f, "`{function}` needs the argument `{argument}`"),
+            Self::Argument { argument, elements, states: 1 } => {
+                write!(f, "`{argument}` has {elements} elements for this arm; another number was given")
+            }
+            Self::Argument { argument, elements, states } => {
+                write!(f, "`{argument}` has {elements} elements for each of {states} states; another number was given")
+            }
+            Self::Room { outputs, states } => {
+                write!(
+                    f,
+                    "the result has {outputs} numbers for each of {states} states; there is room for another number"
+                )
+            }
+        }
+    }
+}
+
+impl Error for EvaluationError {
+    fn source(&self) -> Option<&(dyn Error + 'static)> {
+        match self {
+            Self::Compile(error) => error.source(),
+            _ => None,
+        }
+    }
+}
+
+impl From<CompileError> for EvaluationError {
+    fn from(error: CompileError) -> Self {
+        Self::Compile(error)
+    }
+}

@@ -1,0 +1,271 @@
+//! The machine against the interpreter of programs, an independent reader of the same text: every shipped robot, every
+//! function, both forms. On a unit without fused multiply-add to the bit.
+
+use fastrand::Rng;
+use rne_codegen::plan::PlanFile;
+use rne_codegen::{Arguments as Numbers, Compiler, Interpreter, Target};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function};
+use rne_model::Robot;
+use rne_runtime::{Scalar, VectorUnit};
+
+/// States: some blocks, and some that fill none.
+const STATES: usize = 150;
+
+/// Arguments and their elements for any function of an arm.
+fn widths(dof: usize) -> [(&'static str, usize); 13] {
+    [
+        ("q", dof),
+        ("qd", dof),
+        ("qdd", dof),
+        ("tau", dof),
+        ("sin", dof),
+        ("cos", dof),
+        ("force", 3),
+        ("moment", 3),
+        ("payload", 10),
+        ("base_omega", 3),
+        ("base_omega_dot", 3),
+        ("base_acceleration", 3),
+        ("base_gravity", 3),
+    ]
+}
+
+/// Random numbers of every argument, state by state.
+struct States {
+    dof: usize,
+    rows: Vec<Vec<f64>>,
+}
+
+impl States {
+    fn random(rng: &mut Rng, dof: usize) -> Self {
+        let mut rows: Vec<Vec<f64>> = widths(dof)
+            .iter()
+            .map(|(name, width)| {
+                let scale = if *name == "q" { 3.0 } else { 5.0 };
+                (0..STATES * width).map(|_| (2.0 * rng.f64() - 1.0) * scale).collect()
+            })
+            .collect();
+        // those of the positions
+        let q = rows[0].clone();
+        rows[4] = q.iter().map(|&q| Scalar::sin_cos(q).0).collect();
+        rows[5] = q.iter().map(|&q| Scalar::sin_cos(q).1).collect();
+        Self { dof, rows }
+    }
+
+    fn given<'a>(&'a self, array: impl Fn(usize, usize) -> Array<'a, f64>) -> Arguments<'a, f64> {
+        let all = widths(self.dof).into_iter().enumerate();
+        all.fold(Arguments::new(), |given, (index, (name, width))| {
+            given.with(name, array(index, width)).expect("an argument of this name")
+        })
+    }
+
+    fn by_rows(&self) -> Arguments<'_, f64> {
+        self.given(|index, _| Array::Rows(&self.rows[index]))
+    }
+
+    fn of_state(&self, state: usize) -> Arguments<'_, f64> {
+        self.given(|index, width| Array::Same(&self.rows[index][state * width..][..width]))
+    }
+
+    fn interpreted(&self, interpreter: &Interpreter, state: usize) -> Vec<f64> {
+        let of = |index: usize, width: usize| &self.rows[index][state * width..][..width];
+        let joints = |index: usize| of(index, self.dof);
+        let triple = |index: usize| of(index, 3).try_into().expect("three");
+        let numbers = Numbers {
+            tau: joints(3),
+            force: triple(6),
+            moment: triple(7),
+            payload: of(8, 10).try_into().expect("ten"),
+            base: [9, 10, 11, 12].map(triple),
+            ..Numbers::of_joints(joints(0), joints(1), joints(2), 0.0)
+        };
+        interpreter.run(&numbers, f64::from_f64, Scalar::sin_cos).expect("arrays of the right length")
+    }
+}
+
+fn largest(numbers: &[f64]) -> f64 {
+    numbers.iter().fold(0.0, |largest: f64, number| largest.max(number.abs()))
+}
+
+/// Whether two numbers have the same bits, or are none both.
+fn are_same(a: &[f64], b: &[f64]) -> bool {
+    a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan())
+}
+
+/// The shipped robots as they are shipped: by their plans.
+fn arms() -> impl Iterator<Item = CompiledArm> {
+    rne_robots::ROBOTS.iter().map(|file| {
+        let arm = match file.plan {
+            Some(plan) => CompiledArm::with_plan(file.yaml, plan),
+            None => CompiledArm::from_yaml(file.yaml),
+        };
+        arm.unwrap_or_else(|error| panic!("{}: {error}", file.name))
+    })
+}
+
+/// What compiles the same programs.
+fn compiler(robot: &Robot) -> Compiler<'_> {
+    let compiler = Compiler::new(robot).for_target(Target::Throughput);
+    match rne_robots::find(&robot.name).and_then(|file| file.plan) {
+        Some(plan) => compiler.with_plans(PlanFile::read("plan", plan, robot).expect("a shipped plan")),
+        None => compiler,
+    }
+}
+
+#[test]
+fn every_function_of_every_robot_is_the_program() {
+    let mut rng = Rng::with_seed(14);
+    let (mut compared, mut worst) = (0_usize, 0.0_f64);
+    for arm in arms() {
+        let robot = arm.robot();
+        let states = States::random(&mut rng, robot.dof());
+        let compiler = compiler(robot);
+        for form in Form::ALL {
+            let arm = arm.in_form(form);
+            for function in Function::ALL {
+                let program = compiler.compile(function, form).unwrap_or_else(|error| panic!("{function}: {error}"));
+                let interpreter = Interpreter::new(&program);
+                let expected: Vec<f64> =
+                    (0..STATES).flat_map(|state| states.interpreted(&interpreter, state)).collect();
+                let compiled = arm.function(function).expect("a function that compiles");
+                for (index, unit) in VectorUnit::all().enumerate() {
+                    let mut found = vec![f64::NAN; expected.len()];
+                    let rows = Destination::Rows(&mut found);
+                    compiled.run(unit, STATES, &states.by_rows(), rows).expect("arrays of one length");
+                    compared += found.len();
+                    let what = format!("{}, {function}, {form}, {unit}", robot.name);
+                    if index == 0 && !cfg!(target_feature = "fma") {
+                        assert!(are_same(&found, &expected), "{what}: {found:?} {expected:?}");
+                    }
+                    // A fused multiply-add rounds once, on the scale of what is summed: of the largest of all states
+                    // where results are sums, of a state's where a matrix that may be nearly singular is divided by.
+                    let width = compiled.outputs();
+                    let (of_all, divides) = (largest(&expected), function.divides().is_some());
+                    for (found, expected) in found.chunks(width).zip(expected.chunks(width)) {
+                        let difference = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                        let (scale, limit) = if divides { (largest(expected), 1e-9) } else { (of_all, 1e-13) };
+                        let error = difference / scale.max(1e-300);
+                        assert!(error <= limit || expected.iter().any(|x| !x.is_finite()), "{what}: {error:e}");
+                        worst = worst.max(if divides { 0.0 } else { error });
+                    }
+                }
+            }
+        }
+    }
+    println!("{compared} numbers, worst with fused multiply-add {worst:.1e} of the largest of a result");
+}
+
+#[test]
+fn a_state_has_the_same_bits_in_every_layout_and_alone() {
+    let mut rng = Rng::with_seed(15);
+    for arm in arms() {
+        let robot = arm.robot();
+        let states = States::random(&mut rng, robot.dof());
+        let columns: Vec<Vec<Vec<f64>>> = widths(robot.dof())
+            .iter()
+            .zip(&states.rows)
+            .map(|((_, width), rows)| {
+                (0..*width).map(|element| rows.iter().skip(element).step_by(*width).copied().collect()).collect()
+            })
+            .collect();
+        let slices: Vec<Vec<&[f64]>> =
+            columns.iter().map(|columns| columns.iter().map(Vec::as_slice).collect()).collect();
+        // as numpy has them in Fortran's order
+        let of_fortran: Vec<Vec<f64>> = columns.iter().map(|columns| columns.concat()).collect();
+        for function in
+            [Function::InverseDynamics, Function::MassMatrix, Function::ForwardDynamics, Function::LinkPoses]
+        {
+            let compiled = arm.function(function).expect("a function that compiles");
+            for unit in VectorUnit::all() {
+                let width = compiled.outputs();
+                let run = |arguments: &Arguments<'_, f64>| {
+                    let mut found = vec![f64::NAN; STATES * width];
+                    compiled.run(unit, STATES, arguments, Destination::Rows(&mut found)).expect("arrays of one length");
+                    found
+                };
+                let expected = run(&states.by_rows());
+                assert!(are_same(&expected, &run(&states.given(|index, _| Array::Columns(&slices[index])))));
+                let strided =
+                    |index: usize, _| Array::Strided { numbers: &of_fortran[index], state: 1, element: STATES };
+                assert!(are_same(&expected, &run(&states.given(strided))), "{}, {function}, {unit}", robot.name);
+
+                let mut found: Vec<Vec<f64>> = vec![vec![f64::NAN; STATES]; width];
+                let room = Destination::Columns(found.iter_mut().map(Vec::as_mut_slice).collect());
+                compiled.run(unit, STATES, &states.by_rows(), room).expect("arrays of one length");
+                let as_rows: Vec<f64> =
+                    (0..STATES).flat_map(|state| found.iter().map(move |column| column[state])).collect();
+                assert!(are_same(&expected, &as_rows), "{}, {function}, {unit}: columns", robot.name);
+
+                for (state, expected) in expected.chunks(width).enumerate() {
+                    let mut found = vec![f64::NAN; width];
+                    compiled.run_one(unit, &states.of_state(state), &mut found).expect("arrays of one length");
+                    assert!(are_same(expected, &found), "{}, {function}, {unit}: state {state} alone", robot.name);
+                }
+            }
+        }
+    }
+}
+
+/// Angles beyond the kernel of sine and cosine, infinities and NaN: as in single calls, and no neighbour notices.
+#[test]
+fn large_angles_and_no_numbers_stay_with_their_state() {
+    let arm = arms().find(|arm| arm.robot().name == "puma560").expect("a shipped robot");
+    let robot = arm.robot();
+    let mut rng = Rng::with_seed(16);
+    let mut states = States::random(&mut rng, robot.dof());
+    let compiled = arm.function(Function::InverseDynamics).expect("a function that compiles");
+    let run = |states: &States, unit| {
+        let mut found = vec![f64::NAN; STATES * 6];
+        compiled.run(unit, STATES, &states.by_rows(), Destination::Rows(&mut found)).expect("arrays of one length");
+        found
+    };
+    let before: Vec<Vec<f64>> = VectorUnit::all().map(|unit| run(&states, unit)).collect();
+    let strange = [(3, 1e5 + 1.0), (17, -3e8), (64, f64::INFINITY), (149, f64::NAN)];
+    for (state, angle) in strange {
+        states.rows[0][state * 6 + 2] = angle;
+    }
+    let program = compiler(robot).compile(Function::InverseDynamics, Form::Reduced).expect("a program");
+    let interpreter = Interpreter::new(&program);
+    for (unit, before) in VectorUnit::all().zip(before) {
+        let found = run(&states, unit);
+        for state in 0..STATES {
+            let of = |numbers: &[f64]| numbers[state * 6..][..6].to_vec();
+            match strange.iter().find(|(of, _)| *of == state) {
+                None => assert!(are_same(&of(&found), &of(&before)), "{unit}: state {state}"),
+                Some((_, angle)) => {
+                    let expected = states.interpreted(&interpreter, state);
+                    let error = largest(&of(&found).iter().zip(&expected).map(|(a, b)| a - b).collect::<Vec<_>>());
+                    assert_eq!(of(&found).iter().any(|x| x.is_nan()), !angle.is_finite(), "{unit}: {angle}");
+                    assert!(!angle.is_finite() || error <= 1e-12 * largest(&expected), "{unit}: {angle}: {error:e}");
+                }
+            }
+        }
+    }
+}
+
+/// In single precision: within its rounding of double precision.
+#[test]
+fn single_precision_is_near() {
+    let mut rng = Rng::with_seed(17);
+    for arm in arms() {
+        let robot = arm.robot();
+        let states = States::random(&mut rng, robot.dof());
+        let compiled = arm.function(Function::InverseDynamics).expect("a function that compiles");
+        let mut expected = vec![f64::NAN; STATES * robot.dof()];
+        #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+        let rows: Vec<Vec<f32>> = states.rows[..3].iter().map(|row| row.iter().map(|&x| x as f32).collect()).collect();
+        let rounded: Vec<Vec<f64>> = rows.iter().map(|row| row.iter().map(|&x| x.into()).collect()).collect();
+        let [q, qd, qdd] = [0, 1, 2].map(|index| Array::Rows(&rounded[index]));
+        let arguments = Arguments::new().q(q).qd(qd).qdd(qdd);
+        let room = Destination::Rows(&mut expected);
+        compiled.run(VectorUnit::widest(), STATES, &arguments, room).expect("arrays of one length");
+        let [q, qd, qdd] = [0, 1, 2].map(|index| Array::Rows(&rows[index][..]));
+        let arguments = Arguments::new().q(q).qd(qd).qdd(qdd);
+        for unit in VectorUnit::all() {
+            let mut found = vec![f32::NAN; expected.len()];
+            compiled.run(unit, STATES, &arguments, Destination::Rows(&mut found)).expect("arrays of one length");
+            let error = found.iter().zip(&expected).map(|(&a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max);
+            assert!(error <= 2e-5 * largest(&expected), "{}, {unit}: {error:e}", robot.name);
+        }
+    }
+}
