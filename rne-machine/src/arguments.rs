@@ -1,5 +1,7 @@
 //! The arguments of many states, in a caller's arrays.
 
+use core::ops::Range;
+
 use rne_runtime::machine::Source;
 
 /// An argument of many states: its elements, a number per joint most often, for each of them.
@@ -23,6 +25,22 @@ pub enum Array<'a, T> {
 }
 
 impl<'a, T> Array<'a, T> {
+    /// Some of the elements of an array that has so many, as an array of its own: the force of a wrench, say.
+    #[must_use]
+    pub fn part(self, elements: usize, range: Range<usize>) -> Self {
+        match self {
+            Array::Rows(numbers) => {
+                Array::Strided { numbers: numbers.get(range.start..).unwrap_or_default(), state: elements, element: 1 }
+            }
+            Array::Columns(columns) => Array::Columns(columns.get(range).unwrap_or_default()),
+            Array::Same(numbers) => Array::Same(numbers.get(range).unwrap_or_default()),
+            Array::Strided { numbers, state, element } => {
+                let numbers = numbers.get(range.start * element..).unwrap_or_default();
+                Array::Strided { numbers, state, element }
+            }
+        }
+    }
+
     /// One element of so many states, of an array that has so many elements; `None` when it does not reach as far.
     pub(crate) fn source(&self, element: usize, elements: usize, states: usize) -> Option<Source<'a, T>> {
         match *self {

@@ -145,6 +145,13 @@ impl CompiledArm {
         Self::new(self.0.robot.clone(), self.0.form, Some(plan.into()))
     }
 
+    /// The same arm with the rotors of its motors, in all that moves them.
+    #[must_use]
+    pub fn with_rotors(&self) -> Self {
+        let Compiled { robot, form, plans, .. } = &*self.0;
+        Self::new(robot.clone().with_rotors(), *form, plans.get().cloned())
+    }
+
     /// The table.
     #[must_use]
     pub fn robot(&self) -> &Robot {

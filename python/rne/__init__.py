@@ -1,0 +1,65 @@
+"""Dynamics of robot arms: any Denavit-Hartenberg table or URDF, compiled when it is read.
+
+>>> import rne
+>>> arm = rne.robots.puma560
+>>> arm.inverse_dynamics([0, 0.8, -0.4, 0, 0.5, 0], [0.1] * 6, [0] * 6).shape
+(6,)
+
+`rne.load` reads a robot file or a URDF, `rne.robots` has the robots in the box. Arrays have the shape `(n,)` for one
+state or `(N, n)` for many; units are SI: rad, m, N m, N, kg. Torques are what the actuators must deliver.
+"""
+
+from typing import Iterator
+
+import numpy as _numpy
+
+from ._rne import Arm, EvaluationError, RobotFileError, __version__, builtin as _builtin, load, names as _names
+
+__all__ = ["Arm", "EvaluationError", "RobotFileError", "load", "payload", "robots", "__version__"]
+
+
+class _Robots:
+    """The robots in the box, by name: `rne.robots.puma560`, `rne.robots["ur5"]`, `list(rne.robots)`."""
+
+    def __getattr__(self, name: str) -> Arm:
+        try:
+            return _builtin(name)
+        except KeyError as error:
+            raise AttributeError(error.args[0]) from None
+
+    def __getitem__(self, name: str) -> Arm:
+        return _builtin(name)
+
+    def __dir__(self) -> list[str]:
+        return _names()
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(_names())
+
+    def __len__(self) -> int:
+        return len(_names())
+
+    def __contains__(self, name: object) -> bool:
+        return name in _names()
+
+    def __repr__(self) -> str:
+        return f"<rne.robots: {', '.join(_names())}>"
+
+
+robots = _Robots()
+
+
+def payload(mass, com=(0.0, 0.0, 0.0), inertia=None):
+    """What `Arm.inverse_dynamics_with_payload` takes, shape (10,).
+
+    mass: kg. com: centre of mass (m) from the origin of the tip frame, in its axes. inertia: about the centre of mass
+    (kg m²), the symmetric tensor of shape (3, 3), or None for a point mass.
+    """
+    tensor = _numpy.zeros((3, 3)) if inertia is None else _numpy.asarray(inertia, dtype=float)
+    if tensor.shape != (3, 3) or not _numpy.allclose(tensor, tensor.T):
+        raise ValueError("`inertia` is a symmetric tensor of shape (3, 3)")
+    com = _numpy.asarray(com, dtype=float)
+    if com.shape != (3,):
+        raise ValueError("`com` has the shape (3,)")
+    elements = [tensor[0, 0], tensor[1, 1], tensor[2, 2], tensor[0, 1], tensor[0, 2], tensor[1, 2]]
+    return _numpy.concatenate([[float(mass)], com, elements])

@@ -1,0 +1,264 @@
+//! The class `Arm`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyTuple;
+use rne::compiled::{CompiledArm, Form, Function};
+use rne_codegen::Compiler;
+use rne_codegen::plan::PlanFile;
+use rne_model::{Convention, Robot};
+
+use crate::arrays::Given;
+use crate::errors::{of_arm, of_evaluation, of_report};
+use crate::functions::evaluate;
+
+/// From what an arm was made: enough to make it again in another process.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Origin {
+    /// The file that is read, with the plan beside it; its text stands in `robot` afterwards.
+    pub(crate) file: Option<PathBuf>,
+    pub(crate) robot: String,
+    pub(crate) plan: Option<String>,
+    pub(crate) form: FormOr,
+    pub(crate) rotors: bool,
+    pub(crate) run_time: Vec<String>,
+    pub(crate) settings: BTreeMap<String, f64>,
+}
+
+/// A form; the reduced one unless told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct FormOr(pub(crate) Form);
+
+impl Default for FormOr {
+    fn default() -> Self {
+        Self(Form::Reduced)
+    }
+}
+
+impl std::str::FromStr for FormOr {
+    type Err = rne_codegen::UnknownName;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        text.parse().map(Self)
+    }
+}
+
+/// An arm whose functions are compiled when they are first called.
+///
+/// Made by `rne.load` or `rne.robots`. Arguments are arrays of the shape `(n,)` for one state or `(N, n)` for many, a
+/// single row standing for all; revolute joints in rad, rad/s, rad/s² and N m, prismatic ones in m, m/s, m/s² and N.
+/// Arrays of float32 are computed in single precision, everything else in double. `out` is an array that the result is
+/// written to.
+#[pyclass(frozen, module = "rne")]
+#[derive(Clone)]
+pub(crate) struct Arm {
+    pub(crate) arm: CompiledArm,
+    pub(crate) origin: Origin,
+}
+
+impl Arm {
+    pub(crate) fn of(py: Python<'_>, mut origin: Origin) -> PyResult<Self> {
+        let name = match origin.file.take() {
+            Some(path) => {
+                let read = |path: &std::path::Path| {
+                    rne_model::read_file(path)
+                        .map_err(|error| of_arm(py, &rne::compiled::ArmError::Unreadable { path: path.into(), error }))
+                };
+                let text = |bytes: Vec<u8>| String::from_utf8_lossy(&bytes).into_owned();
+                origin.robot = text(read(&path)?);
+                let plan = rne_model::plan_of(&path);
+                origin.plan = if plan.exists() { Some(text(read(&plan)?)) } else { None };
+                path.display().to_string()
+            }
+            None => "<text>".to_owned(),
+        };
+        let is_as_it_stands = origin.run_time.is_empty() && origin.settings.is_empty();
+        let arm = if is_as_it_stands {
+            let arm = py.detach(|| match &origin.plan {
+                Some(plan) => CompiledArm::with_plan(&origin.robot, plan),
+                None => CompiledArm::from_yaml(&origin.robot),
+            });
+            // told again with the name of the file
+            match arm {
+                Ok(arm) => arm,
+                Err(error) => {
+                    origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+                    return Err(of_arm(py, &error));
+                }
+            }
+        } else {
+            let robot = origin.read(&name, origin.robot.as_bytes()).map_err(|report| of_report(py, &report))?;
+            CompiledArm::from_robot(&robot)
+        };
+        let arm = arm.in_form(origin.form.0);
+        let arm = if origin.rotors { arm.with_rotors() } else { arm };
+        Ok(Self { arm, origin })
+    }
+
+    pub(crate) fn robot(&self) -> &Robot {
+        self.arm.robot()
+    }
+
+    /// `standard` or `modified`.
+    pub(crate) fn rows(&self) -> &'static str {
+        match self.robot().convention {
+            Convention::Standard => "standard",
+            Convention::Modified => "modified",
+        }
+    }
+
+    /// A function of joint arrays and whatever else it takes.
+    pub(crate) fn compute<'py>(
+        &self,
+        py: Python<'py>,
+        function: Function,
+        given: Vec<(&'static str, &Bound<'py, PyAny>)>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let mut all: Vec<Given<'py>> = given
+            .into_iter()
+            .map(|(name, value)| {
+                let elements = match name {
+                    "force" | "moment" | "base_omega" | "base_omega_dot" | "base_acceleration" | "base_gravity" => 3,
+                    "wrench" => 6,
+                    "payload" => 10,
+                    _ => self.arm.dof(),
+                };
+                Given { name, elements, value: value.clone() }
+            })
+            .collect();
+        let run_time = &self.robot().run_time;
+        if !run_time.is_empty() {
+            let value = match parameters {
+                Some(value) => value.clone(),
+                // those of the file
+                None => pyo3::types::PyList::new(py, run_time.values(self.robot()))?.into_any(),
+            };
+            all.push(Given { name: "parameters", elements: run_time.names.len(), value });
+        } else if parameters.is_some() {
+            return Err(PyValueError::new_err(
+                "this arm has no run-time parameters; `rne.load(…, run_time=[…])` leaves some free",
+            ));
+        }
+        evaluate(py, &self.arm, function, &all, out)
+    }
+
+    /// A program of a function, in a form.
+    pub(crate) fn program(&self, function: &str, form: Option<&str>) -> PyResult<rne_codegen::Program> {
+        let function: Function = name(function)?;
+        let form = form.map_or(Ok(self.arm.form()), name)?;
+        let compiler = Compiler::new(self.robot());
+        let compiler = match (&self.origin.plan, self.robot().run_time.is_empty()) {
+            (Some(plan), true) if form == Form::Reduced => {
+                let plan = PlanFile::read("plan", plan, self.robot()).map_err(|report| of_evaluation(&report))?;
+                compiler.with_plans(plan)
+            }
+            _ => compiler,
+        };
+        compiler.compile(function, form).map_err(|error| of_evaluation(&error))
+    }
+}
+
+/// What a name says, or a ValueError with those allowed.
+pub(crate) fn name<T: std::str::FromStr<Err = rne_codegen::UnknownName>>(text: &str) -> PyResult<T> {
+    text.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))
+}
+
+#[pymethods]
+impl Arm {
+    /// The robot's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.robot().name
+    }
+
+    /// Number of joints.
+    #[getter]
+    fn dof(&self) -> usize {
+        self.arm.dof()
+    }
+
+    /// The names of the joints, base to tip.
+    #[getter]
+    fn joints(&self) -> Vec<&str> {
+        self.robot().joints.iter().map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// `standard` or `modified`: how the rows of the table are read.
+    #[getter]
+    fn convention(&self) -> &'static str {
+        self.rows()
+    }
+
+    /// Acceleration of gravity in frame 0, m/s².
+    #[getter]
+    fn gravity(&self) -> [f64; 3] {
+        self.robot().gravity
+    }
+
+    /// `reduced` or `seven_steps`.
+    #[getter]
+    fn form(&self) -> &'static str {
+        self.arm.form().name()
+    }
+
+    /// Lower and upper ends of the joints' positions, rad or m: shape (n, 2); infinite where the file has none.
+    #[getter]
+    fn limits<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let infinite = (f64::NEG_INFINITY, f64::INFINITY);
+        let limits: Vec<(f64, f64)> =
+            self.robot().joints.iter().map(|joint| joint.limits.position.unwrap_or(infinite)).collect();
+        py.import("numpy")?.call_method1("array", (limits,))
+    }
+
+    /// The text of the robot file; of a URDF, that which was made of it.
+    #[getter]
+    fn yaml(&self) -> &str {
+        &self.origin.robot
+    }
+
+    /// The names of the run-time parameters.
+    #[getter]
+    fn parameters(&self) -> Vec<&str> {
+        self.robot().run_time.names.iter().map(String::as_str).collect()
+    }
+
+    /// An arm of as many copies is the same arm.
+    fn __copy__(&self) -> Self {
+        self.clone()
+    }
+
+    fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {
+        self.clone()
+    }
+
+    /// From its texts, in whatever process.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
+        let Origin { robot, plan, form, rotors, run_time, settings, .. } = self.origin.clone();
+        let arguments = (robot, plan, form.0.name(), rotors, run_time, settings).into_pyobject(py)?;
+        Ok((py.import("rne._rne")?.getattr("Arm")?.getattr("_of_texts")?, arguments))
+    }
+
+    #[staticmethod]
+    fn _of_texts(
+        py: Python<'_>,
+        robot: String,
+        plan: Option<String>,
+        form: &str,
+        rotors: bool,
+        run_time: Vec<String>,
+        settings: BTreeMap<String, f64>,
+    ) -> PyResult<Self> {
+        let form = FormOr(name(form)?);
+        Self::of(py, Origin { file: None, robot, plan, form, rotors, run_time, settings })
+    }
+
+    fn __repr__(&self) -> String {
+        let robot = self.robot();
+        format!("<rne.Arm {}: {} joints, {}, {}>", robot.name, robot.dof(), self.rows(), self.arm.form())
+    }
+}

@@ -1,0 +1,45 @@
+//! What goes wrong, as Python's exceptions: the same words as on the command line.
+
+use pyo3::create_exception;
+use pyo3::exceptions::{PyOSError, PyValueError};
+use pyo3::prelude::*;
+use rne::compiled::ArmError;
+use rne_model::Report;
+
+create_exception!(
+    rne,
+    RobotFileError,
+    PyValueError,
+    "A robot file, a plan or a URDF is wrong. `line` and `column`, from 1, are those of its first mistake."
+);
+create_exception!(rne, EvaluationError, PyValueError, "A function cannot be computed for this arm or these arguments.");
+
+/// What is wrong with a file.
+pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
+    let error = RobotFileError::new_err(report.render(false));
+    let first = report.errors().next();
+    let value = error.value(py);
+    let told = value
+        .setattr("line", first.map(|first| first.line))
+        .and_then(|()| value.setattr("column", first.map(|first| first.column)))
+        .and_then(|()| value.setattr("file", &report.name));
+    told.err().unwrap_or(error)
+}
+
+/// Why there is no arm.
+pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
+    match error {
+        ArmError::Invalid(report) => of_report(py, report),
+        ArmError::Unreadable { error: cause, .. } => match cause.raw_os_error() {
+            // so that Python makes it a FileNotFoundError where it is one
+            Some(number) => PyOSError::new_err((number, error.to_string())),
+            None => PyOSError::new_err(error.to_string()),
+        },
+        _ => RobotFileError::new_err(error.to_string()),
+    }
+}
+
+/// Why nothing was computed.
+pub(crate) fn of_evaluation(error: &dyn std::fmt::Display) -> PyErr {
+    EvaluationError::new_err(error.to_string())
+}

@@ -1,0 +1,121 @@
+//! A function of an arm over numpy's arrays.
+
+use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use rne::BatchScalar;
+use rne::compiled::{Arguments, CompiledArm, Destination, Function};
+use rne_codegen::{Layout, Record};
+
+use crate::arrays::{Given, Held, are_single, room, states};
+use crate::errors::of_evaluation;
+
+/// The shape of a result for one state: what numpy users expect of it.
+fn shape(function: Function, dof: usize) -> Vec<usize> {
+    fn of(layout: &Layout, shape: &mut Vec<usize>) {
+        match layout {
+            Layout::Number => {}
+            Layout::Array(length, of_each) => {
+                shape.push(*length);
+                of(of_each, shape);
+            }
+            // homogeneous matrices
+            Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
+            // force, then moment
+            Layout::Record(Record::Wrench, _) => shape.push(6),
+            Layout::Record(Record::TorqueDerivatives, parts) => {
+                shape.push(2);
+                if let Some(part) = parts.first() {
+                    of(part, shape);
+                }
+            }
+        }
+    }
+    let mut found = Vec::new();
+    of(&function.layout(dof), &mut found);
+    if function == Function::Regressor {
+        // a column per parameter: Y @ parameters are torques
+        found = vec![dof, 10 * dof];
+    }
+    found
+}
+
+/// Computes a function: arrays of single precision give single precision, everything else double.
+pub(crate) fn evaluate<'py>(
+    py: Python<'py>,
+    arm: &CompiledArm,
+    function: Function,
+    given: &[Given<'py>],
+    out: Option<&Bound<'py, PyAny>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    if are_single(given) {
+        evaluate_in::<f32>(py, arm, function, given, out, "float32")
+    } else {
+        evaluate_in::<f64>(py, arm, function, given, out, "float64")
+    }
+}
+
+fn evaluate_in<'py, T: Element + BatchScalar>(
+    py: Python<'py>,
+    arm: &CompiledArm,
+    function: Function,
+    given: &[Given<'py>],
+    out: Option<&Bound<'py, PyAny>>,
+    dtype: &str,
+) -> PyResult<Bound<'py, PyAny>> {
+    let held: Vec<Held<'py, T>> = given.iter().map(|given| Held::of(given, dtype)).collect::<PyResult<_>>()?;
+    let many = states(&held)?;
+    let count = many.unwrap_or(1);
+    let mut arguments = Arguments::new();
+    for held in &held {
+        let array = held.array(count)?;
+        // one array for the two vectors of a wrench
+        let (name, parts): (_, &[&str]) = match held.name() {
+            "wrench" => ("wrench", &["force", "moment"]),
+            name => (name, &[]),
+        };
+        if parts.is_empty() {
+            arguments = arguments.with(name, array).ok_or_else(|| PyValueError::new_err(name))?;
+        }
+        for (index, part) in parts.iter().enumerate() {
+            let array = array.part(held.elements(), 3 * index..3 * index + 3);
+            arguments = arguments.with(part, array).ok_or_else(|| PyValueError::new_err(name))?;
+        }
+    }
+    let of_state = shape(function, arm.dof());
+    let whole: Vec<usize> = many.into_iter().chain(of_state.iter().copied()).collect();
+    let result = room::<T>(py, out, &whole, dtype)?;
+    {
+        let mut writable = result.try_readwrite().map_err(|_| {
+            PyValueError::new_err("`out` is one of the arguments, or cannot be written to: it needs memory of its own")
+        })?;
+        let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
+        let computed = py.detach(|| match function {
+            Function::ForwardKinematics | Function::LinkPoses => {
+                let compiled = arm.function(function)?.outputs();
+                let mut rows = vec![T::zero(); compiled * count];
+                arm.run(function, count, &arguments, Destination::Rows(&mut rows))?;
+                for (matrix, pose) in numbers.chunks_exact_mut(16).zip(rows.chunks_exact(12)) {
+                    for row in 0..3 {
+                        matrix[4 * row..][..3].copy_from_slice(&pose[3 * row..][..3]);
+                        matrix[4 * row + 3] = pose[9 + row];
+                    }
+                    matrix[12..].copy_from_slice(&[T::zero(), T::zero(), T::zero(), T::one()]);
+                }
+                Ok(())
+            }
+            _ if count == 1 => arm.run_one(function, &arguments, numbers),
+            _ => arm.run(function, count, &arguments, Destination::Rows(numbers)),
+        });
+        computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
+    }
+    Ok(finished(result, whole.is_empty())?)
+}
+
+/// A number for an array without axes.
+fn finished<'py, T: Element>(
+    result: Bound<'py, PyArrayDyn<T>>,
+    is_number: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    if is_number { result.into_any().get_item(()) } else { Ok(result.into_any()) }
+}

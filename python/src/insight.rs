@@ -1,0 +1,245 @@
+//! What the class `Arm` tells of itself: code, counts, parameters, slips, better plans, pages.
+
+use std::time::Instant;
+
+use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rne::DynArm;
+use rne::compiled::Form;
+use rne_codegen::emit::{self, Precision, Prefix, Selection};
+use rne_codegen::plan::{PlanFile, SearchOptions, search};
+use rne_diagnose::{Diagnosis, Observation};
+use rne_model::JointKind;
+
+use crate::arm::{Arm, Origin, name};
+use crate::errors::of_evaluation;
+
+#[pymethods]
+impl Arm {
+    /// The inertial parameters of the links, as `regressor` counts them: shape (n, 10).
+    fn inertial_parameters<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let parameters: Vec<Vec<f64>> =
+            DynArm::from_robot(self.robot()).inertial_parameters().into_iter().map(Vec::from).collect();
+        py.import("numpy")?.call_method1("array", (parameters,))
+    }
+
+    /// What the torques can see of the links: a list of dicts with `name`, `value` and `combination`, a dict of
+    /// coefficients by parameter.
+    fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        const NAMES: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
+        let named = |parameter: &rne::LinkParameter| format!("{}_{}", NAMES[parameter.index], parameter.link + 1);
+        let base = py.detach(|| DynArm::from_robot(self.robot()).base_parameters());
+        base.parameters
+            .iter()
+            .map(|parameter| {
+                let (found, combination) = (PyDict::new(py), PyDict::new(py));
+                combination.set_item(named(&parameter.kept), 1.0)?;
+                for (coefficient, regrouped) in &parameter.regrouped {
+                    combination.set_item(named(regrouped), coefficient)?;
+                }
+                found.set_item("name", named(&parameter.kept))?;
+                found.set_item("value", parameter.value)?;
+                found.set_item("combination", combination)?;
+                Ok(found)
+            })
+            .collect()
+    }
+
+    /// Multiplications, additions, divisions, sines and statements of a function: a dict.
+    #[pyo3(signature = (function="inverse_dynamics", form=None))]
+    fn operations<'py>(&self, py: Python<'py>, function: &str, form: Option<&str>) -> PyResult<Bound<'py, PyDict>> {
+        let counts = self.program(function, form)?.operations();
+        let found = PyDict::new(py);
+        for (name, count) in [
+            ("mul", counts.mul),
+            ("add", counts.add),
+            ("div", counts.div),
+            ("sincos", counts.sincos),
+            ("statements", counts.statements),
+            ("total", counts.total()),
+        ] {
+            found.set_item(name, count)?;
+        }
+        Ok(found)
+    }
+
+    /// The annotated code of a function, all of it or a joint's, from 1: the seven steps unless told otherwise.
+    #[pyo3(signature = (function="inverse_dynamics", *, joint=None, form="seven_steps"))]
+    fn show(&self, function: &str, joint: Option<usize>, form: &str) -> PyResult<String> {
+        if let Some(joint) = joint
+            && !(1..=self.arm.dof()).contains(&joint)
+        {
+            return Err(PyIndexError::new_err(format!("joints are 1 to {}, not {joint}", self.arm.dof())));
+        }
+        let program = self.program(function, Some(form))?;
+        let what = Selection { joint, explain: true, ..Selection::default() };
+        Ok(emit::listing(self.robot(), &program, what).to_string())
+    }
+
+    /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
+    ///
+    /// `precision`: of C, `double` or `single`.
+    #[pyo3(signature = (language="c", functions=vec!["inverse_dynamics".to_owned()], *, form=None, precision="double"))]
+    fn code(&self, language: &str, functions: Vec<String>, form: Option<&str>, precision: &str) -> PyResult<String> {
+        let programs = functions.iter().map(|name| self.program(name, form)).collect::<PyResult<Vec<_>>>()?;
+        let precision = match precision {
+            "double" => Precision::Double,
+            "single" => Precision::Single,
+            other => {
+                return Err(PyValueError::new_err(format!("`{other}` is no precision; write double or single")));
+            }
+        };
+        match language {
+            "rust" => Ok(emit::rust_file_with_sin_cos(self.robot(), &programs)),
+            "c" => emit::c_code(self.robot(), &programs, precision, &Prefix::of(self.robot()))
+                .map(|code| code.one_file())
+                .map_err(|error| of_evaluation(&error)),
+            other => Err(PyValueError::new_err(format!("`{other}` is no language; write c or rust"))),
+        }
+    }
+
+    /// Why another tool's torques differ: the usual slips that give them, the likeliest first.
+    ///
+    /// Arguments are of one state, shape (n,). Returns a dict: `agrees`, `error` (in parts of the largest torque) and
+    /// `explanations`, each a list of sentences with what is right. `tolerance`, in parts of the largest torque, says
+    /// how far the digits of `tau` can be trusted.
+    #[pyo3(signature = (q, qd, qdd, tau, *, tolerance=1e-6))]
+    fn diagnose<'py>(
+        &self,
+        py: Python<'py>,
+        q: Vec<f64>,
+        qd: Vec<f64>,
+        qdd: Vec<f64>,
+        tau: Vec<f64>,
+        tolerance: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let largest = tau.iter().fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
+        let resolution = vec![tolerance * largest; tau.len()];
+        let seen = Observation { q, qd, qdd, wrench: None, tau, resolution };
+        let robot = self.robot();
+        let diagnosis = py.detach(|| rne_diagnose::diagnose(robot, std::slice::from_ref(&seen)));
+        let diagnosis = diagnosis.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        let found = PyDict::new(py);
+        let (agrees, error, explanations) = match &diagnosis {
+            Diagnosis::Agrees(error) => (true, *error, Vec::new()),
+            Diagnosis::Unexplained(error) => (false, *error, Vec::new()),
+            Diagnosis::Explained(all) => {
+                let sentences = all.iter().map(|explanation| {
+                    let of_slip =
+                        |slip: &rne_diagnose::Slip| format!("{}; right: {}", slip.says(robot), slip.right(robot));
+                    explanation.slips.iter().map(of_slip).collect::<Vec<_>>()
+                });
+                (false, all.first().map_or(0.0, |first| first.error), sentences.collect())
+            }
+        };
+        found.set_item("agrees", agrees)?;
+        found.set_item("error", error)?;
+        found.set_item("explanations", explanations)?;
+        Ok(found)
+    }
+
+    /// Look for fewer operations for so many seconds; the arm that was found, proved to be the same.
+    ///
+    /// `functions` are rewritten besides. `progress`, a function of the share of the time that is over and the count of
+    /// operations, is called now and then; Ctrl-C ends the search with what it has.
+    #[pyo3(signature = (seconds=10.0, *, functions=Vec::new(), seed=0, progress=None))]
+    fn search(
+        &self,
+        py: Python<'_>,
+        seconds: f64,
+        functions: Vec<String>,
+        seed: u64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        if !(0.0..=1e6).contains(&seconds) {
+            return Err(PyValueError::new_err("`seconds` is a time from 0 to 1e6"));
+        }
+        if !self.robot().run_time.is_empty() {
+            return Err(PyValueError::new_err("an arm with run-time parameters has no plan"));
+        }
+        let rewrite = functions.iter().map(|function| name(function)).collect::<PyResult<_>>()?;
+        let options = SearchOptions { rewrite, seed };
+        let known = match &self.origin.plan {
+            Some(plan) => PlanFile::read("plan", plan, self.robot()).ok(),
+            None => None,
+        };
+        let (start, mut told) = (Instant::now(), Instant::now());
+        let mut failed = None;
+        let robot = self.robot();
+        let found = py.detach(|| {
+            search(robot, known.as_ref(), &options, &mut |so_far| {
+                let over = if seconds > 0.0 { start.elapsed().as_secs_f64() / seconds } else { 1.0 };
+                if failed.is_some() {
+                    return None;
+                }
+                if told.elapsed().as_millis() >= 100 {
+                    told = Instant::now();
+                    Python::attach(|py| {
+                        if py.check_signals().is_err() {
+                            // the plan so far is worth having: Ctrl-C ends the search, not the program
+                            failed = Some(Ok(()));
+                        } else if let Some(progress) = &progress
+                            && let Err(error) = progress.call1(py, (over.min(1.0), so_far.best.total()))
+                        {
+                            failed = Some(Err(error));
+                        }
+                    });
+                }
+                (over < 1.0 && failed.is_none()).then_some(over)
+            })
+        });
+        if let Some(Err(error)) = failed {
+            return Err(error);
+        }
+        let plan = found.map_err(|error| of_evaluation(&error))?;
+        let origin = Origin { plan: Some(plan.to_yaml()), ..self.origin.clone() };
+        Self::of(py, origin)
+    }
+
+    /// The page of `rne report`: one file of HTML that needs no network.
+    fn report(&self, py: Python<'_>) -> PyResult<String> {
+        let reduced = self.program("inverse_dynamics", Some("reduced"))?;
+        py.detach(|| rne_report::page(self.robot(), Some(&reduced))).map_err(|error| of_evaluation(&error))
+    }
+
+    /// The table, the counts and the page, for notebooks.
+    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
+        let robot = self.robot();
+        let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+        let mut html = format!(
+            "<p><b>{}</b>: {} joints, {} table</p><table><tr><th>joint<th>type<th>θ (rad)<th>d (m)<th>a (m)<th>α (rad)\
+             <th>mass (kg)</tr>",
+            escape(robot.title.as_deref().unwrap_or(&robot.name)),
+            robot.dof(),
+            self.rows()
+        );
+        for joint in &robot.joints {
+            let (row, kind) = (&joint.row, match joint.row.kind {
+                JointKind::Revolute => "revolute",
+                JointKind::Prismatic => "prismatic",
+            });
+            html += &format!(
+                "<tr><td>{}<td>{kind}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
+                escape(&joint.name),
+                row.dh.theta.radians,
+                row.dh.d,
+                row.dh.a,
+                row.dh.alpha.radians,
+                row.link.mass
+            );
+        }
+        html += "</table><table><tr><th>torques<th>mul<th>add<th>sin/cos</tr>";
+        for form in Form::ALL {
+            let counts = self.program("inverse_dynamics", Some(form.name()))?.operations();
+            html += &format!("<tr><td>{form}<td>{}<td>{}<td>{}</tr>", counts.mul, counts.add, counts.sincos);
+        }
+        html += "</table>";
+        let page = escape(&self.report(py)?);
+        html += &format!(
+            "<details><summary>the seven steps, joint by joint</summary><iframe sandbox=\"allow-scripts\" \
+             style=\"width:100%;height:640px;border:0\" srcdoc=\"{page}\"></iframe></details>"
+        );
+        Ok(html)
+    }
+}

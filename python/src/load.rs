@@ -1,0 +1,146 @@
+//! An arm from a robot file, a URDF, their texts, or the box.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use rne_convert::{Options, Selection, Urdf};
+use rne_model::{Convention, Reader, read_file};
+
+use crate::arm::{Arm, Origin};
+use crate::errors::{of_arm, of_report};
+
+/// The names of the robots in the box.
+#[pyfunction]
+pub(crate) fn names() -> Vec<&'static str> {
+    rne_robots::ROBOTS.iter().map(|robot| robot.name).collect()
+}
+
+/// A robot of the box by its name.
+#[pyfunction]
+pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
+    let known = || format!("there is no robot `{name}` in the box; there are {}", names().join(", "));
+    let file = rne_robots::find(name).ok_or_else(|| PyKeyError::new_err(known()))?;
+    let origin =
+        Origin { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..Origin::default() };
+    Arm::of(py, origin)
+}
+
+/// Read an arm: a robot file (YAML), a URDF, or the text of either.
+///
+/// Parameters
+/// ----------
+/// source : str or os.PathLike
+///     Path of a robot file or a URDF, or its text. A plan file beside a robot file is honoured.
+/// tip, base : str, optional
+///     Of a URDF: the links at the ends of the arm. Without `base` the root; `tip` is needed where there are several.
+/// lock : dict of str to float, optional
+///     Of a URDF: movable joints that are held still, rad or m.
+/// lock_others : bool
+///     Of a URDF: hold every other movable joint off the chain at zero.
+/// convention : {"standard", "modified"}
+///     Of a URDF: the rows of the table that is made.
+/// snap : bool
+///     Of a URDF: take angles within 2e-4 rad of a multiple of pi/12 for it, as `rne import` does. Off by default
+///     here: the arm is the URDF's own.
+/// keep_unphysical : bool
+///     Of a URDF: take inertias that no body has.
+/// run_time : sequence of str
+///     Parameters of a robot file that stay free: the keyword `parameters` of every function gives them.
+/// settings : dict of str to float, optional
+///     Parameters of a robot file with other values than it has.
+/// form : {"reduced", "seven_steps"}
+///     Fewest operations, or every intermediate of the lecture in its bits.
+/// rotors : bool
+///     Whether the rotors of the motors belong to the arm.
+///
+/// Raises
+/// ------
+/// RobotFileError
+///     With everything that is wrong, `line` and `column`.
+/// OSError
+///     When the file cannot be read.
+#[pyfunction]
+#[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=false,
+    keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
+pub(crate) fn load(
+    py: Python<'_>,
+    source: &Bound<'_, PyAny>,
+    tip: Option<String>,
+    base: Option<String>,
+    lock: Option<BTreeMap<String, f64>>,
+    lock_others: bool,
+    convention: &str,
+    snap: bool,
+    keep_unphysical: bool,
+    run_time: Vec<String>,
+    settings: Option<BTreeMap<String, f64>>,
+    form: &str,
+    rotors: bool,
+) -> PyResult<Arm> {
+    let form = form.parse().map_err(|error: rne_codegen::UnknownName| PyValueError::new_err(error.to_string()))?;
+    let convention = match convention {
+        "standard" => Convention::Standard,
+        "modified" => Convention::Modified,
+        other => return Err(PyValueError::new_err(format!("`{other}` is no convention; write standard or modified"))),
+    };
+    let origin = Origin { form, rotors, run_time, settings: settings.unwrap_or_default(), ..Origin::default() };
+    let given = Given::of(source)?;
+    if let Given::File(path) = &given
+        && !path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("urdf"))
+    {
+        // with the plan beside it
+        return Arm::of(py, Origin { file: Some(path.clone()), ..origin });
+    }
+    let (name, text) = match given {
+        Given::Text(text) => ("<text>".to_owned(), text),
+        Given::File(path) => {
+            let bytes = read_file(&path)
+                .map_err(|error| of_arm(py, &rne::compiled::ArmError::Unreadable { path: path.clone(), error }))?;
+            let text = String::from_utf8(bytes)
+                .map_err(|_| PyValueError::new_err(format!("{} is no text in UTF-8", path.display())))?;
+            (path.display().to_string(), text)
+        }
+    };
+    if !text.trim_start_matches('\u{feff}').trim_start().starts_with('<') {
+        return Arm::of(py, Origin { robot: text, ..origin });
+    }
+    let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
+    let selection = Selection { base, tip, lock, lock_others };
+    let options = Options { selection, convention, snap, keep_unphysical, ..Options::default() };
+    let imported = py.detach(|| Urdf::read(&name, &text)?.import(&options));
+    let imported = imported.map_err(|report| of_report(py, &report))?;
+    Arm::of(py, Origin { robot: imported.text, ..origin })
+}
+
+enum Given {
+    File(PathBuf),
+    Text(String),
+}
+
+impl Given {
+    fn of(source: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let Ok(text) = source.extract::<String>() else {
+            return match source.extract::<PathBuf>() {
+                Ok(path) => Ok(Self::File(path)),
+                Err(_) => Err(PyTypeError::new_err("`source` is a path or a text: str or os.PathLike")),
+            };
+        };
+        // no path has a line break, and no text of an arm has none
+        if text.contains('\n') || text.trim_start().starts_with(['<', '{']) {
+            return Ok(Self::Text(text));
+        }
+        Ok(Self::File(Path::new(&text).to_owned()))
+    }
+}
+
+impl Origin {
+    /// The table as a reader of this origin reads it.
+    pub(crate) fn read(&self, name: &str, text: &[u8]) -> Result<rne_model::Robot, rne_model::Report> {
+        let names: Vec<&str> = self.run_time.iter().map(String::as_str).collect();
+        let reader = Reader::new(name).run_time(&names);
+        let reader = self.settings.iter().fold(reader, |reader, (name, value)| reader.setting(name, *value));
+        Ok(reader.read(text)?.robot)
+    }
+}
