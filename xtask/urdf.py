@@ -198,4 +198,5 @@ def main():
         sys.exit(f"failed: {', '.join(failed) or 'fewer than 12 arms'}")
 
 
-main()
+if __name__ == "__main__":
+    main()

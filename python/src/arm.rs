@@ -26,6 +26,8 @@ pub(crate) struct Origin {
     pub(crate) rotors: bool,
     pub(crate) run_time: Vec<String>,
     pub(crate) settings: BTreeMap<String, f64>,
+    /// Of a URDF: the joints that do not move, and where they stand.
+    pub(crate) held: BTreeMap<String, f64>,
 }
 
 /// A form; the reduced one unless told.
@@ -221,6 +223,12 @@ impl Arm {
         &self.origin.robot
     }
 
+    /// Of an arm from a URDF: the movable joints that are held still, and where, rad or m.
+    #[getter]
+    fn held(&self) -> BTreeMap<String, f64> {
+        self.origin.held.clone()
+    }
+
     /// The names of the run-time parameters.
     #[getter]
     fn parameters(&self) -> Vec<&str> {
@@ -238,8 +246,8 @@ impl Arm {
 
     /// From its texts, in whatever process.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
-        let Origin { robot, plan, form, rotors, run_time, settings, .. } = self.origin.clone();
-        let arguments = (robot, plan, form.0.name(), rotors, run_time, settings).into_pyobject(py)?;
+        let Origin { robot, plan, form, rotors, run_time, settings, held, .. } = self.origin.clone();
+        let arguments = (robot, plan, form.0.name(), rotors, run_time, settings, held).into_pyobject(py)?;
         Ok((py.import("rne._rne")?.getattr("Arm")?.getattr("_of_texts")?, arguments))
     }
 
@@ -252,9 +260,10 @@ impl Arm {
         rotors: bool,
         run_time: Vec<String>,
         settings: BTreeMap<String, f64>,
+        held: BTreeMap<String, f64>,
     ) -> PyResult<Self> {
         let form = FormOr(name(form)?);
-        Self::of(py, Origin { file: None, robot, plan, form, rotors, run_time, settings })
+        Self::of(py, Origin { file: None, robot, plan, form, rotors, run_time, settings, held })
     }
 
     fn __repr__(&self) -> String {

@@ -72,10 +72,9 @@ impl<'py, T: Element + BatchScalar> Held<'py, T> {
         match self.states {
             None | Some(1) if states != 1 => Ok(Array::Same(numbers)),
             None => Ok(Array::Rows(numbers)),
-            Some(found) if found != states => Err(PyValueError::new_err(format!(
-                "`{}` has {found} states where others have {states}",
-                self.name
-            ))),
+            Some(found) if found != states => {
+                Err(PyValueError::new_err(format!("`{}` has {found} states where others have {states}", self.name)))
+            }
             Some(_) if self.is_fortran => Ok(Array::Strided { numbers, state: 1, element: states }),
             Some(_) => Ok(Array::Rows(numbers)),
         }

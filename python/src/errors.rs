@@ -30,9 +30,13 @@ pub(crate) fn of_report(py: Python<'_>, report: &Report) -> PyErr {
 pub(crate) fn of_arm(py: Python<'_>, error: &ArmError) -> PyErr {
     match error {
         ArmError::Invalid(report) => of_report(py, report),
-        ArmError::Unreadable { error: cause, .. } => match cause.raw_os_error() {
+        ArmError::Unreadable { path, error: cause } => match cause.raw_os_error() {
             // so that Python makes it a FileNotFoundError where it is one
-            Some(number) => PyOSError::new_err((number, error.to_string())),
+            Some(number) => {
+                let words = cause.to_string();
+                let words = words.split(" (os error").next().unwrap_or_default().to_owned();
+                PyOSError::new_err((number, words, path.display().to_string()))
+            }
             None => PyOSError::new_err(error.to_string()),
         },
         _ => RobotFileError::new_err(error.to_string()),

@@ -113,9 +113,6 @@ fn evaluate_in<'py, T: Element + BatchScalar>(
 }
 
 /// A number for an array without axes.
-fn finished<'py, T: Element>(
-    result: Bound<'py, PyArrayDyn<T>>,
-    is_number: bool,
-) -> PyResult<Bound<'py, PyAny>> {
+fn finished<'py, T: Element>(result: Bound<'py, PyArrayDyn<T>>, is_number: bool) -> PyResult<Bound<'py, PyAny>> {
     if is_number { result.into_any().get_item(()) } else { Ok(result.into_any()) }
 }

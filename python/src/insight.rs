@@ -215,10 +215,13 @@ impl Arm {
             self.rows()
         );
         for joint in &robot.joints {
-            let (row, kind) = (&joint.row, match joint.row.kind {
-                JointKind::Revolute => "revolute",
-                JointKind::Prismatic => "prismatic",
-            });
+            let (row, kind) = (
+                &joint.row,
+                match joint.row.kind {
+                    JointKind::Revolute => "revolute",
+                    JointKind::Prismatic => "prismatic",
+                },
+            );
             html += &format!(
                 "<tr><td>{}<td>{kind}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
                 escape(&joint.name),

@@ -22,8 +22,7 @@ pub(crate) fn names() -> Vec<&'static str> {
 pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
     let known = || format!("there is no robot `{name}` in the box; there are {}", names().join(", "));
     let file = rne_robots::find(name).ok_or_else(|| PyKeyError::new_err(known()))?;
-    let origin =
-        Origin { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..Origin::default() };
+    let origin = Origin { robot: file.yaml.to_owned(), plan: file.plan.map(str::to_owned), ..Origin::default() };
     Arm::of(py, origin)
 }
 
@@ -111,7 +110,8 @@ pub(crate) fn load(
     let options = Options { selection, convention, snap, keep_unphysical, ..Options::default() };
     let imported = py.detach(|| Urdf::read(&name, &text)?.import(&options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
-    Arm::of(py, Origin { robot: imported.text, ..origin })
+    let held = imported.account.held.iter().cloned().collect();
+    Arm::of(py, Origin { robot: imported.text, held, ..origin })
 }
 
 enum Given {

@@ -19,6 +19,7 @@ mod page;
 mod performance;
 mod playground;
 mod prose;
+mod python;
 mod single_calls;
 mod tool;
 mod urdf;
@@ -64,6 +65,7 @@ enum Task {
     Features(features::Features),
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
+    Python(python::Python),
     Page(page::Page),
     Playground(playground::Playground),
 }
@@ -100,6 +102,7 @@ impl Task {
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
+            Self::Python(task) => ("python", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
         }

@@ -1,0 +1,119 @@
+"""Laws that tie the functions together, and the shapes of their results."""
+
+import numpy as np
+import pytest
+
+import rne
+
+N = 40
+random = np.random.default_rng(5)
+
+SHAPES = {
+    "inverse_dynamics": ("q qd qdd", lambda n: (n,)),
+    "gravity_torques": ("q", lambda n: (n,)),
+    "bias_torques": ("q qd", lambda n: (n,)),
+    "mass_matrix": ("q", lambda n: (n, n)),
+    "coriolis_matrix": ("q qd", lambda n: (n, n)),
+    "forward_dynamics": ("q qd tau", lambda n: (n,)),
+    "forward_kinematics": ("q", lambda n: (4, 4)),
+    "link_poses": ("q", lambda n: (n, 4, 4)),
+    "jacobian": ("q", lambda n: (6, n)),
+    "jacobian_rate_times_velocity": ("q qd", lambda n: (6,)),
+    "kinetic_energy": ("q qd", lambda n: ()),
+    "potential_energy": ("q", lambda n: ()),
+    "centre_of_mass": ("q", lambda n: (3,)),
+    "centre_of_mass_jacobian": ("q", lambda n: (3, n)),
+    "regressor": ("q qd qdd", lambda n: (n, 10 * n)),
+    "joint_wrenches": ("q qd qdd", lambda n: (n, 6)),
+    "actuator_torques": ("qd qdd", lambda n: (n,)),
+}
+
+
+def states(n):
+    return dict(zip(("q", "qd", "qdd", "tau"), random.normal(size=(4, N, n))))
+
+
+@pytest.mark.parametrize("name", list(rne.robots))
+def test_a_state_alone_is_the_same_among_many(name):
+    arm = rne.robots[name]
+    given = states(arm.dof)
+    for function, (arguments, shape) in SHAPES.items():
+        arguments = [given[argument] for argument in arguments.split()]
+        many = getattr(arm, function)(*arguments)
+        assert many.shape == (N, *shape(arm.dof)), function
+        for state in (0, 17, N - 1):
+            one = getattr(arm, function)(*(argument[state] for argument in arguments))
+            assert np.shape(one) == shape(arm.dof), function
+            assert np.array_equal(one, many[state], equal_nan=True), function
+    derivatives = arm.inverse_dynamics_derivatives(given["q"], given["qd"], given["qdd"])
+    assert [part.shape for part in derivatives] == [(N, arm.dof, arm.dof)] * 2
+
+
+@pytest.mark.parametrize("name", list(rne.robots))
+def test_laws(name):
+    arm = rne.robots[name]
+    given = states(arm.dof)
+    q, qd, qdd = given["q"], given["qd"], given["qdd"]
+    tau = arm.inverse_dynamics(q, qd, qdd)
+    scale = np.abs(tau).max()
+    mass = arm.mass_matrix(q)
+
+    def close(a, b, on=scale):
+        assert np.abs(a - b).max() <= 1e-12 * max(on, 1e-9), name
+
+    close(np.einsum("nij,nj->ni", mass, qdd) + arm.bias_torques(q, qd), tau)
+    close(np.einsum("nij,nj->ni", arm.coriolis_matrix(q, qd), qd) + arm.gravity_torques(q), arm.bias_torques(q, qd))
+    close(arm.regressor(q, qd, qdd) @ arm.inertial_parameters().ravel(), tau)
+    close(arm.kinetic_energy(q, qd), 0.5 * np.einsum("ni,nij,nj->n", qd, mass, qd), np.abs(mass).max() * 10)
+    close(arm.inverse_dynamics_from_sin_cos(np.sin(q), np.cos(q), q, qd, qdd), tau)
+    close(arm.inverse_dynamics_on_moving_base(q, qd, qdd), tau)
+    wrench = random.normal(size=(N, 6))
+    tip = arm.forward_kinematics(q)[:, :3, :3]
+    turned = np.concatenate([np.einsum("nij,nj->ni", tip, part) for part in (wrench[:, :3], wrench[:, 3:])], axis=1)
+    close(arm.inverse_dynamics_with_wrench(q, qd, qdd, wrench),
+          tau + np.einsum("nij,ni->nj", arm.jacobian(q), turned), scale + 100)
+    close(arm.inverse_dynamics_with_payload(q, qd, qdd, rne.payload(0.0)), tau)
+    # the parameters that the torques can see
+    values = {f"{parameter}_{link + 1}": value for link, row in enumerate(arm.inertial_parameters())
+              for parameter, value in zip("m mcx mcy mcz Jxx Jxy Jxz Jyy Jyz Jzz".split(), row)}
+    base = arm.base_parameters()
+    for parameter in base:
+        told = sum(values[name] * factor for name, factor in parameter["combination"].items())
+        assert abs(told - parameter["value"]) <= 1e-9 * max(1, abs(told))
+    assert len(base) == np.linalg.matrix_rank(arm.regressor(*random.normal(size=(3, 60, arm.dof))).reshape(-1, 10 * arm.dof))
+
+
+def test_forms_agree():
+    reduced = rne.robots.panda
+    steps = rne.load(reduced.yaml, form="seven_steps")
+    q, qd, qdd = random.normal(size=(3, N, 7))
+    assert steps.form == "seven_steps" and reduced.form == "reduced"
+    assert np.allclose(steps.inverse_dynamics(q, qd, qdd), reduced.inverse_dynamics(q, qd, qdd), rtol=0, atol=1e-11)
+    assert reduced.operations()["total"] < 0.6 * steps.operations()["total"]
+
+
+def test_rotors_belong_to_the_arm_when_asked():
+    bare = rne.robots.puma560
+    whole = rne.load(bare.yaml, rotors=True)
+    q = random.normal(size=6)
+    added = whole.mass_matrix(q) - bare.mass_matrix(q)
+    assert np.allclose(added, np.diag(np.diag(added)), atol=1e-12) and (np.diag(added) > 0).all()
+
+
+def test_parameters_stay_free():
+    text = """
+format: 1
+name: rod
+source: own
+convention: standard
+gravity: [0, -9.81, 0]
+parameters: {m: 2.0}
+joints: [{type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: m, com: [-0.5, 0, 0]}}]
+"""
+    arm = rne.load(text, run_time=["m"])
+    assert arm.parameters == ["m"]
+    q = np.zeros((4, 1))
+    masses = np.array([[1.0], [2.0], [3.0], [4.0]])
+    assert np.allclose(arm.gravity_torques(q, parameters=masses), 9.81 * 0.5 * masses)
+    assert np.allclose(arm.gravity_torques(q), 9.81 * 0.5 * 2)
+    assert np.allclose(rne.load(text, settings={"m": 5}).gravity_torques(q), 9.81 * 0.5 * 5)
