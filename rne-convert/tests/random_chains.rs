@@ -180,7 +180,7 @@ fn what_is_exported_comes_back() {
         let text = urdf(&mut random, 1 + case % 7);
         for convention in BOTH {
             let robot = import(&text, convention, true).robot;
-            let exported = export(&robot);
+            let exported = export(&robot).unwrap();
             let back = import(&exported.text, convention, false);
             let reach = reach(&robot);
             assert_small(&back.account.rounding, reach, &format!("case {case}\n{}", exported.text));
@@ -218,7 +218,7 @@ fn shipped_robots_are_written_converted_and_exported() {
             assert_same_torques(&robot, &converted.robot, 1e-12);
             assert_small(&converted.rounding, 1.0, &name);
         }
-        let exported = export(&robot);
+        let exported = export(&robot).unwrap();
         let gravity = exported.gravity;
         let options =
             Options { snap: false, gravity, convention: robot.convention, keep_unphysical: true, ..Options::default() };

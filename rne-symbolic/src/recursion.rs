@@ -90,6 +90,19 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         let rotor = if script == Script::Latex { r"G_i^2 J_{m,i} \ddot q_i" } else { "Gi² Jmi q̈i" }.to_owned();
         backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
     }
+    if form.table.rows.iter().any(|row| !row.first_moment.is_zero()) {
+        let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();
+        backward.push(Item::Words(vec![
+            "A link without mass that has a first moment h adds ".to_owned(),
+            math(
+                "ω̇i × hi + ωi × (ωi × hi)",
+                r"\dot{\omega}_i \times \mathbf h_i + \omega_i \times (\omega_i \times \mathbf h_i)",
+            ),
+            " to the force on it and ".to_owned(),
+            math("hi × (c̈i - gi)", r"\mathbf h_i \times (\ddot c_i - g_i)"),
+            " to the moment.".to_owned(),
+        ]));
+    }
     let title = |text: &str| words(text);
     sections
         .push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
@@ -137,6 +150,9 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         }
         if !products.is_zero() {
             items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
+        }
+        if !link.first_moment.is_zero() {
+            items.push(vector("h", index, &link.first_moment, &mut seen));
         }
     }
     let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;

@@ -24,7 +24,7 @@ fn row(kind: JointKind, [a, alpha, b, theta]: [f64; 4], link: Link) -> Row {
 
 /// Mass, centre of mass, and Ixx Iyy Izz Ixy Ixz Iyz about it.
 pub(crate) fn link(mass: f64, com: [f64; 3], [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Link {
-    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz } }
+    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz }, ..Link::default() }
 }
 
 /// A uniform thin rod whose distal end is the origin of its link frame.
@@ -164,7 +164,7 @@ fn bodies() -> [Link; 4] {
             [1.0 / 17.0, 1.0 / 6.0, -(k + 2.0) / 14.0],
             [0.125, -1.0 / 12.0, 0.1],
         ];
-        Link { mass, com, inertia: of_equal_masses(mass, &points.map(Vector3::from)) }
+        Link { mass, com, inertia: of_equal_masses(mass, &points.map(Vector3::from)), ..Link::default() }
     };
     [
         body(1.0, 2.5, [-0.2, 0.05, 1.0 / 30.0]),
@@ -204,7 +204,7 @@ impl Random {
             let mass = 2.15 + self.number(1.85);
             let com = self.vector(0.3);
             let points: [_; 5] = std::array::from_fn(|_| self.vector(0.35).into());
-            row(kind, parameters, Link { mass, com, inertia: of_equal_masses(mass, &points) })
+            row(kind, parameters, Link { mass, com, inertia: of_equal_masses(mass, &points), ..Link::default() })
         }))
     }
 

@@ -29,7 +29,7 @@ fn lumped(link: &Link, tool: (Rotation3<f64>, Vector3<f64>), payload: &Payload<f
     let j =
         about(Matrix3::from(link.inertia.rows()), link.mass, own - centre) + about(inertia, payload.mass, com - centre);
     let inertia = Inertia { xx: j.m11, yy: j.m22, zz: j.m33, xy: j.m12, xz: j.m13, yz: j.m23 };
-    Link { mass, com: centre.into(), inertia }
+    Link { mass, com: centre.into(), inertia, ..Link::default() }
 }
 
 /// The runtime's arm whose last link has the payload.

@@ -339,12 +339,14 @@ fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
 }
 
 fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
-    let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
+    let row = robot.joints.get(joint.wrapping_sub(1)).map(|joint| &joint.row);
+    let kind = row.map_or(JointKind::Revolute, |row| row.kind);
+    let has_first_moment = row.is_some_and(|row| row.link.has_first_moment());
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
         Form::SevenSteps if joint > program.dof => payload_formulas(step, joint),
-        Form::SevenSteps => formulas(step, kind, joint),
+        Form::SevenSteps => formulas(step, kind, joint, has_first_moment),
         Form::Reduced if program.is_of_bodies() => Vec::new(),
         Form::Reduced => reduced_formulas(step, kind, joint),
     };
