@@ -305,7 +305,8 @@ fn e14_product_of_inertia() {
     let mass = masses.iter().map(|(m, _)| m).sum::<f64>();
     let centre = masses.iter().map(|(m, p)| *m * p).sum::<Vector3<f64>>() / mass;
     let about_centre = masses.map(|(m, p)| (m, p - centre));
-    let right = Link { mass, com: (centre - ROD.1 * Vector3::x()).into(), inertia: tensor(&about_centre), ..Link::default() };
+    let right =
+        Link { mass, com: (centre - ROD.1 * Vector3::x()).into(), inertia: tensor(&about_centre), ..Link::default() };
     let mut printed = right;
     printed.inertia.xz = as_printed(&about_centre);
     let moment = |link| trace(&one_link_with(link), &state)[0].joint_moment;

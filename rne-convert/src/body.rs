@@ -93,11 +93,7 @@ impl Body {
                 xz: element(0, 2),
                 yz: element(1, 2),
             },
-            first_moment: if self.is_massless_moment() {
-                self.moment.rounded(length(self.moment))
-            } else {
-                [0.0; 3]
-            },
+            first_moment: if self.is_massless_moment() { self.moment.rounded(length(self.moment)) } else { [0.0; 3] },
         }
     }
 
@@ -141,12 +137,8 @@ mod tests {
 
     #[test]
     fn a_body_that_goes_away_and_comes_back_is_the_same_to_the_last_digit() {
-        let link = Link {
-            mass: 2.43,
-            com: [0.1, -0.2, 0.37],
-            inertia: inertia(0.013, 0.0021, 0.0137),
-            ..Link::default()
-        };
+        let link =
+            Link { mass: 2.43, com: [0.1, -0.2, 0.37], inertia: inertia(0.013, 0.0021, 0.0137), ..Link::default() };
         let place = Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0]);
         let back = Body::of_link(&link).seen_from(place).seen_from(place.inverse());
         assert_eq!(back.to_link(), link);

@@ -360,7 +360,8 @@ fn no_body(
     }
     match (reference, about) {
         (Some(node), InertiaReference::Com) => {
-            let message = "an inertia about the centre of mass of a link that has none, but a first moment without mass";
+            let message =
+                "an inertia about the centre of mass of a link that has none, but a first moment without mass";
             cx.refuse(
                 Diagnostic::error(node.head(), message)
                     .help("write `inertia_about: origin`, or nothing: it is about the origin of the link frame"),

@@ -172,11 +172,10 @@ pub(crate) fn backward<'s>(
         let of_moment = link.first_moment.map(|h| turning_force(line, &motion.turning, h));
         line.vector(Quantity::InertiaForce, || with(c_ddot * link.mass, of_moment));
         let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
-        let inertia_moment =
-            line.vector(Quantity::InertiaMoment, || {
-                let moment = link.inertia * omega_dot + omega.cross(angular_momentum);
-                with(moment, link.first_moment.map(|h| h.cross(c_ddot)))
-            });
+        let inertia_moment = line.vector(Quantity::InertiaMoment, || {
+            let moment = link.inertia * omega_dot + omega.cross(angular_momentum);
+            with(moment, link.first_moment.map(|h| h.cross(c_ddot)))
+        });
         let force = line.vector(Quantity::JointForce, || {
             let own = with((c_ddot - gravity) * link.mass, of_moment);
             carries.iter().fold(own, |sum, k| sum + k.wrench.force)
