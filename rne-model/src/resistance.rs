@@ -80,6 +80,8 @@ fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec
         let trace = link.inertia.xx + link.inertia.yy + link.inertia.zz;
         let moment = link.has_first_moment().then_some(link.first_moment);
         let moment_size = libm::sqrt(dot(link.first_moment, link.first_moment));
+        // what is no body may have any sign
+        let trace = if moment.is_some() { trace.abs() } else { trace };
         // velocity of the centre of mass, and rotation in the link's axes, per joint that carries the link
         let mut carriers = Vec::new();
         let mut carrier = Some(index);
@@ -222,6 +224,17 @@ mod tests {
         // on its axis
         assert_eq!(planar(&[(0.4, bar), (0.4, "mass: 2, com: [-0.4, 0, 0]")]), [None, Some(Unresisted::Alone)]);
         assert_eq!(planar(&[(0.0, "inertia: {zz: 0.1}")]), [None]);
+    }
+
+    #[test]
+    fn a_first_moment_resists_without_mass() {
+        // about the joint, 0.4 m away: 2 · 0.3 · 0.4 kg m²
+        let moment = "first_moment: [0.3, 0, 0], physical: false";
+        assert_eq!(planar(&[(0.4, moment)]), [None]);
+        assert_eq!(planar(&[(0.4, &format!("{moment}, inertia: {{zz: -0.24}}"))]), [Some(Unresisted::Alone)]);
+        assert_eq!(planar(&[(0.0, moment)]), [Some(Unresisted::Alone)]);
+        // the joint before moves it sideways: 2 · 0.3 · 0.4 there too, and nothing about its own joint
+        assert_eq!(planar(&[(0.4, "inertia: {zz: 1}"), (0.0, moment)]), [None, Some(Unresisted::Alone)]);
     }
 
     #[test]
