@@ -426,7 +426,8 @@ fn a_first_moment_is_a_centre_of_mass() {
         assert!(report.short().contains(part), "{report}");
     }
     // a first moment without mass is no body: the file has to know it
-    let checked = Reader::new("x").read(&file("first_moment: [1, 0, -m], inertia: {xx: -0.5, zz: 0.1}, physical: false"));
+    let checked =
+        Reader::new("x").read(&file("first_moment: [1, 0, -m], inertia: {xx: -0.5, zz: 0.1}, physical: false"));
     let checked = checked.unwrap_or_else(|report| panic!("{report}"));
     let joint = checked.robot.joints.last().unwrap();
     let Link { mass, com, first_moment, inertia } = joint.row.link;

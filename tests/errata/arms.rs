@@ -80,6 +80,16 @@ pub(crate) fn six_joints() -> DynArm {
     ])
 }
 
+/// The same without the masses of links 2 and 5: of them there are first moments.
+pub(crate) fn six_joints_two_without_mass() -> DynArm {
+    let mut rows: [Row; 6] = std::array::from_fn(|index| six_joints().rows()[index]);
+    for index in [1, 4] {
+        let Link { mass, com, inertia, .. } = rows[index].link;
+        rows[index].link = Link { inertia, first_moment: com.map(|c| mass * c), ..Link::default() };
+    }
+    arm(rows)
+}
+
 /// The state of the lecture's example: θ, θ̇, θ̈ = 0.6 rad, 1.3 rad/s, -0.7 rad/s²; X points down.
 pub(crate) fn one_link_state() -> State {
     State { q: vec![0.6], qd: vec![1.3], qdd: vec![-0.7], gravity: [9.81, 0.0, 0.0], wrench: Wrench::zero() }
