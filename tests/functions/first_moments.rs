@@ -2,9 +2,9 @@
 //! whose base parameters they are.
 
 use nalgebra::{Matrix3, Vector3};
-use rne::DynArm;
-use rne_codegen::Function;
-use rne_model::{Inertia, InertiaReference, Link, Robot};
+use rne::{DynArm, Scalar};
+use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter};
+use rne_model::{Inertia, InertiaReference, Link, Reader, Robot};
 
 use crate::arm::{Arm, Maker, of_runtime};
 use crate::case::{Case, cases, largest};
@@ -69,7 +69,7 @@ fn a_first_moment_without_mass_is_a_difference_of_bodies() {
     for maker in Maker::ALL {
         let mut worst = Worst::default();
         // what is compiled is so for this alone
-        let number = if maker == Maker::Runtime { 200 } else { 40 };
+        let number = if maker == Maker::Runtime { 200 } else { 24 };
         for case in cases(Maker::Runtime).iter().take(number).filter(|case| maker == Maker::Runtime || case.q.len() < 5)
         {
             let (robot, _, bodies) = massless(case);
@@ -179,4 +179,49 @@ fn an_arm_is_its_base_parameters() {
         }
         worst.at_most(1e-11, &format!("arms of base parameters, {maker}"));
     }
+}
+
+/// A first moment of a parameter at run time, beside one that is made of it with a mass.
+#[test]
+fn a_first_moment_may_be_known_at_run_time_only() {
+    let yaml = "{format: 1, name: varying, source: own, convention: standard, gravity: [0, 1, -9.81], parameters: \
+        {h: 0.4, j: 0.3}, joints: [\
+        {type: revolute, dh: {theta: 0.1, d: 0.2, a: 0.3, alpha: pi/2}, link: {first_moment: [h, 0.1, -2*h], \
+         inertia: {xx: 0.2, yy: j, zz: 0.4}, physical: false}}, \
+        {type: prismatic, dh: {theta: 0.4, d: 0.1, a: 0.2, alpha: 0.7}, link: {mass: 2, first_moment: [h, 0.1, 0], \
+         inertia: {xx: 0.2, yy: 0.3, zz: 0.4}}}, \
+        {type: revolute, dh: {theta: 0, d: 0.1, a: 0.2, alpha: 0}, link: {first_moment: [0.8, j*h, 0.3], \
+         inertia: {xx: 0.5, yy: 0.5, zz: 0.4}, physical: false}}]}";
+    let checked = Reader::new("varying").run_time(&["h", "j"]).read(yaml).unwrap_or_else(|report| panic!("{report}"));
+    let robot = checked.robot;
+    let mut worst = Worst::default();
+    let (q, qd, qdd) = ([0.4, -0.7, 1.3], [0.9, 0.3, -1.1], [2.0, -0.6, 0.8]);
+    let given = crate::arm::Given { tau: &qdd, ..crate::arm::Given::of_joints(&q, &qd, &qdd) };
+    for parameters in [[0.4, 0.3], [-1.7, 0.9]] {
+        let runtime = DynArm::from_robot(&robot.with_parameters(&parameters).expect("two"));
+        for form in [Form::SevenSteps, Form::Reduced] {
+            for function in [
+                Function::InverseDynamics,
+                Function::MassMatrix,
+                Function::ForwardDynamics,
+                Function::KineticEnergy,
+                Function::PotentialEnergy,
+                Function::CentreOfMass,
+                Function::CentreOfMassJacobian,
+                Function::JointWrenches,
+            ] {
+                let program = Compiler::new(&robot).compile(function, form).expect("it compiles");
+                let arguments =
+                    Arguments { tau: &qdd, parameters: &parameters, ..Arguments::of_joints(&q, &qd, &qdd, 0.0) };
+                let found = Interpreter::new(&program).run(&arguments, f64::from_f64, Scalar::sin_cos);
+                let found = found.expect("arrays of the right length");
+                let expected = of_runtime(&runtime, function, &given);
+                if form == Form::SevenSteps && function == Function::InverseDynamics {
+                    assert_eq!(found, expected, "in every bit");
+                }
+                worst.see(function.name(), error_on_scale(&found, &expected, 1.0));
+            }
+        }
+    }
+    worst.at_most(1e-12, "first moments at run time");
 }

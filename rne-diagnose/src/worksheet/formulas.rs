@@ -159,7 +159,8 @@ impl Formulas<'_> {
             (Axes::Base, true) => (format!("A{i} Rx(α{i})"), "(…)ᵀ".to_owned()),
             (Axes::Base, false) => (format!("A{i}"), format!("A{i}ᵀ")),
         };
-        let formula = format!("{left} I {right}, I of the file, about com");
+        let about = if row.link.has_first_moment() { "the origin" } else { "com" };
+        let formula = format!("{left} I {right}, I of the file, about {about}");
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = link.inertia;
         lines.push(here.line(Quantity::Inertia, vec![xx, xy, xz, yy, yz, zz], formula.trim_start()));
         lines
