@@ -358,20 +358,13 @@ fn no_body(
              write `physical: false` beside the first moment",
         ));
     }
-    match (reference, about) {
-        (Some(node), InertiaReference::Com) => {
-            let message =
-                "an inertia about the centre of mass of a link that has none, but a first moment without mass";
-            cx.refuse(
-                Diagnostic::error(node.head(), message)
-                    .help("write `inertia_about: origin`, or nothing: it is about the origin of the link frame"),
-            )
-        }
-        _ => {
-            lint::first_moment_without_mass(cx, moment);
-            Some(InertiaReference::Origin)
-        }
+    if let (Some(node), InertiaReference::Com) = (reference, about) {
+        let message = "an inertia about the centre of mass of a link that has none, but a first moment without mass";
+        let help = "write `inertia_about: origin`, or nothing: it is about the origin of the link frame";
+        return cx.refuse(Diagnostic::error(node.head(), message).help(help));
     }
+    lint::first_moment_without_mass(cx, moment);
+    Some(InertiaReference::Origin)
 }
 
 fn centre_of_mass(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
