@@ -21,8 +21,8 @@ pub(crate) enum Unresisted {
 
 /// For each joint whether anything resists it, base to tip; `None` where something does.
 ///
-/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), of a link with a first moment h
-/// beside `com` + Jvᵀ (Jω × h) and its transpose; and M = Lᵀ L from the tip to
+/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), of a link with a first
+/// moment h beside `com` + Jvᵀ (Jω × h) and its transpose; and M = Lᵀ L from the tip to
 /// the base: the pivot of a joint is the inertia that resists it while all joints behind it move freely. Only the link
 /// of the joint itself, and what is before it, cannot be moved against it, so that is the link to look at.
 pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option<Unresisted>> {

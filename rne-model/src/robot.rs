@@ -68,8 +68,8 @@ pub struct Limits {
 }
 
 impl Joint {
-    /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding, and there is
-    /// no first moment without mass: so it is with a body. A file must say `physical: false` where it is not.
+    /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding, and there
+    /// is no first moment without mass: so it is with a body. A file must say `physical: false` where it is not.
     #[must_use]
     pub fn is_physical(&self) -> bool {
         let Link { mass, com, inertia, .. } = self.row.link;

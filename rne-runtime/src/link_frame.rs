@@ -10,8 +10,9 @@
 //! modified    Rx(α_{i-1}) Rz(θ_i)     (0, 0, b_i) + c̄              Ī
 //! ```
 //!
-//! c̄ and Ī are the table's centre of mass and inertia; a first moment turns as c̄ does. Row i of a modified table already carries α_{i-1} and a_{i-1}.
-//! The twist, and r, the lever from one link's centre of mass to the next joint, belong to that joint: [`Mount`].
+//! c̄ and Ī are the table's centre of mass and inertia; a first moment turns as c̄ does. Row i of a modified
+//! table already carries α_{i-1} and a_{i-1}. The twist, and r, the lever from one link's centre of mass to the next
+//! joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform, parent};

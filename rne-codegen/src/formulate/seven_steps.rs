@@ -168,7 +168,7 @@ pub(crate) fn backward<'s>(
         //     f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
         //     n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
         // f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself.
-        //     with a first moment h_i     f_i + ω̇_i × h_i + ω_i × (ω_i × h_i)     n_i + h_i × c̈_i     n_{p,i} - h_i × g_i
+        //     of a first moment h_i     f_i + ω̇_i × h_i + ω_i × (ω_i × h_i)     n_i + h_i × c̈_i     n_{p,i} - h_i × g_i
         let of_moment = link.first_moment.map(|h| turning_force(line, &motion.turning, h));
         line.vector(Quantity::InertiaForce, || with(c_ddot * link.mass, of_moment));
         let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
