@@ -19,7 +19,7 @@ const DOCUMENTS: &[(&str, &[&str])] = &[
     ("docs/firmware.md", &["torque", "config", "embedded"]),
     ("docs/functions.md", &["functions"]),
     ("docs/performance.md", &["operations", "tricks"]),
-    ("docs/robot-file.md", &["desk_arm", "every_key"]),
+    ("docs/robot-file.md", &["two_bars", "desk_arm", "every_key"]),
     ("docs/teaching.md", &["code"]),
     ("robots/README.md", &["sources", "robots"]),
 ];
@@ -64,6 +64,7 @@ fn block(name: &str) -> String {
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }
         "desk_arm" => format!("```yaml\n{}```\n", read(&root().join("docs/desk_arm.yaml"))),
+        "two_bars" => format!("```yaml\n{}```\n", read(&root().join("docs/two_bars.yaml"))),
         "every_key" => format!("```yaml\n{}```\n", read(&root().join("docs/every-key.yaml"))),
         "headline" => headline(),
         "twelve_lines" => code(2),

@@ -17,7 +17,7 @@ use std::fmt;
 use arms::{
     ROD, Random, arms_of_the_table, one_link, one_link_state, one_link_with, prismatic_revolute,
     prismatic_revolute_state, revolute_prismatic, revolute_prismatic_state, six_joints, six_joints_loaded,
-    six_joints_state, tensor, two_rods, two_rods_state,
+    six_joints_state, six_joints_two_without_mass, tensor, two_rods, two_rods_state,
 };
 use nalgebra::{Matrix3, Matrix4, Vector3};
 use rne::{BaseMotion, DynArm, LinkTrace, Wrench};
@@ -134,6 +134,7 @@ fn the_lecture_without_slips() {
         ("5.4", prismatic_revolute(), prismatic_revolute_state()),
         ("5.5", six_joints(), six_joints_state()),
         ("5.5, tip wrench", six_joints(), six_joints_loaded()),
+        ("5.5, first moments", six_joints_two_without_mass(), six_joints_loaded()),
     ] {
         let placed = place(arm.rows(), &state.q, &[]);
         for (i, (found, expected)) in lecture(&arm, &state, None).iter().zip(trace(&arm, &state)).enumerate() {
@@ -305,7 +306,8 @@ fn e14_product_of_inertia() {
     let mass = masses.iter().map(|(m, _)| m).sum::<f64>();
     let centre = masses.iter().map(|(m, p)| *m * p).sum::<Vector3<f64>>() / mass;
     let about_centre = masses.map(|(m, p)| (m, p - centre));
-    let right = Link { mass, com: (centre - ROD.1 * Vector3::x()).into(), inertia: tensor(&about_centre) };
+    let right =
+        Link { mass, com: (centre - ROD.1 * Vector3::x()).into(), inertia: tensor(&about_centre), ..Link::default() };
     let mut printed = right;
     printed.inertia.xz = as_printed(&about_centre);
     let moment = |link| trace(&one_link_with(link), &state)[0].joint_moment;

@@ -4,6 +4,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
+use rne::DynArm;
 use rne_model::{Mapping, Reader, mappings};
 use serde_yaml::Value;
 
@@ -22,6 +23,30 @@ fn a_file_with_every_key_is_in_order() {
     for name in ["docs/every-key.yaml", "docs/desk_arm.yaml"] {
         let checked = Reader::new(name).read(&read(name)).unwrap_or_else(|report| panic!("{report}"));
         assert!(checked.lints.is_empty(), "{}", checked.lints);
+    }
+}
+
+/// Two bars by their base parameters, without a mass, have the torques of the bars.
+#[test]
+fn base_parameters_are_a_robot_file() {
+    let robot = |name: &str| {
+        let checked = Reader::new(name).read(&read(name)).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(checked.lints.warnings().count(), 0, "{}", checked.lints);
+        checked.robot
+    };
+    let robots = ["docs/two_bars.yaml", "robots/planar2.yaml"].map(robot);
+    assert!(robots[0].rows().all(|row| row.link.mass == 0.0 && row.link.has_first_moment()));
+    let arms = robots.map(|robot| DynArm::from_robot(&robot));
+    for state in [[0.3, -0.7, 1.0, 2.0, 3.0, -1.0], [-2.1, 0.4, -0.6, 1.3, 0.0, 7.0]] {
+        let [q, qd, qdd] = [0, 2, 4].map(|at| &state[at..at + 2]);
+        let close = |what: [Vec<f64>; 2]| {
+            let [found, expected] = &what;
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14 * b.abs().max(10.0)), "{what:?}");
+        };
+        close([0, 1].map(|arm| arms[arm].inverse_dynamics(q, qd, qdd).expect("two joints")));
+        close([0, 1].map(|arm| arms[arm].mass_matrix(q).expect("two joints").concat()));
+        close([0, 1].map(|arm| arms[arm].forward_dynamics(q, qd, qdd).expect("two joints")));
+        close([0, 1].map(|arm| vec![arms[arm].kinetic_energy(q, qd).expect("two joints")]));
     }
 }
 

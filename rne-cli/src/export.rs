@@ -36,7 +36,8 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = robot_file::robot(&arguments.file)?;
-    let exported = rne_convert::export(&robot);
+    let exported = rne_convert::export(&robot)
+        .map_err(|error| Failure::input(format_args!("{}: {error}", arguments.file.display())))?;
     let mut remark = String::new();
     for line in exported.remarks {
         let _ = writeln!(remark, "{line}");

@@ -173,7 +173,13 @@ fn of_file(robot: &Robot, joint: usize) -> String {
         }
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     };
-    let [x, y, z] = row.link.com.map(number);
+    let matter = if row.link.has_first_moment() {
+        let [x, y, z] = row.link.first_moment.map(number);
+        format!("h{i} ({x}, {y}, {z}) kg m, about the origin")
+    } else {
+        let [x, y, z] = row.link.com.map(number);
+        format!("com{i} ({x}, {y}, {z}) m, about it")
+    };
     let inertia = row.link.inertia;
     let named = [
         ("xx", inertia.xx),
@@ -187,7 +193,7 @@ fn of_file(robot: &Robot, joint: usize) -> String {
     let inertia: Vec<String> = inertia.map(|(name, value)| format!("I{name}{TIED}{}", number(value))).collect();
     let inertia = if inertia.is_empty() { "I 0".to_owned() } else { inertia.join(", ") };
     format!(
-        "of the file: a{i} {} m, α{i} {} rad, com{i} ({x}, {y}, {z}) m, about it {inertia} kg m²",
+        "of the file: a{i} {} m, α{i} {} rad, {matter} {inertia} kg m²",
         number(row.dh.a),
         number(row.dh.alpha.radians)
     )

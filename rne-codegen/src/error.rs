@@ -102,6 +102,7 @@ impl Extreme {
             put("the angle alpha", &[joint.row.dh.alpha.radians]);
             put("the mass", &[joint.row.link.mass]);
             put("a coordinate of the centre of mass,", &joint.row.link.com);
+            put("a coordinate of the first moment,", &joint.row.link.first_moment);
             put("an inertia,", joint.written_inertia.0.rows().as_flattened());
         }
         numbers.retain(|number| number.value != 0.0 && far(number.value) > LARGEST.log2());

@@ -26,7 +26,14 @@ impl Body {
 
     /// The link of a table.
     pub(crate) fn of_link(link: &Link) -> Self {
-        Self::at(link.mass, Pose::new(link.com, [0.0; 3]), link.inertia)
+        let mass = Self { mass: decimal(link.mass), inertia: link.inertia.rows().map(Vector::decimal), ..Self::NONE };
+        let beside = Self { moment: Vector::decimal(link.first_moment), ..mass };
+        beside.seen_from(Pose::new(link.com, [0.0; 3]))
+    }
+
+    /// Whether it has a first moment and no mass: then it is no body, and a URDF has no place for it.
+    pub(crate) fn is_massless_moment(&self) -> bool {
+        self.mass.high == 0.0 && self.moment != Vector::ZERO
     }
 
     /// The same body about the origin of the frame in which this one's frame stands at `place`.
@@ -59,7 +66,8 @@ impl Body {
     pub(crate) fn to_link_at(self, place: Pose) -> Link {
         let way = place.translation;
         let moved = self.mass.to_f64() * way.dot(way).to_f64();
-        self.seen_from(place).link(size(&self.inertia).max(moved))
+        let turned = if self.is_massless_moment() { length(self.moment) * length(way) } else { 0.0 };
+        self.seen_from(place).link(size(&self.inertia).max(moved).max(turned))
     }
 
     /// The link of a table: rounded once, what cancels exactly zero.
@@ -85,6 +93,7 @@ impl Body {
                 xz: element(0, 2),
                 yz: element(1, 2),
             },
+            first_moment: if self.is_massless_moment() { self.moment.rounded(length(self.moment)) } else { [0.0; 3] },
         }
     }
 
@@ -93,6 +102,11 @@ impl Body {
         place.translation = -centre;
         self.seen_from(place)
     }
+}
+
+/// The largest component.
+fn length(vector: Vector) -> f64 {
+    vector.to_f64().into_iter().map(f64::abs).fold(0.0, f64::max)
 }
 
 fn size(tensor: &[Vector; 3]) -> f64 {
@@ -123,7 +137,8 @@ mod tests {
 
     #[test]
     fn a_body_that_goes_away_and_comes_back_is_the_same_to_the_last_digit() {
-        let link = Link { mass: 2.43, com: [0.1, -0.2, 0.37], inertia: inertia(0.013, 0.0021, 0.0137) };
+        let link =
+            Link { mass: 2.43, com: [0.1, -0.2, 0.37], inertia: inertia(0.013, 0.0021, 0.0137), ..Link::default() };
         let place = Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0]);
         let back = Body::of_link(&link).seen_from(place).seen_from(place.inverse());
         assert_eq!(back.to_link(), link);
@@ -132,7 +147,7 @@ mod tests {
     /// Its frame comes to stand at the point, after a long way: nothing is left, not even rounding.
     #[test]
     fn a_point_has_no_inertia_of_its_own() {
-        let link = Link { mass: 231.7, com: [17.3, -4.91, 8.37], inertia: Inertia::default() };
+        let link = Link { mass: 231.7, com: [17.3, -4.91, 8.37], ..Link::default() };
         let own = Pose::new(link.com, [0.3, 1.1, -2.0]);
         for place in [Pose::identity(), Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0])] {
             let found = Body::of_link(&link).seen_from(place).to_link_at((place * own).inverse());
@@ -145,7 +160,7 @@ mod tests {
         // Halves of a thin rod of 6 kg and 2 m along x, each m l²/12 about its own centre.
         let half = |x: f64| Body::at(3.0, Pose::new([x, 0.0, 0.0], [0.0; 3]), inertia(0.0, 0.25, 0.25));
         let rod = (half(0.5) + half(-0.5)).to_link();
-        assert_eq!(rod, Link { mass: 6.0, com: [0.0; 3], inertia: inertia(0.0, 2.0, 2.0) });
+        assert_eq!(rod, Link { mass: 6.0, inertia: inertia(0.0, 2.0, 2.0), ..Link::default() });
     }
 
     #[test]
@@ -165,5 +180,16 @@ mod tests {
         assert_eq!(moved.inertia[0].to_f64(), [2.0, 0.0, 0.0]);
         assert_eq!(moved.inertia[1].to_f64(), [0.0, 0.0, 0.0]);
         assert_eq!(moved.moment.to_f64(), [0.0, 2.0, 0.0]);
+    }
+
+    #[test]
+    fn a_link_without_mass_keeps_its_first_moment() {
+        let link = Link { first_moment: [0.3, -0.7, 0.11], inertia: inertia(-0.02, 0.3, 0.1), ..Link::default() };
+        let place = Pose::new([0.4318, 1.7, -0.05], [0.3, 1.1, -2.0]);
+        assert_eq!(Body::of_link(&link).seen_from(place).seen_from(place.inverse()).to_link(), link);
+        assert_eq!(Body::of_link(&link).seen_from(place).to_link_at(place.inverse()), link);
+        let quarter = Body::of_link(&link).seen_from(Pose::new([0.0; 3], [0.0, 0.0, FRAC_PI_2])).to_link();
+        assert_eq!(quarter.first_moment, [0.7, 0.3, 0.11]);
+        assert_eq!(quarter.inertia, inertia(0.3, -0.02, 0.1));
     }
 }

@@ -1,6 +1,7 @@
 //! From a table to a URDF, so that any reader of URDF can be held against rne.
 
-use std::fmt::Write as _;
+use std::error::Error;
+use std::fmt::{self, Write as _};
 
 use rne_model::{Motor, Robot, one_line};
 
@@ -22,13 +23,43 @@ pub struct Exported {
     pub remarks: Vec<String>,
 }
 
+/// A link that a URDF cannot have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct NoBody {
+    /// The link, counted from 1.
+    pub link: usize,
+    /// The joint that moves it.
+    pub joint: String,
+}
+
+impl fmt::Display for NoBody {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { link, joint } = self;
+        write!(
+            f,
+            "link {link}, which the joint {} moves, has a first moment and no mass: a URDF gives links a mass and its \
+             centre, and cannot say it; give the link its `mass`",
+            one_line(joint)
+        )
+    }
+}
+
+impl Error for NoBody {}
+
 /// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
 /// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
 ///
 /// Of a motor the friction is there, as that of its joint: `damping` is G² B and `friction` is |G| Tc, of the mean of
 /// both directions.
-#[must_use]
-pub fn export(robot: &Robot) -> Exported {
+///
+/// # Errors
+///
+/// When a link has a first moment and no mass.
+pub fn export(robot: &Robot) -> Result<Exported, NoBody> {
+    if let Some(index) = robot.rows().position(|row| row.link.has_first_moment()) {
+        return Err(NoBody { link: index + 1, joint: robot.joints[index].name.clone() });
+    }
     let chain = of_robot(robot);
     // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
@@ -62,7 +93,7 @@ pub fn export(robot: &Robot) -> Exported {
     text.push_str("  <link name=\"tip\"/>\n");
     fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
     text.push_str("</robot>\n");
-    Exported { text, gravity, remarks }
+    Ok(Exported { text, gravity, remarks })
 }
 
 /// What a URDF cannot say of motors.

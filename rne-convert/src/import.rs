@@ -181,7 +181,10 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
         Joint {
             name: printable(&joint.name),
             row: Row { kind, dh: *dh, link },
-            written_inertia: (link.inertia, InertiaReference::Com),
+            written_inertia: (
+                link.inertia,
+                if link.has_first_moment() { InertiaReference::Origin } else { InertiaReference::Com },
+            ),
             limits: joint.limits,
             motor: joint.motor,
         }
@@ -291,7 +294,10 @@ pub(crate) fn remarks(robot: &Robot, table: &Table) -> Vec<String> {
             remarks.push(format!("row {row} has d = {d:.0} m and a = {a:.0} m{why}"));
         }
     }
-    let has_mass = |joint: &Joint| joint.row.link.mass != 0.0 || joint.row.link.inertia != Inertia::default();
+    let has_mass = |joint: &Joint| {
+        let link = joint.row.link;
+        link.mass != 0.0 || link.inertia != Inertia::default() || link.has_first_moment()
+    };
     if !robot.joints.iter().any(has_mass) {
         remarks.push("no link has mass: the URDF has no inertial data".to_owned());
     }

@@ -27,7 +27,7 @@ mod urdf;
 pub use chain::Selection;
 pub use comparison::Difference;
 pub use conventions::{Converted, convert};
-pub use export::{Exported, export};
+pub use export::{Exported, NoBody, export};
 pub use import::{Account, Imported, Options};
 pub use snap::{Snapped, TOLERANCE};
 pub use urdf::Urdf;

@@ -97,12 +97,15 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
     );
     line(text, dh, "rad, m");
     let (written, about) = joint.written_inertia;
-    let Link { mass, com, .. } = row.link;
+    let Link { mass, com, first_moment, .. } = row.link;
     if row.link != Link::default() || written != Inertia::default() || about != InertiaReference::Com {
         text.push_str("    link:\n");
         line(text, format!("      mass: {}", number(mass)), "kg");
         if com != [0.0; 3] {
             line(text, format!("      com: {}", list(&com)), "m");
+        }
+        if row.link.has_first_moment() {
+            line(text, format!("      first_moment: {}", list(&first_moment)), "kg m");
         }
         if written != Inertia::default() {
             line(text, format!("      inertia: {}", inertia(&written)), "kg m²");

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use fastrand::Rng;
 use rne_convert::{Difference, Imported, Options, Selection, Urdf, convert, export};
-use rne_model::{Convention, Reader, Robot};
+use rne_model::{Convention, InertiaReference, Reader, Robot};
 use rne_runtime::DynArm;
 
 const BOTH: [Convention; 2] = [Convention::Standard, Convention::Modified];
@@ -173,6 +173,42 @@ fn one_convention_is_the_other() {
     }
 }
 
+/// A link without mass keeps its first moment: it turns with the frame, and its tensor is about the origin of that.
+#[test]
+fn first_moments_turn_with_their_frames() {
+    let mut random = Rng::with_seed(17);
+    let mut moments = 0;
+    for case in 0..60 {
+        let text = urdf(&mut random, 1 + case % 7);
+        for (from, to) in [(BOTH[0], BOTH[1]), (BOTH[1], BOTH[0])] {
+            let mut robot = import(&text, from, true).robot;
+            for joint in robot.joints.iter_mut().skip(case % 2).step_by(2) {
+                let link = &mut joint.row.link;
+                (link.first_moment, link.mass, link.com) = (link.com, 0.0, [0.0; 3]);
+                if link.has_first_moment() {
+                    joint.written_inertia = (link.inertia, InertiaReference::Origin);
+                    moments += 1;
+                }
+            }
+            let written = rne_convert::robot_file::write(&robot);
+            let read = Reader::new("written").read(&written).unwrap_or_else(|report| panic!("{report}\n{written}"));
+            assert_eq!(read.robot, robot, "{written}");
+            let converted = convert(&robot, to).unwrap();
+            let reach = reach(&robot).max(reach(&converted.robot));
+            assert_small(&converted.rounding, reach, &format!("case {case}\n{written}"));
+            assert_same_torques(&robot, &converted.robot, 1e-12 * reach);
+            let has = |robot: &Robot| robot.rows().map(|row| row.link.has_first_moment()).collect::<Vec<_>>();
+            assert_eq!(has(&robot), has(&converted.robot));
+            if let Some(index) = has(&robot).into_iter().position(|has| has) {
+                let refused = export(&robot).unwrap_err();
+                assert_eq!(refused.link, index + 1);
+                assert!(refused.to_string().contains("has a first moment and no mass: a URDF"), "{refused}");
+            }
+        }
+    }
+    assert!(moments > 100, "{moments}");
+}
+
 #[test]
 fn what_is_exported_comes_back() {
     let mut random = Rng::with_seed(13);
@@ -180,7 +216,7 @@ fn what_is_exported_comes_back() {
         let text = urdf(&mut random, 1 + case % 7);
         for convention in BOTH {
             let robot = import(&text, convention, true).robot;
-            let exported = export(&robot);
+            let exported = export(&robot).unwrap();
             let back = import(&exported.text, convention, false);
             let reach = reach(&robot);
             assert_small(&back.account.rounding, reach, &format!("case {case}\n{}", exported.text));
@@ -218,7 +254,7 @@ fn shipped_robots_are_written_converted_and_exported() {
             assert_same_torques(&robot, &converted.robot, 1e-12);
             assert_small(&converted.rounding, 1.0, &name);
         }
-        let exported = export(&robot);
+        let exported = export(&robot).unwrap();
         let gravity = exported.gravity;
         let options =
             Options { snap: false, gravity, convention: robot.convention, keep_unphysical: true, ..Options::default() };

@@ -453,7 +453,8 @@ fn friction_goes_through_the_gear_to_the_joint() {
              revolute, dh: {{theta: 0, d: 0, a: 1, alpha: 0}}, link: {{mass: 1}}, motor: {motor}}}]}}"
         )
     };
-    let exported = |motor: &str| rne_convert::export(&Robot::from_yaml(&text(motor)).unwrap_or_else(|e| panic!("{e}")));
+    let exported =
+        |motor: &str| rne_convert::export(&Robot::from_yaml(&text(motor)).unwrap_or_else(|e| panic!("{e}"))).unwrap();
     let geared = exported("{inertia: 1e-4, gear_ratio: -50, viscous: 2e-4, coulomb: [0.03, -0.01]}");
     assert!(geared.text.contains("<dynamics damping=\"0.5\" friction=\"1\"/>"), "{}", geared.text);
     for part in ["motors are left out, but for their friction", "is written as its mean", ": joint1"] {

@@ -291,8 +291,17 @@ fn backward(rows: &[Row], links: &[Placed], state: &State, misprints: &[Misprint
         if !misprints.contains(&Misprint::NoGyroscopicMoment) {
             this.inertia_moment += this.omega.cross(&(link.inertia * this.omega));
         }
+        // of a first moment beside the mass, which no body has: the lecture does not know it
+        let first_moment = row.link.has_first_moment().then(|| link.turn * Vector3::from(row.link.first_moment));
+        if let Some(h) = first_moment {
+            this.inertia_force += this.omega_dot.cross(&h) + this.omega.cross(&this.omega.cross(&h));
+            this.inertia_moment += h.cross(&this.acceleration);
+        }
         this.joint_force = this.inertia_force + force - mass * this.gravity;
         this.joint_moment = this.inertia_moment + moment + link.d.cross(&this.joint_force) + link.r.cross(&force);
+        if let Some(h) = first_moment {
+            this.joint_moment -= h.cross(&this.gravity);
+        }
 
         // Step 7, R: τ_i = e_i · n_{i-1,i}   P: τ_i = e_i · f_{i-1,i}
         this.tau = match row.kind {

@@ -165,8 +165,10 @@ fn recursion(robot: &Robot, at: &Situation, rounded: impl Fn(f64) -> f64) -> Vec
         let own = [[own.xx, own.xy, own.xz], [own.xy, own.yy, own.yz], [own.xz, own.yz, own.zz]];
         let axes = places.frames[i];
         let inertia = product(product(axes, own), transposed(axes)).map(round);
-        let f = round(times(row.link.mass, ddc));
-        let n = round(add(turn(inertia, dw), cross(w, turn(inertia, w))));
+        // of a link without mass that has a first moment
+        let h = turn(axes, row.link.first_moment);
+        let f = round(add(times(row.link.mass, ddc), add(cross(dw, h), cross(w, cross(w, h)))));
+        let n = round(add(add(turn(inertia, dw), cross(w, turn(inertia, w))), cross(h, ddc)));
         centre = places.centres[i];
         links.push(Link {
             e,
@@ -185,7 +187,8 @@ fn recursion(robot: &Robot, at: &Situation, rounded: impl Fn(f64) -> f64) -> Vec
             next_f: [0.0; 3],
             next_n: [0.0; 3],
             joint_f: [0.0; 3],
-            joint_n: [0.0; 3],
+            // what is taken from it for the weight
+            joint_n: cross(h, g),
             tau: 0.0,
         });
     }
@@ -197,7 +200,7 @@ fn recursion(robot: &Robot, at: &Situation, rounded: impl Fn(f64) -> f64) -> Vec
         (link.next_f, link.next_n) = (next_f, next_n);
         link.joint_f = round(sub(add(link.f, next_f), times(row.link.mass, g)));
         let levers = add(cross(link.d, link.joint_f), cross(link.r, next_f));
-        link.joint_n = round(add(add(link.n, next_n), levers));
+        link.joint_n = round(sub(add(add(link.n, next_n), levers), link.joint_n));
         let of = if row.kind == JointKind::Revolute { link.joint_n } else { link.joint_f };
         link.tau = rounded(dot(link.e, of));
         (next_f, next_n) = (link.joint_f, link.joint_n);
@@ -276,6 +279,16 @@ fn six(convention: &str) -> Robot {
     Robot::from_yaml(&format!("{head}joints:\n{joints}")).unwrap()
 }
 
+/// The same where links 2 and 5 have their first moments and no mass.
+fn without_mass(mut robot: Robot) -> Robot {
+    for index in [1, 4] {
+        let link = &mut robot.joints[index].row.link;
+        link.first_moment = times(link.mass, link.com);
+        (link.mass, link.com) = (0.0, [0.0; 3]);
+    }
+    robot
+}
+
 fn shipped(name: &str) -> Robot {
     Robot::from_yaml(rne_robots::find(name).unwrap().yaml).unwrap()
 }
@@ -307,7 +320,9 @@ fn close(found: &[f64], expected: &[f64], what: &str) {
 
 #[test]
 fn every_line_is_the_recursion_in_base_axes() {
-    for robot in [six("standard"), six("modified"), shipped("stanford"), shipped("puma560"), shipped("puma560_mdh")] {
+    let two = ["standard", "modified"].map(|convention| without_mass(six(convention)));
+    let bodies = [six("standard"), six("modified"), shipped("stanford"), shipped("puma560"), shipped("puma560_mdh")];
+    for robot in bodies.into_iter().chain(two) {
         let still = state(robot.dof());
         let pushed = Situation { wrench: Some(WRENCH), ..still.clone() };
         let base = BaseMotion {
@@ -389,9 +404,10 @@ fn the_lectures_one_link() {
 /// A line is the sum of its terms, or there are none.
 #[test]
 fn terms_add_up() {
-    for file in rne_robots::ROBOTS {
+    let shipped = rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).unwrap());
+    for robot in shipped.chain([without_mass(six("standard"))]) {
         for rotors in [false, true] {
-            let robot = Robot { rotors, ..Robot::from_yaml(file.yaml).unwrap() };
+            let robot = Robot { rotors, ..robot.clone() };
             let payload = Payload { mass: 2.0, com: [0.1, 0.2, -0.3], ..Payload::none() };
             let at = state(robot.dof());
             for at in [Situation { payload: Some(payload), ..at.clone() }, Situation { wrench: Some(WRENCH), ..at }] {

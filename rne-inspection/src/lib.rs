@@ -248,6 +248,7 @@ fn described(robot: &rne_model::Robot) -> Robot {
             alpha: row.dh.alpha.radians,
             mass: row.link.mass,
             com: row.link.com,
+            first_moment: row.link.has_first_moment().then_some(row.link.first_moment),
             inertia: [inertia.xx, inertia.yy, inertia.zz, inertia.xy, inertia.xz, inertia.yz],
             position_limits: joint.limits.position.map(Into::into),
             velocity_limit: joint.limits.velocity,

@@ -66,14 +66,14 @@ const fn drawn(quantity: Quantity) -> Option<&'static str> {
         Q::Omega | Q::OmegaDot | Q::JointForce | Q::JointMoment | Q::JointPointVelocity => "joint",
         Q::JointPointAcceleration | Q::OriginAcceleration | Q::ReducedForce | Q::ReducedMoment => "joint",
         Q::OmegaCrossD | Q::Velocity | Q::Acceleration | Q::Gravity => "com",
-        Q::InertiaForce | Q::InertiaMoment | Q::AngularMomentum => "com",
+        Q::InertiaForce | Q::InertiaMoment | Q::AngularMomentum | Q::MasslessForce | Q::OmegaCrossMoment => "com",
         // of the next joint: what it carries
         Q::ChildForce | Q::ChildMoment | Q::OmegaCrossR | Q::R => "lever",
         Q::Position | Q::Rate | Q::RateDot | Q::Torque | Q::AppliedTorque | Q::TwiceRate => "axis",
         Q::Angle | Q::Sine | Q::Cosine | Q::TurnedSine | Q::TurnedCosine | Q::Theta => "axis",
         Q::TwistSine | Q::TwistCosine | Q::ThetaSine | Q::ThetaCosine | Q::Rotation | Q::TipRotation => "frame",
         Q::D | Q::Com => "position",
-        Q::Mass | Q::Inertia | Q::FirstMoment | Q::SecondMoment => "link",
+        Q::Mass | Q::Inertia | Q::FirstMoment | Q::SecondMoment | Q::MasslessMoment => "link",
         _ => return None,
     })
 }

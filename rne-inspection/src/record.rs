@@ -99,6 +99,9 @@ pub struct Joint {
     pub mass: f64,
     /// Centre of mass in the link frame of the table, m.
     pub com: [f64; 3],
+    /// First moment of a link without mass that has one, in the same frame, kg m.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub first_moment: Option<[f64; 3]>,
     /// xx, yy, zz, xy, xz, yz about the centre of mass in link axes, kg m².
     pub inertia: [f64; 6],
     /// Smallest and largest position, if the file has them.

@@ -147,6 +147,16 @@ pub(crate) fn triangle_inequality(cx: &Context, place: Range<usize>, [a, b, c]: 
     }
 }
 
+/// A first moment without mass in a file that knows it.
+pub(crate) fn first_moment_without_mass(cx: &Context, moment: &Node) {
+    let message =
+        "a first moment without mass, as `physical: false` says: no body has one, a set of base parameters has";
+    cx.report(Diagnostic::note(moment.head(), message).label("the mass is 0").help(
+        "every function works with it; of an arm that was regrouped the torques and the mass matrix are right, the \
+         forces between links and the centre of mass are not those of the arm",
+    ));
+}
+
 /// A negative principal moment in a file that knows it.
 pub(crate) fn unphysical(cx: &Context, place: Range<usize>, [smallest, ..]: [f64; 3]) {
     let message = format!(

@@ -21,7 +21,8 @@ pub(crate) enum Unresisted {
 
 /// For each joint whether anything resists it, base to tip; `None` where something does.
 ///
-/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), and M = Lᵀ L from the tip to
+/// M(q) = Σ m Jvᵀ Jv + Jωᵀ I Jω over the links (Siciliano et al., Robotics, 2009, 7.32), of a link with a first
+/// moment h beside `com` + Jvᵀ (Jω × h) and its transpose; and M = Lᵀ L from the tip to
 /// the base: the pivot of a joint is the inertia that resists it while all joints behind it move freely. Only the link
 /// of the joint itself, and what is before it, cannot be moved against it, so that is the link to look at.
 pub(crate) fn unresisted(convention: Convention, joints: &[Joint]) -> Vec<Option<Unresisted>> {
@@ -77,6 +78,10 @@ fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec
         let link = &joint.row.link;
         let com = add(*origin, turned(rotation, link.com));
         let trace = link.inertia.xx + link.inertia.yy + link.inertia.zz;
+        let moment = link.has_first_moment().then_some(link.first_moment);
+        let moment_size = libm::sqrt(dot(link.first_moment, link.first_moment));
+        // what is no body may have any sign
+        let trace = if moment.is_some() { trace.abs() } else { trace };
         // velocity of the centre of mass, and rotation in the link's axes, per joint that carries the link
         let mut carriers = Vec::new();
         let mut carrier = Some(index);
@@ -92,6 +97,7 @@ fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec
                     JointKind::Revolute => {
                         let arm = sub(com, *foot);
                         reach[carrier] += link.mass * (dot(com, com) + dot(*foot, *foot)) + trace;
+                        reach[carrier] += moment_size * (libm::sqrt(dot(com, com)) + libm::sqrt(dot(*foot, *foot)));
                         (carrier, cross(*axis, arm), turned_back(rotation, *axis))
                     }
                     JointKind::Prismatic => {
@@ -103,9 +109,13 @@ fn mass_matrix(convention: Convention, joints: &[Joint], state: u32) -> (Vec<Vec
             .collect();
         let tensor = link.inertia.rows();
         for (row, v, w) in &columns {
-            let moment = tensor.map(|line| dot(line, *w));
+            let spin = tensor.map(|line| dot(line, *w));
             for (column, other_v, other_w) in &columns {
-                matrix[*row][*column] += link.mass * dot(*v, *other_v) + dot(moment, *other_w);
+                matrix[*row][*column] += link.mass * dot(*v, *other_v) + dot(spin, *other_w);
+                if let Some(h) = moment {
+                    let [own, other] = [w, other_w].map(|w| turned(rotation, cross(*w, h)));
+                    matrix[*row][*column] += dot(*v, other) + dot(*other_v, own);
+                }
             }
         }
     }
@@ -214,6 +224,17 @@ mod tests {
         // on its axis
         assert_eq!(planar(&[(0.4, bar), (0.4, "mass: 2, com: [-0.4, 0, 0]")]), [None, Some(Unresisted::Alone)]);
         assert_eq!(planar(&[(0.0, "inertia: {zz: 0.1}")]), [None]);
+    }
+
+    #[test]
+    fn a_first_moment_resists_without_mass() {
+        // about the joint, 0.4 m away: 2 · 0.3 · 0.4 kg m²
+        let moment = "first_moment: [0.3, 0, 0], physical: false";
+        assert_eq!(planar(&[(0.4, moment)]), [None]);
+        assert_eq!(planar(&[(0.4, &format!("{moment}, inertia: {{zz: -0.24}}"))]), [Some(Unresisted::Alone)]);
+        assert_eq!(planar(&[(0.0, moment)]), [Some(Unresisted::Alone)]);
+        // the joint before moves it sideways: 2 · 0.3 · 0.4 there too, and nothing about its own joint
+        assert_eq!(planar(&[(0.4, "inertia: {zz: 1}"), (0.0, moment)]), [None, Some(Unresisted::Alone)]);
     }
 
     #[test]

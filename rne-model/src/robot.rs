@@ -68,11 +68,14 @@ pub struct Limits {
 }
 
 impl Joint {
-    /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding: that of a
-    /// body is. A file must say `physical: false` where it is not.
+    /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding, and there
+    /// is no first moment without mass: so it is with a body. A file must say `physical: false` where it is not.
     #[must_use]
     pub fn is_physical(&self) -> bool {
-        let Link { mass, com, inertia } = self.row.link;
+        let Link { mass, com, inertia, .. } = self.row.link;
+        if self.row.link.has_first_moment() {
+            return false;
+        }
         let magnitude = inertia::largest_magnitude(&self.written_inertia.0, mass, com);
         inertia.principal_moments().is_some_and(|moments| moments[0] >= -inertia::TOLERANCE * magnitude)
     }

@@ -60,6 +60,8 @@ pub enum Entry {
     Mass(usize),
     /// A component of a link's centre of mass: the joint and the axis.
     Com(usize, usize),
+    /// A component of the first moment of a link without mass: the joint and the axis.
+    FirstMoment(usize, usize),
     /// An element of a link's inertia about the centre of mass, whatever point the file gives it about: the joint and
     /// the element.
     Inertia(usize, InertiaElement),
@@ -198,6 +200,7 @@ impl Robot {
             Entry::A(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.a),
             Entry::Mass(joint) => Some(&mut self.joints.get_mut(joint)?.row.link.mass),
             Entry::Com(joint, axis) => self.joints.get_mut(joint)?.row.link.com.get_mut(axis),
+            Entry::FirstMoment(joint, axis) => self.joints.get_mut(joint)?.row.link.first_moment.get_mut(axis),
             Entry::Inertia(joint, element) => Some(element.of_mut(&mut self.joints.get_mut(joint)?.row.link.inertia)),
             Entry::MotorInertia(joint) => Some(&mut self.joints.get_mut(joint)?.motor.as_mut()?.inertia),
             Entry::GearRatio(joint) => Some(&mut self.joints.get_mut(joint)?.motor.as_mut()?.gear_ratio),

@@ -287,13 +287,18 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
         about: or(InertiaReference::Com) "inertia_about" inertia_reference,
         physical: or(true) "physical" |cx, node| choice(cx, node, "answer", &[("true", true), ("false", false)]),
     });
-    let com = match (node.get("first_moment"), node.get("com")) {
-        (None, _) => com,
-        (Some(moment), None) => com_of_first_moment(cx, moment, joint, mass)?,
+    let (com, first_moment) = match (node.get("first_moment"), node.get("com")) {
+        (None, _) => (com, [0.0; 3]),
+        (Some(moment), None) if mass == 0.0 => ([0.0; 3], first_moment_alone(cx, moment, joint)?),
+        (Some(moment), None) => (com_of_first_moment(cx, moment, joint, mass)?, [0.0; 3]),
         (Some(moment), Some(_)) => {
             let message = "`first_moment` beside `com`; each says where the centre of mass is, so one must go";
             return cx.refuse(Diagnostic::error(moment.head(), message).help("first_moment = mass * com"));
         }
+    };
+    let about = match (node.get("first_moment"), first_moment != [0.0; 3]) {
+        (Some(moment), true) => no_body(cx, moment, (node.get("inertia_about"), about), physical)?,
+        _ => about,
     };
     let place = ["inertia", "inertia_about"].iter().find_map(|key| node.get(key)).unwrap_or(node).head();
     let inertia = inertia_about_com(cx, place.clone(), joint, (written, about), (mass, com))?;
@@ -303,9 +308,14 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
     };
     let magnitude = inertia::largest_magnitude(&written, mass, com);
     let is_body = moments[0] >= -inertia::TOLERANCE * magnitude;
+    let link = Link { mass, com, inertia, first_moment };
+    if first_moment != [0.0; 3] {
+        // that it is no body is said already
+        return Some((link, (written, about)));
+    }
     if !is_body && !physical {
         lint::unphysical(cx, place, moments);
-        return Some((Link { mass, com, inertia }, (written, about)));
+        return Some((link, (written, about)));
     }
     if !is_body {
         let message = format!(
@@ -325,7 +335,36 @@ fn link(cx: &Context, node: &Node, joint: usize) -> Option<(Link, (Inertia, Iner
     }
     lint::triangle_inequality(cx, place.clone(), moments);
     lint::radius_of_gyration(cx, place, mass, moments);
-    Some((Link { mass, com, inertia }, (written, about)))
+    Some((link, (written, about)))
+}
+
+/// The first moment of a link without mass, about the origin of its frame.
+fn first_moment_alone(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {
+    list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| entry(Entry::FirstMoment(joint, axis))(cx, node))
+}
+
+/// A link with a first moment and without mass is no body, which its file must know, and has no centre of mass: the
+/// point that its inertia refers to is the origin of its frame.
+fn no_body(
+    cx: &Context,
+    moment: &Node,
+    (reference, about): (Option<&Node>, InertiaReference),
+    physical: bool,
+) -> Option<InertiaReference> {
+    if physical {
+        let message = "a first moment without mass: no body has one, for it is the mass times the centre of mass";
+        return cx.refuse(Diagnostic::error(moment.head(), message).label("the mass is 0").help(
+            "give the link its `mass`; if the link is what regrouping leaves of it, as in a set of base parameters, \
+             write `physical: false` beside the first moment",
+        ));
+    }
+    if let (Some(node), InertiaReference::Com) = (reference, about) {
+        let message = "an inertia about the centre of mass of a link that has none, but a first moment without mass";
+        let help = "write `inertia_about: origin`, or nothing: it is about the origin of the link frame";
+        return cx.refuse(Diagnostic::error(node.head(), message).help(help));
+    }
+    lint::first_moment_without_mass(cx, moment);
+    Some(InertiaReference::Origin)
 }
 
 fn centre_of_mass(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 3]> {

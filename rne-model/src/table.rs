@@ -75,6 +75,18 @@ pub struct Link<S = f64> {
     pub com: [S; 3],
     /// Inertia about the centre of mass, in link axes.
     pub inertia: Inertia<S>,
+    /// First moment about `com`, in link axes, kg m: zero for every body, for its moment is mass times `com`. A link
+    /// without mass may have one, as sets of base parameters do; it has no centre of mass, so `com` is the origin of
+    /// the link frame, and `inertia` is about that.
+    pub first_moment: [S; 3],
+}
+
+impl Link {
+    /// Whether it has a first moment that no mass accounts for: a base parameter, and no body.
+    #[must_use]
+    pub fn has_first_moment(&self) -> bool {
+        self.first_moment != [0.0; 3]
+    }
 }
 
 /// One joint with the link it moves.
@@ -168,6 +180,7 @@ mod single {
                         xz: i.xz as f32,
                         yz: i.yz as f32,
                     },
+                    first_moment: vector(link.first_moment),
                 },
             }
         }

@@ -80,15 +80,10 @@ fn zero(span: Range<usize>, shown: &str, name: &str) -> Diagnostic {
     ))
 }
 
-/// The centre of mass of a joint's link from its first moment, kg m; the mass is read.
+/// The centre of mass of a joint's link from its first moment, kg m; the mass is read and not zero.
 pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass: f64) -> Option<[f64; 3]> {
-    let moments = std::cell::Cell::new(false);
-    let com = list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| {
+    list(cx, node, "[x, y, z] (kg m)", |cx, node, axis| {
         let moment = quantity(cx, node)?;
-        if mass == 0.0 {
-            moments.set(moments.get() || moment.value != 0.0 || moment.varying().is_some());
-            return Some(0.0);
-        }
         let mass = Quantity::known(mass, cx.run_time.borrow().formula(Entry::Mass(joint)));
         let com = moment / mass;
         if let Some(formula) = com.varying() {
@@ -99,15 +94,7 @@ pub(crate) fn com_of_first_moment(cx: &Context, node: &Node, joint: usize, mass:
             cx.run_time.borrow_mut().entries.push((Entry::Com(joint, axis), formula.clone()));
         }
         Some(com.value)
-    })?;
-    if !moments.get() {
-        return Some(com);
-    }
-    let message = "a first moment without mass: such a link has no centre of mass, which the seven steps go by";
-    cx.refuse(Diagnostic::error(node.head(), message).label("the mass is 0").help(
-        "mass on the axis of a revolute joint may count for the link before or behind it: give this link some there, \
-         and take it from the link before; torques stay the same",
-    ))
+    })
 }
 
 /// The inertia of a joint's link about its centre of mass, from the inertia as written; mass, centre of mass and the

@@ -5,7 +5,7 @@ mod common;
 use std::fmt::Write as _;
 
 use common::{BASE, MOST_WORK, found, the_one, with};
-use rne_model::{Reader, Severity};
+use rne_model::{Entry, InertiaReference, Link, Reader, Severity};
 
 /// One replacement in the valid file, and the one error it must give: line, column, underlined text, part of message.
 type Case = (&'static str, &'static str, usize, usize, &'static str, &'static str);
@@ -425,11 +425,36 @@ fn a_first_moment_is_a_centre_of_mass() {
         let report = Reader::new("x").read(&file(link)).unwrap_err();
         assert!(report.short().contains(part), "{report}");
     }
+    // a first moment without mass is no body: the file has to know it
+    let checked =
+        Reader::new("x").read(&file("first_moment: [1, 0, -m], inertia: {xx: -0.5, zz: 0.1}, physical: false"));
+    let checked = checked.unwrap_or_else(|report| panic!("{report}"));
+    let joint = checked.robot.joints.last().unwrap();
+    let Link { mass, com, first_moment, inertia } = joint.row.link;
+    assert_eq!((mass, com, first_moment, inertia.xx), (0.0, [0.0; 3], [1.0, 0.0, -1.5], -0.5));
+    assert_eq!(joint.written_inertia, (inertia, InertiaReference::Origin), "there is no other point");
+    assert!(!joint.is_physical());
+    assert_eq!(checked.lints.warnings().count(), 0, "{}", checked.lints);
+    let [note] = &checked.lints.diagnostics[..] else { panic!("{}", checked.lints) };
+    assert!(note.message.starts_with("a first moment without mass, as `physical: false` says"), "{}", note.message);
+    let report = Reader::new("x").read(&file("first_moment: [1, 0, 0], inertia_about: com, physical: false"));
+    assert!(report.unwrap_err().short().contains("a link that has none"));
+    assert!(Reader::new("x").read(&file("first_moment: [1, 0, 0], inertia_about: origin, physical: false")).is_ok());
     // What depends on a parameter does so through the mass, too.
     let text = file("mass: 1 + r, first_moment: [1, 0, 0]");
     let robot = Reader::new("x").run_time(&["r"]).read(&text).unwrap().robot;
     let heavier = robot.with_parameters(&[7.0]).unwrap();
     assert_eq!(heavier.joints.last().unwrap().row.link.com, [1.0 / 8.0, 0.0, 0.0]);
+    // without mass it is a number of the table as any other
+    let text = file("first_moment: [1, 3*r, 0], inertia: {zz: r}, physical: false");
+    let robot = Reader::new("x").run_time(&["r"]).read(&text).unwrap_or_else(|report| panic!("{report}")).robot;
+    let (last, other) = (robot.dof() - 1, robot.with_parameters(&[7.0]).unwrap());
+    assert!(robot.run_time.formula(Entry::FirstMoment(last, 1)).is_some());
+    let link = other.joints[last].row.link;
+    assert_eq!((link.first_moment, link.inertia.zz), ([1.0, 21.0, 0.0], 7.0));
+    assert_eq!(other.joints[last].written_inertia.0.zz, 7.0);
+    let report = Reader::new("x").run_time(&["r"]).read(&text.replace("3*r", "r - 3")).unwrap_err();
+    assert!(report.short().contains("zeros are folded away"), "{report}");
 }
 
 #[test]

@@ -9,7 +9,7 @@
 //! on Robotics and Automation 6 (1990), 368-373, for the rules; M. Gautier, Numerical calculation of the base inertial
 //! parameters of robots, Journal of Robotic Systems 8 (1991), 485-506, for the factorisation.
 
-use std::fmt;
+use std::{array, fmt};
 
 use nalgebra::DVector;
 use rne_model::{JointKind, Link, Row};
@@ -211,8 +211,8 @@ fn cleaned(coefficient: f64) -> f64 {
 
 /// Parameters about the origin of the link frame.
 fn about_the_origin(link: &Link) -> [f64; PARAMETERS] {
-    let Link { mass: m, com: [x, y, z], inertia: i } = *link;
-    [
+    let Link { mass: m, com: [x, y, z], inertia: i, first_moment: [hx, hy, hz] } = *link;
+    let body = [
         m,
         m * x,
         m * y,
@@ -223,7 +223,21 @@ fn about_the_origin(link: &Link) -> [f64; PARAMETERS] {
         i.yy + m * (x * x + z * z),
         i.yz - m * y * z,
         i.zz + m * (x * x + y * y),
-    ]
+    ];
+    // 2 h·c 1 - h cᵀ - c hᵀ
+    let beside = [
+        0.0,
+        hx,
+        hy,
+        hz,
+        2.0 * (hy * y + hz * z),
+        -(hx * y + hy * x),
+        -(hx * z + hz * x),
+        2.0 * (hx * x + hz * z),
+        -(hy * z + hz * y),
+        2.0 * (hx * x + hy * y),
+    ];
+    if link.has_first_moment() { array::from_fn(|i| body[i] + beside[i]) } else { body }
 }
 
 /// Steele's SplitMix64: the same states on every machine.

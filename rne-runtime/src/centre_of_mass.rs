@@ -6,6 +6,8 @@
 //! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j          from the tip to the base
 //! column j                                                z_j × (s_j - w_j p_j)   (revolute),   w_j z_j   (prismatic)
 //! ```
+//!
+//! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 
 use nalgebra::Vector3;
 use rne_model::JointKind;
@@ -18,14 +20,20 @@ use crate::{Arm, CentreOfMass, Constant, Scalar};
 use crate::{DynArm, WrongLength};
 
 impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
-    /// What part of the mass each link has.
-    fn parts<T: Scalar>(self) -> J::Of<T> {
+    /// One by the mass of all links.
+    fn inverse_of_mass<T: Scalar>(self) -> T {
         let mut total = T::zero();
         for row in self.rows {
             total += row.link.mass.to();
         }
-        let inverse = T::one() / total;
-        self.per_joint.of(|i| self.rows[i].link.mass.to::<T>() * inverse)
+        T::one() / total
+    }
+
+    /// μ_i c_i, with a first moment + h_i (1 / Σ m); and μ_i, what part of the mass link i has.
+    fn part<T: Scalar>(self, i: usize, links: &[Placement<T>], inverse: T) -> (Vector3<T>, T) {
+        let part = self.rows[i].link.mass.to::<T>() * inverse;
+        let moment = self.centre(i, links) * part;
+        (self.first_moment(i, links).map_or(moment, |beside| moment + beside * inverse), part)
     }
 
     /// The base with its axes in the world, its origin in itself.
@@ -35,9 +43,9 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     pub(crate) fn centre_of_mass<T: Scalar>(self, q: &[T]) -> [T; 3] {
         let links = self.placements(self.turned_base(), q);
-        let mut centre = Vector3::zeros();
-        for (i, part) in self.parts::<T>().as_ref().iter().enumerate() {
-            centre += self.centre(i, links.as_ref()) * *part;
+        let (mut centre, inverse) = (Vector3::zeros(), self.inverse_of_mass());
+        for i in 0..self.rows.len() {
+            centre += self.part(i, links.as_ref(), inverse).0;
         }
         // nor has an arm without joints
         if self.rows.is_empty() {
@@ -48,12 +56,13 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 
     pub(crate) fn centre_of_mass_jacobian<T: Scalar>(self, q: &[T]) -> [J::Of<T>; 3] {
         let base = self.turned_base();
-        let (links, parts) = (self.placements(base, q), self.parts::<T>());
+        let (links, inverse) = (self.placements(base, q), self.inverse_of_mass());
         let (mut moment, mut part) = (Vector3::zeros(), T::zero());
         let mut columns = self.per_joint.all(&Vector3::zeros());
         for (i, column) in columns.as_mut().iter_mut().enumerate().rev() {
-            moment += self.centre(i, links.as_ref()) * parts.as_ref()[i];
-            part += parts.as_ref()[i];
+            let of_link = self.part(i, links.as_ref(), inverse);
+            moment += of_link.0;
+            part += of_link.1;
             let frame = self.joint_frame(i, base, links.as_ref());
             let axis = frame.rotation.column(2).into_owned();
             *column = match self.rows[i].kind {

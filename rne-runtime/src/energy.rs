@@ -6,6 +6,8 @@
 //! V = - Σ m_i g · c_i                          c_i = R_i c̄_i + p_i from the rows of the table, in the axes of frame 0
 //! ```
 //!
+//! A link with a first moment h beside its mass has ċ_i · (ω_i × h_i) in T, and - g · R_i h̄_i in V.
+//!
 //! Sums run from the base to the tip; the half, and the sign, come last.
 
 use nalgebra::Vector3;
@@ -29,6 +31,10 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         for ((link, motion), velocity) in self.chain.links::<T>().zip(motions.as_ref()).zip(velocities.as_ref()) {
             let spin = motion.omega.dot(&(link.inertia * motion.omega));
             twice += link.mass * velocity.dot(velocity) + spin;
+            if let Some(h) = &link.first_moment {
+                let half = velocity.dot(&motion.omega.cross(h));
+                twice += half + half;
+            }
         }
         for (index, &qd) in qd.iter().enumerate() {
             if let Some(rotor) = self.rotor(index) {
@@ -44,6 +50,9 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         let mut sum = T::zero();
         for (i, row) in self.rows.iter().enumerate() {
             sum += row.link.mass.to::<T>() * gravity.dot(&self.centre(i, links.as_ref()));
+            if let Some(moment) = self.first_moment(i, links.as_ref()) {
+                sum += gravity.dot(&moment);
+            }
         }
         -sum
     }

@@ -107,6 +107,12 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
         rotation * Vector3::from(self.rows[i].link.com).map(S::to) + translation
     }
 
+    /// The first moment of link i beside its mass, in the axes in which the links are placed; `None` of a body.
+    pub(crate) fn first_moment<T: Scalar>(self, i: usize, links: &[Placement<T>]) -> Option<Vector3<T>> {
+        self.chain.links[i].first_moment?;
+        Some(links[i].rotation * Vector3::from(self.rows[i].link.first_moment).map(S::to))
+    }
+
     /// The tip frame behind the last of `links`.
     fn tip<T: Scalar>(self, links: &[Placement<T>]) -> Placement<T> {
         let last = links.last().copied().unwrap_or_else(|| Placement::constant(self.base));

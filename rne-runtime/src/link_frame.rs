@@ -10,8 +10,9 @@
 //! modified    Rx(α_{i-1}) Rz(θ_i)     (0, 0, b_i) + c̄              Ī
 //! ```
 //!
-//! c̄ and Ī are the table's centre of mass and inertia. Row i of a modified table already carries α_{i-1} and a_{i-1}.
-//! The twist, and r, the lever from one link's centre of mass to the next joint, belong to that joint: [`Mount`].
+//! c̄ and Ī are the table's centre of mass and inertia; a first moment turns as c̄ does. Row i of a modified
+//! table already carries α_{i-1} and a_{i-1}. The twist, and r, the lever from one link's centre of mass to the next
+//! joint, belong to that joint: [`Mount`].
 
 use nalgebra::{Matrix3, Vector3};
 use rne_model::{Angle, Convention, JointKind, QuarterTurns, Row, Transform, parent};
@@ -41,6 +42,8 @@ pub(crate) struct LinkFrame<S> {
     pub(crate) inertia: Matrix3<S>,
     /// Mass, kg.
     pub(crate) mass: S,
+    /// h, the first moment about C_i that no mass accounts for, kg m; `None` of every body.
+    pub(crate) first_moment: Option<Vector3<S>>,
 }
 
 /// All links of a robot, whatever owns them.
@@ -66,7 +69,9 @@ impl<S: Constant> LinkFrame<S> {
             Convention::Modified => (Vector3::new(S::zero(), S::zero(), dh.d), written_inertia),
         };
         let (parent, d) = (parent(index), offset + com);
-        Self { kind, parent, mount, theta: dh.theta, offset, com, d, inertia, mass: link.mass }
+        let has_moment = link.first_moment.iter().any(|h| *h != S::zero());
+        let first_moment = has_moment.then(|| turned(convention, &rows[index], link.first_moment));
+        Self { kind, parent, mount, theta: dh.theta, offset, com, d, inertia, mass: link.mass, first_moment }
     }
 
     /// The same constants in the scalar of a computation.
@@ -83,6 +88,7 @@ impl<S: Constant> LinkFrame<S> {
             d: self.d.map(S::to),
             inertia: self.inertia.map(S::to),
             mass: self.mass.to(),
+            first_moment: self.first_moment.map(|h| h.map(S::to)),
         }
     }
 }
@@ -161,10 +167,15 @@ impl<'a, S: Constant> Chain<'a, S> {
 
 /// The centre of mass of a row's link, from the end of its offset, in form P.
 pub(crate) fn turned_com<S: Constant>(convention: Convention, row: &Row<S>) -> Vector3<S> {
-    let com = Vector3::from(row.link.com);
+    turned(convention, row, row.link.com)
+}
+
+/// Components in the link frame of a row, turned into the axes of form P.
+fn turned<S: Constant>(convention: Convention, row: &Row<S>, components: [S; 3]) -> Vector3<S> {
+    let vector = Vector3::from(components);
     match convention {
-        Convention::Standard => rotation_x(&row.dh.alpha) * com,
-        Convention::Modified => com,
+        Convention::Standard => rotation_x(&row.dh.alpha) * vector,
+        Convention::Modified => vector,
     }
 }
 

@@ -82,7 +82,7 @@ impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
 fn empty<S: Constant>(row: &Row<S>) -> Row<S> {
     let zero = S::zero();
     let inertia = rne_model::Inertia { xx: zero, yy: zero, zz: zero, xy: zero, xz: zero, yz: zero };
-    Row { link: Link { mass: zero, com: [zero; 3], inertia }, ..*row }
+    Row { link: Link { mass: zero, com: [zero; 3], inertia, first_moment: [zero; 3] }, ..*row }
 }
 
 /// Force and moment of each parameter set to one, about the origin of the link frame, in the axes of form P.

@@ -19,6 +19,9 @@
 //! link i, z along joint i. The lecture writes the same vectors in axes fixed to link i-1: Rz(θ_i) leads there and
 //! leaves z elements, so τ, as they are.
 //!
+//! A link without mass may have a first moment h, about the point that its centre of mass would be: a set of base
+//! parameters has such links. Their terms stand apart, for no body has them.
+//!
 //! The order of the operations is part of the contract: generated code repeats it and is compared bit for bit.
 
 use nalgebra::Vector3;
@@ -82,19 +85,27 @@ fn gravity<T: Scalar>(parent: &LinkMotion<T>, this: &LinkMotion<T>) -> Vector3<T
 
 /// Step 6, the link alone: force and moment that accelerate it.
 ///
-/// - f_i = m_i c̈_i
-/// - n_i = I_i ω̇_i + ω_i × (I_i ω_i)
+/// - f_i = m_i c̈_i                             with a first moment + ω̇_i × h_i + ω_i × (ω_i × h_i)
+/// - n_i = I_i ω̇_i + ω_i × (I_i ω_i)           with a first moment + h_i × c̈_i
 fn inertia_wrench<T: Scalar>(link: &LinkFrame<T>, this: &LinkMotion<T>) -> ForceMoment<T> {
     let force = this.acceleration * link.mass;
     let moment = link.inertia * this.omega_dot + this.omega.cross(&(link.inertia * this.omega));
-    ForceMoment { force, moment }
+    match &link.first_moment {
+        None => ForceMoment { force, moment },
+        Some(h) => ForceMoment { force: force + turning(h, this), moment: moment + h.cross(&this.acceleration) },
+    }
+}
+
+/// ω̇_i × h_i + ω_i × (ω_i × h_i)
+fn turning<T: Scalar>(h: &Vector3<T>, this: &LinkMotion<T>) -> Vector3<T> {
+    this.omega_dot.cross(h) + this.omega.cross(&this.omega.cross(h))
 }
 
 /// Step 6, the balance: force and moment from the parent link, the moment about the joint's reference point. The sums
 /// run over the joints k that link i carries, and the tip; in a chain there is one of them.
 ///
 /// - f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
-/// - n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
+/// - n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}      with a first moment - h_i × g_i
 ///
 /// f_i - m_i g_i is computed as m_i (c̈_i - g_i): one product instead of two.
 fn joint_wrench<T: Scalar>(
@@ -103,14 +114,19 @@ fn joint_wrench<T: Scalar>(
     inertia: &ForceMoment<T>,
     carried: Option<&Carried<T>>,
 ) -> ForceMoment<T> {
-    let force = (this.acceleration - this.gravity) * link.mass;
-    match carried {
-        None => ForceMoment { force, moment: inertia.moment + this.d.cross(&force) },
+    let own = (this.acceleration - this.gravity) * link.mass;
+    let own = link.first_moment.as_ref().map_or(own, |h| own + turning(h, this));
+    let joint = match carried {
+        None => ForceMoment { force: own, moment: inertia.moment + this.d.cross(&own) },
         Some(Carried { wrench, of_levers }) => {
-            let force = force + wrench.force;
+            let force = own + wrench.force;
             let moment = ((inertia.moment + wrench.moment) + this.d.cross(&force)) + of_levers;
             ForceMoment { force, moment }
         }
+    };
+    match &link.first_moment {
+        None => joint,
+        Some(h) => ForceMoment { moment: joint.moment - h.cross(&this.gravity), ..joint },
     }
 }
 
@@ -192,7 +208,7 @@ mod tests {
     fn row(kind: JointKind, [a, d, alpha, mass]: [f64; 4]) -> Row {
         let inertia = Inertia { xx: 0.2, yy: 0.3, zz: 0.25, xy: 0.01, xz: -0.02, yz: 0.03 };
         let dh = Dh { theta: Angle::new(0.3), d, a, alpha: Angle::new(alpha) };
-        Row { kind, dh, link: Link { mass, com: [0.1, -0.2, 0.3], inertia } }
+        Row { kind, dh, link: Link { mass, com: [0.1, -0.2, 0.3], inertia, first_moment: [0.0; 3] } }
     }
 
     /// Torques of links by their parents, all moved by the same numbers.

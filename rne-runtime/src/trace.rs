@@ -28,6 +28,8 @@ pub struct LinkTrace<T> {
     pub mass: T,
     /// Rows of I_i, the inertia about the centre of mass, kg m².
     pub inertia: [[T; 3]; 3],
+    /// h_i, the first moment about C_i of a link without mass that has one, kg m; zero of every body.
+    pub first_moment: [T; 3],
     /// Step 1: angular velocity ω_i, rad/s.
     pub omega: [T; 3],
     /// Step 2: angular acceleration ω̇_i, rad/s².
@@ -101,6 +103,7 @@ impl<T: Scalar> LinkTrace<T> {
             r: zero,
             mass: T::zero(),
             inertia: [zero; 3],
+            first_moment: zero,
             omega: zero,
             omega_dot: zero,
             velocity: zero,
@@ -133,6 +136,7 @@ impl<T: Scalar> LinkTrace<T> {
             r: turned(self.r),
             mass: self.mass,
             inertia: rows(&(turn * Matrix3::from(self.inertia).transpose() * turn.transpose())),
+            first_moment: turned(self.first_moment),
             omega: turned(self.omega),
             omega_dot: turned(self.omega_dot),
             velocity: turned(self.velocity),
@@ -170,6 +174,7 @@ pub(crate) fn record<S: Constant, T: Scalar>(
             r: chain.mount_behind(index).r.into(),
             mass: link.mass,
             inertia: rows(&link.inertia),
+            first_moment: link.first_moment.unwrap_or_else(Vector3::zeros).into(),
             omega: motion.omega.into(),
             omega_dot: motion.omega_dot.into(),
             velocity: (*velocity).into(),

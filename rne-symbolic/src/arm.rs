@@ -29,6 +29,8 @@ pub(crate) struct Link {
     pub(crate) mass: Polynomial,
     /// About the centre of mass.
     pub(crate) inertia: Matrix,
+    /// First moment about the centre of mass; zero of every body.
+    pub(crate) first_moment: Vector,
     /// G² Jm of the joint's rotor.
     pub(crate) rotor: Polynomial,
 }
@@ -51,6 +53,7 @@ pub(crate) fn links(table: &Table) -> Vec<Link> {
                     r: &Vector::zero() - &com,
                     mass: row.mass.clone(),
                     inertia: &(&own * &row.inertia) * &own.transpose(),
+                    first_moment: &own * &row.first_moment,
                     rotor: row.rotor.clone(),
                 }
             }
@@ -63,6 +66,7 @@ pub(crate) fn links(table: &Table) -> Vec<Link> {
                     r: &Vector([lever, zero(), zero()]) - &row.com,
                     mass: row.mass.clone(),
                     inertia: row.inertia.clone(),
+                    first_moment: row.first_moment.clone(),
                     rotor: row.rotor.clone(),
                 }
             }

@@ -272,6 +272,9 @@ pub(crate) fn letters(composer: &Composer<'_>, table: &Table, used: &BTreeSet<Sy
     if ['x', 'y', 'z'].iter().any(|axis| has(*axis, "_C")) {
         meanings.push("x_C, y_C, z_C: centre of mass, in the link frame of the table");
     }
+    if table.rows.iter().any(|row| !row.first_moment.is_zero()) && has('m', "mc") {
+        meanings.push("mcx, mcy, mcz: first moment of a link without mass, in the link frame of the table");
+    }
     if has('I', "_") {
         meanings.push("I: inertia about the centre of mass, in link axes");
     }

@@ -6,6 +6,8 @@
 //! ```text
 //! M = Σ m Jvᵀ Jv + Jωᵀ (R Ī Rᵀ) Jω      c_ijk = ½ (∂M_ij/∂q_k + ∂M_ik/∂q_j - ∂M_jk/∂q_i)      γ_i = -∂/∂q_i Σ m g·c
 //! ```
+//!
+//! A first moment h beside the mass has v · (ω × R h) in the kinetic energy and -g · R h in the potential one.
 
 use rne_model::{Convention, JointKind};
 
@@ -68,6 +70,10 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
         axes.push(axis);
         let com = frame.shifted(&row.com).origin;
         potential = potential - &row.mass * &table.gravity.dot(&com);
+        let moment = &frame.rotation * &row.first_moment;
+        if !moment.is_zero() {
+            potential = potential - table.gravity.dot(&moment);
+        }
         let inertia = &(&frame.rotation * &row.inertia) * &frame.rotation.transpose();
         let linear: Vec<Vector> = (0..=i).map(|j| Vector(com.0.clone().map(|x| x.by_joint(j)))).collect();
         let angular: Vec<Vector> = (0..=i)
@@ -75,7 +81,11 @@ pub(crate) fn equations(table: &Table) -> Result<Equations, TooLong> {
             .collect();
         for j in 0..=i {
             for k in j..=i {
-                let energy = &row.mass * &linear[j].dot(&linear[k]) + angular[j].dot(&(&inertia * &angular[k]));
+                let mut energy = &row.mass * &linear[j].dot(&linear[k]) + angular[j].dot(&(&inertia * &angular[k]));
+                if !moment.is_zero() {
+                    energy = energy + linear[j].dot(&angular[k].cross(&moment));
+                    energy = energy + linear[k].dot(&angular[j].cross(&moment));
+                }
                 if energy.is_too_long() {
                     return Err(TooLong);
                 }

@@ -72,24 +72,9 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         let right = Pieces::of_terms(&[(right[at].to_owned(), right[0].to_owned())]);
         Item::Formula { left: left[at].to_owned(), width: left[0].chars().count(), right }
     };
-    let has_slides = form.table.rows.iter().any(|row| row.kind == JointKind::Prismatic);
     let mut forward: Vec<Item> = FORWARD.iter().map(formula).collect();
     let mut backward: Vec<Item> = BACKWARD.iter().map(formula).collect();
-    if has_slides {
-        let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();
-        forward.push(Item::Words(vec![
-            "A sliding joint turns nothing: its link has no terms with e in the first two, and in the third it has "
-                .to_owned(),
-            math("q̈i e + 2 q̇i ωi × e", r"\ddot q_i e + 2\,\dot q_i\,\omega_i \times e"),
-            " besides.".to_owned(),
-        ]));
-        let force = math("e · fp,i", r"e \cdot f_{p,i}");
-        backward.push(Item::Words(vec!["The force of a sliding joint is ".to_owned(), force, ".".to_owned()]));
-    }
-    if form.table.rows.iter().any(|row| !row.rotor.is_zero()) {
-        let rotor = if script == Script::Latex { r"G_i^2 J_{m,i} \ddot q_i" } else { "Gi² Jmi q̈i" }.to_owned();
-        backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
-    }
+    besides(form, script, &mut forward, &mut backward);
     let title = |text: &str| words(text);
     sections
         .push(Section { title: title("Forward, i = 1 to the last, p = i - 1; the base stands still"), items: forward });
@@ -138,6 +123,9 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         if !products.is_zero() {
             items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
         }
+        if !link.first_moment.is_zero() {
+            items.push(vector("h", index, &link.first_moment, &mut seen));
+        }
     }
     let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;
     if script == Script::Unicode && form.table.rows.iter().filter(is_revolute).any(|row| !row.d.is_zero()) {
@@ -148,6 +136,38 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
     sections.push(Section { title: title("Of each link, in the frame at its joint, z along the joint's axis"), items });
     sections.extend(letters(composer, &form.table, &used(seen.iter())));
     sections
+}
+
+/// What sliding joints, rotors and first moments without mass add to the formulas, in words.
+fn besides(form: &ClosedForm, script: Script, forward: &mut Vec<Item>, backward: &mut Vec<Item>) {
+    let rows = &form.table.rows;
+    let math = |unicode: &str, latex: &str| if script == Script::Latex { latex } else { unicode }.to_owned();
+    if rows.iter().any(|row| row.kind == JointKind::Prismatic) {
+        forward.push(Item::Words(vec![
+            "A sliding joint turns nothing: its link has no terms with e in the first two, and in the third it has "
+                .to_owned(),
+            math("q̈i e + 2 q̇i ωi × e", r"\ddot q_i e + 2\,\dot q_i\,\omega_i \times e"),
+            " besides.".to_owned(),
+        ]));
+        let force = math("e · fp,i", r"e \cdot f_{p,i}");
+        backward.push(Item::Words(vec!["The force of a sliding joint is ".to_owned(), force, ".".to_owned()]));
+    }
+    if rows.iter().any(|row| !row.rotor.is_zero()) {
+        let rotor = if script == Script::Latex { r"G_i^2 J_{m,i} \ddot q_i" } else { "Gi² Jmi q̈i" }.to_owned();
+        backward.push(Item::Words(vec!["The rotor of joint i adds ".to_owned(), rotor, " to its torque.".to_owned()]));
+    }
+    if rows.iter().any(|row| !row.first_moment.is_zero()) {
+        backward.push(Item::Words(vec![
+            "A link without mass that has a first moment h adds ".to_owned(),
+            math(
+                "ω̇i × hi + ωi × (ωi × hi)",
+                r"\dot{\omega}_i \times \mathbf h_i + \omega_i \times (\omega_i \times \mathbf h_i)",
+            ),
+            " to the force on it and ".to_owned(),
+            math("hi × (c̈i - gi)", r"\mathbf h_i \times (\ddot c_i - g_i)"),
+            " to the moment.".to_owned(),
+        ]));
+    }
 }
 
 /// R_i as a product of turns about x and z.

@@ -86,8 +86,14 @@ fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Polynomial>, TooLo
 
         // 6   f_{i-1,i} = m_i (c̈_i - g_i) + f_{i,i+1}
         //     n_{i-1,i} = I_i ω̇_i + ω_i × (I_i ω_i) + n_{i,i+1} + d_i × f_{i-1,i} + r_i × f_{i,i+1}
-        let force = &(c_ddot - gravity) * &link.mass + child_force.clone();
-        let inertia_moment = &link.inertia * omega_dot + omega.cross(&(&link.inertia * omega));
+        // of a first moment h_i beside the mass + ω̇_i × h_i + ω_i × (ω_i × h_i) and + h_i × (c̈_i - g_i)
+        let mut force = &(c_ddot - gravity) * &link.mass + child_force.clone();
+        let mut inertia_moment = &link.inertia * omega_dot + omega.cross(&(&link.inertia * omega));
+        if !link.first_moment.is_zero() {
+            let h = &link.first_moment;
+            force = force + omega_dot.cross(h) + omega.cross(&omega.cross(h));
+            inertia_moment = inertia_moment + h.cross(&(c_ddot - gravity));
+        }
         let moment = inertia_moment + child_moment + link.d.cross(&force) + link.r.cross(&child_force);
 
         // 7 τ_i = e · n_{i-1,i} (prismatic: e · f_{i-1,i}) with the rotor, if that belongs to the arm: + G² Jm q̈_i

@@ -31,6 +31,8 @@ pub(crate) struct Row {
     pub(crate) com: Vector,
     /// About the centre of mass, in the axes of the table's link frame.
     pub(crate) inertia: Matrix,
+    /// First moment about the end of `com` that no mass accounts for, in the same axes; zero of every body.
+    pub(crate) first_moment: Vector,
     /// G² Jm, where rotors belong to the arm.
     pub(crate) rotor: Polynomial,
 }
@@ -212,6 +214,11 @@ impl Table {
             let com = [(0, 'x'), (1, 'y'), (2, 'z')].map(|(axis, letter)| {
                 letters.entry(Entry::Com(i, axis), row.link.com[axis], &format!("{letter}_C{}", i + 1), length)
             });
+            let moment = (Kind::Other, "kg m");
+            let first_moment = Vector([(0, 'x'), (1, 'y'), (2, 'z')].map(|(axis, letter)| {
+                let name = format!("mc{letter}{}", i + 1);
+                letters.entry(Entry::FirstMoment(i, axis), row.link.first_moment[axis], &name, moment)
+            }));
             let alpha = letters.turn(Angle::Twist(behind), &row.dh.alpha);
             let theta = match row.kind {
                 JointKind::Revolute => letters.variable_turn(Angle::Joint(i), &row.dh.theta),
@@ -223,7 +230,7 @@ impl Table {
             let about_origin = robot.joints[i].written_inertia.1 == InertiaReference::Origin;
             let inertia = about_com(&inertias[i], about_origin.then_some((&mass, &com)));
             let rotor = rotors[i].clone();
-            rows.push(Row { kind: row.kind, theta, d, d_constant, a, alpha, mass, com, inertia, rotor });
+            rows.push(Row { kind: row.kind, theta, d, d_constant, a, alpha, mass, com, inertia, first_moment, rotor });
         }
         let Letters { mut constants, angles, .. } = letters;
         constants.distinguish(structure(&robot_rows.iter().map(|row| row.kind).collect::<Vec<_>>()));

@@ -2,7 +2,7 @@
 //! what is printed against both.
 
 use fastrand::Rng;
-use rne_model::Robot;
+use rne_model::{InertiaReference, Robot};
 use rne_runtime::DynArm;
 
 use crate::collected::Collector;
@@ -105,13 +105,29 @@ fn random_robots(count: usize) -> Vec<Robot> {
     robots.collect()
 }
 
+/// The same arms with first moments in place of masses, in every second link.
+fn without_mass(mut robot: Robot) -> Robot {
+    for joint in robot.joints.iter_mut().step_by(2) {
+        let link = &mut joint.row.link;
+        (link.first_moment, link.mass, link.com) = (link.com, 0.0, [0.0; 3]);
+        joint.written_inertia = (link.inertia, InertiaReference::Origin);
+    }
+    robot
+}
+
 /// The arms of every test below: textbook, shipped, random.
 fn robots() -> Vec<Robot> {
     let textbook = TEXTBOOK.map(robot);
     let first = [("stanford", 3), ("puma560", 3), ("puma560_mdh", 3), ("ur5", 3), ("fr3", 2), ("jaco", 2)];
     let first = first.map(|(name, joints)| up_to(&shipped(name), joints));
     let whole = ["planar1", "planar2", "planar3", "cylindrical_rpp", "gantry_ppp", "scara_cobra600", "spherical_rrp"];
-    textbook.into_iter().chain(first).chain(whole.map(shipped)).chain(random_robots(60)).collect()
+    textbook
+        .into_iter()
+        .chain(first)
+        .chain(whole.map(shipped))
+        .chain(random_robots(60))
+        .chain(random_robots(30).into_iter().map(without_mass))
+        .collect()
 }
 
 fn derived(table: &Table) -> Result<Equations, TooLong> {
@@ -154,6 +170,22 @@ fn the_parts_are_the_torque() {
             assert_eq!(equations.torque(joint), *torque);
         }
     }
+}
+
+/// A pendulum of a first moment: no mass, no square of its lever.
+#[test]
+fn a_first_moment_is_a_letter() {
+    let robot = robot(
+        "convention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - {type: revolute, dh: {theta: 0, d: 0, a: 0.5, \
+         alpha: 0}, link: {first_moment: [-0.3, 0, 0], inertia: {zz: 0.4}, physical: false}}",
+    );
+    let table = Table::new(&robot, 1);
+    let names: Vec<&str> = table.constants.0.iter().map(|constant| constant.name.as_str()).collect();
+    assert_eq!(names, ["g", "J1_zz", "a1", "mcx1"]);
+    let equations = derived(&table).unwrap();
+    let value = |polynomial: &Polynomial| polynomial.evaluate(|symbol| table.value(symbol, &[0.0], &[0.0], &[0.0]));
+    assert!((value(&equations.mass_matrix[0][0]) - (0.4 - 2.0 * 0.5 * 0.3)).abs() < 1e-15);
+    assert!((value(&equations.gravity[0]) + 9.81 * 0.3).abs() < 1e-15);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn row(kind: JointKind, [a, alpha, b, theta]: [f64; 4], link: Link) -> Row {
 
 /// Mass, centre of mass, and Ixx Iyy Izz Ixy Ixz Iyz about it.
 pub(crate) fn link(mass: f64, com: [f64; 3], [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Link {
-    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz } }
+    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz }, ..Link::default() }
 }
 
 /// A uniform thin rod whose distal end is the origin of its link frame.
@@ -78,6 +78,16 @@ pub(crate) fn six_joints() -> DynArm {
         row(Prismatic, [0.08, -1.1, 0.10, 0.6],  link(1.0, [-0.03, 0.01, 0.02], [0.006, 0.005, 0.004, 0.0003, -0.0002, 0.0004])),
         row(Revolute,  [0.12, 0.5, -0.07, -0.3], link(0.5, [0.01, -0.02, 0.06], [0.0020, 0.0018, 0.0009, 0.0001, 0.0002, -0.0001])),
     ])
+}
+
+/// The same without the masses of links 2 and 5: of them there are first moments.
+pub(crate) fn six_joints_two_without_mass() -> DynArm {
+    let mut rows: [Row; 6] = std::array::from_fn(|index| six_joints().rows()[index]);
+    for index in [1, 4] {
+        let Link { mass, com, inertia, .. } = rows[index].link;
+        rows[index].link = Link { inertia, first_moment: com.map(|c| mass * c), ..Link::default() };
+    }
+    arm(rows)
 }
 
 /// The state of the lecture's example: θ, θ̇, θ̈ = 0.6 rad, 1.3 rad/s, -0.7 rad/s²; X points down.
@@ -164,7 +174,7 @@ fn bodies() -> [Link; 4] {
             [1.0 / 17.0, 1.0 / 6.0, -(k + 2.0) / 14.0],
             [0.125, -1.0 / 12.0, 0.1],
         ];
-        Link { mass, com, inertia: of_equal_masses(mass, &points.map(Vector3::from)) }
+        Link { mass, com, inertia: of_equal_masses(mass, &points.map(Vector3::from)), ..Link::default() }
     };
     [
         body(1.0, 2.5, [-0.2, 0.05, 1.0 / 30.0]),
@@ -204,7 +214,7 @@ impl Random {
             let mass = 2.15 + self.number(1.85);
             let com = self.vector(0.3);
             let points: [_; 5] = std::array::from_fn(|_| self.vector(0.35).into());
-            row(kind, parameters, Link { mass, com, inertia: of_equal_masses(mass, &points) })
+            row(kind, parameters, Link { mass, com, inertia: of_equal_masses(mass, &points), ..Link::default() })
         }))
     }
 

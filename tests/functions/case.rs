@@ -121,6 +121,11 @@ impl Case {
         self.base_rotation() * Vector3::from(self.robot.gravity)
     }
 
+    /// Whether every link is a body: a first moment without mass may make a mass matrix indefinite.
+    pub(crate) fn is_of_bodies(&self) -> bool {
+        self.robot.rows().all(|row| !row.link.has_first_moment())
+    }
+
     /// m, m c, J about the link frame's origin, from the table.
     pub(crate) fn parameters(&self) -> Vec<f64> {
         let of_row = |row: &rne_model::Row| {
@@ -129,7 +134,9 @@ impl Case {
             let c = Vector3::from(c);
             let shift = (Matrix3::identity() * c.dot(&c) - c * c.transpose()) * m;
             let j = Matrix3::from(i.rows()) + shift;
-            [m, m * c.x, m * c.y, m * c.z, j.m11, j.m12, j.m13, j.m22, j.m23, j.m33]
+            // without mass c is the origin
+            let h = c * m + Vector3::from(row.link.first_moment);
+            [m, h.x, h.y, h.z, j.m11, j.m12, j.m13, j.m22, j.m23, j.m33]
         };
         self.robot.rows().flat_map(of_row).collect()
     }

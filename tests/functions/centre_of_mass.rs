@@ -20,7 +20,13 @@ fn holds(of: &str, property: impl Fn(&Case, &mut Worst)) {
 /// How far the centre of mass can be from the origin of the world, about.
 fn scale(case: &Case) -> f64 {
     let poses = case.arm.link_poses(&case.q);
-    poses.iter().map(|pose| pose.translation_vector().norm()).fold(largest(&case.robot.base.xyz), f64::max)
+    let mass: f64 = case.robot.rows().map(|row| row.link.mass).sum();
+    let moments = case.robot.rows().map(|row| largest(&row.link.first_moment) / mass);
+    poses
+        .iter()
+        .map(|pose| pose.translation_vector().norm())
+        .chain(moments)
+        .fold(largest(&case.robot.base.xyz), f64::max)
 }
 
 #[test]
@@ -30,7 +36,7 @@ fn it_is_the_mean_of_the_links() {
         let (mut moment, mut mass) = (Vector3::zeros(), 0.0);
         for (row, pose) in case.robot.rows().zip(&poses) {
             let com = pose.rotation_matrix() * Vector3::from(row.link.com) + pose.translation_vector();
-            moment += com * row.link.mass;
+            moment += com * row.link.mass + pose.rotation_matrix() * Vector3::from(row.link.first_moment);
             mass += row.link.mass;
         }
         let (found, expected) = (case.arm.centre_of_mass(&case.q), moment / mass);

@@ -25,8 +25,16 @@ fn modified(robot: &Robot) -> Robot {
         let dh = joint.row.dh;
         let turn = Rotation3::from_axis_angle(&Vector3::x_axis(), dh.alpha.radians);
         let link = &mut joint.row.link;
-        link.com = (turn * Vector3::from(link.com) + Vector3::new(dh.a, 0.0, 0.0)).into();
-        let i = turn * Matrix3::from(link.inertia.rows()) * turn.inverse();
+        let (way, h) = (Vector3::new(dh.a, 0.0, 0.0), turn * Vector3::from(link.first_moment));
+        let mut i = turn * Matrix3::from(link.inertia.rows()) * turn.inverse();
+        link.first_moment = h.into();
+        if link.mass == 0.0 {
+            // without mass the tensor is about the frame's origin: + 2 h·t 1 - h tᵀ - t hᵀ
+            link.com = [0.0; 3];
+            i += Matrix3::identity() * (2.0 * h.dot(&way)) - h * way.transpose() - way * h.transpose();
+        } else {
+            link.com = (turn * Vector3::from(link.com) + way).into();
+        }
         link.inertia = Inertia { xx: i.m11, yy: i.m22, zz: i.m33, xy: i.m12, xz: i.m13, yz: i.m23 };
         joint.written_inertia = (link.inertia, InertiaReference::Com);
         joint.row.dh = Dh { alpha, a, ..dh };

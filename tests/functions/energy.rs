@@ -33,6 +33,9 @@ fn potential_energy_is_that_of_the_centres_of_mass_in_the_world() {
             let com = com - Vector3::from(case.robot.base.xyz);
             energy -= row.link.mass * gravity.dot(&com);
             scale += row.link.mass * gravity.norm() * com.norm();
+            let moment = pose.rotation_matrix() * Vector3::from(row.link.first_moment);
+            energy -= gravity.dot(&moment);
+            scale += gravity.norm() * moment.norm();
         }
         let found = case.arm.potential_energy(&case.q);
         worst.see("V", error_on_scale(&[found], &[energy], scale));

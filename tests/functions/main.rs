@@ -14,6 +14,7 @@ mod conventions;
 mod driver;
 mod energy;
 mod equality;
+mod first_moments;
 mod golden;
 mod kinematics;
 mod matrices;

@@ -25,11 +25,15 @@ fn lumped(link: &Link, tool: (Rotation3<f64>, Vector3<f64>), payload: &Payload<f
     let com = rotation * Vector3::from(payload.com) + translation;
     let inertia = rotation * Matrix3::from(payload.inertia.rows()) * rotation.transpose();
     let (own, mass) = (Vector3::from(link.com), link.mass + payload.mass);
-    let centre = (own * link.mass + com * payload.mass) / mass;
-    let j =
+    // without mass a link is about the origin of its frame
+    let moment = Vector3::from(link.first_moment);
+    let centre = (own * link.mass + com * payload.mass + moment) / mass;
+    let mut j =
         about(Matrix3::from(link.inertia.rows()), link.mass, own - centre) + about(inertia, payload.mass, com - centre);
+    // + 2 h·t 1 - h tᵀ - t hᵀ, t = -centre
+    j += moment * centre.transpose() + centre * moment.transpose() - Matrix3::identity() * (2.0 * moment.dot(&centre));
     let inertia = Inertia { xx: j.m11, yy: j.m22, zz: j.m33, xy: j.m12, xz: j.m13, yz: j.m23 };
-    Link { mass, com: centre.into(), inertia }
+    Link { mass, com: centre.into(), inertia, ..Link::default() }
 }
 
 /// The runtime's arm whose last link has the payload.

@@ -58,6 +58,15 @@ fn joint_wrenches_are_the_change_of_momentum_of_all_that_follows() {
             moment += spin + com.map(now).cross(&change);
             forces = forces.max(force.norm());
             moments = moments.max(moment.norm()).max(com.map(now).norm() * change.norm());
+            // a first moment h about the point c beside the mass: the momentum ḣ, about the origin c × ḣ + h × ċ
+            let h = rotation * Vector3::from(link.first_moment).map(constant);
+            let turned = h.map(|x| x.derivative.derivative);
+            let fall = com.map(|x| x.derivative.derivative) - gravity;
+            force += turned;
+            let of_first_moment = com.map(now).cross(&turned) + h.map(now).cross(&fall);
+            moment += of_first_moment;
+            forces = forces.max(force.norm());
+            moments = moments.max(moment.norm()).max(of_first_moment.norm());
 
             // J_i, and the axes of form P
             let before = index.checked_sub(1).map(|before| poses[before].to_homogeneous().map(now));

@@ -104,7 +104,9 @@ fn joint(rng: &mut Rng, kind: Kind, index: usize, slides_first: usize, turned: u
         0 => one(rng, &["[0, 0, 0]", "[0.2, 0, 0]", "[0, 0, -0.1]"]).to_owned(),
         _ => vector(rng, 0.5),
     };
-    let _ = writeln!(text, "    link: {{mass: {mass}, com: {com}, inertia: {}}}", inertia(rng, kind));
+    // without mass the same numbers are a first moment: no body, but what base parameters look like
+    let (place, ends) = if mass == 0.0 { ("first_moment", ", physical: false") } else { ("com", "") };
+    let _ = writeln!(text, "    link: {{mass: {mass}, {place}: {com}, inertia: {}{ends}}}", inertia(rng, kind));
     text
 }
 

@@ -32,7 +32,9 @@ pub(crate) fn yaml(seed: u64, dof: usize) -> String {
         }
         let mass = if rng.f64() < 0.1 { 0.0 } else { rng.f64() * 10.0 };
         let (com, inertia) = (vector(&mut rng, sparsity, 0.3), inertia(&mut rng, sparsity));
-        let _ = writeln!(text, "    link: {{mass: {mass}, com: {com}, inertia: {inertia}}}");
+        // without mass the same numbers are a first moment: no body, but what base parameters look like
+        let (place, ends) = if mass == 0.0 { ("first_moment", ", physical: false") } else { ("com", "") };
+        let _ = writeln!(text, "    link: {{mass: {mass}, {place}: {com}, inertia: {inertia}{ends}}}");
     }
     text
 }

@@ -16,8 +16,9 @@ pub struct Formula {
 /// What formulas give, and how they are written; `{i}`, `{p}` and `{n}` are a joint, the one before and the next.
 type Templates = &'static [(Quantity, &'static str)];
 
-/// The formulas of a step for joint `joint`, in the letters of the lecture.
-pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula> {
+/// The formulas of a step for joint `joint`, in the letters of the lecture; of a link without mass that has a first
+/// moment, `has_first_moment`, with its terms.
+pub(super) fn formulas(step: Step, kind: JointKind, joint: usize, has_first_moment: bool) -> Vec<Formula> {
     let templates: Templates = match (step, kind) {
         (Step::AngularVelocity, Revolute) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p} + q̇{i} e")],
         (Step::AngularVelocity, Prismatic) => &[(Quantity::Omega, "ω{i} = R{i}ᵀ ω{p}")],
@@ -37,6 +38,11 @@ pub(super) fn formulas(step: Step, kind: JointKind, joint: usize) -> Vec<Formula
              + q̈{i} e + 2 q̇{i} ω{i} × e",
         )],
         (Step::Gravity, _) => &[(Quantity::Gravity, "g{i} = R{i}ᵀ g{p}")],
+        (Step::Wrenches, _) if has_first_moment => &[
+            (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i} + h{i} × c̈{i}"),
+            (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + ω̇{i} × h{i} + ω{i} × (ω{i} × h{i}) + f{i},{n}"),
+            (Quantity::JointMoment, "n{p},{i} = n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n} - h{i} × g{i}"),
+        ],
         (Step::Wrenches, _) => &[
             (Quantity::InertiaMoment, "n{i} = I{i} ω̇{i} + ω{i} × I{i} ω{i}"),
             (Quantity::JointForce, "f{p},{i} = m{i} (c̈{i} - g{i}) + f{i},{n}"),

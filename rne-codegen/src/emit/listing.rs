@@ -338,13 +338,18 @@ fn beyond_title(program: &Program, quantity: Quantity, joint: usize) -> String {
     }
 }
 
+/// Whether the link of a joint, counted from 1, has a first moment and no mass.
+fn has_first_moment(robot: &Robot, joint: usize) -> bool {
+    robot.joints.get(joint.wrapping_sub(1)).is_some_and(|joint| joint.row.link.has_first_moment())
+}
+
 fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Vec<Line<'a>> {
     let kind = robot.joints.get(joint.wrapping_sub(1)).map_or(JointKind::Revolute, |joint| joint.row.kind);
     let formulas = match recursion(program) {
         // the lecture's base is at rest
         _ if joint == 0 => Vec::new(),
         Form::SevenSteps if joint > program.dof => payload_formulas(step, joint),
-        Form::SevenSteps => formulas(step, kind, joint),
+        Form::SevenSteps => formulas(step, kind, joint, has_first_moment(robot, joint)),
         Form::Reduced if program.is_of_bodies() => Vec::new(),
         Form::Reduced => reduced_formulas(step, kind, joint),
     };
@@ -411,7 +416,9 @@ fn became(robot: &Robot, name: Name, found: &ResolvedAs) -> Option<Annotated> {
         }
         ResolvedAs::Constant(value, _) => format!(" = {value}, of constants"),
         ResolvedAs::Inside => ": inside the statement that uses it".to_owned(),
-        ResolvedAs::Unused if name.quantity == Quantity::InertiaForce => " = m c̈: inside m (c̈ - g)".to_owned(),
+        ResolvedAs::Unused if name.quantity == Quantity::InertiaForce && !has_first_moment(robot, name.joint) => {
+            " = m c̈: inside m (c̈ - g)".to_owned()
+        }
         ResolvedAs::Unused => ": not needed".to_owned(),
     };
     Some(words.into())

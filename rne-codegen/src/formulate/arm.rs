@@ -49,6 +49,8 @@ pub(crate) struct Link<'s> {
     pub(crate) mass: Symbol<'s>,
     /// About the centre of mass.
     pub(crate) inertia: Matrix<'s>,
+    /// h, the first moment about the end of `com` that no mass accounts for; `None` of every body.
+    pub(crate) first_moment: Option<Vector<'s>>,
     /// G² Jm of the joint's rotor, if that belongs to the arm.
     pub(crate) rotor: Option<Symbol<'s>>,
 }
@@ -106,6 +108,12 @@ impl<'s> Arm<'s> {
                     joint,
                     table_axes.map_or(inertia, |axes| (axes * inertia) * axes.transpose()),
                 ),
+                first_moment: row.link.has_first_moment().then(|| {
+                    let entry = |axis| number(Entry::FirstMoment(index, axis), row.link.first_moment[axis]);
+                    let written = Vector([0, 1, 2].map(entry));
+                    let turned = table_axes.map_or(written, |axes| axes * written);
+                    builder.name_vector(Quantity::MasslessMoment, joint, turned)
+                }),
             });
         }
         let (rotation, lever) = match (robot.convention, twists.last()) {

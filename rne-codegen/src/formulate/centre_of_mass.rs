@@ -6,6 +6,8 @@
 //!                   z_j Σ_{i≥j} μ_i                 prismatic: w_j z_j
 //! s_j = s_{j+1} + μ_j c_j,   w_j = w_{j+1} + μ_j    from the tip to the base
 //! ```
+//!
+//! A link with a first moment h beside its mass adds h_i (1 / Σ m) to c and to s_j.
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
@@ -21,12 +23,13 @@ pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());
     let centre = match parts(arm) {
-        Ok(parts) => {
+        Ok((parts, inverse)) => {
             let links = links(builder, frames, centres);
             let sum = links.into_iter().zip(parts).enumerate().fold(
                 builder.zeros(Cause::Arithmetic),
                 |sum, (index, (centre, part))| {
-                    builder.joint(index + 1).within(Quantity::ComPosition, || sum + centre * part)
+                    let moment = || with_first_moment(arm, frames, index, centre * part, inverse);
+                    builder.joint(index + 1).within(Quantity::ComPosition, || sum + moment())
                 },
             );
             line.within(Quantity::ComPosition, || sum + arm.base.translation)
@@ -39,8 +42,8 @@ pub(crate) fn position<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
 /// Columns, base to tip; arguments as of [`position`].
 pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector<'s>]) -> Vec<Vector<'s>> {
     let builder = arm.builder;
-    let parts = match parts(arm) {
-        Ok(parts) => parts,
+    let (parts, inverse) = match parts(arm) {
+        Ok(found) => found,
         Err(infinite) => return vec![Vector([infinite; 3]); arm.links.len()],
     };
     let links = links(builder, frames, centres);
@@ -51,7 +54,7 @@ pub(crate) fn jacobian<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vector
         let (line, frame) = (builder.joint(index + 1), &frames.joints[index]);
         let axis = frame.axis();
         let column = line.within(Quantity::JacobianLinear, || {
-            moment = moment + links[index] * parts[index];
+            moment = moment + with_first_moment(arm, frames, index, links[index] * parts[index], inverse);
             part = part + parts[index];
             match link.kind {
                 Revolute => axis.cross(moment - frame.origin * part),
@@ -74,9 +77,20 @@ fn links<'s>(builder: &'s Builder, frames: &Frames<'s>, centres: &[Vector<'s>]) 
         .collect()
 }
 
-/// What part of the mass each link has: constants, unless a mass is given at run time. Of an arm without mass, what is
-/// not finite: a product with its zeros would fold.
-fn parts<'s>(arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
+/// What a link has in the centre of mass, μ_i c_i, and what a first moment beside its mass has.
+fn with_first_moment<'s>(
+    arm: &Arm<'s>,
+    frames: &Frames<'s>,
+    index: usize,
+    moment: Vector<'s>,
+    inverse: Symbol<'s>,
+) -> Vector<'s> {
+    arm.links[index].first_moment.map_or(moment, |h| moment + (frames.joints[index].rotation * h) * inverse)
+}
+
+/// What part of the mass each link has, and one by the mass: constants, unless a mass is given at run time. Of an arm
+/// without mass, what is not finite: a product with its zeros would fold.
+fn parts<'s>(arm: &Arm<'s>) -> Result<(Vec<Symbol<'s>>, Symbol<'s>), Symbol<'s>> {
     let builder = arm.builder;
     let line = builder.joint(arm.links.len());
     line.within(Quantity::ComPosition, || {
@@ -87,6 +101,6 @@ fn parts<'s>(arm: &Arm<'s>) -> Result<Vec<Symbol<'s>>, Symbol<'s>> {
         if total.is_zero() {
             return Err(inverse);
         }
-        Ok(arm.links.iter().map(|link| link.mass * inverse).collect())
+        Ok((arm.links.iter().map(|link| link.mass * inverse).collect(), inverse))
     })
 }

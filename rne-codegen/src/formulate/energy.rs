@@ -1,7 +1,7 @@
 //! Kinetic energy from steps 1 and 3, potential energy from where the centres of mass are.
 //!
 //! T = ½ Σ (m_i ċ_i · ċ_i + ω_i · I_i ω_i), with rotors + ½ Σ G² Jm q̇²; V = -Σ m_i g · c_i, with c_i from the origin of
-//! frame 0
+//! frame 0; of a first moment h beside the mass + ċ_i · (ω_i × h_i) in T and - g · R_i h_i in V
 
 use crate::formulate::arm::Arm;
 use crate::formulate::joint::JointState;
@@ -20,7 +20,11 @@ pub(crate) fn kinetic<'s>(arm: &Arm<'s>, states: &[JointState<'s>], motions: &[M
         twice = builder.joint(index + 1).within(Quantity::KineticEnergy, || {
             let momentum = link.inertia * omega;
             let of_link = motion.c_dot.dot(motion.c_dot) * link.mass + omega.dot(momentum);
-            twice + of_link
+            let twice = twice + of_link;
+            link.first_moment.map_or(twice, |h| {
+                let half = motion.c_dot.dot(omega.cross(h));
+                twice + (half + half)
+            })
         });
     }
     for (index, (link, state)) in arm.links.iter().zip(states).enumerate() {
@@ -40,7 +44,10 @@ pub(crate) fn potential<'s>(arm: &Arm<'s>, frames: &Frames<'s>, centres: &[Vecto
     for (index, ((link, frame), d)) in arm.links.iter().zip(&frames.joints).zip(centres).enumerate() {
         let line = builder.joint(index + 1);
         let centre = line.vector(Quantity::ComPosition, || frame.rotation * *d + frame.origin);
-        lost = line.within(Quantity::PotentialEnergy, || lost + arm.gravity.dot(centre) * link.mass);
+        lost = line.within(Quantity::PotentialEnergy, || {
+            let lost = lost + arm.gravity.dot(centre) * link.mass;
+            link.first_moment.map_or(lost, |h| lost + arm.gravity.dot(frame.rotation * h))
+        });
     }
     builder.name(Name::scalar(Quantity::PotentialEnergy, 0), -lost)
 }

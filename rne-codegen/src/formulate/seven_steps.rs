@@ -6,7 +6,8 @@
 //!
 //! Link i is the one that joint i moves, link p the one that carries joint i: its parent, or the base. In a chain p is
 //! i-1. r_i = C_p → J_i tells where joint i is mounted; the lecture calls it r_{i-1}. What a kind of joint adds stands
-//! in [`super::joint`].
+//! in [`super::joint`]. A link without mass may have a first moment h about the point that its centre of mass would be,
+//! as in a set of base parameters: its terms stand apart, for no body has them.
 
 use crate::formulate::arm::{Arm, Mount, identity};
 use crate::formulate::joint::{Joint, JointState};
@@ -167,16 +168,22 @@ pub(crate) fn backward<'s>(
         //     f_{p,i} = f_i + Σ f_{i,k} - m_i g_i
         //     n_{p,i} = n_i + Σ n_{i,k} + d_i × f_{p,i} + Σ r_k × f_{i,k}
         // f_i - m_i g_i is written m_i (c̈_i - g_i): one product instead of two. So torques do not need f_i by itself.
-        line.vector(Quantity::InertiaForce, || c_ddot * link.mass);
+        //     of a first moment h_i     f_i + ω̇_i × h_i + ω_i × (ω_i × h_i)     n_i + h_i × c̈_i     n_{p,i} - h_i × g_i
+        let of_moment = link.first_moment.map(|h| turning_force(line, &motion.turning, h));
+        line.vector(Quantity::InertiaForce, || with(c_ddot * link.mass, of_moment));
         let angular_momentum = line.vector(Quantity::AngularMomentum, || link.inertia * omega);
-        let inertia_moment =
-            line.vector(Quantity::InertiaMoment, || link.inertia * omega_dot + omega.cross(angular_momentum));
+        let inertia_moment = line.vector(Quantity::InertiaMoment, || {
+            let moment = link.inertia * omega_dot + omega.cross(angular_momentum);
+            with(moment, link.first_moment.map(|h| h.cross(c_ddot)))
+        });
         let force = line.vector(Quantity::JointForce, || {
-            carries.iter().fold((c_ddot - gravity) * link.mass, |sum, k| sum + k.wrench.force)
+            let own = with((c_ddot - gravity) * link.mass, of_moment);
+            carries.iter().fold(own, |sum, k| sum + k.wrench.force)
         });
         let moment = line.vector(Quantity::JointMoment, || {
             let moments = carries.iter().fold(inertia_moment, |sum, k| sum + k.wrench.moment);
-            carries.iter().fold(moments + d.cross(force), |sum, k| sum + k.r.cross(k.wrench.force))
+            let moment = carries.iter().fold(moments + d.cross(force), |sum, k| sum + k.r.cross(k.wrench.force));
+            link.first_moment.map_or(moment, |h| moment - h.cross(gravity))
         });
         let wrench = Wrench { force, moment };
 
@@ -193,4 +200,15 @@ pub(crate) fn backward<'s>(
     }
     loads.reverse();
     loads
+}
+
+/// ω̇ × h + ω × (ω × h)
+fn turning_force<'s>(line: JointLines<'s>, turning: &Turning<'s>, h: Vector<'s>) -> Vector<'s> {
+    let omega_cross_h = line.vector(Quantity::OmegaCrossMoment, || turning.omega.cross(h));
+    line.vector(Quantity::MasslessForce, || turning.omega_dot.cross(h) + turning.omega.cross(omega_cross_h))
+}
+
+/// The vector, and what a first moment adds to it.
+fn with<'s>(vector: Vector<'s>, of_first_moment: Option<Vector<'s>>) -> Vector<'s> {
+    of_first_moment.map_or(vector, |more| vector + more)
 }

@@ -329,6 +329,12 @@ quantities! {
     Reduced:                    "rhs",       Joint,     8, true,  "", "", "L⁻¹ (τ - bias)";
     Scaled:                     "sol",       Joint,     8, true,  "", "", "the same divided by D";
     ActuatorTorque:             "act",       Joint,     8, false, "", "", "what the motor adds";
+
+    // Of a link that has a first moment and no mass. They stand last: sample points know an argument by its place here.
+    MasslessMoment:             "mc",        Vector,    0, false, "h", "kg m",
+        "first moment of a link without mass";
+    OmegaCrossMoment:           "wxh",       Vector,    6, false, "(ω×h)", "kg m/s", "ω × h";
+    MasslessForce:              "uh",        Vector,    6, false, "(Uh)", "N", "ω̇ × h + ω × (ω × h)";
 }
 
 impl Quantity {

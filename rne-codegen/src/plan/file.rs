@@ -127,6 +127,10 @@ pub fn fingerprint(robot: &Robot) -> Fingerprint {
         numbers.push(if row.kind == JointKind::Revolute { 1.0 } else { 2.0 });
         numbers.extend([row.dh.theta.radians, row.dh.d, row.dh.a, row.dh.alpha.radians, row.link.mass]);
         numbers.extend(row.link.com);
+        // no body has one, and plans of bodies are older than this
+        if row.link.has_first_moment() {
+            numbers.extend(row.link.first_moment);
+        }
         numbers.extend(inertia.rows().into_iter().flatten());
         numbers.extend(row.link.inertia.rows().into_iter().flatten());
     }

@@ -5,7 +5,7 @@
 //! nothing is put right here: the base is turned into the first joint's frame, the last joint's constant angle into its
 //! link, anti-parallel axes are made parallel.
 
-use rne_model::{Convention, Joint, JointKind, Motor, QuarterTurns, Robot, Transform};
+use rne_model::{Convention, Joint, JointKind, Link, Motor, QuarterTurns, Robot, Transform};
 
 use crate::ir::{Embedding, ExactAngle, Number};
 use crate::reduced::link_parameters::{
@@ -80,8 +80,9 @@ impl JointFrames {
             return Self::read(robot, frames, Embedding::default());
         }
         // roots: every fourth reading has a given one
-        let last = robot.rows().last()?.link.com;
-        let unknowns = [None].into_iter().chain([last[0], last[1]].map(|x| Some(x.abs())));
+        let Link { com, first_moment, .. } = robot.rows().last()?.link;
+        let unknowns = [com[0], com[1], first_moment[0], first_moment[1]].map(|x| Some(x.abs()));
+        let unknowns = [None].into_iter().chain(unknowns);
         let usable = unknowns.filter(|unknown| unknown.is_none_or(|x| (4.0 * x).fract() != 0.0));
         usable
             .flat_map(|unknown| (0..48).map(move |seed| Embedding { seed, unknown }))
@@ -135,6 +136,11 @@ impl JointFrames {
             let (own_alpha, own_a) = (embedding.turn(&row.dh.alpha), decimal(row.dh.a));
             let com = row.link.com.map(decimal);
             let body = PseudoInertia::of_body(decimal(row.link.mass), com, embedding.inertia(joint), half);
+            let body = if row.link.has_first_moment() {
+                body.with_first_moment(row.link.first_moment.map(decimal), com)
+            } else {
+                body
+            };
             let matter = match robot.convention {
                 Convention::Modified => {
                     (alpha, a) = (own_alpha, own_a);

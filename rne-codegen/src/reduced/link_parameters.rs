@@ -49,6 +49,12 @@ impl PseudoInertia {
         Self { mass, h: com.map(|c| mass * c), s }
     }
 
+    /// With a first moment about a point beside that of the mass.
+    pub(crate) fn with_first_moment(self, moment: Triple, about: Triple) -> Self {
+        let s = square(|i, j| self.s[i][j] + moment[i] * about[j] + about[i] * moment[j]);
+        Self { h: [0, 1, 2].map(|i| self.h[i] + moment[i]), s, ..self }
+    }
+
     pub(crate) fn get(&self, entry: Entry) -> Number {
         match entry {
             Entry::Mass => self.mass,

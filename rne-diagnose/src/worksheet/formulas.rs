@@ -159,7 +159,8 @@ impl Formulas<'_> {
             (Axes::Base, true) => (format!("A{i} Rx(α{i})"), "(…)ᵀ".to_owned()),
             (Axes::Base, false) => (format!("A{i}"), format!("A{i}ᵀ")),
         };
-        let formula = format!("{left} I {right}, I of the file, about com");
+        let about = if row.link.has_first_moment() { "the origin" } else { "com" };
+        let formula = format!("{left} I {right}, I of the file, about {about}");
         let [[xx, xy, xz], [_, yy, yz], [_, _, zz]] = link.inertia;
         lines.push(here.line(Quantity::Inertia, vec![xx, xy, xz, yy, yz, zz], formula.trim_start()));
         lines
@@ -317,16 +318,32 @@ impl Formulas<'_> {
         let mass = || Some(input(format!("m{i}"), &[link.mass], "kg"));
         let tensor = || Some(input(format!("I{i}"), &rows(&inertia), "kg m²"));
 
-        let force = vec![term(&format!("m{i} c̈{i}"), &(c_dd * link.mass))];
-        let inputs = vec![mass(), of(Quantity::Acceleration, &c_dd)];
-        let force = here.sum(Quantity::InertiaForce, &link.inertia_force, format!("m{i} c̈{i}"), force, inputs);
+        // of a link without mass that has a first moment
+        let h = V::from(link.first_moment);
+        let has_h = h != V::zeros();
+        let of_h = || has_h.then(|| input(format!("h{i}"), &list(&h), "kg m"));
+        let more = |text: &str| if has_h { format!(" {text}") } else { String::new() };
 
-        let moment = vec![
+        let mut force = vec![term(&format!("m{i} c̈{i}"), &(c_dd * link.mass))];
+        let mut inputs = vec![mass(), of(Quantity::Acceleration, &c_dd)];
+        if has_h {
+            force.push(term(&format!("ω̇{i} × h{i}"), &omega_dot.cross(&h)));
+            force.push(term(&format!("ω{i} × (ω{i} × h{i})"), &omega.cross(&omega.cross(&h))));
+            inputs.extend([of(Quantity::OmegaDot, &omega_dot), of(Quantity::Omega, &omega), of_h()]);
+        }
+        let formula = format!("m{i} c̈{i}{}", more(&format!("+ ω̇{i} × h{i} + ω{i} × (ω{i} × h{i})")));
+        let force = here.sum(Quantity::InertiaForce, &link.inertia_force, formula, force, inputs);
+
+        let mut moment = vec![
             term(&format!("I{i} ω̇{i}"), &(inertia * omega_dot)),
             term(&format!("ω{i} × I{i} ω{i}"), &omega.cross(&(inertia * omega))),
         ];
-        let inputs = vec![tensor(), of(Quantity::OmegaDot, &omega_dot), of(Quantity::Omega, &omega)];
-        let formula = format!("I{i} ω̇{i} + ω{i} × I{i} ω{i}");
+        let mut inputs = vec![tensor(), of(Quantity::OmegaDot, &omega_dot), of(Quantity::Omega, &omega)];
+        if has_h {
+            moment.push(term(&format!("h{i} × c̈{i}"), &h.cross(&c_dd)));
+            inputs.extend([of_h(), of(Quantity::Acceleration, &c_dd)]);
+        }
+        let formula = format!("I{i} ω̇{i} + ω{i} × I{i} ω{i}{}", more(&format!("+ h{i} × c̈{i}")));
         let moment = here.sum(Quantity::InertiaMoment, &link.inertia_moment, formula, moment, inputs);
 
         let handed_on = self.handed_on(here, &next_f, &next_m);
@@ -341,13 +358,13 @@ impl Formulas<'_> {
         let formula = format!("f{i} + f{i},{n} - m{i} g{i}");
         let joint_force = here.sum(Quantity::JointForce, &link.joint_force, formula, terms, inputs);
 
-        let terms = vec![
+        let mut terms = vec![
             term(&format!("n{i}"), &m),
             term(&format!("n{i},{n}"), &next_m),
             term(&format!("d{i} × f{p},{i}"), &d.cross(&joint_f)),
             term(&format!("r{i} × f{i},{n}"), &r.cross(&next_f)),
         ];
-        let inputs = vec![
+        let mut inputs = vec![
             of(Quantity::InertiaMoment, &m),
             of(Quantity::NextMoment, &next_m),
             of(Quantity::D, &d),
@@ -355,7 +372,12 @@ impl Formulas<'_> {
             of(Quantity::R, &r),
             of(Quantity::NextForce, &next_f),
         ];
-        let formula = format!("n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}");
+        if has_h {
+            terms.push(term(&format!("-h{i} × g{i}"), &-h.cross(&g)));
+            inputs.extend([of_h(), of(Quantity::Gravity, &g)]);
+        }
+        let weight = more(&format!("- h{i} × g{i}"));
+        let formula = format!("n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}{weight}");
         let joint_moment = here.sum(Quantity::JointMoment, &link.joint_moment, formula, terms, inputs);
 
         let (wrench, letter) = match kind {

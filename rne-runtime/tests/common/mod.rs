@@ -12,7 +12,7 @@ pub(crate) fn dh([a, alpha, b, theta]: [f64; 4]) -> Dh {
 
 /// Mass, centre of mass, and Ixx Iyy Izz Ixy Ixz Iyz about it.
 pub(crate) fn link(mass: f64, com: [f64; 3], [xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Link {
-    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz } }
+    Link { mass, com, inertia: Inertia { xx, yy, zz, xy, xz, yz }, ..Link::default() }
 }
 
 pub(crate) fn row(kind: JointKind, parameters: [f64; 4], link: Link) -> Row {

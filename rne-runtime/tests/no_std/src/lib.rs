@@ -17,6 +17,7 @@ const SHOULDER: Row = Row {
         mass: 2.5,
         com: [0.0, -0.2, 0.0],
         inertia: Inertia { xx: 0.03, yy: 0.02, zz: 0.03, xy: 0.0, xz: 0.0, yz: 0.0 },
+        first_moment: [0.0; 3],
     },
 };
 
@@ -27,6 +28,7 @@ const SLIDE: Row = Row {
         mass: 1.5,
         com: [0.0, 0.0, -0.1],
         inertia: Inertia { xx: 0.01, yy: 0.01, zz: 0.002, xy: 0.0, xz: 0.0, yz: 0.0 },
+        first_moment: [0.0; 3],
     },
 };
 
