@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 17] = [
+const DOCUMENTS: [&str; 18] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/command-line.md",
@@ -25,6 +25,7 @@ const DOCUMENTS: [&str; 17] = [
     "docs/lecture/one-link.md",
     "docs/lecture/prismatic.md",
     "docs/lecture/reduced.md",
+    "docs/lecture/results.md",
     "docs/lecture/two-links.md",
     "docs/robot-file.md",
     "docs/teaching.md",
@@ -71,7 +72,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
 pub(crate) fn copy(name: &str) -> PathBuf {
     let folder = folder(name).join("clone");
     fs::create_dir(&folder).expect("a folder");
-    for part in ["robots", "docs"] {
+    for part in ["robots", "docs", "docs/lecture"] {
         fs::create_dir(folder.join(part)).expect("a folder");
         for entry in fs::read_dir(Path::new(ROOT).join(part)).expect("a folder") {
             let path = entry.expect("an entry").path();
