@@ -22,4 +22,5 @@ mod search;
 mod shipped;
 mod show;
 mod terminal;
+mod views;
 mod worksheet;
