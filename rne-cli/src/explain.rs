@@ -88,7 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 /// What a name in the code of a robot is.
 fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
     let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
-    let robot = robot_file::robot(path)?;
+    let robot = robot_file::robot(path).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
     let program = match form {
         Form::SevenSteps => Compiler::new(&robot)
             .with_equations()
@@ -142,6 +142,15 @@ fn quantities() -> String {
         format!("{TYPED}{:<16}{TYPED:#}{words}\n", value.get_name())
     });
     lines.collect()
+}
+
+/// What is said where a robot stands before the name: `rne explain puma560 w2_z`.
+fn swapped(name: &str, path: &Path) -> Option<Failure> {
+    let is_robot = robot_file::of_a_name(Path::new(name)).is_some() || Path::new(name).is_file();
+    (is_robot && !path.exists()).then(|| {
+        let asked = path.display();
+        Failure::usage(format_args!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}"))
+    })
 }
 
 /// How arguments are given.

@@ -89,6 +89,23 @@ fn lints() {
             "the position limits `[-180, 180]` rad are more than four turns",
             "`[deg(-180), deg(180)]`",
         ),
+        (
+            "source: test",
+            "title: 'an \u{200B}arm'\nsource: test",
+            3,
+            12,
+            r"the invisible character U+200B stands in `an \u{200b}arm`",
+            "delete it",
+        ),
+        (
+            "source: ",
+            "title: \"a long title of an\\u00ADarm\"\nsource: ",
+            3,
+            8,
+            r"U+00AD stands in `itle of an\u{ad}arm`",
+            "anew",
+        ),
+        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete it"),
     ] {
         let lint = the_one(old, new);
         assert_eq!(lint.severity, Severity::Warning, "{new}");
