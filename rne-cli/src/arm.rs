@@ -81,8 +81,8 @@ impl ChosenArm {
         let shown = self.file.display();
         if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
             return Err(Failure::usage(format_args!(
-                "`{shown}` stands where FILE, the robot, is meant; a list has commas and no blanks between its numbers, as \
-                 in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
+                "`{shown}` stands where FILE, the robot, is meant; a list has commas and no blanks between its \
+                 numbers, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
             )));
         }
         Ok(self.rotors.of(with_settings(&self.file, &self.set)?))

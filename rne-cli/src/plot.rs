@@ -101,8 +101,8 @@ fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
             Err(Failure::usage(format_args!("{shown} is named for numbers; {TYPED}--csv{TYPED:#} asks for them")))
         }
         (_, false) => Err(Failure::usage(format_args!(
-            "{shown} is not named for an SVG, the one kind of picture that is written; name it {TYPED}{}{TYPED:#}, and let a \
-             browser, Inkscape or LibreOffice make another of it",
+            "{shown} is not named for an SVG, the one kind of picture that is written; name it {TYPED}{}{TYPED:#}, and \
+             let a browser, Inkscape or LibreOffice make another of it",
             path.with_extension("svg").display()
         ))),
         (_, true) => Err(Failure::usage(format_args!(

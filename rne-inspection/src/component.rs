@@ -198,6 +198,11 @@ impl<'p> Equations<'p> {
     }
 }
 
+/// The component that a statement computes, wholly or in part.
+pub(crate) fn owner(statement: &codegen::Statement) -> codegen::Name {
+    codegen::Name { part: 0, ..statement.name }
+}
+
 #[cfg(test)]
 mod tests {
     use std::cell::RefCell;
@@ -267,9 +272,4 @@ mod tests {
         }
         assert!(compared > 20, "{compared} components");
     }
-}
-
-/// The component that a statement computes, wholly or in part.
-pub(crate) fn owner(statement: &codegen::Statement) -> codegen::Name {
-    codegen::Name { part: 0, ..statement.name }
 }

@@ -136,7 +136,6 @@ impl Tree {
             of => Self::Node("neg", vec![of.clone()], None),
         };
         match (*operator, operands.as_slice()) {
-            ("neg", [a]) => negative(a),
             ("*", [Self::Number(0.0), _] | [_, Self::Number(0.0)]) => Self::Number(0.0),
             ("*", [Self::Number(a), Self::Number(b)]) => Self::Number(a * b),
             ("+", [Self::Number(a), Self::Number(b)]) => Self::Number(a + b),
@@ -144,7 +143,9 @@ impl Tree {
             ("*", [Self::Number(1.0), a] | [a, Self::Number(1.0)])
             | ("+", [Self::Number(0.0), a] | [a, Self::Number(0.0)])
             | ("-", [a, Self::Number(0.0)]) => a.clone(),
-            ("*", [Self::Number(-1.0), a] | [a, Self::Number(-1.0)]) | ("-", [Self::Number(0.0), a]) => negative(a),
+            ("neg", [a]) | ("*", [Self::Number(-1.0), a] | [a, Self::Number(-1.0)]) | ("-", [Self::Number(0.0), a]) => {
+                negative(a)
+            }
             _ => Self::Node(operator, operands, None),
         }
     }
