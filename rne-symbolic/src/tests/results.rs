@@ -194,6 +194,7 @@ fn the_page_has_the_lectures_results_and_they_are_ours() {
 
 /// Specification 5.1, with the digits it prints; and E16, which the page names: θ̇ where θ̈ belongs.
 #[test]
+#[allow(clippy::excessive_precision)] // the digits as they are printed
 fn the_rod_is_the_lectures_and_a_misprint_is_noticed() {
     let robot = rod();
     let table = Table::new(&robot, 1);
