@@ -89,6 +89,20 @@ fn lints() {
             "the position limits `[-180, 180]` rad are more than four turns",
             "`[deg(-180), deg(180)]`",
         ),
+    ] {
+        let lint = the_one(old, new);
+        assert_eq!(lint.severity, Severity::Warning, "{new}");
+        assert_eq!((lint.line, lint.column), (line, column), "{new}: {}", lint.message);
+        assert!(lint.message.contains(message), "{new}: {}", lint.message);
+        assert!(lint.help.as_deref().unwrap_or_default().contains(help), "{new}: {:?}", lint.help);
+        assert!(Reader::new("x.yaml").read(&with(old, new)).is_ok(), "{new}: a lint is no error");
+    }
+}
+
+/// Two names that look alike and are not the same.
+#[test]
+fn invisible_characters() {
+    for (old, new, line, column, message, help) in [
         (
             "source: test",
             "title: 'an \u{200B}arm'\nsource: test",
@@ -108,11 +122,9 @@ fn lints() {
         ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete it"),
     ] {
         let lint = the_one(old, new);
-        assert_eq!(lint.severity, Severity::Warning, "{new}");
-        assert_eq!((lint.line, lint.column), (line, column), "{new}: {}", lint.message);
+        assert_eq!((lint.severity, lint.line, lint.column), (Severity::Warning, line, column), "{}", lint.message);
         assert!(lint.message.contains(message), "{new}: {}", lint.message);
         assert!(lint.help.as_deref().unwrap_or_default().contains(help), "{new}: {:?}", lint.help);
-        assert!(Reader::new("x.yaml").read(&with(old, new)).is_ok(), "{new}: a lint is no error");
     }
 }
 
