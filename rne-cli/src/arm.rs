@@ -6,8 +6,10 @@ use std::str::FromStr;
 use clap::Args;
 use rne_model::Robot;
 
+use crate::numbers::List;
 use crate::outcome::Failure;
 use crate::robot_file;
+use crate::terminal::TYPED;
 
 /// Rotors belong to the arm.
 #[derive(Args, Clone, Copy, Default)]
@@ -76,6 +78,13 @@ impl ChosenArm {
     }
 
     pub(crate) fn robot(&self) -> Result<Robot, Failure> {
+        let shown = self.file.display();
+        if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
+            return Err(Failure::usage(format_args!(
+                "`{shown}` stands where FILE, the robot, is meant; a list has commas and no blanks between its \
+                 numbers, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
+            )));
+        }
         Ok(self.rotors.of(with_settings(&self.file, &self.set)?))
     }
 }

@@ -7,6 +7,7 @@ use rne_codegen::emit;
 use rne_model::Robot;
 use rne_symbolic::ClosedForm;
 
+use crate::letters::Letters;
 use crate::outcome::{Failure, Outcome};
 use crate::robot_file;
 use crate::terminal::TITLE;
@@ -14,13 +15,13 @@ use crate::terminal::TITLE;
 /// The dynamics in closed form, instead of code.
 #[derive(Args)]
 pub(crate) struct Wanted {
-    /// Instead of code: τ = M θ̈ + h + γ in closed form, with the file's parameters as letters
+    /// Instead of code: τ = M θ̈ + h + γ in closed form
     #[arg(long, conflicts_with_all = OTHERS)]
     symbolic: bool,
-    /// The closed form as a LaTeX document
+    /// The closed form as LaTeX, with or without --symbolic
     #[arg(long, conflicts_with_all = OTHERS)]
     latex: bool,
-    /// Of the closed form: the arm up to joint N alone
+    /// Its arm up to joint N alone
     #[arg(long, value_name = "N", value_parser = crate::arguments::joint, conflicts_with_all = OTHERS)]
     first: Option<usize>,
 }
@@ -36,7 +37,12 @@ impl Wanted {
     }
 
     /// The closed form of a file's arm.
-    pub(crate) fn run(&self, file: &Path, of: impl FnOnce(Robot) -> Robot) -> Result<Outcome, Failure> {
+    pub(crate) fn run(
+        &self,
+        file: &Path,
+        letters: Letters,
+        of: impl FnOnce(Robot) -> Robot,
+    ) -> Result<Outcome, Failure> {
         let (checked, bytes) = robot_file::read_with_run_time(file, &[])?;
         let joints = match self.first {
             Some(joint) if joint == 0 || joint > checked.robot.dof() => {
@@ -53,7 +59,7 @@ impl Wanted {
         if self.latex {
             return Ok(Outcome::text(form.latex(&emit::ascii(&title))));
         }
-        let text = form.text();
+        let text = form.text_spelt(|text| letters.of(text));
         let mut before = "";
         let styled = |line| {
             // a heading stands over lines that are indented
@@ -61,6 +67,7 @@ impl Wanted {
             if is_heading && !line.is_empty() { format!("{TITLE}{line}{TITLE:#}\n") } else { format!("{line}\n") }
         };
         let text: String = text.lines().map(styled).collect();
+        let title = letters.of(&title);
         Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}")))
     }
 }

@@ -119,6 +119,19 @@ pub(crate) fn lines(text: &str) -> impl Iterator<Item = Line<'_>> {
     })
 }
 
+/// What a header without the right columns says of its separators: `None` where nothing but commas or semicolons
+/// could be meant.
+pub(crate) fn other_separator(header: &Row<'_>) -> Option<&'static str> {
+    let has = |separator: char| header.cells.iter().any(|cell| cell.text.contains(separator));
+    let found = [
+        ('\t', "the columns are separated by tabs; separate them by commas: spreadsheets and `tr '\\t' ,` do that"),
+        (';', "some columns are separated by semicolons, others by commas; take one of them throughout"),
+        ('|', "the columns are separated by `|`; separate them by commas"),
+        (' ', "the columns are separated by blanks; separate them by commas"),
+    ];
+    found.into_iter().find(|(separator, _)| has(*separator)).map(|(_, help)| help)
+}
+
 /// What is wrong with a line of [`Line::OpenQuote`].
 pub(crate) const OPEN_QUOTE: &str = "this quote is not closed on its line";
 
@@ -177,6 +190,18 @@ mod tests {
         );
         assert_eq!(&text[first.cells[1].span.clone()], "\"b, \"\"c\"\"\"");
         assert_eq!(&text[second.cells[2].span.clone()], "3");
+    }
+
+    #[test]
+    fn other_separators_are_named() {
+        for (header, named) in
+            [("t\tq1", "by tabs"), ("t;q1,q2", "by semicolons"), ("t|q1", "by `|`"), ("t q1", "by blanks")]
+        {
+            let Some(Line::Row(row)) = lines(header).next() else { panic!("{header}") };
+            assert!(other_separator(&row).is_some_and(|help| help.contains(named)), "{header}");
+        }
+        let Some(Line::Row(row)) = lines("t;q1").next() else { panic!("a row") };
+        assert_eq!(other_separator(&row), None);
     }
 
     #[test]

@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use crate::arm::{ChosenArm, Setting};
 use crate::compare::{self, Manner};
+use crate::letters::Letters;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
@@ -24,17 +25,12 @@ Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
   rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv
-  rne eval robots/planar2.yaml --q 0.6,-1.1 --qd 0,0 --qdd 0,0 \\
-      --wrench 3,-2,0,0,0,0.5 --json
 
-One number per joint, base to tip: rad for a revolute, m for a prismatic joint;
-pi/2 and 'deg(30)' are numbers. Every function takes exactly its arguments, and
-nothing is assumed to be zero: `rne explain arguments`. Tables are rounded for
-reading; --json has every digit, in the shape that the Rust function returns.")]
+A LIST has a number per joint, base to tip: `rne explain arguments`.")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
-    /// Which function; inverse_dynamics, with --wrench or --payload that with it, unless given
+    /// Which function: `rne explain functions`
     #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true)]
     function: Option<Function>,
     /// Joint positions, rad or m
@@ -49,13 +45,13 @@ pub(crate) struct Arguments {
     /// Joint torques, N m or N, of forward_dynamics
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     tau: Option<List>,
-    /// fx,fy,fz,nx,ny,nz on the environment, at the tip, in tip axes: N, N m
+    /// fx,fy,fz,nx,ny,nz on the environment, tip axes
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     wrench: Option<List>,
-    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] of what is fixed to the tip, in tip axes: kg, m, kg m²
+    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to the tip
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     payload: Option<List>,
-    /// x,y,z of the angular velocity of a moving base, in frame 0, rad/s
+    /// Angular velocity x,y,z of a moving base, rad/s
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_omega: Option<List>,
     /// Its angular acceleration, rad/s²
@@ -64,10 +60,10 @@ pub(crate) struct Arguments {
     /// Acceleration of its origin, without gravity, m/s²
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     base_acceleration: Option<List>,
-    /// Acceleration of gravity in the frame 0 of a moving base, m/s²; the file's, unless given
+    /// Gravity in the moving frame 0; else the file's
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
     gravity: Option<List>,
-    /// A golden file instead: torques at N states, which `#[robot(…, tests)]` reads
+    /// Instead: torques at N states, as a golden file
     #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
         "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
         "gravity", "trace", "json", "csv", "compare",
@@ -97,12 +93,26 @@ pub(crate) struct Arguments {
     /// {"result": …}, with --trace also "trace"
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    letters: Letters,
 }
 
 /// Digits to which a hand computes.
 const DIGITS_BY_HAND: u8 = 4;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let outcome = computed(arguments)?;
+    let letters = arguments.letters;
+    let text = match &outcome.text {
+        json if arguments.json => letters.json(json),
+        // its lines do not break
+        csv if arguments.csv || arguments.golden.is_some() => letters.of(csv),
+        text => letters.page(text, worksheet::COLUMNS),
+    };
+    Ok(Outcome { text, remark: letters.page(&outcome.remark, worksheet::COLUMNS), ..outcome })
+}
+
+fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot()?;
     if let Some(states) = arguments.golden {
         let settings: Vec<String> =
@@ -152,7 +162,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let text = worksheet_file::json(&robot, &sheet, narrowed, &result())?;
         return Ok(Outcome { remark, ..Outcome::text(text) });
     }
-    let mut text = worksheet::text(&robot, &sheet, narrowed, &state);
+    let mut text = worksheet::text(&robot, &sheet, narrowed, &state, arguments.letters);
     if narrowed.is_all() {
         text.push('\n');
         text.push_str(&answer::text(&robot, &state, &numbers));

@@ -10,7 +10,9 @@ use rne_codegen::{Argument, Compiler, Form, Function};
 use rne_inspection::Inspection;
 use rne_model::did_you_mean;
 
+use crate::equations::View;
 use crate::layout::wrap;
+use crate::letters::Letters;
 use crate::outcome::{Failure, Outcome};
 use crate::show::Kept;
 use crate::terminal::{self, TYPED};
@@ -44,6 +46,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
         hide_possible_values = true, requires = "file")]
     form: Form,
+    #[command(flatten)]
+    letters: Letters,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -71,19 +75,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             topics.join(", ")
         ))
     })?;
-    Ok(Outcome::text(match topic {
+    let text = match topic {
         Topic::Functions => entries(Function::ALL.map(|function| (function.name(), function.summary().to_owned()))),
         Topic::Arguments => of_eval(),
         Topic::Tricks => entries(Trick::ALL.map(|trick| (trick.name(), trick.formula().to_owned()))),
         Topic::Quantities => quantities(),
         Topic::ExitStatus => EXIT_STATUS.to_owned(),
-    }))
+    };
+    Ok(Outcome::text(arguments.letters.page(&text, WIDTH)))
 }
 
 /// What a name in the code of a robot is.
 fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
     let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
-    let robot = robot_file::robot(path)?;
+    let robot = robot_file::robot(path).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
     let program = match form {
         Form::SevenSteps => Compiler::new(&robot)
             .with_equations()
@@ -92,7 +97,7 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
         Form::Reduced => plan_file::Compiler::new(path, &robot).compile(function, form)?,
     };
     let inspection = Inspection::new(&robot, &program);
-    if let Some(text) = equations::of_name(&inspection, name) {
+    if let Some(text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
         return Ok(Outcome::text(text));
     }
     let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
@@ -139,6 +144,23 @@ fn quantities() -> String {
     lines.collect()
 }
 
+/// What is said where a robot stands before the name: `rne explain puma560 w2_z`.
+fn swapped(name: &str, path: &Path) -> Option<Failure> {
+    let is_robot = robot_file::of_a_name(Path::new(name)).is_some() || Path::new(name).is_file();
+    (is_robot && !path.exists()).then(|| {
+        let asked = path.display();
+        Failure::usage(format_args!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}"))
+    })
+}
+
+/// How arguments are given.
+const OF_EVAL: &str = "\
+Every function takes exactly its arguments, and nothing is assumed to be zero. A LIST has one number per joint, \
+base to tip: rad for a revolute joint, m for a prismatic one; pi/2 and 'deg(30)' are numbers. A wrench is in N \
+and N m, what the last link exerts at the tip, a payload in kg, m and kg m², both in the axes of the tip; what a \
+moving base does is in frame 0. Tables are rounded for reading; --json has every digit, in the shape that the \
+Rust function returns. Without --function it is inverse_dynamics, with --wrench or --payload that with it.";
+
 /// Which options of `rne eval` a function takes, exactly.
 fn of_eval() -> String {
     use Argument::{Positions, Rates};
@@ -158,7 +180,7 @@ fn of_eval() -> String {
     );
     row("--q --qd --tau", "forward_dynamics");
     row("--qd --qdd", "actuator_torques; zero where no joint has a motor");
-    text
+    text + "\n" + &wrap(OF_EVAL, terminal::width(WIDTH), "") + "\n"
 }
 
 /// The functions with exactly these arguments.

@@ -4,10 +4,15 @@ use std::fmt::Write as _;
 
 use rne_codegen::emit::{Line, Listing};
 
+use crate::layout::wrap;
+use crate::letters::Letters;
 use crate::terminal::{FORMULA, FOUND, QUIET, TITLE};
 
+/// Columns of a comment, as in emitted code.
+const WIDTH: usize = 100;
+
 /// A listing of the compiler, coloured line by line.
-pub(crate) fn listing(listing: &Listing) -> String {
+pub(crate) fn listing(listing: &Listing, letters: Letters) -> String {
     let mut text = String::new();
     for (index, section) in listing.sections.iter().enumerate() {
         if index > 0 {
@@ -24,10 +29,19 @@ pub(crate) fn listing(listing: &Listing) -> String {
                     continue;
                 }
             };
-            for line in line.to_string().lines() {
+            for line in comment(line, letters).lines() {
                 let _ = writeln!(text, "{style}{line}{style:#}");
             }
         }
     }
     text
+}
+
+/// A comment inside a function.
+fn comment(line: &Line, letters: Letters) -> String {
+    if !letters.ascii {
+        return line.to_string();
+    }
+    let words = letters.of(&line.annotated().to_string());
+    wrap(&format!("    // {words}"), WIDTH, "    //   ").replace('\u{A0}', " ")
 }

@@ -25,6 +25,7 @@ mod highlight;
 mod import;
 mod input_file;
 mod layout;
+mod letters;
 mod limits;
 mod list;
 mod mistyped;

@@ -168,9 +168,9 @@ fn entries(counted: &[(String, Vec<Count>)]) -> Vec<Entry> {
 
 /// The counts of robots as a table: a line per robot, below it a line per function and form. Where it is wider than
 /// `room` columns it does without products and sums before folding, without the lines, then without all that was
-/// before.
+/// before; at last a function has a line of its own above its forms.
 pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
-    const LEAST: [&[usize]; 3] = [&[2, 3], &[LINES], &[4, 5]];
+    const LEAST: [&[usize]; 4] = [&[2, 3], &[LINES], &[4, 5], &[FUNCTION]];
     let mut left_out = Vec::new();
     let mut table = with_columns(counted, &left_out);
     for columns in LEAST {
@@ -182,6 +182,9 @@ pub(crate) fn table(counted: &[(String, Vec<Count>)], room: usize) -> String {
     }
     table
 }
+
+/// The column of the functions.
+const FUNCTION: usize = 0;
 
 /// The column of the lines.
 const LINES: usize = 11;
@@ -198,6 +201,8 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
         line.into_iter().enumerate().filter(|(column, _)| is_shown(*column)).map(|(_, cell)| cell).collect()
     };
     let alignment: Vec<Align> = (0..).zip(alignment).filter(|(at, _)| is_shown(*at)).map(|(_, to)| to).collect();
+    let is_stacked = left_out.contains(&FUNCTION);
+    let indent = if is_stacked { "   " } else { "" };
     let mut lines = vec![shown(titles.map(str::to_owned).into())];
     for (_, counts) in counted {
         let mut function_before = None;
@@ -208,7 +213,7 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
                 [products, sums, products + sums].map(|count| if again { String::new() } else { count.to_string() });
             lines.push(shown(vec![
                 format!(" {function}"),
-                form.to_string(),
+                format!("{indent}{form}"),
                 before_mul,
                 before_add,
                 before,
@@ -242,7 +247,11 @@ fn with_columns(counted: &[(String, Vec<Count>)], left_out: &[usize]) -> String 
     let _ = writeln!(text, "{QUIET}{titles}{QUIET:#}");
     for (robot, counts) in counted {
         let _ = writeln!(text, "{TITLE}{robot}{TITLE:#}");
-        for line in lines.by_ref().take(counts.len()) {
+        let mut function_before = None;
+        for (count, line) in counts.iter().zip(lines.by_ref()) {
+            if is_stacked && function_before.replace(count.function) != Some(count.function) {
+                let _ = writeln!(text, " {}", count.function);
+            }
             let _ = writeln!(text, "{line}");
         }
     }
@@ -269,12 +278,14 @@ mod tests {
         };
         let widest = |lines: &[String]| lines.iter().map(|line| width(line)).max().unwrap_or(0);
         assert!(widest(&lines(1000)) > 100, "the whole table is wide");
-        for room in 80..140 {
+        // the narrowest terminal that anybody has: functions above their forms
+        for room in 48..140 {
             let lines = lines(room);
             assert!(widest(&lines) <= room, "{room}: {lines:#?}");
             // what is generated is there in each, under its title
             let generated = lines[0].find("generated").expect("a title");
-            for (line, total) in lines[3..].iter().zip(&totals) {
+            let counted = lines[3..].iter().filter(|line| Form::ALL.iter().any(|form| line.contains(form.name())));
+            for (line, total) in counted.zip(&totals) {
                 let cells = line.chars().skip(generated).collect::<String>();
                 assert!(cells.split_whitespace().any(|cell| cell == total), "{room}: no {total} in {line}");
             }

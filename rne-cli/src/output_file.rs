@@ -105,9 +105,25 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
     let word = match replace(path, text) {
         Ok(Written::Anew) => "wrote",
         Ok(Written::Unchanged) => "up to date:",
-        Err(error) => return Err(Failure::input(format_args!("{shown} cannot be written: {error}"))),
+        Err(error) => return Err(unwritable(path, &error)),
     };
     Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
+}
+
+/// Why a file cannot be written: its folder is missing, or what the system says; not of the temporary file beside it.
+pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    let shown = path.display();
+    match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists()) {
+        Some(folder) => Failure::input(format_args!(
+            "{shown} cannot be written: there is no folder {}; make it first",
+            folder.display()
+        )),
+        // the message of a temporary file has its name
+        None if error.get_ref().is_some_and(|inner| inner.to_string().contains(" at path ")) => {
+            Failure::input(format_args!("{shown} cannot be written: {}", error.kind()))
+        }
+        None => Failure::input(format_args!("{shown} cannot be written: {error}")),
+    }
 }
 
 /// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the

@@ -13,7 +13,7 @@ use crate::layout::{Align, columns};
 use crate::numbers::{exact, rounded};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
-use crate::terminal::QUIET;
+use crate::terminal::{QUIET, TYPED};
 use crate::trajectory_file;
 
 /// Draw torques along a trajectory, with their parts
@@ -82,9 +82,33 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         Some(path) => {
             let sources: Vec<&Path> =
                 arguments.trajectory.as_deref().into_iter().chain([arguments.arm.file()]).collect();
+            if !sources.iter().any(|source| output_file::is_same(path, source)) {
+                is_named_for(path, arguments.csv)?;
+            }
             let written = output_file::write_new(path, &text, &sources, arguments.force)?;
             Ok(Outcome::text(written + &peaks(&robot, &history)))
         }
+    }
+}
+
+/// Whether the name of a file says what is written into it.
+fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let shown = path.display();
+    match (extension.as_str(), csv) {
+        ("", _) | ("svg", false) | ("csv" | "txt", true) => Ok(()),
+        ("csv", false) => {
+            Err(Failure::usage(format_args!("{shown} is named for numbers; {TYPED}--csv{TYPED:#} asks for them")))
+        }
+        (_, false) => Err(Failure::usage(format_args!(
+            "{shown} is not named for an SVG, the one kind of picture that is written; name it {TYPED}{}{TYPED:#}, and \
+             let a browser, Inkscape or LibreOffice make another of it",
+            path.with_extension("svg").display()
+        ))),
+        (_, true) => Err(Failure::usage(format_args!(
+            "{shown} is not named for numbers, which --csv asks for; name it {TYPED}{}{TYPED:#}",
+            path.with_extension("csv").display()
+        ))),
     }
 }
 

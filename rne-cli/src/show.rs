@@ -12,6 +12,8 @@ use rne_model::Robot;
 
 use crate::arm::Rotors;
 use crate::closed_form::Wanted;
+use crate::equations::View;
+use crate::letters::Letters;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
 use crate::terminal::{QUIET, TYPED};
@@ -44,35 +46,39 @@ pub(crate) struct Arguments {
     /// One of the seven steps only
     #[arg(long, value_name = "S", value_parser = arguments::step)]
     step: Option<Step>,
-    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    /// seven_steps, unless given, or reduced, the shortest
     #[arg(long, value_name = "F", value_parser = arguments::form(), default_value = Form::SevenSteps.name(),
-        hide_possible_values = true)]
+        hide_possible_values = true, hide_default_value = true)]
     form: Form,
-    /// Which function of the robot: `rne explain functions`
+    /// Torques, unless given; others: `rne explain functions`
     #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true,
-        default_value = Function::InverseDynamics.name())]
+        default_value = Function::InverseDynamics.name(), hide_default_value = true)]
     function: Function,
-    /// Compute these for every link, even where no torque needs them: `rne explain quantities`; --step 3 keeps the
-    /// velocity
+    /// Compute these, needed or not: `rne explain quantities`
     #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
     keep: Vec<Kept>,
-    /// Leave these tricks out of the reduced form: `rne explain tricks`; rewriting leaves nothing to read
+    /// Leave tricks out of reduced: `rne explain tricks`
     #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = arguments::trick(),
         hide_possible_values = true)]
     without: Vec<Trick>,
-    /// By component: its equation, this robot's, what is gone and why, the code left
+    /// By component: equation, what is gone and why, code
     #[arg(long, conflicts_with_all = ["keep", "without"])]
     equations: bool,
-    /// The same as JSON, with units, frames and counts: docs/inspection.md
+    /// The same as JSON: docs/inspection.md
     #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
     json: bool,
-    /// Instead of code: which combinations of link parameters the torques depend on, for identification
+    /// Instead of code: what of the links the torques can see
     #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
         "json"])]
     base_parameters: bool,
     #[command(flatten)]
     closed_form: Wanted,
+    #[command(flatten)]
+    letters: Letters,
 }
+
+/// Columns of what is no code.
+const COLUMNS: usize = 80;
 
 /// A quantity of the lecture that may be folded away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -130,13 +136,15 @@ impl Kept {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let letters = arguments.letters;
     if arguments.closed_form.is_asked_for() {
-        return arguments.closed_form.run(&arguments.file, |robot| arguments.rotors.of(robot));
+        return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
     }
     let file = arguments.file.display().to_string();
     let robot = arguments.rotors.robot(&arguments.file)?;
     if arguments.base_parameters {
-        return Ok(Outcome::text(heading::robot(&robot) + "\n" + &base_parameters::text(&robot)));
+        let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
+        return Ok(Outcome::text(letters.page(&text, COLUMNS)));
     }
     check_joint(&robot, arguments.joint)?;
     if arguments.json || arguments.equations {
@@ -169,11 +177,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     };
 
-    let mut text = heading::robot(&robot);
+    let mut text = letters.page(&heading::robot(&robot), COLUMNS);
     let _ = writeln!(text, "\n{}", heading::counts(&program));
     if program.outputs.len() > arguments.function.layout(robot.dof()).len() {
         let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
-        let _ = writeln!(text, "{QUIET}kept for reading, and counted: {}{QUIET:#}", words.join(", "));
+        let line = format!("{QUIET}kept for reading, and counted: {}{QUIET:#}\n", words.join(", "));
+        text.push_str(&letters.page(&line, COLUMNS));
     }
     if program.form != arguments.form {
         let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
@@ -188,7 +197,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(proof) = &program.proof {
         text.push('\n');
         for line in emit::evidence(&program, proof) {
-            let _ = writeln!(text, "{QUIET}{line}{QUIET:#}");
+            let _ = writeln!(text, "{QUIET}{}{QUIET:#}", letters.of(&line));
         }
     }
     let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };
@@ -197,7 +206,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if listing.is_empty() {
         let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
     }
-    text.push_str(&highlight::listing(&listing));
+    text.push_str(&highlight::listing(&listing, letters));
     Ok(Outcome::text(text))
 }
 
@@ -219,11 +228,17 @@ fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
     };
     let inspection = Inspection::new(robot, &program);
     if arguments.json {
-        return Outcome::json_line(&inspection);
+        let outcome = Outcome::json_line(&inspection)?;
+        return Ok(Outcome { text: arguments.letters.json(&outcome.text), ..outcome });
     }
-    let mut text = heading::robot(robot);
+    let letters = arguments.letters;
+    let mut text = letters.page(&heading::robot(robot), COLUMNS);
     let _ = writeln!(text, "\n{}\n", heading::counts(&program));
-    text.push_str(&equations::text(&inspection, arguments.joint, arguments.step.map(Step::number)));
+    text.push_str(&equations::text(
+        View { inspection: &inspection, letters },
+        arguments.joint,
+        arguments.step.map(Step::number),
+    ));
     Ok(Outcome::text(text))
 }
 

@@ -9,6 +9,7 @@ use rne_codegen::{self as codegen, Form, Function, Program, Step};
 use rne_model::{Reader, Robot};
 
 use crate::layout::{Align, columns, wrap};
+use crate::letters::Letters;
 use crate::numbers::{at_the_point, exact};
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
@@ -120,7 +121,7 @@ fn code(text: &mut String, robot: &Robot, program: &Program, joint: usize, steps
     let listings: Vec<String> = steps
         .iter()
         .map(|&step| Selection { joint: Some(joint), step: Some(step), explain: true, reasons: Some(2) })
-        .map(|what| highlight::listing(&emit::listing(robot, program, what)))
+        .map(|what| highlight::listing(&emit::listing(robot, program, what), Letters::default()))
         .collect();
     text.push_str(&listings.join("\n"));
 }

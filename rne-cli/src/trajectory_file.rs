@@ -5,7 +5,7 @@ use std::path::Path;
 use rne_model::{Robot, did_you_mean};
 use rne_plot::{Trajectory, TrajectoryError};
 
-use crate::csv_table::{Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, quoted, text_of};
+use crate::csv_table::{Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, other_separator, quoted, text_of};
 use crate::input_file;
 use crate::outcome::Failure;
 
@@ -137,6 +137,7 @@ fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>
         let near = header.cells.iter().filter(|cell| !known.iter().any(|name| *name == cell.text));
         let near = did_you_mean(name, near.map(|cell| cell.text.as_ref()));
         let meant = near.map_or_else(String::new, |near| format!("; is it {}?", quoted(near)));
+        let help = other_separator(header).unwrap_or(help);
         mistakes.push(header.span.clone(), format!("there is no column `{name}`{meant}"), Some(help));
     };
     let Some(time) = find("t") else {

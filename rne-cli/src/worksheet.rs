@@ -9,6 +9,7 @@ use rne_diagnose::worksheet::{self, Line, Quantity, Situation, Worksheet};
 use rne_model::{JointKind, Robot};
 
 use crate::layout::{left, width, wrap};
+use crate::letters::Letters;
 use crate::numbers::{WIDTH, fixed};
 use crate::state::State;
 use crate::terminal::{FORMULA, QUIET, TITLE};
@@ -65,7 +66,7 @@ pub(crate) fn situation(state: &State, dof: usize) -> Situation {
 }
 
 /// Columns of a terminal that everything has room in.
-const COLUMNS: usize = 80;
+pub(crate) const COLUMNS: usize = 80;
 
 /// Columns before the numbers.
 const MARGIN: usize = 12;
@@ -77,24 +78,24 @@ const UNIT: usize = 8;
 const TIED: &str = "\u{A0}";
 
 /// The worksheet for reading.
-pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: &State) -> String {
+pub(crate) fn text(robot: &Robot, sheet: &Worksheet, narrowed: Narrowed, state: &State, letters: Letters) -> String {
     let mut text = format!("{TITLE}the seven steps of {}{TITLE:#}\n", robot.name);
     for line in heading(robot, sheet.axes, state) {
-        let _ = writeln!(text, "{}", wrap(&line, COLUMNS, "  "));
+        let _ = writeln!(text, "{}", wrap(&letters.of(&line), COLUMNS, "  "));
     }
     let mut section = None;
     for line in sheet.lines.iter().filter(|line| narrowed.has(line)) {
         let here = (line.joint, line.quantity.is_inward());
         if section != Some(here) {
             section = Some(here);
-            title(&mut text, robot, line);
+            title(&mut text, robot, line, letters);
             if narrowed.step.is_none() && !line.quantity.is_inward() {
-                let of_file =
-                    wrap(&format!("    {}", of_file(robot, line.joint)), COLUMNS, "      ").replace(TIED, " ");
+                let of_file = letters.of(&format!("    {}", of_file(robot, line.joint)));
+                let of_file = wrap(&of_file, COLUMNS, "      ").replace(TIED, " ");
                 let _ = writeln!(text, "{QUIET}{of_file}{QUIET:#}");
             }
         }
-        write_line(&mut text, line);
+        write_line(&mut text, line, letters);
     }
     text
 }
@@ -144,13 +145,13 @@ pub(crate) fn triple(values: &[f64]) -> String {
     format!("({})", numbers.join(", "))
 }
 
-fn title(text: &mut String, robot: &Robot, line: &Line) {
+fn title(text: &mut String, robot: &Robot, line: &Line, letters: Letters) {
     let kind = match line.kind {
         JointKind::Revolute => "revolute",
         JointKind::Prismatic => "prismatic",
     };
     let way = if line.quantity.is_inward() { "back" } else { "outward" };
-    let name = robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name);
+    let name = letters.of(robot.joints.get(line.joint - 1).map_or("", |joint| &joint.name));
     let margin = left(&format!("link {}", line.joint), MARGIN);
     let [x, y, z] = ["x", "y", "z"].map(|axis| left(&format!("    {axis}"), WIDTH));
     let about = format!("  {way}, {kind}, {name}");
@@ -199,7 +200,7 @@ fn of_file(robot: &Robot, joint: usize) -> String {
     )
 }
 
-fn write_line(text: &mut String, line: &Line) {
+fn write_line(text: &mut String, line: &Line, letters: Letters) {
     let step = line.quantity.step();
     let first = matches!(
         line.quantity,
@@ -213,7 +214,7 @@ fn write_line(text: &mut String, line: &Line) {
     );
     let step = if first { step.to_string() } else { String::new() };
     let matrix = matrix(&line.values);
-    let symbol = line.symbol();
+    let symbol = letters.of(&line.symbol());
     let name = if matrix.is_some() { format!("  {step:1} {symbol} x") } else { format!("  {step:1} {symbol}") };
     let numbers = match (&matrix, line.values.as_slice()) {
         (Some(rows), _) => rows[0].map(fixed).concat(),
@@ -224,9 +225,9 @@ fn write_line(text: &mut String, line: &Line) {
         (None, [one]) => fixed(*one) + &" ".repeat(2 * WIDTH),
         (None, several) => several.iter().map(|value| fixed(*value)).collect(),
     };
-    let unit = left(if line.unit() == "1" { "" } else { line.unit() }, UNIT);
+    let unit = left(&letters.of(if line.unit() == "1" { "" } else { line.unit() }), UNIT);
     let (equals, style) = if is_formula(line) { ("= ", FORMULA) } else { ("", QUIET) };
-    let formula = format!("{equals}{}", line.formula);
+    let formula = letters.of(&format!("{equals}{}", line.formula));
     let row = format!("{}{numbers}", left(&name, MARGIN));
     let room = COLUMNS - (MARGIN + 3 * WIDTH + 2 + UNIT);
     let below = width(&formula) > room;

@@ -161,7 +161,8 @@ fn csv_rows<'a>(text: &'a str, robot: &Robot, mistakes: &mut Mistakes<'_>) -> Ve
     }
     for needed in ["joint", "quantity", "value"] {
         if !columns.contains(&Some(needed)) && !mistakes.are_there() {
-            mistakes.push(first.span.clone(), format!("there is no column `{needed}`"), Some(&header));
+            let help = csv_table::other_separator(first).unwrap_or(&header);
+            mistakes.push(first.span.clone(), format!("there is no column `{needed}`"), Some(help));
         }
     }
     if mistakes.are_there() {

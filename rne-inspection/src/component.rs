@@ -16,6 +16,8 @@ pub(crate) struct Equations<'p> {
     robot: &'p Robot,
     program: &'p Program,
     became: HashMap<String, Became>,
+    /// What the components are that no statement needs, where that is a letter or a number.
+    plain: HashMap<String, Tree>,
     used_by: BTreeMap<String, Vec<String>>,
     statements: HashMap<String, Vec<String>>,
     reasons: Vec<String>,
@@ -50,13 +52,43 @@ impl<'p> Equations<'p> {
         for statement in program.angles.iter().chain(&program.statements) {
             statements.entry(owner(statement).to_string()).or_default().push(statement.name.to_string());
         }
-        Self { robot, program, became: became.collect(), used_by, statements, reasons: Vec::new() }
+        let mut all = Self {
+            robot,
+            program,
+            became: became.collect(),
+            plain: HashMap::new(),
+            used_by,
+            statements,
+            reasons: Vec::new(),
+        };
+        all.find_plain();
+        all
     }
 
     /// What every component of an equation is, in order.
     pub(crate) fn components(&mut self, is_here: impl Fn(&Equation) -> bool) -> Vec<Component> {
         let program = self.program;
         program.equations.iter().filter(|equation| is_here(equation)).map(|of| self.component(of)).collect()
+    }
+
+    /// The components that are dead in the code and plain on paper: an element of a rotation that is s1, an angular
+    /// velocity that is qd1. An equation names those before it alone.
+    fn find_plain(&mut self) {
+        for equation in &self.program.equations {
+            let name = equation.name.to_string();
+            if !matches!(self.became.get(&name), None | Some(Became::Unused)) {
+                continue;
+            }
+            let tree = Tree::of_term(&equation.term, &mut |_, _| 0).map_names(&|name| self.here(name)).folded();
+            let is_plain = match &tree {
+                Tree::Name(_) | Tree::Number(_) => true,
+                Tree::Node("neg", operands, _) => matches!(operands.as_slice(), [Tree::Name(_)]),
+                Tree::Node(..) => false,
+            };
+            if is_plain && tree.names() != [name.as_str()] {
+                self.plain.insert(name, tree);
+            }
+        }
     }
 
     /// All reasons that trees tell by number.
@@ -110,7 +142,7 @@ impl<'p> Equations<'p> {
                 Some(name) => Tree::Node("neg", vec![Tree::Name(name.to_owned())], None),
                 None => Tree::Name(name.clone()),
             },
-            _ => Tree::Name(name.to_owned()),
+            _ => self.plain.get(name).cloned().unwrap_or_else(|| Tree::Name(name.to_owned())),
         }
     }
 
@@ -169,4 +201,75 @@ impl<'p> Equations<'p> {
 /// The component that a statement computes, wholly or in part.
 pub(crate) fn owner(statement: &codegen::Statement) -> codegen::Name {
     codegen::Name { part: 0, ..statement.name }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cell::RefCell;
+
+    use rne_codegen::{Compiler, Form, Function};
+
+    use super::*;
+
+    /// A number for a letter: any, the same each time.
+    fn letter(name: &str) -> f64 {
+        let sum = name.bytes().fold(7_u32, |sum, byte| (sum * 31 + u32::from(byte)) % 1009);
+        f64::from(sum) / 500.0 - 1.0
+    }
+
+    /// What components are by the equations alone, each computed once.
+    struct Values<'e> {
+        equations: &'e Equations<'e>,
+        trees: HashMap<String, Tree>,
+        known: RefCell<HashMap<String, f64>>,
+    }
+
+    impl<'e> Values<'e> {
+        fn new(equations: &'e Equations<'e>) -> Self {
+            let tree = |equation: &Equation| (equation.name.to_string(), Tree::of_term(&equation.term, &mut |_, _| 0));
+            let trees = equations.program.equations.iter().map(tree).collect();
+            Self { equations, trees, known: RefCell::default() }
+        }
+
+        fn of(&self, name: &str) -> f64 {
+            if let Some(value) = self.known.borrow().get(name) {
+                return *value;
+            }
+            let of = |tree: &Tree| tree.evaluate(&|name| self.of(name));
+            let value = match self.trees.get(name) {
+                Some(tree) => of(tree),
+                None => match self.equations.here(name) {
+                    Tree::Name(own) if own == name => letter(name),
+                    other => of(&other),
+                },
+            };
+            self.known.borrow_mut().insert(name.to_owned(), value);
+            value
+        }
+    }
+
+    #[test]
+    fn what_is_dead_in_the_code_is_what_its_equation_says() {
+        let mut compared = 0;
+        for name in ["planar1", "planar2", "stanford", "puma560"] {
+            let robot = Robot::from_yaml(rne_robots::find(name).expect("shipped").yaml).expect("valid");
+            let compiler = Compiler::new(&robot).with_equations();
+            let program = compiler.compile(Function::InverseDynamics, Form::SevenSteps).expect("it compiles");
+            let equations = Equations::new(&robot, &program);
+            let values = Values::new(&equations);
+            for (name, tree) in &equations.plain {
+                let (found, expected) = (tree.evaluate(&|name| values.of(name)), values.of(name));
+                assert!((found - expected).abs() < 1e-12, "{name} is {tree}: {found}, not {expected}");
+                compared += 1;
+            }
+            if name == "planar1" {
+                let plain = |name: &str| equations.plain.get(name).map(ToString::to_string);
+                let expected = [("rot1_yx", "s1"), ("rot1_xy", "-s1"), ("w1_z", "qd1"), ("ddc1_x", "")];
+                for (name, expected) in expected {
+                    assert_eq!(plain(name).unwrap_or_default(), expected, "{name}");
+                }
+            }
+        }
+        assert!(compared > 20, "{compared} components");
+    }
 }

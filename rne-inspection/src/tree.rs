@@ -125,6 +125,31 @@ impl Tree {
         }
     }
 
+    /// The same without products of 0 and 1, sums with 0, and two signs in a row.
+    #[must_use]
+    pub(crate) fn folded(&self) -> Self {
+        let Self::Node(operator, operands, _) = self else { return self.clone() };
+        let operands: Vec<Self> = operands.iter().map(Self::folded).collect();
+        let negative = |of: &Self| match of {
+            Self::Number(value) => Self::Number(if *value == 0.0 { 0.0 } else { -value }),
+            Self::Node("neg", inner, _) if inner.len() == 1 => inner[0].clone(),
+            of => Self::Node("neg", vec![of.clone()], None),
+        };
+        match (*operator, operands.as_slice()) {
+            ("*", [Self::Number(0.0), _] | [_, Self::Number(0.0)]) => Self::Number(0.0),
+            ("*", [Self::Number(a), Self::Number(b)]) => Self::Number(a * b),
+            ("+", [Self::Number(a), Self::Number(b)]) => Self::Number(a + b),
+            ("-", [Self::Number(a), Self::Number(b)]) => Self::Number(a - b),
+            ("*", [Self::Number(1.0), a] | [a, Self::Number(1.0)])
+            | ("+", [Self::Number(0.0), a] | [a, Self::Number(0.0)])
+            | ("-", [a, Self::Number(0.0)]) => a.clone(),
+            ("neg", [a]) | ("*", [Self::Number(-1.0), a] | [a, Self::Number(-1.0)]) | ("-", [Self::Number(0.0), a]) => {
+                negative(a)
+            }
+            _ => Self::Node(operator, operands, None),
+        }
+    }
+
     /// How many operations it has.
     #[must_use]
     pub fn size(&self) -> usize {

@@ -13,7 +13,7 @@ use crate::document::{Content, Node};
 use crate::expression::Names as _;
 use crate::inertia::TOLERANCE;
 use crate::resistance::{self, Unresisted};
-use crate::source::{quoted, rounded};
+use crate::source::{is_invisible, quoted, rounded};
 use crate::{Angle, Convention, Joint, JointKind, Limits, QuarterTurns, Transform};
 
 /// How near a right angle an angle must lie to be taken for a rounded one, rad.
@@ -67,6 +67,25 @@ fn right_angle_spelling(radians: f64) -> String {
         n if n % 2.0 == 0.0 => format!("{sign}{}*pi", n / 2.0),
         n => format!("{sign}{n}*pi/2"),
     }
+}
+
+/// Characters that nobody sees, in a text of the file: two names that look alike are not the same then.
+pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
+    let Some(hidden) = text.chars().find(|&c| is_invisible(c)) else { return };
+    // an escape in quotes has no such character in the file
+    let at = cx.text.get(node.span.clone()).and_then(|raw| raw.find(hidden)).map(|at| node.span.start + at);
+    let span = at.map_or(node.span.clone(), |at| at..at + hidden.len_utf8());
+    // a long text may have it far behind
+    let (before, behind) = text.split_once(hidden).unwrap_or_default();
+    let start = before.char_indices().rev().nth(9).map_or(0, |(start, _)| start);
+    let near = before.chars().skip(before.get(..start).map_or(0, |left| left.chars().count()));
+    let near: String = near.chain([hidden]).chain(behind.chars().take(10)).collect();
+    let code = u32::from(hidden);
+    cx.report(
+        Diagnostic::lint(span, format!("the invisible character U+{code:04X} stands in {}", quoted(&near)))
+            .label("here, unseen")
+            .help("delete it: type the word anew instead of pasting it"),
+    );
 }
 
 /// Gravity of another size than on Earth.

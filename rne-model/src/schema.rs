@@ -108,6 +108,7 @@ fn lines(cx: &Context, node: &Node) -> Option<String> {
 fn printable(cx: &Context, node: &Node, what: &str, is_allowed: impl Fn(char) -> bool) -> Option<String> {
     let text = text(cx, node)?;
     let Some(control) = text.chars().find(|&c| is_control(c) && !is_allowed(c)) else {
+        lint::invisible(cx, node, &text);
         return Some(text);
     };
     let message = format!(

@@ -63,6 +63,16 @@ pub fn is_control(c: char) -> bool {
     c.is_control() || is_line_break(c) || turns_direction
 }
 
+/// Whether a character shows nothing and takes no place, as text from web pages and PDFs brings along; those that join
+/// letters of some scripts (U+200C, U+200D) are not meant.
+pub(crate) fn is_invisible(c: char) -> bool {
+    matches!(
+        c,
+        '\u{AD}' | '\u{34F}' | '\u{115F}' | '\u{1160}' | '\u{180E}' | '\u{200B}' | '\u{2060}'
+            ..='\u{2064}' | '\u{3164}' | '\u{FEFF}' | '\u{FFA0}'
+    )
+}
+
 /// A text as one line in which every character shows itself and does nothing: a line break or a tab is a blank, any
 /// other [control character](is_control) U+FFFD.
 #[must_use]

@@ -99,6 +99,35 @@ fn lints() {
     }
 }
 
+/// Two names that look alike and are not the same.
+#[test]
+fn invisible_characters() {
+    for (old, new, line, column, message, help) in [
+        (
+            "source: test",
+            "title: 'an \u{200B}arm'\nsource: test",
+            3,
+            12,
+            r"the invisible character U+200B stands in `an \u{200b}arm`",
+            "delete it",
+        ),
+        (
+            "source: ",
+            "title: \"a long title of an\\u00ADarm\"\nsource: ",
+            3,
+            8,
+            r"U+00AD stands in `itle of an\u{ad}arm`",
+            "anew",
+        ),
+        ("name: first", "name: fi\u{2060}rst", 9, 13, r"U+2060 stands in `fi\u{2060}rst`", "delete it"),
+    ] {
+        let lint = the_one(old, new);
+        assert_eq!((lint.severity, lint.line, lint.column), (Severity::Warning, line, column), "{}", lint.message);
+        assert!(lint.message.contains(message), "{new}: {}", lint.message);
+        assert!(lint.help.as_deref().unwrap_or_default().contains(help), "{new}: {:?}", lint.help);
+    }
+}
+
 /// What published tables have: seen by `rne check`, not repeated by each build.
 #[test]
 fn notes() {

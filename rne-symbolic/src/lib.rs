@@ -163,7 +163,14 @@ impl ClosedForm {
     /// The form as text in Unicode, in lines of at most 80 columns.
     #[must_use]
     pub fn text(&self) -> String {
-        text::text(self)
+        self.text_spelt(str::to_owned)
+    }
+
+    /// The same with letters spelt otherwise, such as `theta1` for θ1: each part of a line is given to `spelling`
+    /// before lines are broken.
+    #[must_use]
+    pub fn text_spelt(&self, spelling: impl Fn(&str) -> String) -> String {
+        text::text(self, spelling)
     }
 
     /// The form as a LaTeX document that compiles by itself, with the package amsmath; `title` is any text.

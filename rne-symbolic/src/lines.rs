@@ -57,6 +57,15 @@ impl Pieces {
         Self(writer.pieces)
     }
 
+    /// The same in other letters.
+    pub(crate) fn spelt(self, spelling: impl Fn(&str) -> String) -> Self {
+        let piece = |piece: Piece| {
+            let text = spelling(&piece.text);
+            Piece { width: text.width(), text, ..piece }
+        };
+        Self(self.0.into_iter().map(piece).collect())
+    }
+
     /// Lines of at most so many columns, the first of them after `head` columns; with each the depth it begins in.
     pub(crate) fn lines(&self, head: usize, indent: usize, most: usize) -> Vec<(usize, String)> {
         let mut lines = Vec::new();

@@ -17,20 +17,37 @@ use crate::vector::Vector;
 pub(crate) struct TooLong;
 
 /// The motion of a link and gravity, in its frame.
-struct Motion {
-    omega: Vector,
-    omega_dot: Vector,
-    c_ddot: Vector,
-    gravity: Vector,
+#[derive(Debug)]
+pub(crate) struct Motion {
+    pub(crate) omega: Vector,
+    pub(crate) omega_dot: Vector,
+    pub(crate) c_ddot: Vector,
+    pub(crate) gravity: Vector,
+}
+
+/// What moves a link and what its joint carries, in the link's frame: a closed form takes the torque, tests hold each
+/// beside the lecture's.
+#[derive(Debug)]
+#[cfg_attr(not(test), allow(dead_code))]
+pub(crate) struct Load {
+    /// n_i
+    pub(crate) inertia_moment: Vector,
+    /// f_{i-1,i}
+    pub(crate) force: Vector,
+    /// n_{i-1,i}
+    pub(crate) moment: Vector,
+    /// τ_i
+    pub(crate) torque: Polynomial,
 }
 
 /// What the actuators of all joints deliver, base to tip; `gravity` is that of frame 0.
 pub(crate) fn inverse_dynamics(links: &[Link], gravity: &Vector) -> Result<Vec<Polynomial>, TooLong> {
-    backward(links, &forward(links, gravity)?)
+    let loads = backward(links, &forward(links, gravity)?)?;
+    Ok(loads.into_iter().map(|load| load.torque).collect())
 }
 
 /// Steps 1 to 5, base to tip.
-fn forward(links: &[Link], gravity: &Vector) -> Result<Vec<Motion>, TooLong> {
+pub(crate) fn forward(links: &[Link], gravity: &Vector) -> Result<Vec<Motion>, TooLong> {
     let mut motions: Vec<Motion> = Vec::with_capacity(links.len());
     for (i, link) in links.iter().enumerate() {
         let back = link.rotation.transpose();
@@ -77,8 +94,8 @@ fn forward(links: &[Link], gravity: &Vector) -> Result<Vec<Motion>, TooLong> {
 }
 
 /// Steps 6 and 7, tip to base.
-fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Polynomial>, TooLong> {
-    let mut torques = Vec::with_capacity(links.len());
+pub(crate) fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Load>, TooLong> {
+    let mut loads = Vec::with_capacity(links.len());
     // f_{i,i+1} and n_{i,i+1} in frame i
     let (mut child_force, mut child_moment) = (Vector::zero(), Vector::zero());
     for (i, (link, motion)) in links.iter().zip(motions).enumerate().rev() {
@@ -94,7 +111,7 @@ fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Polynomial>, TooLo
             force = force + omega_dot.cross(h) + omega.cross(&omega.cross(h));
             inertia_moment = inertia_moment + h.cross(&(c_ddot - gravity));
         }
-        let moment = inertia_moment + child_moment + link.d.cross(&force) + link.r.cross(&child_force);
+        let moment = inertia_moment.clone() + child_moment + link.d.cross(&force) + link.r.cross(&child_force);
 
         // 7 τ_i = e · n_{i-1,i} (prismatic: e · f_{i-1,i}) with the rotor, if that belongs to the arm: + G² Jm q̈_i
         let [.., along_axis] = match link.kind {
@@ -105,10 +122,10 @@ fn backward(links: &[Link], motions: &[Motion]) -> Result<Vec<Polynomial>, TooLo
         if torque.is_too_long() || force.is_too_long() || moment.is_too_long() {
             return Err(TooLong);
         }
-        torques.push(torque);
         child_force = &link.rotation * &force;
         child_moment = &link.rotation * &moment;
+        loads.push(Load { inertia_moment, force, moment, torque });
     }
-    torques.reverse();
-    Ok(torques)
+    loads.reverse();
+    Ok(loads)
 }

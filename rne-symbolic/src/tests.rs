@@ -1,6 +1,8 @@
 //! The seven steps over polynomials against Lagrange's equations, as polynomials; against the runtime, as numbers; and
 //! what is printed against both.
 
+mod results;
+
 use fastrand::Rng;
 use rne_model::{InertiaReference, Robot};
 use rne_runtime::DynArm;

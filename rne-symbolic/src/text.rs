@@ -12,18 +12,20 @@ use crate::written::COLUMNS;
 /// Formulas stand so far to the right.
 const INDENT: usize = 2;
 
-pub(crate) fn text(form: &ClosedForm) -> String {
+/// The document with every letter spelt so.
+pub(crate) fn text(form: &ClosedForm, spelling: impl Fn(&str) -> String) -> String {
     let mut parts = Vec::new();
     for section in sections(form, Script::Unicode) {
         let mut text = String::new();
         if !section.title.is_empty() {
-            let _ = writeln!(text, "{}", section.title.concat());
+            let _ = writeln!(text, "{}", spelling(&section.title.concat()));
         }
         let indent = if section.title.is_empty() { 0 } else { INDENT };
         for item in section.items {
             match item {
-                Item::Formula { left, width, right } => {
-                    let head = indent + width + 3;
+                Item::Formula { left, width: _, right } => {
+                    let (left, right) = (spelling(&left), right.spelt(&spelling));
+                    let head = indent + left.width() + 3;
                     for (at, (depth, line)) in right.lines(head, indent + 4, COLUMNS).into_iter().enumerate() {
                         let _ = match at {
                             0 => writeln!(text, "{:indent$}{left} = {line}", ""),
@@ -31,13 +33,15 @@ pub(crate) fn text(form: &ClosedForm) -> String {
                         };
                     }
                 }
-                Item::Words(words) => filled(&mut text, indent, words.concat().split(' ').map(str::to_owned)),
+                Item::Words(words) => {
+                    filled(&mut text, indent, spelling(&words.concat()).split(' ').map(str::to_owned));
+                }
                 Item::List(entries) => {
                     let last = entries.len().saturating_sub(1);
                     let entry = |(at, (formula, unit)): (usize, (String, String))| {
                         let comma = if at == last { "" } else { "," };
                         let space = if unit.is_empty() { "" } else { " " };
-                        format!("{formula}{space}{unit}{comma}")
+                        spelling(&format!("{formula}{space}{unit}{comma}"))
                     };
                     filled(&mut text, indent + 2, entries.into_iter().enumerate().map(entry));
                 }

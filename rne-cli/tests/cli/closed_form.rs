@@ -32,7 +32,9 @@ fn an_arm_that_no_page_holds() {
 
 #[test]
 fn two_links_in_latex() {
-    insta::assert_snapshot!(fine(&["show", "robots/planar2.yaml", "--latex"]));
+    let latex = fine(&["show", "robots/planar2.yaml", "--latex"]);
+    insta::assert_snapshot!(latex);
+    assert_eq!(latex, fine(&["show", "robots/planar2.yaml", "--symbolic", "--latex"]), "of the closed form, as LaTeX");
 }
 
 #[test]

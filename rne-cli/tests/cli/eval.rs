@@ -38,6 +38,13 @@ fn close(found: &[f64], expected: &[f64]) {
 }
 
 #[test]
+fn a_number_is_no_file() {
+    fails(2, &["eval", "--q", "0.5", "0.3"], &["`0.3` stands where FILE", "--q 0.5,0.3"]);
+    fails(2, &["eval", "--q", "0.5", "pi/2"], &["`pi/2` stands where FILE"]);
+    fails(1, &["eval", "nowhere", "--q", "1"], &["there is no robot file nowhere"]);
+}
+
+#[test]
 fn torques_are_the_known_ones() {
     for robot in ["planar1", "puma560", "scara_cobra600", "panda"] {
         let file = format!("robots/{robot}.yaml");

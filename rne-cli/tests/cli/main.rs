@@ -1,5 +1,6 @@
 //! The command line as a user meets it: processes, text and exit statuses.
 
+mod ascii;
 mod call;
 mod check;
 mod closed_form;
@@ -21,4 +22,5 @@ mod search;
 mod shipped;
 mod show;
 mod terminal;
+mod views;
 mod worksheet;

@@ -86,6 +86,24 @@ fn pictures_are_written() {
     }
 }
 
+/// What a file is named for is what is written into it.
+#[test]
+fn files_are_named_for_what_they_hold() {
+    let folder = folder("plot_names");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    for name in ["x.png", "x.pdf", "x.svg.gz"] {
+        fails(2, &["plot", "planar1", "-o", &path(name)], &["not named for an SVG", "x.svg", "Inkscape"]);
+    }
+    fails(2, &["plot", "planar1", "-o", &path("x.csv")], &["--csv asks for them"]);
+    fails(2, &["plot", "planar1", "--csv", "-o", &path("x.svg")], &["not named for numbers", "x.csv"]);
+    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 0, "nothing is written");
+    for (name, more) in [("x.SVG", &[][..]), ("x", &[]), ("x.csv", &["--csv"])] {
+        fine(&[&["plot", "planar1", "-o", &path(name)], more].concat());
+    }
+    let nowhere = path("nowhere/x.svg");
+    fails(1, &["plot", "planar1", "-o", &nowhere], &["there is no folder", "make it first"]);
+}
+
 /// Every shipped robot has a picture.
 #[test]
 fn every_robot_is_drawn() {
@@ -117,6 +135,7 @@ fn trajectories_that_are_none() {
     };
     let rows = |rows: &str, parts: &[&str]| bad(&format!("t,q1,q2\n0,0,0\n1,1,1\n{rows}"), parts);
     bad("", &["the file is empty", "the header is t,q1,q2"]);
+    bad("t\tq1\tq2\n0\t0\t0\n", &["no column `t`", "separated by tabs"]);
     bad("t,q1,q2\n", &["0 samples, and at least 3"]);
     bad("t,q1,q2\n0,0,0\n1,1,1\n", &["2 samples, and at least 3", "a derivative needs three samples"]);
     bad("t,q1\n0,1\n", &["there is no column `q2`"]);

@@ -41,5 +41,11 @@ fn what_is_wrong_is_said() {
     let robot = format!("{ROOT}/robots/puma560.yaml");
     fails(2, &["report", &robot, "-o", &robot], &["is the file that is read"]);
     fails(2, &["report", "puma560"], &["--output"]);
+    let nowhere = format!("{}/x.html", folder("report_nowhere").join("none").display());
+    let called = rne(&["report", "planar1", "-o", &nowhere]);
+    assert!(
+        called.status == 1 && called.err.contains("none; make it first") && !called.err.contains(".tmp"),
+        "{called:?}"
+    );
     fails(1, &["report", "nowhere.yaml", "-o", "x.html"], &["nowhere.yaml"]);
 }

@@ -228,3 +228,16 @@ fn files_that_are_no_worksheets() {
     fails(2, &planar2(&["--digits", "3"]), &["--compare"]);
     assert_eq!(rne(&["eval", "robots/planar2.yaml", "--q", "0,0", "--qd", "0,0", "--qdd", "0,0", "--csv"]).status, 2);
 }
+
+/// Tables as other programs write them.
+#[test]
+fn separators_are_found_or_named() {
+    let call = ["eval", "planar1", "--q", "0.3", "--qd", "0.5", "--qdd", "1", "--trace"];
+    let sheet = fine(&[&call[..], &["--csv"]].concat());
+    let compared = |text: &str| rne_reading(&[&call[..], &["--compare", "-"]].concat(), text);
+    assert_eq!(compared(&sheet).status, 0);
+    let table = sheet.lines().skip(1).collect::<Vec<_>>().join("\n");
+    assert_eq!(compared(&table.replace(',', ";")).status, 0);
+    let Called { err, status, .. } = compared(&table.replace(',', "\t"));
+    assert!(status == 1 && err.contains("separated by tabs") && err.contains("no column `joint`"), "{err}");
+}
