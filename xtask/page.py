@@ -4,6 +4,8 @@ Usage: python page.py RNE FOLDER [PICTURES]     RNE is the binary, pages go to F
 """
 
 import json
+import math
+import os
 import pathlib
 import random
 import re
@@ -20,8 +22,11 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
+IS_FULL = bool(os.environ.get("CI_FULL"))
+# of these everything is tried in every run, of the others torques and axes alone unless CI_FULL is set
+WHOLE = ["planar2", "puma560"]
 ROBOTS = ["planar1", "planar2", "stanford", "puma560", "panda"]
-STATES = 50
+STATES = 50 if IS_FULL else 8
 TOLERANCE = 1e-12
 LARGEST = 400_000  # bytes of the page of an arm with 7 joints
 SCREENS = {"desk": (1400, 1000), "phone": (375, 812)}
@@ -64,9 +69,17 @@ def lists(values):
     return ",".join(repr(value) for value in values)
 
 
-def torques_of_eval(rne, robot, state):
+def evaluated(rne, robot, state, *more):
     command = [rne, "eval", robot, "--json"] + [f"--{name}={lists(state[name])}" for name in ("q", "qd", "qdd")]
-    return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)["result"]
+    return json.loads(subprocess.run(command + list(more), check=True, capture_output=True).stdout)
+
+
+def torques_of_eval(rne, robot, state, *more):
+    return evaluated(rne, robot, state, *more)["result"]
+
+
+def pressed(driver, switch):
+    driver.execute_script("document.querySelector(`[data-switch=\"${arguments[0]}\"]`).click()", switch)
 
 
 def torques(driver, rne, robot, dof):
@@ -81,6 +94,231 @@ def torques(driver, rne, robot, dof):
         worst = max(worst, max(abs(a - b) for a, b in zip(shown, right, strict=True)) / largest)
     check(worst <= TOLERANCE, f"{robot}: torques differ by {worst:.1e}")
     print(f"  torques at {STATES} states: worst difference {worst:.1e} of the largest")
+
+
+# the quantities of a worksheet that the page knows by other names
+QUANTITIES = {"next_force": "child_force", "next_moment": "child_moment"}
+
+
+def axes(driver, rne, robot, inspection):
+    """Components in each kind of axes are those of the worksheet, also as they are shown, and frames are drawn so."""
+    chance, dof = random.Random(19), len(inspection["robot"]["joints"])
+    names = {(of["quantity"], of["joint"], of.get("component") or ""): name
+             for name, of in inspection["names"].items() if not of.get("part")}
+    compared, worst = 0, 0.0
+    for kind in ("joint", "base", "link"):
+        pressed(driver, kind)
+        state = {name: [chance.uniform(-2, 2) for _ in range(dof)] for name in ("q", "qd", "qdd")}
+        rows = [(names.get((QUANTITIES.get(row["quantity"], row["quantity"]), row["joint"], row["component"])), row)
+                for row in evaluated(rne, robot, state, "--trace", "--axes", kind)["trace"]["rows"] if row["frame"]]
+        found = {row["quantity"] for name, row in rows if name}
+        check({"omega", "acceleration", "gravity", "d", "inertia", "joint_force", "joint_moment"} <= found,
+              f"{robot}: of vectors in {kind} axes only {sorted(found)} are compared")
+        rows = [(name, row["value"]) for name, row in rows if name]
+        told = driver.execute_script(
+            "rne.setState(arguments[0]); return arguments[1].map(name => rne.told(name))",
+            state, [name for name, _ in rows])
+        for (name, right), value in zip(rows, told, strict=True):
+            # what the code does not need has no number
+            difference = abs(value - right) / max(1.0, abs(right)) if value is not None else 1.0
+            worst = max(worst, difference)
+            check(difference <= TOLERANCE, f"{robot}: {name} in {kind} axes is {value}, and of the worksheet {right}")
+        compared += len(rows)
+        of_row = dict(rows)
+        joint = min(2, dof)
+        driver.find_element(By.CSS_SELECTOR, f'[data-cell="{joint}-5"]').click()
+        for axis in "xyz":
+            shown = driver.execute_script(
+                """
+                const name = arguments[0];
+                rne.select(name);
+                const card = document.querySelector(`[data-component="${name}"]`);
+                return [card.querySelector(".value").title, document.querySelector(".readout-value").title,
+                        document.querySelector(".readout-meaning").textContent, card.textContent];
+                """, f"g{joint}_{axis}")
+            for text in shown[:2]:
+                number = float(text.replace("−", "-"))
+                check(abs(number - of_row[f"g{joint}_{axis}"]) <= 10 * TOLERANCE,
+                      f"{robot}: g{joint}_{axis} in {kind} axes is shown as {text}")
+            words = {"link": f"axes of link {joint}", "joint": "the lecture's axes", "base": "axes of the base"}[kind]
+            check(words in shown[2], f"{robot}: of g{joint}_{axis} the readout says {shown[2]!r}, not {words!r}")
+            check(("axes" in shown[3]) == (kind != "link"), f"{robot}: the card of g{joint}_{axis} says {shown[3]!r}")
+        drawn_in(driver, robot, kind, dof)
+    print(f"  {compared} components in three kinds of axes: worst difference {worst:.1e} of the largest")
+
+
+def drawn_in(driver, robot, kind, dof):
+    """The numbers of g, along the axes that are drawn, are its arrow; as nearly as the perspective lets them be."""
+    seen = 0
+    for joint in range(1, dof + 1):
+        found = driver.execute_script(
+            """
+            const joint = arguments[0];
+            rne.select(`g${joint}_z`);
+            const way = (path) => {
+              const [a, b, c, d] = path.getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+              return [c - a, d - b];
+            };
+            const axes = [...document.querySelectorAll(`#arm [data-frame="${joint}"]`)];
+            return {
+              hidden: axes.some(of => of.hasAttribute("hidden")),
+              axes: axes.map(way),
+              numbers: ["x", "y", "z"].map(axis => rne.told(`g${joint}_${axis}`)),
+              arrow: way(document.querySelector(`[data-arrow="gravity-${joint}"] .hit`)),
+            };
+            """, joint)
+        check(not found["hidden"], f"{robot}: the axes of g{joint}_z are not drawn")
+        along = [sum(number * axis[at] for number, axis in zip(found["numbers"], found["axes"])) for at in (0, 1)]
+        sizes = math.hypot(*along), math.hypot(*found["arrow"])
+        # an arrow that points at the viewer has no direction
+        if sizes[1] < 25 or sizes[0] < 1e-6:
+            continue
+        cosine = sum(a * b for a, b in zip(along, found["arrow"])) / (sizes[0] * sizes[1])
+        check(cosine > 0.97, f"{robot}: the axes drawn for g{joint} in {kind} axes are not those of its numbers")
+        seen += 1
+    check(seen > 0, f"{robot}: no arrow is long enough to see its axes in {kind} axes")
+
+
+def wrench(driver, rne, robot, dof):
+    """The sliders of force and moment at the tip give the torques of `rne eval --wrench`; reset takes them away."""
+    chance = random.Random(23)
+    state = {name: [chance.uniform(-2, 2) for _ in range(dof)] for name in ("q", "qd", "qdd")}
+    given = [round(chance.uniform(-2, 2), 3) for _ in range(6)]
+    shown = driver.execute_script(
+        """
+        rne.setState(arguments[0]);
+        const inputs = [...document.querySelectorAll("[data-tip]")];
+        inputs.forEach((input, at) => {
+          input.value = arguments[1][at];
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        });
+        return { of: inputs.map(input => input.dataset.tip), total: rne.total(), free: rne.torques(),
+                 values: inputs.map(input => Number(input.value)),
+                 arrows: document.querySelectorAll(".arrow.plain:not([hidden])").length };
+        """, state, given)
+    check(shown["of"] == ["fx", "fy", "fz", "nx", "ny", "nz"], f"{robot}: the sliders of the tip are {shown['of']}")
+    right = torques_of_eval(rne, robot, state, f"--wrench={lists(shown['values'])}")
+    largest = max(1.0, max(abs(torque) for torque in right))
+    worst = max(abs(a - b) for a, b in zip(shown["total"], right, strict=True)) / largest
+    check(worst <= TOLERANCE, f"{robot}: torques with a wrench at the tip differ by {worst:.1e}")
+    check(shown["total"] != shown["free"] and shown["arrows"] >= 2, f"{robot}: force and moment at the tip do nothing")
+    after = driver.execute_script("document.getElementById('home').click(); return [rne.total(), rne.torques()]")
+    check(after[0] == after[1], f"{robot}: reset leaves a wrench at the tip")
+    print(f"  with a wrench at the tip: worst difference {worst:.1e} of the largest")
+
+
+def views(driver, page):
+    """What a reader has chosen comes back on another page of the same arm."""
+    opened(driver, page)
+    driver.execute_script(
+        """
+        for (const of of ["unfolded", "c", "joint", "dark"]) document.querySelector(`[data-switch="${of}"]`).click();
+        for (const of of ["frames", "masses"]) document.querySelector(`[data-shows="${of}"]`).click();
+        for (const [of, value] of [["fx", 3], ["nz", -1.5]]) {
+          const input = document.querySelector(`[data-tip="${of}"]`);
+          input.value = value;
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        }
+        document.querySelector(".tip-force").open = true;
+        document.querySelector('[data-cell="2-6"]').click();
+        """)
+    view = driver.execute_script("return rne.view()")
+    for what, right in (("axes", "joint"), ("frames", True), ("masses", False), ("tip", True), ("form", "unfolded"),
+                        ("wrench", {"f": [3, 0, 0], "n": [0, 0, -1.5]}), ("cell", [2, 6]), ("theme", "dark")):
+        check(view[what] == right, f"{page.stem}: a view has {view[what]} as {what}, chosen was {right}")
+    shown = "return ['[data-switch]', '[data-shows]'].map(of => [...document.querySelectorAll(of)]" \
+            ".map(of => of.getAttribute('aria-pressed')).join()).concat(rne.total().join())"
+    right = driver.execute_script(shown)
+    opened(driver, page)
+    check(driver.execute_script(shown) != right, f"{page.stem}: the choices change nothing")
+    driver.execute_script("rne.show(arguments[0])", view)
+    check(driver.execute_script("return rne.view()") == view, f"{page.stem}: a view does not come back")
+    check(driver.execute_script(shown) == right, f"{page.stem}: a view is not shown as it was")
+    print("  a view comes back on another page")
+
+
+def touch(page):
+    """Fingers turn and zoom the arm, choose what they tap, and scroll the page beside the arm."""
+    driver = browser(*SCREENS["phone"])
+    try:
+        driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        opened(driver, page)
+        # the eye stands still while fingers are on the arm
+        driver.execute_script("document.getElementById('arm').scrollIntoView({ block: 'center' })")
+        look = "const { yaw, pitch, zoom } = rne.view().look; return [yaw, pitch, zoom, window.scrollY]"
+
+        def fingers(kind, *points):
+            driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": at} for at, (x, y) in enumerate(points)]})
+
+        def dragged(*paths):
+            fingers("touchStart", *(path[0] for path in paths))
+            for step in range(1, 11):
+                fingers("touchMove", *((a + (c - a) * step / 10, b + (d - b) * step / 10) for (a, b), (c, d) in paths))
+            fingers("touchEnd")
+            return driver.execute_script(look)
+
+        box = driver.execute_script(
+            "const of = document.getElementById('arm').getBoundingClientRect(); return [of.x, of.y, of.width, of.height]")
+        middle = box[0] + box[2] / 2, box[1] + box[3] / 2
+        on_link = driver.execute_script(
+            """
+            const on = (of) => of.closest?.(".solid");
+            const box = document.getElementById("arm").getBoundingClientRect();
+            for (let x = box.x + 40; x < box.right - 40; x += 3)
+              for (let y = box.y + 40; y < box.bottom - 40; y += 3)
+                if (on(document.elementFromPoint(x, y))) return [x, y];
+            """)
+        for where, (x, y) in (("the picture's corner", (box[0] + 12, box[1] + box[3] - 12)), ("a link", on_link)):
+            before = driver.execute_script(look)
+            after = dragged(((x, y), (x + 60, y - 40)))
+            # 60 pixels are 0.6 rad; a browser keeps the first few to itself
+            check(0.35 < before[0] - after[0] < 0.65, f"touch: from {where} the arm turns by {before[0] - after[0]:.2f}")
+            check(0.15 < before[1] - after[1] < 0.45, f"touch: from {where} it tilts by {before[1] - after[1]:.2f}")
+            check(before[2:] == after[2:], f"touch: from {where} a finger zooms or scrolls: {before} {after}")
+            driver.execute_script("rne.show({ ...rne.view(), look: arguments[0] })",
+                                  dict(zip(("yaw", "pitch", "zoom"), before)))
+        before = driver.execute_script(look)
+        after = dragged(((middle[0] - 30, middle[1]), (middle[0] - 90, middle[1])),
+                        ((middle[0] + 30, middle[1]), (middle[0] + 90, middle[1])))
+        check(2 < after[2] / before[2] < 3.6, f"touch: fingers three times as far apart zoom by {after[2] / before[2]:.2f}")
+        check(before[:2] == after[:2] and before[3] == after[3], f"touch: two fingers turn or scroll: {before} {after}")
+        # one finger after two turns the arm again, and does not jump
+        again = dragged(((middle[0], box[1] + 20), (middle[0] + 60, box[1] + 20)))
+        check(0.35 < after[0] - again[0] < 0.65, f"touch: after a pinch a finger turns by {after[0] - again[0]:.2f}")
+        # beside the arm a finger scrolls
+        top = driver.execute_script("window.scrollTo(0, document.getElementById('sliders').offsetTop); return scrollY")
+        dragged(((20, 600), (20, 300)))
+        WebDriverWait(driver, 5).until(lambda driver: driver.execute_script("return window.scrollY") > top + 100)
+        # a tap while it glides would stop it, and choose nothing
+        resting = "const done = arguments[0], at = scrollY; setTimeout(() => done(scrollY === at), 200)"
+        WebDriverWait(driver, 5).until(lambda driver: driver.execute_async_script(resting))
+        # what is tapped is chosen
+        for of in ("[data-arrow]:not([hidden]) .hit", '[data-component="g2_x"] .own-name'):
+            driver.execute_script(
+                "rne.show({ ...rne.view(), pinned: null }); document.querySelector('[data-cell=\"2-5\"]').click();"
+                "document.querySelector(arguments[0]).scrollIntoView({ block: 'center' })", of)
+            x, y, right = driver.execute_script(
+                """
+                const node = document.querySelector(arguments[0]);
+                const box = node.getBoundingClientRect();
+                const way = node.getTotalLength && node.getPointAtLength(node.getTotalLength() * 0.7);
+                const { x, y } = way ? way.matrixTransform(node.getScreenCTM())
+                  : { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+                const at = document.elementFromPoint(x, y)?.closest("[data-arrow], [data-name]");
+                return [x, y, at?.dataset.arrow || at?.dataset.name || null];
+                """, of)
+            fingers("touchStart", (x, y))
+            fingers("touchEnd")
+            WebDriverWait(driver, 5).until(lambda driver: driver.execute_script(
+                "return document.querySelectorAll('.lit').length"))
+            lit = driver.execute_script(
+                "return [...document.querySelectorAll('.lit')].map(of => of.dataset.arrow || of.dataset.name)")
+            check(right and right in lit, f"touch: a tap on {right} lights {lit}")
+        quiet(driver, "touch")
+        print("  fingers turn, zoom, scroll and choose")
+    finally:
+        driver.quit()
 
 
 def statements(driver, robot, inspection):
@@ -302,7 +540,13 @@ def main():
             inspection = json.loads(
                 subprocess.run([rne, "show", robot, "--json"], check=True, capture_output=True).stdout)
             opened(driver, page)
-            torques(driver, rne, robot, len(inspection["robot"]["joints"]))
+            dof = len(inspection["robot"]["joints"])
+            torques(driver, rne, robot, dof)
+            wrench(driver, rne, robot, dof)
+            axes(driver, rne, robot, inspection)
+            if robot not in WHOLE and not IS_FULL:
+                quiet(driver, robot)
+                continue
             sliders(driver, robot)
             statements(driver, robot, inspection)
             reasons(driver, robot, inspection)
@@ -312,8 +556,10 @@ def main():
             accessible(driver, f"{robot}, light")
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
+            views(driver, page)
     finally:
         driver.quit()
+    touch(pages["puma560"])
     for robot in ("planar2", "puma560"):
         for screen, size in SCREENS.items():
             for dark in (False, True):

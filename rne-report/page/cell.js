@@ -11,6 +11,7 @@ class Cards {
       { class: "cell-head" },
       element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
       element("p", { class: "hint" }, this.counts(cell)),
+      this.axesHint(cell),
     );
     const groups = new Map();
     for (const component of cell.components) {
@@ -47,6 +48,18 @@ class Cards {
     return [head, ...sections];
   }
 
+  /** In whose axes the values of a cell stand, where these are not those of its equations. */
+  axesHint({ joint, components }) {
+    const { axes } = this.page;
+    if (!components.some(({ name }) => axes.isOther(name))) return null;
+    return element(
+      "p",
+      { class: "hint", "data-axes-hint": "" },
+      `Values of vectors of link ${joint}, at the right, are in ${axes.words(joint)}; ` +
+        `equations and code have them in ${axes.words(joint, "link")}.`,
+    );
+  }
+
   /** How many operations a cell has. */
   counts({ before, after }) {
     if (before.products + before.sums === 0) return "no operations";
@@ -64,10 +77,12 @@ class Cards {
     const value = element("output", { class: "live value", "data-name": name });
     const unitOf = unitText(this.page.inspection.unit(name));
     this.page.live.push(() => {
-      const isHidden = this.page.exercise.hides(name, this.page.cell);
-      value.textContent = isHidden ? `? ${unitOf}` : withUnit(this.page.value(name), unitOf);
-      value.title = this.page.exercise.hides(name, this.page.cell) ? "" : full(this.page.value(name));
+      const isHidden = this.page.hides(name);
+      value.textContent = isHidden ? `? ${unitOf}` : withUnit(this.page.told(name), unitOf);
+      value.title = isHidden ? "" : full(this.page.told(name));
     });
+    const { axes } = this.page;
+    const inOther = axes.isOther(name) ? element("span", { class: "in-axes" }, `${axes.kind} axes`) : null;
     const lines = [["general", "in general", equation(symbol)]];
     if (namesIn(general).some((of) => !Number.isNaN(this.page.inspection.constant(of)) || this.alias(of) !== of)) {
       lines.push(["here", "this robot", equation((of) => this.here(of))]);
@@ -104,6 +119,7 @@ class Cards {
       math("math", { "data-name": name }, this.page.set.symbol(name, false)),
       element("code", { class: "own-name pick", "data-name": name, tabindex: "-1" }, name),
       value,
+      inOther,
       answer,
     );
     return element(
@@ -292,7 +308,7 @@ class Cards {
       said.textContent = text;
       said.className = `answer ${text ? (isRight ? "right" : "wrong") : ""}`;
       input.setAttribute("aria-invalid", String(Boolean(text) && !isRight));
-      this.page.bars.update(this.page.split, (joint) => this.page.exercise.hides(`tau${joint}`, this.page.cell));
+      this.page.bars.update(this.page.split, (joint) => this.page.hides(`tau${joint}`));
       for (const paint of this.page.live) paint();
       this.page.reading.readout();
     };

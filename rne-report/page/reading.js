@@ -95,7 +95,7 @@ class Reading {
     }
     if (selection.tree !== undefined) {
       const isGone = this.page.form !== "unfolded" && this.page.set.isGone(selection.tree);
-      const isHidden = namesIn(selection.tree).some((name) => this.page.exercise.hides(name, this.page.cell));
+      const isHidden = namesIn(selection.tree).some((name) => this.page.hides(name));
       root.replaceChildren(
         line("name", `${selection.sign < 0 ? "−" : ""} ${codeOf(selection.tree)}`),
         line("value", isHidden ? "?" : short(selection.sign * this.page.equations.evaluate(selection.tree))),
@@ -111,13 +111,12 @@ class Reading {
       const unitOf = unitText(this.page.inspection.unitOf(arrow.quantity, arrow.joint));
       root.replaceChildren(
         line("name", names.join(", ")),
-        line("value", `(${names.map((name) => this.page.shown(name)).join(", ")}) ${unitOf}`),
+        line("value", `(${names.map((name) => this.page.shown(name, this.page.told(name))).join(", ")}) ${unitOf}`),
         line(
           "meaning",
           this.page.inspection.words(arrow),
           `; ${this.ofWhat(arrow)}${this.axesWords(this.page.inspection.meaning(names[0]))}`,
         ),
-        ...this.inLecture(arrow, names),
       );
       return;
     }
@@ -138,10 +137,10 @@ class Reading {
       return;
     }
     const unitOf = this.page.inspection.unit(name);
-    const isHidden = this.page.exercise.hides(name, this.page.cell);
+    const isHidden = this.page.hides(name);
     const statement = this.page.inspection.statements.get(name);
     const owner = this.page.inspection.owner(name);
-    const value = this.page.value(name);
+    const value = this.page.told(name);
     const code = statement ? this.page.cards.textOf(statement) : this.withoutStatement(name, owner);
     const what = line("value", isHidden ? `? ${unitText(unitOf)}` : withUnit(value, unitOf));
     what.title = isHidden ? "" : full(value);
@@ -153,7 +152,7 @@ class Reading {
         `${this.page.inspection.words(meaning)}${meaning.part ? ", a term of it" : ""}`,
         `; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`,
       ),
-      line("code", code),
+      line("code", code, isHidden ? "" : this.inCode(name, unitOf)),
       ...(selection.why
         ? [line("why", `This term is ${selection.why.replace(/^a factor/, "left out as a factor")}`)]
         : []),
@@ -177,26 +176,6 @@ class Reading {
     return statement ? this.page.cards.textOf(statement) : "a term of the statement";
   }
 
-  /** The same vector in the lecture's axes: fixed to the link before, z along the joint, so turned by θ about z. */
-  inLecture({ of, joint }, names) {
-    if (of.axes !== "link" || names.length !== 3) return [];
-    if (names.some((name) => this.page.exercise.hides(name, this.page.cell))) return [];
-    const row = this.page.inspection.robot.joints[joint - 1];
-    if (!row) return [];
-    const turned = inLectureAxes(
-      row,
-      this.page.state.q[joint - 1],
-      names.map((name) => this.page.value(name)),
-    );
-    return [
-      element(
-        "span",
-        { class: "readout-meaning", "data-lecture": "" },
-        `in the lecture's axes, fixed to link ${joint - 1}: (${turned.map(short).join(", ")})`,
-      ),
-    ];
-  }
-
   ofWhat({ of, joint, quantity }) {
     if (quantity === "joint_force" && joint <= this.page.inspection.dof) return `drawn at joint ${joint}`;
     if (joint === 0) return "base";
@@ -204,9 +183,21 @@ class Reading {
   }
 
   axesWords(meaning) {
-    const frame = meaning && this.page.inspection.axes(meaning);
-    if (frame === null || frame === undefined) return "";
-    return `, in the axes of ${frame === 0 ? "the base" : `link ${frame}`}`;
+    if (!meaning) return "";
+    const { axes } = this.page;
+    const { quantity, joint } = meaning;
+    if (meaning.component?.length === 2) {
+      if (quantity === "inertia") return `, in ${axes.words(joint)}`;
+      return axes.isOther(meaning.name) ? ", between the lecture's axes" : "";
+    }
+    const frame = this.page.inspection.axes(meaning);
+    return frame === null ? "" : `, in ${axes.words(frame, meaning.part ? "link" : axes.kind)}`;
+  }
+
+  /** What the code computes, where a value is told in other axes. */
+  inCode(name, unitOf) {
+    if (!this.page.axes.isOther(name)) return "";
+    return ` (in link axes, ${withUnit(this.page.value(name), unitOf)})`;
   }
 
   withoutStatement(name, owner) {
