@@ -64,10 +64,15 @@ def seen_on(driver, width, height, dark=False):
                            {"media": "", "features": [{"name": "prefers-color-scheme", "value": scheme}]})
 
 
+def awaited(driver, seconds, what):
+    # asked often: twice in a second, as is usual, would be most of a test's time
+    return WebDriverWait(driver, seconds, poll_frequency=0.02).until(what)
+
+
 def opened(driver, page):
     driver.get(page.as_uri())
-    WebDriverWait(driver, 20).until(
-        lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+    ready = "return document.documentElement.dataset.ready"
+    awaited(driver, 20, lambda driver: driver.execute_script(ready) == "1")
 
 
 def lists(values):
@@ -294,10 +299,10 @@ def touch(page):
         # beside the arm a finger scrolls
         top = driver.execute_script("window.scrollTo(0, document.getElementById('sliders').offsetTop); return scrollY")
         dragged(((20, 600), (20, 300)))
-        WebDriverWait(driver, 5).until(lambda driver: driver.execute_script("return window.scrollY") > top + 100)
+        awaited(driver, 5, lambda driver: driver.execute_script("return window.scrollY") > top + 100)
         # a tap while it glides would stop it, and choose nothing
         resting = "const done = arguments[0], at = scrollY; setTimeout(() => done(scrollY === at), 200)"
-        WebDriverWait(driver, 5).until(lambda driver: driver.execute_async_script(resting))
+        awaited(driver, 5, lambda driver: driver.execute_async_script(resting))
         # what is tapped is chosen
         for of in ("[data-arrow]:not([hidden]) .hit", '[data-component="g2_x"] .own-name'):
             driver.execute_script(
@@ -315,7 +320,7 @@ def touch(page):
                 """, of)
             fingers("touchStart", (x, y))
             fingers("touchEnd")
-            WebDriverWait(driver, 5).until(lambda driver: driver.execute_script(
+            awaited(driver, 5, lambda driver: driver.execute_script(
                 "return document.querySelectorAll('.lit').length"))
             lit = driver.execute_script(
                 "return [...document.querySelectorAll('.lit')].map(of => of.dataset.arrow || of.dataset.name)")

@@ -79,6 +79,13 @@ impl JointFrames {
         if frames == FrameChoice::default() {
             return Self::read(robot, frames, Embedding::default());
         }
+        // what no reading can mend is not read a hundred times
+        let kinds: Vec<_> = robot.rows().map(|row| row.kind).collect();
+        let can_carry = kinds.windows(2).any(|pair| pair == [JointKind::Revolute, JointKind::Prismatic]);
+        let can_turn = kinds.last() == Some(&JointKind::Revolute);
+        if (frames.carried && !can_carry) || (frames.turned_last && !can_turn) {
+            return None;
+        }
         // roots: every fourth reading has a given one
         let last = robot.rows().last()?.link.com;
         let unknowns = [None].into_iter().chain([last[0], last[1]].map(|x| Some(x.abs())));
