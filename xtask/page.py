@@ -325,6 +325,14 @@ def touch(page):
             lit = driver.execute_script(
                 "return [...document.querySelectorAll('.lit')].map(of => of.dataset.arrow || of.dataset.name)")
             check(right and right in lit, f"touch: a tap on {right} lights {lit}")
+            told = driver.execute_script(
+                """
+                const box = document.querySelector("[data-readout]").getBoundingClientRect();
+                const inSight = box.height > 0 && box.top >= 0 && box.bottom <= window.innerHeight + 1;
+                document.querySelector(".let-go").click();
+                return [inSight, document.querySelectorAll(".lit").length];
+                """)
+            check(told == [True, 0], f"touch: of {right} the readout is in sight, and let go: {told}")
         quiet(driver, "touch")
         print("  fingers turn, zoom, scroll and choose")
     finally:
@@ -450,6 +458,14 @@ def hover(driver, robot):
         driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", shown[0])
         ActionChains(driver).move_to_element(shown[0]).perform()
         check("lit" in (shown[0].get_attribute("class") or ""), f"{robot}: what is hovered over is not lit")
+    # what is pointed at stays where it is, however much there is to say of it
+    tall = driver.execute_script(
+        """
+        const box = document.querySelector("[data-readout]");
+        const names = [...document.querySelectorAll("[data-component]")].map(of => of.dataset.component);
+        return [...names, "tau1", "n1_2_x", "c2"].map(name => { rne.select(name); return box.offsetHeight; });
+        """)
+    check(len(set(tall)) == 1, f"{robot}: the readout is {sorted(set(tall))} pixels high")
 
 
 def keyboard(driver, robot):
@@ -503,6 +519,38 @@ def exercise(driver, robot):
         answer = driver.find_element(By.CSS_SELECTOR, '[data-component="ddc3_x"]').text
         check("lost its factor 2" in answer, f"{robot}: half a Coriolis term is answered by {answer!r}")
     driver.execute_script("arguments[0].click()", driver.find_element(By.CSS_SELECTOR, '[data-switch="exercise"]'))
+
+
+def questions(driver, robot):
+    """Where answers stand that students looked for: centres of mass, parts of a torque, a step's savings, reasons."""
+    def readout(of):
+        return driver.execute_script(
+            """
+            document.querySelector(arguments[0]).dispatchEvent(new MouseEvent("click", { bubbles: true }));
+            return document.querySelector("[data-readout]").textContent;
+            """, of)
+    driver.execute_script("document.getElementById('home').click()")
+    said = readout('[data-com="2"]')
+    check("d2_x" in said and "centre of mass of link 2, in the world" in said, f"{robot}: a centre of mass says {said!r}")
+    readout('[data-cell="1-7"]')
+    before = driver.execute_script("return rne.parts()")
+    said = readout('[data-component="tau1"] .own-name')
+    for part in ("gravity", "Coriolis and centrifugal", "inertia"):
+        check(part in said, f"{robot}: the readout of tau1 has no {part}: {said!r}")
+    driver.execute_script("document.getElementById('faster').click()")
+    after = driver.execute_script("return rne.parts()")
+    near = all(abs(4 * a - b) <= 1e-9 * max(1, abs(b)) for a, b in zip(before["velocity"], after["velocity"], strict=True))
+    check(near and before["gravity"] == after["gravity"], f"{robot}: at twice the rates {before} becomes {after}")
+    readout('[data-cell="2-5"]')
+    head, products = driver.execute_script(
+        """
+        const of = JSON.parse(document.getElementById("data").textContent).cells.filter(({ step }) => step === 5);
+        const sum = (which) => of.reduce((all, cell) => all + cell[which].products, 0);
+        return [document.querySelector(".cell-head").textContent, [sum("before"), sum("after")]];
+        """)
+    saved = f"{products[1]} of {products[0]} products ({products[0] - products[1]} saved)"
+    check(saved in head, f"{robot}: step 5 does not say {saved!r}: {head!r}")
+    driver.execute_script("document.getElementById('home').click()")
 
 
 def accessible(driver, where, options=None):
@@ -561,6 +609,7 @@ def main():
             hover(driver, robot)
             keyboard(driver, robot)
             exercise(driver, robot)
+            questions(driver, robot)
             accessible(driver, f"{robot}, light")
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)

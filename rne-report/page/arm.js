@@ -93,7 +93,13 @@ class Arm {
       this.axes.push(axis);
       const com = svg(
         "g",
-        { class: "com", "data-com": joint },
+        {
+          class: "com",
+          "data-com": joint,
+          tabindex: "0",
+          role: "button",
+          "aria-label": `centre of mass of link ${joint}`,
+        },
         svg("circle", { r: 6 }),
         svg("path", { d: "M0 0V-6A6 6 0 0 1 6 0ZM0 0V6A6 6 0 0 1 -6 0Z" }),
       );

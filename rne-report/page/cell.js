@@ -12,6 +12,9 @@ class Cards {
       element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
       element("p", { class: "hint" }, this.counts(cell)),
       this.axesHint(cell),
+      cell.step === 7
+        ? element("p", { class: "hint" }, "Gravity comes in by the terms −m g of step 6; point at τ to see its part.")
+        : null,
     );
     const groups = new Map();
     for (const component of cell.components) {
@@ -60,11 +63,21 @@ class Cards {
     );
   }
 
-  /** How many operations a cell has. */
-  counts({ before, after }) {
-    if (before.products + before.sums === 0) return "no operations";
-    if (this.page.form === "unfolded") return `${before.products} products, ${before.sums} sums`;
-    return `${after.products} of ${before.products} products left, ${after.sums} of ${before.sums} sums`;
+  /** How many operations a cell has, and its step of all joints. */
+  counts({ step, before, after }) {
+    const all = (which) =>
+      this.page.inspection.cells
+        .filter((cell) => cell.step === step)
+        .reduce((sum, cell) => [sum[0] + cell[which].products, sum[1] + cell[which].sums], [0, 0]);
+    const [whole, left] = [all("before"), all("after")];
+    if (whole[0] + whole[1] === 0) return "no operations";
+    if (this.page.form === "unfolded")
+      return `${before.products} products, ${before.sums} sums; step ${step} of all joints: ${whole[0]}, ${whole[1]}`;
+    return (
+      `${after.products} of ${before.products} products left, ${after.sums} of ${before.sums} sums; ` +
+      `step ${step} of all joints: ${left[0]} of ${whole[0]} products (${whole[0] - left[0]} saved), ` +
+      `${left[1]} of ${whole[1]} sums`
+    );
   }
 
   /** A component: general, with this robot's numbers, what is gone and why, code; and its value. */

@@ -240,6 +240,7 @@ class Page {
     byId("rest").addEventListener("click", () =>
       this.setState({ qd: this.state.qd.map(() => 0), qdd: this.state.qdd.map(() => 0) }),
     );
+    byId("faster").addEventListener("click", () => this.setState({ qd: this.state.qd.map((rate) => 2 * rate) }));
     byId("home").addEventListener("click", () => {
       this.tip.show({ f: [0, 0, 0], n: [0, 0, 0] });
       this.setState(this.initial);
@@ -438,6 +439,7 @@ window.rne = {
   setState: (state) => page.setState(state),
   torques: () => page.folded.run(page.given),
   total: () => page.split.total,
+  parts: () => page.split,
   value: (name) => page.value(name),
   told: (name) => page.told(name),
   select: (name) => page.reading.select(name),

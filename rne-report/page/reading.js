@@ -6,6 +6,14 @@ class Reading {
     // a click keeps what pointing shows
     this.pinned = null;
     this.pointed = null;
+    // a hand has no Escape
+    this.letGo = element("button", { type: "button", class: "let-go", "aria-label": "let it go" }, "×");
+    this.letGo.addEventListener("click", () => this.release());
+  }
+
+  release() {
+    this.pinned = this.pointed = null;
+    this.relight();
   }
 
   /** Everything that belongs to a selection: names, arrows, places on the arm, a cell. */
@@ -82,13 +90,19 @@ class Reading {
   readout() {
     const root = document.querySelector("[data-readout]");
     const selection = this.pointed || this.pinned;
+    root.classList.toggle("chosen", Boolean(selection));
+    this.tell(root, selection);
+    if (selection) root.append(this.letGo);
+  }
+
+  tell(root, selection) {
     const line = (kind, ...content) => element("span", { class: `readout-${kind}` }, ...content);
     if (!selection) {
       root.replaceChildren(
         line(
           "hint",
           "Point at a symbol, a line of code or an arrow; Tab and arrow keys do the same. " +
-            "A click keeps it, Escape lets it go.",
+            "A click keeps it, Escape lets it go. “Exercise” above checks numbers of your own.",
         ),
       );
       return;
@@ -117,6 +131,7 @@ class Reading {
           this.page.inspection.words(arrow),
           `; ${this.ofWhat(arrow)}${this.axesWords(this.page.inspection.meaning(names[0]))}`,
         ),
+        ...(arrow.quantity === "d" ? [line("meaning", this.inWorld(arrow.joint))] : []),
       );
       return;
     }
@@ -152,11 +167,22 @@ class Reading {
         `${this.page.inspection.words(meaning)}${meaning.part ? ", a term of it" : ""}`,
         `; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`,
       ),
-      line("code", code, isHidden ? "" : this.inCode(name, unitOf)),
+      // a reason is read to its end, code stays a line
+      line(statement ? "code" : "meaning", code, isHidden ? "" : this.inCode(name, unitOf)),
+      ...(meaning.quantity === "torque" && !isHidden ? [line("meaning", this.parts(meaning.joint, unitOf))] : []),
       ...(selection.why
         ? [line("why", `This term is ${selection.why.replace(/^a factor/, "left out as a factor")}`)]
         : []),
     );
+  }
+
+  /** What gravity, speed and acceleration have in a torque. */
+  parts(joint, unitOf) {
+    const { split, wrench } = this.page;
+    const told = PARTS.filter(([part]) => part !== "tip" || [...wrench.f, ...wrench.n].some((of) => of !== 0)).map(
+      ([part, meaning]) => `${meaning} ${short(split[part][joint - 1])}`,
+    );
+    return `of it ${told.join(", ")} ${unitText(unitOf)}`;
   }
 
   /** The names of a term, in words. */
@@ -192,6 +218,11 @@ class Reading {
     }
     const frame = this.page.inspection.axes(meaning);
     return frame === null ? "" : `, in ${axes.words(frame, meaning.part ? "link" : axes.kind)}`;
+  }
+
+  /** Where the centre of mass of a link is. */
+  inWorld(joint) {
+    return `centre of mass of link ${joint}, in the world: (${this.page.arm.pose.coms[joint].map(short).join(", ")}) m`;
   }
 
   /** What the code computes, where a value is told in other axes. */
@@ -255,9 +286,11 @@ class Reading {
   /** What stands under a node: a term, a name or an arrow. */
   selectionAt(node) {
     const found =
-      node instanceof Element ? node.closest("[data-name], [data-arrow], .term, .struck, [data-component]") : null;
+      node instanceof Element ? node.closest("[data-name], [data-arrow], [data-com], .term, .struck, [data-component]") : null;
     if (!found) return null;
     if (found.dataset.arrow) return { arrow: found.dataset.arrow };
+    // a centre of mass is at the end of its d
+    if (found.dataset.com) return { arrow: `d-${found.dataset.com}` };
     const why = found.closest("[data-why]")?.dataset.why;
     if (found.dataset.name) return { name: found.dataset.name, why };
     if (found.tree !== undefined) return { tree: found.tree, sign: found.sign, term: found };
@@ -302,15 +335,14 @@ class Reading {
 
   key(event) {
     if (event.key === "Escape") {
-      this.pinned = this.pointed = null;
-      this.relight();
+      this.release();
       return;
     }
     const { target } = event;
     if (target.matches("input")) return;
     if (
       (event.key === "Enter" || event.key === " ") &&
-      target.matches(".pick, [data-arrow], [data-component]") &&
+      target.matches(".pick, [data-arrow], [data-com], [data-component]") &&
       !target.matches("button")
     ) {
       event.preventDefault();
