@@ -4,6 +4,8 @@ Usage: python page.py RNE FOLDER [PICTURES]     RNE is the binary, pages go to F
 """
 
 import json
+import math
+import os
 import pathlib
 import random
 import re
@@ -20,8 +22,11 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
+IS_FULL = bool(os.environ.get("CI_FULL"))
+# everything is tried of these; of the others torques and axes at a few states, unless CI_FULL is set
+WHOLE = ["planar2", "puma560"]
 ROBOTS = ["planar1", "planar2", "stanford", "puma560", "panda"]
-STATES = 50
+STATES, FEW = 50, 5
 TOLERANCE = 1e-12
 LARGEST = 400_000  # bytes of the page of an arm with 7 joints
 SCREENS = {"desk": (1400, 1000), "phone": (375, 812)}
@@ -45,34 +50,52 @@ def browser(width, height, dark=False):
     # named, so that nobody looks for them elsewhere
     options.binary_location = shutil.which("chromium")
     driver = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
+    seen_on(driver, width, height, dark)
+    return driver
+
+
+def seen_on(driver, width, height, dark=False):
+    """Another screen, and colours of day or night."""
     # a window has a smallest width, a phone has not
     driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride",
                            {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 500})
     scheme = "dark" if dark else "light"
     driver.execute_cdp_cmd("Emulation.setEmulatedMedia",
-                           {"features": [{"name": "prefers-color-scheme", "value": scheme}]})
-    return driver
+                           {"media": "", "features": [{"name": "prefers-color-scheme", "value": scheme}]})
+
+
+def awaited(driver, seconds, what):
+    # asked often: twice in a second, as is usual, would be most of a test's time
+    return WebDriverWait(driver, seconds, poll_frequency=0.02).until(what)
 
 
 def opened(driver, page):
     driver.get(page.as_uri())
-    WebDriverWait(driver, 20).until(
-        lambda driver: driver.execute_script("return document.documentElement.dataset.ready") == "1")
+    ready = "return document.documentElement.dataset.ready"
+    awaited(driver, 20, lambda driver: driver.execute_script(ready) == "1")
 
 
 def lists(values):
     return ",".join(repr(value) for value in values)
 
 
-def torques_of_eval(rne, robot, state):
+def evaluated(rne, robot, state, *more):
     command = [rne, "eval", robot, "--json"] + [f"--{name}={lists(state[name])}" for name in ("q", "qd", "qdd")]
-    return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)["result"]
+    return json.loads(subprocess.run(command + list(more), check=True, capture_output=True).stdout)
+
+
+def torques_of_eval(rne, robot, state, *more):
+    return evaluated(rne, robot, state, *more)["result"]
+
+
+def pressed(driver, switch):
+    driver.execute_script("document.querySelector(`[data-switch=\"${arguments[0]}\"]`).click()", switch)
 
 
 def torques(driver, rne, robot, dof):
     chance = random.Random(13)
-    worst = 0.0
-    for _ in range(STATES):
+    worst, states = 0.0, STATES if IS_FULL or robot in WHOLE else FEW
+    for _ in range(states):
         state = {name: [chance.uniform(-2, 2) for _ in range(dof)] for name in ("q", "qd", "qdd")}
         driver.execute_script("rne.setState(arguments[0])", state)
         shown = driver.execute_script("return rne.torques()")
@@ -80,63 +103,294 @@ def torques(driver, rne, robot, dof):
         largest = max(1.0, max(abs(torque) for torque in right))
         worst = max(worst, max(abs(a - b) for a, b in zip(shown, right, strict=True)) / largest)
     check(worst <= TOLERANCE, f"{robot}: torques differ by {worst:.1e}")
-    print(f"  torques at {STATES} states: worst difference {worst:.1e} of the largest")
+    print(f"  torques at {states} states: worst difference {worst:.1e} of the largest")
+
+
+# the quantities of a worksheet that the page knows by other names
+QUANTITIES = {"next_force": "child_force", "next_moment": "child_moment"}
+
+
+def axes(driver, rne, robot, inspection):
+    """Components in each kind of axes are those of the worksheet, also as they are shown, and frames are drawn so."""
+    chance, dof = random.Random(19), len(inspection["robot"]["joints"])
+    names = {(of["quantity"], of["joint"], of.get("component") or ""): name
+             for name, of in inspection["names"].items() if not of.get("part")}
+    compared, worst = 0, 0.0
+    for kind in ("joint", "base", "link"):
+        pressed(driver, kind)
+        state = {name: [chance.uniform(-2, 2) for _ in range(dof)] for name in ("q", "qd", "qdd")}
+        rows = [(names.get((QUANTITIES.get(row["quantity"], row["quantity"]), row["joint"], row["component"])), row)
+                for row in evaluated(rne, robot, state, "--trace", "--axes", kind)["trace"]["rows"] if row["frame"]]
+        found = {row["quantity"] for name, row in rows if name}
+        check({"omega", "acceleration", "gravity", "d", "inertia", "joint_force", "joint_moment"} <= found,
+              f"{robot}: of vectors in {kind} axes only {sorted(found)} are compared")
+        rows = [(name, row["value"]) for name, row in rows if name]
+        told = driver.execute_script(
+            "rne.setState(arguments[0]); return arguments[1].map(name => rne.told(name))",
+            state, [name for name, _ in rows])
+        for (name, right), value in zip(rows, told, strict=True):
+            # what the code does not need has no number
+            difference = abs(value - right) / max(1.0, abs(right)) if value is not None else 1.0
+            worst = max(worst, difference)
+            check(difference <= TOLERANCE, f"{robot}: {name} in {kind} axes is {value}, and of the worksheet {right}")
+        compared += len(rows)
+        of_row = dict(rows)
+        joint = min(2, dof)
+        driver.find_element(By.CSS_SELECTOR, f'[data-cell="{joint}-5"]').click()
+        for axis in "xyz":
+            shown = driver.execute_script(
+                """
+                const name = arguments[0];
+                rne.select(name);
+                const card = document.querySelector(`[data-component="${name}"]`);
+                return [card.querySelector(".value").title, document.querySelector(".readout-value").title,
+                        document.querySelector(".readout-meaning").textContent, card.textContent];
+                """, f"g{joint}_{axis}")
+            for text in shown[:2]:
+                number = float(text.replace("−", "-"))
+                check(abs(number - of_row[f"g{joint}_{axis}"]) <= 10 * TOLERANCE,
+                      f"{robot}: g{joint}_{axis} in {kind} axes is shown as {text}")
+            words = {"link": f"axes of link {joint}", "joint": "the lecture's axes", "base": "axes of the base"}[kind]
+            check(words in shown[2], f"{robot}: of g{joint}_{axis} the readout says {shown[2]!r}, not {words!r}")
+            check(("axes" in shown[3]) == (kind != "link"), f"{robot}: the card of g{joint}_{axis} says {shown[3]!r}")
+        drawn_in(driver, robot, kind, dof)
+    print(f"  {compared} components in three kinds of axes: worst difference {worst:.1e} of the largest")
+
+
+def drawn_in(driver, robot, kind, dof):
+    """The numbers of g, along the axes that are drawn, are its arrow; as nearly as the perspective lets them be."""
+    seen = 0
+    for joint in range(1, dof + 1):
+        found = driver.execute_script(
+            """
+            const joint = arguments[0];
+            rne.select(`g${joint}_z`);
+            const way = (path) => {
+              const [a, b, c, d] = path.getAttribute("d").match(/-?[0-9.]+/g).map(Number);
+              return [c - a, d - b];
+            };
+            const axes = [...document.querySelectorAll(`#arm [data-frame="${joint}"]`)];
+            return {
+              hidden: axes.some(of => of.hasAttribute("hidden")),
+              axes: axes.map(way),
+              numbers: ["x", "y", "z"].map(axis => rne.told(`g${joint}_${axis}`)),
+              arrow: way(document.querySelector(`[data-arrow="gravity-${joint}"] .hit`)),
+            };
+            """, joint)
+        check(not found["hidden"], f"{robot}: the axes of g{joint}_z are not drawn")
+        along = [sum(number * axis[at] for number, axis in zip(found["numbers"], found["axes"])) for at in (0, 1)]
+        sizes = math.hypot(*along), math.hypot(*found["arrow"])
+        # an arrow that points at the viewer has no direction
+        if sizes[1] < 25 or sizes[0] < 1e-6:
+            continue
+        cosine = sum(a * b for a, b in zip(along, found["arrow"])) / (sizes[0] * sizes[1])
+        check(cosine > 0.97, f"{robot}: the axes drawn for g{joint} in {kind} axes are not those of its numbers")
+        seen += 1
+    check(seen > 0, f"{robot}: no arrow is long enough to see its axes in {kind} axes")
+
+
+def wrench(driver, rne, robot, dof):
+    """The sliders of force and moment at the tip give the torques of `rne eval --wrench`; reset takes them away."""
+    chance = random.Random(23)
+    state = {name: [chance.uniform(-2, 2) for _ in range(dof)] for name in ("q", "qd", "qdd")}
+    given = [round(chance.uniform(-2, 2), 3) for _ in range(6)]
+    shown = driver.execute_script(
+        """
+        rne.setState(arguments[0]);
+        const inputs = [...document.querySelectorAll("[data-tip]")];
+        inputs.forEach((input, at) => {
+          input.value = arguments[1][at];
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        });
+        return { of: inputs.map(input => input.dataset.tip), total: rne.total(), free: rne.torques(),
+                 values: inputs.map(input => Number(input.value)),
+                 arrows: document.querySelectorAll(".arrow.plain:not([hidden])").length };
+        """, state, given)
+    check(shown["of"] == ["fx", "fy", "fz", "nx", "ny", "nz"], f"{robot}: the sliders of the tip are {shown['of']}")
+    right = torques_of_eval(rne, robot, state, f"--wrench={lists(shown['values'])}")
+    largest = max(1.0, max(abs(torque) for torque in right))
+    worst = max(abs(a - b) for a, b in zip(shown["total"], right, strict=True)) / largest
+    check(worst <= TOLERANCE, f"{robot}: torques with a wrench at the tip differ by {worst:.1e}")
+    check(shown["total"] != shown["free"] and shown["arrows"] >= 2, f"{robot}: force and moment at the tip do nothing")
+    after = driver.execute_script("document.getElementById('home').click(); return [rne.total(), rne.torques()]")
+    check(after[0] == after[1], f"{robot}: reset leaves a wrench at the tip")
+    print(f"  with a wrench at the tip: worst difference {worst:.1e} of the largest")
+
+
+def views(driver, page):
+    """What a reader has chosen comes back on another page of the same arm."""
+    opened(driver, page)
+    driver.execute_script(
+        """
+        for (const of of ["unfolded", "c", "joint", "dark"]) document.querySelector(`[data-switch="${of}"]`).click();
+        for (const of of ["frames", "masses"]) document.querySelector(`[data-shows="${of}"]`).click();
+        for (const [of, value] of [["fx", 3], ["nz", -1.5]]) {
+          const input = document.querySelector(`[data-tip="${of}"]`);
+          input.value = value;
+          input.dispatchEvent(new Event("input", { bubbles: true }));
+        }
+        document.querySelector(".tip-force").open = true;
+        document.querySelector('[data-cell="1-6"]').click();
+        """)
+    view = driver.execute_script("return rne.view()")
+    for what, right in (("axes", "joint"), ("frames", True), ("masses", False), ("tip", True), ("form", "unfolded"),
+                        ("wrench", {"f": [3, 0, 0], "n": [0, 0, -1.5]}), ("cell", [1, 6]), ("theme", "dark")):
+        check(view[what] == right, f"{page.stem}: a view has {view[what]} as {what}, chosen was {right}")
+    shown = "return ['[data-switch]', '[data-shows]'].map(of => [...document.querySelectorAll(of)]" \
+            ".map(of => of.getAttribute('aria-pressed')).join()).concat(rne.total().join())"
+    right = driver.execute_script(shown)
+    opened(driver, page)
+    check(driver.execute_script(shown) != right, f"{page.stem}: the choices change nothing")
+    driver.execute_script("rne.show(arguments[0])", view)
+    check(driver.execute_script("return rne.view()") == view, f"{page.stem}: a view does not come back")
+    check(driver.execute_script(shown) == right, f"{page.stem}: a view is not shown as it was")
+    print("  a view comes back on another page")
+
+
+def touch(page):
+    """Fingers turn and zoom the arm, choose what they tap, and scroll the page beside the arm."""
+    driver = browser(*SCREENS["phone"])
+    try:
+        driver.execute_cdp_cmd("Emulation.setTouchEmulationEnabled", {"enabled": True, "maxTouchPoints": 2})
+        opened(driver, page)
+        # the eye stands still while fingers are on the arm
+        driver.execute_script("document.getElementById('arm').scrollIntoView({ block: 'center' })")
+        look = "const { yaw, pitch, zoom } = rne.view().look; return [yaw, pitch, zoom, window.scrollY]"
+
+        def fingers(kind, *points):
+            driver.execute_cdp_cmd("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": at} for at, (x, y) in enumerate(points)]})
+
+        def dragged(*paths):
+            fingers("touchStart", *(path[0] for path in paths))
+            for step in range(1, 11):
+                fingers("touchMove", *((a + (c - a) * step / 10, b + (d - b) * step / 10) for (a, b), (c, d) in paths))
+            fingers("touchEnd")
+            return driver.execute_script(look)
+
+        box = driver.execute_script(
+            "const of = document.getElementById('arm').getBoundingClientRect(); return [of.x, of.y, of.width, of.height]")
+        middle = box[0] + box[2] / 2, box[1] + box[3] / 2
+        on_link = driver.execute_script(
+            """
+            const on = (of) => of.closest?.(".solid");
+            const box = document.getElementById("arm").getBoundingClientRect();
+            for (let x = box.x + 40; x < box.right - 40; x += 3)
+              for (let y = box.y + 40; y < box.bottom - 40; y += 3)
+                if (on(document.elementFromPoint(x, y))) return [x, y];
+            """)
+        for where, (x, y) in (("the picture's corner", (box[0] + 12, box[1] + box[3] - 12)), ("a link", on_link)):
+            before = driver.execute_script(look)
+            after = dragged(((x, y), (x + 60, y - 40)))
+            # 60 pixels are 0.6 rad; a browser keeps the first few to itself
+            check(0.35 < before[0] - after[0] < 0.65, f"touch: from {where} the arm turns by {before[0] - after[0]:.2f}")
+            check(0.15 < before[1] - after[1] < 0.45, f"touch: from {where} it tilts by {before[1] - after[1]:.2f}")
+            check(before[2:] == after[2:], f"touch: from {where} a finger zooms or scrolls: {before} {after}")
+            driver.execute_script("rne.show({ ...rne.view(), look: arguments[0] })",
+                                  dict(zip(("yaw", "pitch", "zoom"), before)))
+        before = driver.execute_script(look)
+        after = dragged(((middle[0] - 30, middle[1]), (middle[0] - 90, middle[1])),
+                        ((middle[0] + 30, middle[1]), (middle[0] + 90, middle[1])))
+        check(2 < after[2] / before[2] < 3.6, f"touch: fingers three times as far apart zoom by {after[2] / before[2]:.2f}")
+        check(before[:2] == after[:2] and before[3] == after[3], f"touch: two fingers turn or scroll: {before} {after}")
+        # one finger after two turns the arm again, and does not jump
+        again = dragged(((middle[0], box[1] + 20), (middle[0] + 60, box[1] + 20)))
+        check(0.35 < after[0] - again[0] < 0.65, f"touch: after a pinch a finger turns by {after[0] - again[0]:.2f}")
+        # beside the arm a finger scrolls
+        top = driver.execute_script("window.scrollTo(0, document.getElementById('sliders').offsetTop); return scrollY")
+        dragged(((20, 600), (20, 300)))
+        awaited(driver, 5, lambda driver: driver.execute_script("return window.scrollY") > top + 100)
+        # a tap while it glides would stop it, and choose nothing
+        resting = "const done = arguments[0], at = scrollY; setTimeout(() => done(scrollY === at), 200)"
+        awaited(driver, 5, lambda driver: driver.execute_async_script(resting))
+        # what is tapped is chosen
+        for of in ("[data-arrow]:not([hidden]) .hit", '[data-component="g2_x"] .own-name'):
+            driver.execute_script(
+                "rne.show({ ...rne.view(), pinned: null }); document.querySelector('[data-cell=\"2-5\"]').click();"
+                "document.querySelector(arguments[0]).scrollIntoView({ block: 'center' })", of)
+            x, y, right = driver.execute_script(
+                """
+                const node = document.querySelector(arguments[0]);
+                const box = node.getBoundingClientRect();
+                const way = node.getTotalLength && node.getPointAtLength(node.getTotalLength() * 0.7);
+                const { x, y } = way ? way.matrixTransform(node.getScreenCTM())
+                  : { x: box.x + box.width / 2, y: box.y + box.height / 2 };
+                const at = document.elementFromPoint(x, y)?.closest("[data-arrow], [data-name]");
+                return [x, y, at?.dataset.arrow || at?.dataset.name || null];
+                """, of)
+            fingers("touchStart", (x, y))
+            fingers("touchEnd")
+            awaited(driver, 5, lambda driver: driver.execute_script(
+                "return document.querySelectorAll('.lit').length"))
+            lit = driver.execute_script(
+                "return [...document.querySelectorAll('.lit')].map(of => of.dataset.arrow || of.dataset.name)")
+            check(right and right in lit, f"touch: a tap on {right} lights {lit}")
+            told = driver.execute_script(
+                """
+                const box = document.querySelector("[data-readout]").getBoundingClientRect();
+                const inSight = box.height > 0 && box.top >= 0 && box.bottom <= window.innerHeight + 1;
+                document.querySelector(".let-go").click();
+                return [inSight, document.querySelectorAll(".lit").length];
+                """)
+            check(told == [True, 0], f"touch: of {right} the readout is in sight, and let go: {told}")
+        quiet(driver, "touch")
+        print("  fingers turn, zoom, scroll and choose")
+    finally:
+        driver.quit()
 
 
 def statements(driver, robot, inspection):
     """Every statement leads to its equation, value, unit and arrow."""
-    walked = 0
-    for statement in inspection["statements"]:
-        name = statement["name"]
-        found = driver.execute_script(
-            """
-            const name = arguments[0];
-            rne.select(name);
-            const lit = [...document.querySelectorAll(".lit")];
-            const readout = document.querySelector("[data-readout]").textContent;
-            return {
-              name: lit.some(of => of.dataset.name === name),
-              component: lit.some(of => of.closest("[data-component]")),
-              arrow: lit.some(of => of.dataset.arrow !== undefined),
-              value: Number.isFinite(rne.value(name)),
-              readout,
-            };
-            """, name)
+    names = [statement["name"] for statement in inspection["statements"]]
+    walked = driver.execute_script(
+        """
+        return arguments[0].map(name => {
+          rne.select(name);
+          const lit = [...document.querySelectorAll(".lit")];
+          return {
+            name: lit.some(of => of.dataset.name === name),
+            component: lit.some(of => of.closest("[data-component]")),
+            arrow: lit.some(of => of.dataset.arrow !== undefined),
+            value: Number.isFinite(rne.value(name)),
+            readout: document.querySelector("[data-readout]").textContent,
+          };
+        });
+        """, names)
+    for name, found in zip(names, walked, strict=True):
         known = inspection["names"][name]
         kind = inspection["robot"]["joints"][known["joint"] - 1]["kind"]
         unit = inspection["quantities"][known["quantity"]]["units"][kind == "prismatic"].replace(" ", "·")
         for what in ("name", "component", "arrow", "value"):
             check(found[what], f"{robot}: {name} leads to no {what}")
         check(name in found["readout"] and unit in found["readout"], f"{robot}: the readout has no {name} in {unit}")
-        walked += 1
-    print(f"  {walked} statements lead to equation, value, unit and arrow")
-    arrows = driver.find_elements(By.CSS_SELECTOR, "[data-arrow]")
-    check(len(arrows) > 0, f"{robot}: there are no arrows")
-    back = 0
-    for arrow in driver.execute_script("return [...document.querySelectorAll('[data-arrow]')].map(of => of.dataset.arrow)"):
-        names = driver.execute_script(
-            """
-            const arrow = document.querySelector(`[data-arrow="${arguments[0]}"]`);
-            arrow.focus();
-            return [...document.querySelectorAll(".lit[data-name]")].map(of => of.dataset.name);
-            """, arrow)
-        check(names, f"{robot}: arrow {arrow} leads to no name")
-        back += 1
-    print(f"  {back} arrows lead back")
+    print(f"  {len(walked)} statements lead to equation, value, unit and arrow")
+    back = driver.execute_script(
+        """
+        return [...document.querySelectorAll("[data-arrow]")].map(arrow => {
+          arrow.focus();
+          return [arrow.dataset.arrow, [...document.querySelectorAll(".lit[data-name]")].map(of => of.dataset.name)];
+        });
+        """)
+    check(len(back) > 0, f"{robot}: there are no arrows")
+    for arrow, lit in back:
+        check(lit, f"{robot}: arrow {arrow} leads to no name")
+    print(f"  {len(back)} arrows lead back")
 
 
 def reasons(driver, robot, inspection):
     """What a card calls gone, and what uses it, are what the inspection says of the component."""
     code = {of["name"]: re.findall(r"\w+", of["rust"].split("=", 1)[1]) for of in inspection["statements"]}
     told = used = 0
-    for cell in inspection["cells"]:
-        driver.find_element(By.CSS_SELECTOR, f'[data-cell="{cell["joint"]}-{cell["step"]}"]').click()
-        cards = driver.execute_script(
-            """
-            const texts = (card, of) => [...card.querySelectorAll(of)].map(found => found.textContent);
-            return Object.fromEntries([...document.querySelectorAll("[data-component]")].map(card =>
-              [card.dataset.component, [texts(card, "dd.gone .why"), texts(card, "dd.users code")]]));
-            """)
+    opened_cells = driver.execute_script(
+        """
+        const texts = (card, of) => [...card.querySelectorAll(of)].map(found => found.textContent);
+        return arguments[0].map(cell => {
+          document.querySelector(`[data-cell="${cell}"]`).click();
+          return Object.fromEntries([...document.querySelectorAll("[data-component]")].map(card =>
+            [card.dataset.component, [texts(card, "dd.gone .why"), texts(card, "dd.users code")]]));
+        });
+        """, [f"{cell['joint']}-{cell['step']}" for cell in inspection["cells"]])
+    for cell, cards in zip(inspection["cells"], opened_cells, strict=True):
         for component in cell["components"]:
             name = component["name"]
             whys, users = cards[name]
@@ -204,6 +458,14 @@ def hover(driver, robot):
         driver.execute_script("arguments[0].scrollIntoView({block: 'center'})", shown[0])
         ActionChains(driver).move_to_element(shown[0]).perform()
         check("lit" in (shown[0].get_attribute("class") or ""), f"{robot}: what is hovered over is not lit")
+    # what is pointed at stays where it is, however much there is to say of it
+    tall = driver.execute_script(
+        """
+        const box = document.querySelector("[data-readout]");
+        const names = [...document.querySelectorAll("[data-component]")].map(of => of.dataset.component);
+        return [...names, "tau1", "n0_1_x", "c1"].map(name => { rne.select(name); return box.offsetHeight; });
+        """)
+    check(len(set(tall)) == 1, f"{robot}: the readout is {sorted(set(tall))} pixels high")
 
 
 def keyboard(driver, robot):
@@ -259,6 +521,39 @@ def exercise(driver, robot):
     driver.execute_script("arguments[0].click()", driver.find_element(By.CSS_SELECTOR, '[data-switch="exercise"]'))
 
 
+def questions(driver, robot):
+    """Where answers stand that students looked for: centres of mass, parts of a torque, a step's savings, reasons."""
+    def readout(of):
+        return driver.execute_script(
+            """
+            document.querySelector(arguments[0]).dispatchEvent(new MouseEvent("click", { bubbles: true }));
+            return document.querySelector("[data-readout]").textContent;
+            """, of)
+    driver.execute_script("document.getElementById('home').click()")
+    last = driver.execute_script("return Math.min(2, rne.torques().length)")
+    said = readout(f'[data-com="{last}"]')
+    check(f"d{last}_x" in said and f"centre of mass of link {last}, in the world" in said, f"{robot}: a centre of mass says {said!r}")
+    readout('[data-cell="1-7"]')
+    before = driver.execute_script("return rne.parts()")
+    said = readout('[data-component="tau1"] .own-name')
+    for part in ("gravity", "Coriolis and centrifugal", "inertia"):
+        check(part in said, f"{robot}: the readout of tau1 has no {part}: {said!r}")
+    driver.execute_script("document.getElementById('faster').click()")
+    after = driver.execute_script("return rne.parts()")
+    near = all(abs(4 * a - b) <= 1e-9 * max(1, abs(b)) for a, b in zip(before["velocity"], after["velocity"], strict=True))
+    check(near and before["gravity"] == after["gravity"], f"{robot}: at twice the rates {before} becomes {after}")
+    readout('[data-cell="1-5"]')
+    head, products = driver.execute_script(
+        """
+        const of = JSON.parse(document.getElementById("data").textContent).cells.filter(({ step }) => step === 5);
+        const sum = (which) => of.reduce((all, cell) => all + cell[which].products, 0);
+        return [document.querySelector(".cell-head").textContent, [sum("before"), sum("after")]];
+        """)
+    saved = f"{products[1]} of {products[0]} products ({products[0] - products[1]} saved)"
+    check(saved in head, f"{robot}: step 5 does not say {saved!r}: {head!r}")
+    driver.execute_script("document.getElementById('home').click()")
+
+
 def accessible(driver, where, options=None):
     found = axe_selenium.Axe().run(driver, options=options)
     grave = [of for of in found["violations"] if of["impact"] in ("serious", "critical")]
@@ -302,27 +597,38 @@ def main():
             inspection = json.loads(
                 subprocess.run([rne, "show", robot, "--json"], check=True, capture_output=True).stdout)
             opened(driver, page)
-            torques(driver, rne, robot, len(inspection["robot"]["joints"]))
+            dof = len(inspection["robot"]["joints"])
+            torques(driver, rne, robot, dof)
+            wrench(driver, rne, robot, dof)
+            axes(driver, rne, robot, inspection)
+            if robot not in WHOLE and not IS_FULL:
+                quiet(driver, robot)
+                continue
             sliders(driver, robot)
             statements(driver, robot, inspection)
             reasons(driver, robot, inspection)
             hover(driver, robot)
             keyboard(driver, robot)
             exercise(driver, robot)
+            questions(driver, robot)
             accessible(driver, f"{robot}, light")
             narrow(driver, f"{robot}, desk")
             quiet(driver, robot)
+            views(driver, page)
     finally:
         driver.quit()
-    for robot in ("planar2", "puma560"):
-        for screen, size in SCREENS.items():
-            for dark in (False, True):
-                driver = browser(*size, dark=dark)
-                try:
+    touch(pages["puma560"])
+    driver = browser(*SCREENS["desk"])
+    try:
+        for robot in WHOLE:
+            for screen, size in SCREENS.items():
+                for dark in (False, True):
+                    seen_on(driver, *size, dark=dark)
                     where = f"{robot}, {screen}, {'dark' if dark else 'light'}"
                     opened(driver, pages[robot])
                     narrow(driver, where)
-                    if dark or screen == "phone":
+                    # the pages of two arms differ in their data alone
+                    if (dark or screen == "phone") and (IS_FULL or robot == WHOLE[-1]):
                         accessible(driver, where)
                     quiet(driver, where)
                     name = f"{robot}-{screen}{'-dark' if dark else ''}.png"
@@ -330,8 +636,8 @@ def main():
                     if screen == "desk" and not dark:
                         driver.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
                         picture(driver, pictures / f"{robot}-print.png", 150_000)
-                finally:
-                    driver.quit()
+    finally:
+        driver.quit()
     print(f"{len(failures)} failures" if failures else "all of it holds")
     sys.exit(1 if failures else 0)
 

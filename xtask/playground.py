@@ -18,18 +18,17 @@ from http.server import SimpleHTTPRequestHandler, ThreadingHTTPServer
 
 from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
-from selenium.webdriver.support.ui import WebDriverWait
 
 import page as report
-from page import SCREENS, TOLERANCE, browser, check, failures, narrow, picture, quiet, torques_of_eval
+from page import SCREENS, TOLERANCE, awaited, browser, check, failures, narrow, picture, quiet, seen_on, torques_of_eval
 
-STATES = 20
-TIMES = 7
+STATES = 10
+TIMES = 5
 
 
 def settled(driver):
     """Until the compiler has answered, and what it made is shown."""
-    WebDriverWait(driver, 60).until(lambda driver: driver.execute_script(
+    awaited(driver, 60, lambda driver: driver.execute_script(
         "return window.playground && !playground.compiler.asked && !playground.next && "
         "['good', 'wrong'].includes(document.documentElement.dataset.is)"))
     return driver.execute_script("return document.documentElement.dataset.is")
@@ -153,8 +152,7 @@ def mistakes(driver, rne, puma):
     check(selected == [True, "masss"], f"a click on the message leads to {selected}")
     # a hand mends it: behind the selection one letter goes
     driver.find_element(By.ID, "text").send_keys(Keys.ARROW_RIGHT, Keys.BACKSPACE)
-    WebDriverWait(driver, 30).until(
-        lambda driver: driver.execute_script("return document.documentElement.dataset.shown") != shown)
+    awaited(driver, 30, lambda driver: driver.execute_script("return document.documentElement.dataset.shown") != shown)
     settled(driver)
     check(text(driver) == puma, "the text is not as it was")
     check(driver.find_element(By.ID, "shown").get_attribute("data-state") == "good", "the page stays dimmed")
@@ -179,6 +177,8 @@ def edited(driver, rne, puma):
     chosen(driver, "puma560")
     state = {"q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "qd": [1, 2, 3, 4, 5, 6], "qdd": [0] * 6}
     inner(driver, "rne.setState(arguments[0]); document.querySelector('[data-switch=c]').click();"
+                  "for (const of of ['[data-switch=base]', '[data-shows=frames]', '[data-shows=masses]'])"
+                  "  document.querySelector(of).click();"
                   "document.querySelector('[data-cell=\"3-4\"]').click()", state)
     heavier = re.sub(r"^title: .*$", "title: A heavier one", puma, count=1, flags=re.M)
     heavier = heavier.replace("mass: ", "mass: 1 + ", 2)
@@ -187,6 +187,10 @@ def edited(driver, rne, puma):
     view = inner(driver, "return rne.view()")
     check(view["state"] == state and view["language"] == "c" and view["cell"] == [3, 4],
           f"after an edit the page is looked at as {view}")
+    shown = inner(driver, "return ['[data-switch=base]', '[data-shows=frames]', '[data-shows=masses]'].map("
+                          "of => document.querySelector(of).getAttribute('aria-pressed'))")
+    check(shown == ["true", "true", "false"] and [view["axes"], view["frames"], view["masses"]] == ["base", True, False],
+          f"after an edit axes, frames and masses are {shown}")
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "heavier.yaml"
         file.write_text(heavier, encoding="utf-8")
@@ -198,7 +202,7 @@ def links(driver, address, heavier):
     """What is in the address comes back, also where the text has odd letters, and a damaged one says so."""
     odd = heavier.replace("A heavier one", "Ärm \U0001f916 <b>&amp;")
     typed(driver, odd)
-    WebDriverWait(driver, 10).until(lambda driver: "#text=" in driver.current_url)
+    awaited(driver, 10, lambda driver: "#text=" in driver.current_url)
     link = driver.current_url
     check(re.search(r"#text=[\w-]+$", link), f"the link has letters that are none of an address: {link[-80:]}")
     opened(driver, link)
@@ -206,13 +210,13 @@ def links(driver, address, heavier):
     check("Ärm" in driver.title, f"the title of a link is {driver.title!r}")
     chosen(driver, "ur5")
     driver.back()
-    WebDriverWait(driver, 30).until(lambda driver: text(driver) == odd)
+    awaited(driver, 30, lambda driver: text(driver) == odd)
     settled(driver)
     print(f"  a link of {len(odd)} characters has {len(link)}")
     opened(driver, address + "#robot=planar2")
     check(driver.find_element(By.ID, "robots").get_attribute("value") == "planar2", "#robot=planar2 opens another one")
     driver.execute_script("location.hash = '#robot=stanford'")
-    WebDriverWait(driver, 30).until(lambda driver: "stanford" in text(driver))
+    awaited(driver, 30, lambda driver: "stanford" in text(driver))
     settled(driver)
     # `format: 2`, deflated by another program
     deflated = zlib.compress(b"format: 2", wbits=-15)
@@ -279,10 +283,11 @@ def main():
         quiet(driver, "playground by http")
     finally:
         driver.quit()
-    for screen, size in SCREENS.items():
-        for dark in (False, True):
-            driver = browser(*size, dark=dark)
-            try:
+    driver = browser(*SCREENS["desk"])
+    try:
+        for screen, size in SCREENS.items():
+            for dark in (False, True):
+                seen_on(driver, *size, dark=dark)
                 where = f"playground, {screen}, {'dark' if dark else 'light'}"
                 opened(driver, page.as_uri())
                 narrow(driver, where)
@@ -294,8 +299,8 @@ def main():
                 picture(driver, page.parent / f"{name}-mistake.png", 200_000)
                 accessible(driver, f"{where}, mistake")
                 quiet(driver, where)
-            finally:
-                driver.quit()
+    finally:
+        driver.quit()
     print(f"{len(failures)} failures" if failures else "all of it holds")
     sys.exit(1 if failures else 0)
 

@@ -24,12 +24,19 @@ pub(crate) fn evidence(programs: &[Program]) -> Option<String> {
     Some(emit::verbatim(&emit::evidence(program, proof).join("\n")))
 }
 
-/// The documentation of one method.
-pub(crate) fn method(program: &Program) -> String {
+/// The documentation of one method: what it costs, its steps, and where more is told. `of_trait` is the trait's path.
+pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String {
     let (products, sums) = program.before();
     let after = program.operations();
+    let steps = emit::steps(robot, program);
+    let steps = if steps.is_empty() {
+        String::new()
+    } else {
+        format!("Its steps, for joint i, h = i - 1, j = i + 1:\n\n{}\n\n", emit::verbatim(&steps.join("\n")))
+    };
     format!(
-        "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.",
+        "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.\n\n\
+         {steps}What a name is computed from: `rne explain NAME FILE`. Signs and units: [`trait@{of_trait}`].",
         program.function.summary(),
         after.mul,
         after.add,

@@ -45,7 +45,7 @@ impl Target<'_> {
         let name = format_ident!("{}", capability.name());
         let operations = description::operations(programs);
         let evidence = description::evidence(programs).map(|evidence| quote!(#[doc = #evidence]));
-        let methods = programs.iter().map(|program| self.method(program, parameters));
+        let methods = programs.iter().map(|program| self.method(robot, program, parameters));
         quote! {
             #constants
 
@@ -94,7 +94,7 @@ impl Target<'_> {
         }
     }
 
-    fn method(&self, program: &Program, parameters: &Parameters) -> TokenStream {
+    fn method(&self, robot: &Robot, program: &Program, parameters: &Parameters) -> TokenStream {
         let krate = self.krate;
         let (scalar, library) = (quote!(#krate::Scalar), quote!(#krate));
         let body = emit::Body::new(program, &scalar).with_records_of(&library);
@@ -123,7 +123,9 @@ impl Target<'_> {
         });
         let parameters = parameters.read(krate);
         let dof = Literal::usize_unsuffixed(program.dof);
-        let documentation = description::method(program);
+        let of_trait = format_ident!("{}", function.capability().name());
+        let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
+        let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
         let method = self.signature(function, &quote!(#dof), &quote!(#wrench #payload #base #parameters #body));
         quote!(#[doc = #documentation] #method)
     }

@@ -36,8 +36,9 @@ const LAYERS = [
 ];
 
 class Arm {
-  constructor(root, inspection, value) {
+  constructor(root, inspection, value, chosen) {
     this.root = root;
+    this.chosen = chosen;
     this.inspection = inspection;
     this.value = value;
     this.layers = new Set();
@@ -92,7 +93,13 @@ class Arm {
       this.axes.push(axis);
       const com = svg(
         "g",
-        { class: "com", "data-com": joint },
+        {
+          class: "com",
+          "data-com": joint,
+          tabindex: "0",
+          role: "button",
+          "aria-label": `centre of mass of link ${joint}`,
+        },
         svg("circle", { r: 6 }),
         svg("path", { d: "M0 0V-6A6 6 0 0 1 6 0ZM0 0V6A6 6 0 0 1 -6 0Z" }),
       );
@@ -106,11 +113,11 @@ class Arm {
       for (let joint = 1; joint <= dof; joint++) this.arrow(quantity, joint);
     }
     this.down = this.plainArrow("gravity", "g");
-    this.tip = this.plainArrow("force", "tip force");
-    this.tipForce = [0, 0, 0];
+    this.tip = { f: this.plainArrow("force", "tip force"), n: this.plainArrow("moment", "tip moment") };
+    this.wrench = { f: [0, 0, 0], n: [0, 0, 0] };
     this.look = { yaw: -0.9, pitch: 0.32, zoom: 1 };
     this.home = this.look;
-    this.listen();
+    listenToHand(this);
   }
 
   /** The arrow of a quantity of a joint; made when it is first wanted. */
@@ -147,15 +154,15 @@ class Arm {
     return parts;
   }
 
-  drawPlain([shaft, head, text], from, to) {
-    const heads = arrowhead(from, to, false);
+  drawPlain([shaft, head, text], from, to, isAxial = false) {
+    const heads = arrowhead(from, to, isAxial);
     shaft.setAttribute("d", heads ? segment(from, heads.neck) : "");
     head.setAttribute("d", heads ? heads.path : dotAt(from));
     text.setAttribute("x", round(to.x + 7));
     text.setAttribute("y", round(to.y + 4));
   }
 
-  /** Gravity, in the corner, and the force at the tip. */
+  /** Gravity, in the corner, and the wrench at the tip. */
   drawForces(pose) {
     const isHeavy = norm(this.gravityInWorld) > 0;
     this.down[0].parentNode.toggleAttribute("hidden", !isHeavy);
@@ -166,12 +173,14 @@ class Arm {
       const corner = { x: 24 - Math.min(0, to.x - from.x), y: 20 };
       this.drawPlain(this.down, corner, { x: corner.x + to.x - from.x, y: corner.y + to.y - from.y });
     }
-    const size = norm(this.tipForce);
-    this.tip[0].parentNode.toggleAttribute("hidden", size === 0);
-    if (size > 0) {
-      const tip = this.inspection.dof + 1;
-      const along = times(turn(pose.rotations[tip], this.tipForce), (this.size * 0.5) / size);
-      this.drawPlain(this.tip, this.project(pose.joints[tip]), this.project(add(pose.joints[tip], along)));
+    const tip = this.inspection.dof + 1;
+    for (const of of ["f", "n"]) {
+      const size = norm(this.wrench[of]);
+      this.tip[of][0].parentNode.toggleAttribute("hidden", size === 0);
+      if (size === 0) continue;
+      const along = times(turn(pose.rotations[tip], this.wrench[of]), (this.size * 0.5) / size);
+      const [from, to] = [pose.joints[tip], add(pose.joints[tip], along)].map((point) => this.project(point));
+      this.drawPlain(this.tip[of], from, to, of === "n");
     }
   }
 
@@ -337,13 +346,12 @@ class Arm {
       this.labels[index].setAttribute("dx", 12 * before.length);
     });
     this.triads.forEach((triad, joint) => {
-      const { at, axes } = pose.frames[joint];
-      const link = pose.rotations[joint];
       const isLit = this.litFrame === joint;
-      const [origin, turned] =
-        isLit && joint > 0 && joint <= this.inspection.dof ? [pose.joints[joint], link] : [at, axes];
+      const [origin, turned] = this.frame(pose, joint, isLit);
+      // all axes of the base are those of one frame
+      const isTold = this.showFrames && (joint === 0 || this.chosen.kind !== "base");
       triad.forEach((of, which) => {
-        const isShown = this.showFrames || isLit;
+        const isShown = isTold || isLit;
         of.line.toggleAttribute("hidden", !isShown);
         of.text.toggleAttribute("hidden", !isShown);
         if (!isShown) return;
@@ -354,6 +362,22 @@ class Arm {
         of.text.setAttribute("y", round(end.y + 4));
       });
     });
+  }
+
+  /** Where axes stand in which the vectors of a link are told, and their directions in the world. */
+  frame(pose, link, isLit) {
+    const { dof, robot } = this.inspection;
+    const turned = this.turnedToWorld(pose, link);
+    if (link === 0 || link > dof) return [pose.frames[link].at, turned];
+    // a frame of a modified table stands beside its joint's point
+    const isOfTable = robot.convention === "modified" && this.chosen.kind === "link" && !isLit;
+    return [isOfTable ? pose.frames[link].at : pose.joints[link], turned];
+  }
+
+  /** The axes in which the vectors of a link are told, in the world. */
+  turnedToWorld(pose, link) {
+    const chosen = this.chosen.turn(link);
+    return chosen ? product(pose.rotations[link], transposed(chosen)) : pose.rotations[link];
   }
 
   drawArrows(pose) {
@@ -404,16 +428,18 @@ class Arm {
     if (isFree) this.written.push(to);
     arrow.text.toggleAttribute("hidden", !isFree && !arrow.isLit);
     arrow.text.setAttribute("text-anchor", to.x < from.x - 2 ? "end" : "start");
+    const chosen = of.axes ? this.chosen.turn(frame) : null;
+    const told = chosen ? turn(chosen, numbers) : numbers;
     let part = "";
     if (arrow.component !== null && arrow.component !== undefined && size > 0) {
       const alone = [0, 0, 0];
-      alone[arrow.component] = (numbers[arrow.component] * drawn) / size;
-      const tip = this.project(add(start, turn(pose.rotations[frame], alone)));
+      alone[arrow.component] = (told[arrow.component] * drawn) / size;
+      const tip = this.project(add(start, turn(this.turnedToWorld(pose, frame), alone)));
       part = segment(from, tip) + segment(tip, to);
     }
     arrow.part.setAttribute("d", part);
     const unitOf = this.inspection.unitOf(quantity, joint);
-    const said = of.drawn === "axis" ? short(numbers[2]) : numbers.map(short).join(", ");
+    const said = of.drawn === "axis" ? short(told[2]) : told.map(short).join(", ");
     arrow.node.setAttribute("aria-label", `${this.inspection.words(arrow)}, ${joint}: ${said} ${unitText(unitOf)}`);
   }
 
@@ -466,57 +492,4 @@ class Arm {
 
   /** Replaced by the page. */
   changed() {}
-
-  listen() {
-    const pointers = new Map();
-    this.root.addEventListener("pointerdown", (event) => {
-      pointers.set(event.pointerId, event);
-    });
-    this.root.addEventListener("pointermove", (event) => {
-      const before = pointers.get(event.pointerId);
-      if (!before) return;
-      // a click on an arrow stays one, if the hand trembles
-      const isTurning = this.root.hasPointerCapture(event.pointerId);
-      if (!isTurning && Math.hypot(event.clientX - before.clientX, event.clientY - before.clientY) < 4) return;
-      const others = [...pointers.values()].filter((other) => other.pointerId !== event.pointerId);
-      if (others.length) {
-        const far = (of) => Math.hypot(of.clientX - others[0].clientX, of.clientY - others[0].clientY) || 1;
-        this.zoomBy(far(event) / far(before));
-      } else {
-        this.turnBy(-(event.clientX - before.clientX) * 0.01, (event.clientY - before.clientY) * 0.01);
-      }
-      pointers.set(event.pointerId, event);
-      // from now on the turn goes on outside of the picture too
-      if (!this.root.hasPointerCapture(event.pointerId)) this.root.setPointerCapture(event.pointerId);
-    });
-    for (const end of ["pointerup", "pointercancel", "lostpointercapture"]) {
-      this.root.addEventListener(end, (event) => pointers.delete(event.pointerId));
-    }
-    this.root.addEventListener(
-      "wheel",
-      (event) => {
-        // as maps do: the wheel alone scrolls the page
-        if (!event.ctrlKey) return;
-        event.preventDefault();
-        this.zoomBy(Math.exp(-event.deltaY * 0.005));
-      },
-      { passive: false },
-    );
-    this.root.addEventListener("keydown", (event) => {
-      const step = 0.12;
-      const keys = {
-        ArrowLeft: () => this.turnBy(-step, 0),
-        ArrowRight: () => this.turnBy(step, 0),
-        ArrowUp: () => this.turnBy(0, step),
-        ArrowDown: () => this.turnBy(0, -step),
-        "+": () => this.zoomBy(1.15),
-        "=": () => this.zoomBy(1.15),
-        "-": () => this.zoomBy(1 / 1.15),
-        0: () => this.reset(),
-      };
-      if (!keys[event.key] || event.altKey || event.metaKey) return;
-      event.preventDefault();
-      keys[event.key]();
-    });
-  }
 }

@@ -11,6 +11,10 @@ class Cards {
       { class: "cell-head" },
       element("h3", {}, `Joint ${cell.joint}, step ${cell.step}: ${cell.title}`),
       element("p", { class: "hint" }, this.counts(cell)),
+      this.axesHint(cell),
+      cell.step === 7
+        ? element("p", { class: "hint" }, "Gravity comes in by the terms −m g of step 6; point at τ to see its part.")
+        : null,
     );
     const groups = new Map();
     for (const component of cell.components) {
@@ -47,11 +51,33 @@ class Cards {
     return [head, ...sections];
   }
 
-  /** How many operations a cell has. */
-  counts({ before, after }) {
-    if (before.products + before.sums === 0) return "no operations";
-    if (this.page.form === "unfolded") return `${before.products} products, ${before.sums} sums`;
-    return `${after.products} of ${before.products} products left, ${after.sums} of ${before.sums} sums`;
+  /** In whose axes the values of a cell stand, where these are not those of its equations. */
+  axesHint({ joint, components }) {
+    const { axes } = this.page;
+    if (!components.some(({ name }) => axes.isOther(name))) return null;
+    return element(
+      "p",
+      { class: "hint", "data-axes-hint": "" },
+      `Values of vectors of link ${joint}, at the right, are in ${axes.words(joint)}; ` +
+        `equations and code have them in ${axes.words(joint, "link")}.`,
+    );
+  }
+
+  /** How many operations a cell has, and its step of all joints. */
+  counts({ step, before, after }) {
+    const all = (which) =>
+      this.page.inspection.cells
+        .filter((cell) => cell.step === step)
+        .reduce((sum, cell) => [sum[0] + cell[which].products, sum[1] + cell[which].sums], [0, 0]);
+    const [whole, left] = [all("before"), all("after")];
+    if (whole[0] + whole[1] === 0) return "no operations";
+    if (this.page.form === "unfolded")
+      return `${before.products} products, ${before.sums} sums; step ${step} of all joints: ${whole[0]}, ${whole[1]}`;
+    return (
+      `${after.products} of ${before.products} products left, ${after.sums} of ${before.sums} sums; ` +
+      `step ${step} of all joints: ${left[0]} of ${whole[0]} products (${whole[0] - left[0]} saved), ` +
+      `${left[1]} of ${whole[1]} sums`
+    );
   }
 
   /** A component: general, with this robot's numbers, what is gone and why, code; and its value. */
@@ -64,10 +90,12 @@ class Cards {
     const value = element("output", { class: "live value", "data-name": name });
     const unitOf = unitText(this.page.inspection.unit(name));
     this.page.live.push(() => {
-      const isHidden = this.page.exercise.hides(name, this.page.cell);
-      value.textContent = isHidden ? `? ${unitOf}` : withUnit(this.page.value(name), unitOf);
-      value.title = this.page.exercise.hides(name, this.page.cell) ? "" : full(this.page.value(name));
+      const isHidden = this.page.hides(name);
+      value.textContent = isHidden ? `? ${unitOf}` : withUnit(this.page.told(name), unitOf);
+      value.title = isHidden ? "" : full(this.page.told(name));
     });
+    const { axes } = this.page;
+    const inOther = axes.isOther(name) ? element("span", { class: "in-axes" }, `${axes.kind} axes`) : null;
     const lines = [["general", "in general", equation(symbol)]];
     if (namesIn(general).some((of) => !Number.isNaN(this.page.inspection.constant(of)) || this.alias(of) !== of)) {
       lines.push(["here", "this robot", equation((of) => this.here(of))]);
@@ -104,6 +132,7 @@ class Cards {
       math("math", { "data-name": name }, this.page.set.symbol(name, false)),
       element("code", { class: "own-name pick", "data-name": name, tabindex: "-1" }, name),
       value,
+      inOther,
       answer,
     );
     return element(
@@ -292,7 +321,7 @@ class Cards {
       said.textContent = text;
       said.className = `answer ${text ? (isRight ? "right" : "wrong") : ""}`;
       input.setAttribute("aria-invalid", String(Boolean(text) && !isRight));
-      this.page.bars.update(this.page.split, (joint) => this.page.exercise.hides(`tau${joint}`, this.page.cell));
+      this.page.bars.update(this.page.split, (joint) => this.page.hides(`tau${joint}`));
       for (const paint of this.page.live) paint();
       this.page.reading.readout();
     };

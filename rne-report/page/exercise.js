@@ -2,8 +2,9 @@
 // are made in the component's own tree, which is then evaluated: nothing is guessed from the number alone.
 
 class Exercise {
-  constructor(inspection, equations) {
+  constructor(inspection, equations, axes = null) {
     this.inspection = inspection;
+    this.axes = axes;
     this.equations = equations;
     this.isOn = false;
     this.solved = new Set();
@@ -21,17 +22,26 @@ class Exercise {
     );
   }
 
+  hasSolved(name) {
+    return this.solved.has(name);
+  }
+
+  /** The value that is asked for, in the axes that are chosen. */
+  right(name) {
+    return this.axes?.isOther(name) ? this.axes.component(name) : this.equations.value(name);
+  }
+
   /** What to say of an answer. */
   answer(name, text) {
     const typed = Number(text.trim().replace(",", ".").replace("−", "-"));
     if (!text.trim()) return { isRight: false, text: "" };
     if (!Number.isFinite(typed)) return { isRight: false, text: "This is no number: write it as 0.123 or 1.2e-3." };
-    const right = this.equations.value(name);
+    const right = this.right(name);
     if (isNear(typed, right)) {
       this.solved.add(name);
       return { isRight: true, text: "Right." };
     }
-    const found = this.slips(name).filter((slip) => isNear(typed, slip.value) && !isNear(slip.value, right));
+    const found = [...this.slips(name), ...this.otherAxes(name)].filter((slip) => isNear(typed, slip.value) && !isNear(slip.value, right));
     const words = [...new Set(found.map((slip) => slip.text))];
     if (words.length) return { isRight: false, text: `Not yet. ${words.slice(0, 2).join("; or ")}.` };
     if (isNear(typed, right, 0.03))
@@ -42,8 +52,10 @@ class Exercise {
   /** Each usual slip in a component, in words, with the value that it gives. */
   slips(name) {
     const { general, cell } = this.inspection.components.get(name);
-    const right = this.equations.value(name);
+    const right = this.right(name);
     const all = [{ text: "The sign is the other one", value: -right }];
+    // the equation's terms are in link axes
+    if (this.axes?.isOther(name)) return all;
     const terms = [];
     collect(general, 1, terms);
     for (const { tree, sign } of terms) {
@@ -90,6 +102,23 @@ class Exercise {
         all.push({ text: `This is the ${axis} component`, value: this.equations.value(other) });
     }
     return all;
+  }
+
+  /** The other components of a vector in the axes that are chosen, and the component itself in other axes. */
+  otherAxes(name) {
+    const meaning = this.inspection.meaning(name);
+    if (!this.axes || !this.axes.has(meaning) || meaning.component.length > 1) return [];
+    const others = this.axes.vectorOf(meaning).filter((of) => of && of !== name && this.axes.isOther(of));
+    return [
+      ...others.map((of) => ({
+        text: `This is the ${this.inspection.meaning(of).component} component`,
+        value: this.axes.component(of),
+      })),
+      ...KINDS_OF_AXES.filter((kind) => kind !== this.axes.kind).map((kind) => ({
+        text: `This is in ${this.axes.words(this.inspection.axes(meaning), kind)}`,
+        value: this.axes.component(name, kind),
+      })),
+    ];
   }
 
   /** The angle whose sine and cosine are meant, rad. */

@@ -21,7 +21,8 @@ class Page {
     this.reduced = data.programs.reduced ? new Program(data.programs.reduced) : null;
     this.equations = new Equations(inspection.components);
     this.torques = new Torques(this.folded, new Program(data.programs.with_wrench));
-    this.exercise = new Exercise(inspection, this.equations);
+    this.axes = new ChosenAxes(inspection, (name) => this.value(name), () => this.state.q);
+    this.exercise = new Exercise(inspection, this.equations, this.axes);
     this.initial = {
       q: ordinaryPose(robot, [0.4, -0.6, 0.9, -0.8, 0.7, 0.5, -0.4]),
       qd: robot.joints.map((_, index) => [0.5, 0.8, -0.6][index % 3] * (inspection.isPrismatic(index + 1) ? 0.4 : 1)),
@@ -36,18 +37,19 @@ class Page {
     this.reading = new Reading(this);
     this.cell = inspection.cell(Math.min(2, inspection.dof), 1);
 
-    this.arm = new Arm(byId("arm"), inspection, (name) => this.equations.value(name));
+    this.arm = new Arm(byId("arm"), inspection, (name) => this.equations.value(name), this.axes);
     this.arm.changed = () => this.arm.draw(this.state.q);
     this.sliders = new Sliders(byId("sliders"), inspection, this.state, () => {
       this.stop();
       this.update();
     });
+    this.tip = new WrenchSliders(byId("tip"), inspection, this.wrench, () => this.update());
     this.bars = new Bars(byId("bars"), inspection);
     this.plot = new Plot(byId("plot"), inspection, this.torques);
     this.describe();
     this.makeSwitches();
     this.makeLayers();
-    this.makeTip();
+    this.makeStill();
     this.makeGrid();
     this.makeMotion();
     this.reading.listen();
@@ -74,8 +76,8 @@ class Page {
     byId("described").textContent = `${dof} joints, ${robot.convention} Denavit-Hartenberg, ${short(mass)} kg moved`;
     byId("source").textContent = `Numbers: ${robot.source}`;
     byId("generator").textContent =
-      `Written by ${generator}. Vectors of link i are in axes fixed to link i, z along joint i. ` +
-      "The code is evaluated in your browser: + − × ÷ give the bits of Rust.";
+      `Written by ${generator}. The code has the vectors of link i in axes fixed to link i, z along joint i; ` +
+      "“Axes of vectors” tells them in others. The code is evaluated in your browser: + − × ÷ give the bits of Rust.";
     byId("key").append(
       ...PARTS.map(([part, meaning, formula]) =>
         element("span", { title: formula }, element("i", { class: `swatch ${part}` }), meaning),
@@ -100,13 +102,13 @@ class Page {
 
   /** Computes and paints everything that depends on the state. */
   update() {
-    this.arm.tipForce = this.wrench.f;
+    this.arm.wrench = this.wrench;
     this.given = argumentsOf(this.state);
     this.split = this.torques.split(this.state, this.wrench);
     this.equations.set(this.given);
     if (this.reduced) this.reduced.run(this.given);
     this.arm.draw(this.state.q);
-    this.bars.update(this.split, (joint) => this.exercise.hides(`tau${joint}`, this.cell));
+    this.bars.update(this.split, (joint) => this.hides(`tau${joint}`));
     for (const paint of this.live) paint();
     this.reading.readout();
   }
@@ -116,8 +118,21 @@ class Page {
     return this.folded.has(name) ? this.folded.value(name) : this.equations.value(name);
   }
 
+  /** The value of a name in the axes that are chosen. */
+  told(name) {
+    return this.axes.component(name);
+  }
+
+  /** Whether the exercise asks for a name, or for what it is computed of in the axes that are chosen. */
+  hides(name) {
+    if (this.exercise.hides(name, this.cell)) return true;
+    const meaning = this.exercise.isOn && this.axes.isOther(name) ? this.inspection.meaning(name) : null;
+    if (!meaning || meaning.component.length > 1 || this.exercise.hasSolved(name)) return false;
+    return this.axes.vectorOf(meaning).some((of) => of && this.exercise.hides(of, this.cell));
+  }
+
   shown(name, value = this.value(name)) {
-    return this.exercise.hides(name, this.cell) ? "?" : short(value);
+    return this.hides(name) ? "?" : short(value);
   }
 
   // ---- controls
@@ -126,6 +141,7 @@ class Page {
     const groups = [
       ["unfolded", "folded", "reduced"],
       ["rust", "c", "equations"],
+      KINDS_OF_AXES,
       ["shown", "exercise"],
       ["auto", "light", "dark"],
     ];
@@ -140,6 +156,10 @@ class Page {
       },
       (name) => {
         this.language = name;
+        this.reopen();
+      },
+      (name) => {
+        this.axes.kind = name;
         this.reopen();
       },
       (name) => {
@@ -163,7 +183,7 @@ class Page {
           act[index](chosen);
         });
       }
-      choose(group, ["folded", "rust", "shown", "auto"][index]);
+      choose(group, ["folded", "rust", "link", "shown", "auto"][index]);
     });
   }
 
@@ -191,11 +211,16 @@ class Page {
       this.layerButtons.set(quantity, button);
       byId("layers").append(button);
     }
+    const ofTable = this.inspection.robot.convention === "standard" ? "joint axes" : "link axes";
     for (const [label, key, title] of [
-      ["frames", "showFrames", "frames of the table"],
+      ["frames", "showFrames", `the axes of vectors that are chosen above; the frames of the table are ${ofTable}`],
       ["masses", "showComs", "centres of mass"],
     ]) {
-      const button = element("button", { type: "button", title, "aria-pressed": String(this.arm[key]) }, label);
+      const button = element(
+        "button",
+        { type: "button", title, "data-shows": label, "aria-pressed": String(this.arm[key]) },
+        label,
+      );
       button.addEventListener("click", () => {
         this.arm[key] = !this.arm[key];
         button.setAttribute("aria-pressed", String(this.arm[key]));
@@ -211,41 +236,13 @@ class Page {
     if (this.arm.pose) this.arm.draw(this.state.q);
   }
 
-  makeTip() {
-    const most = Math.max(10, ...this.inspection.robot.joints.map((joint) => joint.mass * 5));
-    AXES.forEach((axis, index) => {
-      const output = element("output", {}, "0 N");
-      const input = element("input", {
-        type: "range",
-        min: -niceAbove(most),
-        max: niceAbove(most),
-        step: "any",
-        value: 0,
-        "aria-label": `force at the tip along ${axis}, N`,
-        "data-tip": axis,
-      });
-      input.addEventListener("input", () => {
-        this.wrench.f[index] = Number(input.value);
-        output.textContent = `${short(this.wrench.f[index])} N`;
-        this.update();
-      });
-      byId("tip").append(element("label", {}, `f ${axis}`, input, output));
-    });
+  makeStill() {
     byId("rest").addEventListener("click", () =>
       this.setState({ qd: this.state.qd.map(() => 0), qdd: this.state.qdd.map(() => 0) }),
     );
+    byId("faster").addEventListener("click", () => this.setState({ qd: this.state.qd.map((rate) => 2 * rate) }));
     byId("home").addEventListener("click", () => {
-      this.wrench.f.fill(0);
-      byId("tip")
-        .querySelectorAll("input")
-        .forEach((input) => {
-          input.value = 0;
-        });
-      byId("tip")
-        .querySelectorAll("output")
-        .forEach((output) => {
-          output.textContent = "0 N";
-        });
+      this.tip.show({ f: [0, 0, 0], n: [0, 0, 0] });
       this.setState(this.initial);
     });
   }
@@ -441,7 +438,10 @@ const page = new Page(JSON.parse(byId("data").textContent));
 window.rne = {
   setState: (state) => page.setState(state),
   torques: () => page.folded.run(page.given),
+  total: () => page.split.total,
+  parts: () => page.split,
   value: (name) => page.value(name),
+  told: (name) => page.told(name),
   select: (name) => page.reading.select(name),
   view: () => viewOf(page),
   show: (view) => showView(page, view),

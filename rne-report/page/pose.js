@@ -44,20 +44,23 @@ function ofAngles([roll, pitch, yaw]) {
 
 const AXES = ["x", "y", "z"];
 
+/** The rotation of a joint by its equations; one that is none is not among them. */
+function rotationOf(value, joint) {
+  return AXES.map((row) =>
+    AXES.map((of) => {
+      const found = value(`rot${joint}_${row}${of}`);
+      return Number.isNaN(found) ? Number(row === of) : found;
+    }),
+  );
+}
+
 /** Where everything stands in the world, by the rotations and lengths of the equations. */
 class Pose {
   constructor(inspection, value, q) {
     const { robot, dof } = inspection;
     const isModified = robot.convention === "modified";
     const vector = (stem) => AXES.map((axis) => value(`${stem}_${axis}`));
-    // a rotation that is none is not in the code
-    const rotation = (joint) =>
-      AXES.map((row) =>
-        AXES.map((of) => {
-          const found = value(`rot${joint}_${row}${of}`);
-          return Number.isNaN(found) ? Number(row === of) : found;
-        }),
-      );
+    const rotation = (joint) => rotationOf(value, joint);
     const base = ofAngles(robot.base.rpy);
     this.rotations = [base];
     this.joints = [robot.base.xyz];
@@ -86,18 +89,4 @@ class Pose {
     this.rotations.push(product(this.rotations[dof], rotation(dof + 1)));
     this.frames.push({ at, axes: this.rotations[dof + 1] });
   }
-}
-
-/** A vector of a link, in axes fixed to it, in the lecture's axes, fixed to the link before: turned by θ about z. */
-function inLectureAxes(row, q, vector) {
-  const angle = row.theta + (row.kind === "revolute" ? q : 0);
-  const [s, c] = [Math.sin(angle), Math.cos(angle)];
-  return turn(
-    [
-      [c, -s, 0],
-      [s, c, 0],
-      [0, 0, 1],
-    ],
-    vector,
-  );
 }

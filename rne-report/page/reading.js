@@ -6,6 +6,14 @@ class Reading {
     // a click keeps what pointing shows
     this.pinned = null;
     this.pointed = null;
+    // a hand has no Escape
+    this.letGo = element("button", { type: "button", class: "let-go", "aria-label": "let it go" }, "×");
+    this.letGo.addEventListener("click", () => this.release());
+  }
+
+  release() {
+    this.pinned = this.pointed = null;
+    this.relight();
   }
 
   /** Everything that belongs to a selection: names, arrows, places on the arm, a cell. */
@@ -82,20 +90,26 @@ class Reading {
   readout() {
     const root = document.querySelector("[data-readout]");
     const selection = this.pointed || this.pinned;
+    root.classList.toggle("chosen", Boolean(selection));
+    this.tell(root, selection);
+    if (selection) root.append(this.letGo);
+  }
+
+  tell(root, selection) {
     const line = (kind, ...content) => element("span", { class: `readout-${kind}` }, ...content);
     if (!selection) {
       root.replaceChildren(
         line(
           "hint",
           "Point at a symbol, a line of code or an arrow; Tab and arrow keys do the same. " +
-            "A click keeps it, Escape lets it go.",
+            "A click keeps it, Escape lets it go. “Exercise” above checks numbers of your own.",
         ),
       );
       return;
     }
     if (selection.tree !== undefined) {
       const isGone = this.page.form !== "unfolded" && this.page.set.isGone(selection.tree);
-      const isHidden = namesIn(selection.tree).some((name) => this.page.exercise.hides(name, this.page.cell));
+      const isHidden = namesIn(selection.tree).some((name) => this.page.hides(name));
       root.replaceChildren(
         line("name", `${selection.sign < 0 ? "−" : ""} ${codeOf(selection.tree)}`),
         line("value", isHidden ? "?" : short(selection.sign * this.page.equations.evaluate(selection.tree))),
@@ -111,13 +125,13 @@ class Reading {
       const unitOf = unitText(this.page.inspection.unitOf(arrow.quantity, arrow.joint));
       root.replaceChildren(
         line("name", names.join(", ")),
-        line("value", `(${names.map((name) => this.page.shown(name)).join(", ")}) ${unitOf}`),
+        line("value", `(${names.map((name) => this.page.shown(name, this.page.told(name))).join(", ")}) ${unitOf}`),
         line(
           "meaning",
           this.page.inspection.words(arrow),
           `; ${this.ofWhat(arrow)}${this.axesWords(this.page.inspection.meaning(names[0]))}`,
         ),
-        ...this.inLecture(arrow, names),
+        ...(arrow.quantity === "d" ? [line("meaning", this.inWorld(arrow.joint))] : []),
       );
       return;
     }
@@ -138,10 +152,10 @@ class Reading {
       return;
     }
     const unitOf = this.page.inspection.unit(name);
-    const isHidden = this.page.exercise.hides(name, this.page.cell);
+    const isHidden = this.page.hides(name);
     const statement = this.page.inspection.statements.get(name);
     const owner = this.page.inspection.owner(name);
-    const value = this.page.value(name);
+    const value = this.page.told(name);
     const code = statement ? this.page.cards.textOf(statement) : this.withoutStatement(name, owner);
     const what = line("value", isHidden ? `? ${unitText(unitOf)}` : withUnit(value, unitOf));
     what.title = isHidden ? "" : full(value);
@@ -153,11 +167,22 @@ class Reading {
         `${this.page.inspection.words(meaning)}${meaning.part ? ", a term of it" : ""}`,
         `; ${this.ofWhat(meaning)}${this.axesWords(meaning)}`,
       ),
-      line("code", code),
+      // a reason is read to its end, code stays a line
+      line(statement ? "code" : "meaning", code, isHidden ? "" : this.inCode(name, unitOf)),
+      ...(meaning.quantity === "torque" && !isHidden ? [line("meaning", this.parts(meaning.joint, unitOf))] : []),
       ...(selection.why
         ? [line("why", `This term is ${selection.why.replace(/^a factor/, "left out as a factor")}`)]
         : []),
     );
+  }
+
+  /** What gravity, speed and acceleration have in a torque. */
+  parts(joint, unitOf) {
+    const { split, wrench } = this.page;
+    const told = PARTS.filter(([part]) => part !== "tip" || [...wrench.f, ...wrench.n].some((of) => of !== 0)).map(
+      ([part, meaning]) => `${meaning} ${short(split[part][joint - 1])}`,
+    );
+    return `of it ${told.join(", ")} ${unitText(unitOf)}`;
   }
 
   /** The names of a term, in words. */
@@ -177,26 +202,6 @@ class Reading {
     return statement ? this.page.cards.textOf(statement) : "a term of the statement";
   }
 
-  /** The same vector in the lecture's axes: fixed to the link before, z along the joint, so turned by θ about z. */
-  inLecture({ of, joint }, names) {
-    if (of.axes !== "link" || names.length !== 3) return [];
-    if (names.some((name) => this.page.exercise.hides(name, this.page.cell))) return [];
-    const row = this.page.inspection.robot.joints[joint - 1];
-    if (!row) return [];
-    const turned = inLectureAxes(
-      row,
-      this.page.state.q[joint - 1],
-      names.map((name) => this.page.value(name)),
-    );
-    return [
-      element(
-        "span",
-        { class: "readout-meaning", "data-lecture": "" },
-        `in the lecture's axes, fixed to link ${joint - 1}: (${turned.map(short).join(", ")})`,
-      ),
-    ];
-  }
-
   ofWhat({ of, joint, quantity }) {
     if (quantity === "joint_force" && joint <= this.page.inspection.dof) return `drawn at joint ${joint}`;
     if (joint === 0) return "base";
@@ -204,9 +209,26 @@ class Reading {
   }
 
   axesWords(meaning) {
-    const frame = meaning && this.page.inspection.axes(meaning);
-    if (frame === null || frame === undefined) return "";
-    return `, in the axes of ${frame === 0 ? "the base" : `link ${frame}`}`;
+    if (!meaning) return "";
+    const { axes } = this.page;
+    const { quantity, joint } = meaning;
+    if (meaning.component?.length === 2) {
+      if (quantity === "inertia") return `, in ${axes.words(joint)}`;
+      return axes.isOther(meaning.name) ? ", between the lecture's axes" : "";
+    }
+    const frame = this.page.inspection.axes(meaning);
+    return frame === null ? "" : `, in ${axes.words(frame, meaning.part ? "link" : axes.kind)}`;
+  }
+
+  /** Where the centre of mass of a link is. */
+  inWorld(joint) {
+    return `centre of mass of link ${joint}, in the world: (${this.page.arm.pose.coms[joint].map(short).join(", ")}) m`;
+  }
+
+  /** What the code computes, where a value is told in other axes. */
+  inCode(name, unitOf) {
+    if (!this.page.axes.isOther(name)) return "";
+    return ` (in link axes, ${withUnit(this.page.value(name), unitOf)})`;
   }
 
   withoutStatement(name, owner) {
@@ -264,9 +286,11 @@ class Reading {
   /** What stands under a node: a term, a name or an arrow. */
   selectionAt(node) {
     const found =
-      node instanceof Element ? node.closest("[data-name], [data-arrow], .term, .struck, [data-component]") : null;
+      node instanceof Element ? node.closest("[data-name], [data-arrow], [data-com], .term, .struck, [data-component]") : null;
     if (!found) return null;
     if (found.dataset.arrow) return { arrow: found.dataset.arrow };
+    // a centre of mass is at the end of its d
+    if (found.dataset.com) return { arrow: `d-${found.dataset.com}` };
     const why = found.closest("[data-why]")?.dataset.why;
     if (found.dataset.name) return { name: found.dataset.name, why };
     if (found.tree !== undefined) return { tree: found.tree, sign: found.sign, term: found };
@@ -311,15 +335,14 @@ class Reading {
 
   key(event) {
     if (event.key === "Escape") {
-      this.pinned = this.pointed = null;
-      this.relight();
+      this.release();
       return;
     }
     const { target } = event;
     if (target.matches("input")) return;
     if (
       (event.key === "Enter" || event.key === " ") &&
-      target.matches(".pick, [data-arrow], [data-component]") &&
+      target.matches(".pick, [data-arrow], [data-com], [data-component]") &&
       !target.matches("button")
     ) {
       event.preventDefault();

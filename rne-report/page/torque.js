@@ -4,7 +4,7 @@ const PARTS = [
   ["gravity", "gravity", "τ(q, 0, 0)"],
   ["velocity", "Coriolis and centrifugal", "τ(q, q̇, 0) − τ(q, 0, 0)"],
   ["inertia", "inertia", "τ(q, q̇, q̈) − τ(q, q̇, 0)"],
-  ["tip", "tip force", "τ with the force at the tip − τ"],
+  ["tip", "force and moment at the tip", "τ with what the tip exerts − τ"],
 ];
 
 /** The torques of a state and their parts, each a list with a number per joint. */

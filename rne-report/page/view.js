@@ -7,7 +7,7 @@ function viewOf(page) {
   return structuredClone({
     kinds: kindsOf(page),
     state: page.state,
-    force: page.wrench.f,
+    wrench: page.wrench,
     from: page.from,
     to: page.to,
     duration: byId("duration").value,
@@ -15,32 +15,33 @@ function viewOf(page) {
     plot: page.plot.joint,
     form: page.form,
     language: page.language,
+    axes: page.axes.kind,
     exercise: page.exercise.isOn,
     theme: document.documentElement.dataset.theme || "auto",
     cell: [page.cell.joint, page.cell.step],
     layers: [...page.arm.layers],
+    frames: page.arm.showFrames,
+    masses: page.arm.showComs,
     look: page.arm.look,
     pinned: page.reading.pinned?.name || null,
-    tip: document.querySelector(".tip").open,
+    tip: document.querySelector(".tip-force").open,
     scrolled: [window.scrollX, window.scrollY, byId("cell").scrollTop],
   });
 }
 
 /** Shows a page as another one was: the switches, and of an arm with the same joints everything else. */
 function showView(page, view) {
-  const press = (name) => {
-    const button = document.querySelector(`[data-switch="${name}"]`);
-    if (!button.disabled && button.getAttribute("aria-pressed") !== "true") button.click();
+  const press = (button, isOn = true) => {
+    if (!button.disabled && (button.getAttribute("aria-pressed") === "true") !== isOn) button.click();
   };
-  for (const name of [view.form, view.language, view.exercise ? "exercise" : "shown", view.theme]) press(name);
+  for (const name of [view.form, view.language, view.axes, view.exercise ? "exercise" : "shown", view.theme])
+    press(document.querySelector(`[data-switch="${name}"]`));
+  for (const name of ["frames", "masses"]) press(document.querySelector(`[data-shows="${name}"]`), view[name]);
   if (view.kinds !== kindsOf(page)) return;
   const cell = page.inspection.cell(...view.cell);
   if (cell) page.open(cell);
-  document.querySelectorAll("[data-tip]").forEach((input, index) => {
-    input.value = view.force[index];
-    if (view.force[index] !== 0) input.dispatchEvent(new Event("input"));
-  });
-  document.querySelector(".tip").open = view.tip;
+  page.tip.show(view.wrench);
+  document.querySelector(".tip-force").open = view.tip;
   Object.assign(page, { from: view.from, to: view.to });
   byId("duration").value = view.duration;
   page.plotJoint(view.plot);

@@ -29,16 +29,19 @@ const HTML: &str = include_str!("../page/index.html");
 const STYLE: &str = include_str!("../page/style.css");
 
 /// The scripts of the page, in the order in which they stand in it: each uses only those before it.
-pub const SCRIPTS: [(&str, &str); 14] = [
+pub const SCRIPTS: [(&str, &str); 17] = [
     ("inspection.js", include_str!("../page/inspection.js")),
     ("program.js", include_str!("../page/program.js")),
     ("number.js", include_str!("../page/number.js")),
     ("equation.js", include_str!("../page/equation.js")),
     ("pose.js", include_str!("../page/pose.js")),
+    ("axes.js", include_str!("../page/axes.js")),
     ("shape.js", include_str!("../page/shape.js")),
+    ("gesture.js", include_str!("../page/gesture.js")),
     ("arm.js", include_str!("../page/arm.js")),
     ("torque.js", include_str!("../page/torque.js")),
     ("motion.js", include_str!("../page/motion.js")),
+    ("wrench.js", include_str!("../page/wrench.js")),
     ("exercise.js", include_str!("../page/exercise.js")),
     ("cell.js", include_str!("../page/cell.js")),
     ("reading.js", include_str!("../page/reading.js")),
@@ -64,7 +67,7 @@ pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileE
     let data = data(robot, &torques, &with_wrench, reduced.or(own.as_ref()));
     let mut script = String::new();
     for (name, text) in SCRIPTS {
-        let _ = write!(script, "\n// ---- {name}\n\n{text}");
+        let _ = write!(script, "\n// ---- {name}\n\n{}", template::code(text));
     }
     let parts = [
         ("title", template::text(&emit::title(robot))),

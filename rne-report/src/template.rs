@@ -54,6 +54,22 @@ pub(crate) fn json(value: &serde_json::Value) -> String {
     inert
 }
 
+/// A script without the lines that are comments alone: they would be a tenth of a page. They stand in `page/`.
+pub(crate) fn code(script: &str) -> String {
+    let mut code = String::new();
+    let mut is_inside = false;
+    for line in script.lines() {
+        let text = line.trim();
+        is_inside |= text.starts_with("/**");
+        if !is_inside && !text.starts_with("//") {
+            code.push_str(line);
+            code.push('\n');
+        }
+        is_inside &= !text.ends_with("*/");
+    }
+    code
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,6 +78,12 @@ mod tests {
     fn what_is_put_in_is_not_searched_for_gaps() {
         let parts = [("a", "{{b}}".to_owned()), ("b", "B".to_owned())];
         assert_eq!(filled("{{a}} {{b}} {{c}} {{", &parts), "{{b}} B {{c}} {{");
+    }
+
+    #[test]
+    fn lines_of_comments_are_left_out_alone() {
+        let script = "// a\nconst a = 1; // b\n/** c */\n/**\n * d\n */\n  // e\nconst of = \"// f\";\n";
+        assert_eq!(code(script), "const a = 1; // b\nconst of = \"// f\";\n");
     }
 
     #[test]

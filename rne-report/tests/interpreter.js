@@ -22,17 +22,19 @@ const said = JSON.parse(fs.readFileSync(process.argv[2], "utf8")).map(({ data, s
     Math.cos = cosine;
     equations.set(argumentsOf(state));
     const pose = new Pose(inspection, (name) => equations.value(name), state.q);
-    const links = inspection.robot.joints.map((row, index) => {
+    const chosen = new ChosenAxes(inspection, (name) => equations.value(name), () => state.q);
+    const links = inspection.robot.joints.map((_, index) => {
       const joint = index + 1;
-      const vectors = VECTORS.map((stem) => {
-        const names = AXES.map((axis) => `${stem.replace("i", joint).replace("h", index)}_${axis}`);
-        return names.map((name) => equations.value(name));
-      });
+      const names = VECTORS.map((stem) =>
+        AXES.map((axis) => `${stem.replace("i", joint).replace("h", index)}_${axis}`),
+      );
+      const vectors = names.map((vector) => vector.map((name) => equations.value(name)));
       const inWorld = vectors.map((vector) => turn(pose.rotations[joint], vector));
-      const lecture = vectors.map((vector) => inLectureAxes(row, state.q[index], vector));
+      const [lecture, base] = ["joint", "base"].map((kind) => names.flat().map((of) => chosen.component(of, kind)));
       return {
         world: text(inWorld.flat()),
-        lecture: text(lecture.flat()),
+        lecture: text(lecture),
+        base: text(base),
         com: text(pose.coms[joint]),
         next: text(pose.joints[joint + 1]),
       };

@@ -162,7 +162,7 @@ fn vectors(link: &LinkTrace<f64>) -> [[f64; 3]; 7] {
 }
 
 /// The arm is drawn where the runtime has it: centres of mass and ends of links by its d and r in base axes, arrows by
-/// its vectors there; and what is told in the lecture's axes is what it has there.
+/// its vectors there; and what is told in the lecture's axes and in the base's is what it has there.
 #[test]
 fn links_and_arrows_are_where_the_runtime_has_them() {
     let mut random = fastrand::Rng::with_seed(40);
@@ -186,6 +186,7 @@ fn links_and_arrows_are_where_the_runtime_has_them() {
                 close(&numbers(&said["next"]), &at, 1e-13, name);
                 let in_world = vectors(&link).map(|vector| turned(rpy, vector));
                 close(&numbers(&said["world"]), in_world.as_flattened(), 1e-12, name);
+                close(&numbers(&said["base"]), vectors(&link).as_flattened(), 1e-12, name);
                 close(&numbers(&said["lecture"]), vectors(&lecture).as_flattened(), 1e-12, name);
             }
         }

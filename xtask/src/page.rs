@@ -15,9 +15,10 @@ const PACKAGES: [&str; 3] = ["selenium==4.51.0", "axe-core-python==0.1.0", "pill
 
 /// Opens the page of `rne report` in headless Chromium and uses it
 ///
-/// Torques beside those of `rne eval`, every statement of the PUMA 560 to its equation, value, unit and arrow and back,
-/// sliders, keyboard, exercises, axe's rules of accessibility, widths of a desk and a phone, sizes and times.
-/// `xtask/page.py` has all of it.
+/// Torques and vectors in all axes beside those of `rne eval`, every statement of the PUMA 560 to its equation, value,
+/// unit and arrow and back, sliders, keyboard, fingers, exercises, axe's rules of accessibility, widths of a desk and a
+/// phone, sizes and times. `xtask/page.py` has all of it. Of most arms only torques and axes are looked at, unless
+/// CI_FULL is set.
 #[derive(Args)]
 #[command(after_help = "\
 Needs chromium, chromedriver and python3 with venv; what it fetches is below
@@ -26,6 +27,7 @@ target/page, and so are the pages and their pictures.
 Examples:
   cargo xtask page                with what is installed there
   cargo xtask page --install      install it first
+  CI_FULL=1 cargo xtask page      try everything of every arm, at more states
   cargo xtask page --pictures     write the pictures of docs/pictures anew")]
 pub(crate) struct Page {
     /// Install what is missing: the browser by apt, the client by pip below target/

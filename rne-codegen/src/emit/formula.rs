@@ -105,8 +105,17 @@ pub(super) fn reduced_formulas(step: Step, kind: JointKind, joint: usize) -> Vec
 }
 
 fn of_joint(templates: Templates, joint: usize) -> Vec<Formula> {
-    let links = [("{i}", joint), ("{p}", joint.saturating_sub(1)), ("{n}", joint + 1)];
-    let text =
-        |template: &str| links.iter().fold(template.to_owned(), |text, (at, i)| text.replace(at, &i.to_string()));
-    templates.iter().map(|&(quantity, template)| Formula { quantity, text: text(template) }).collect()
+    let formula = |(quantity, text)| Formula { quantity, text };
+    if joint == ANY {
+        return written(templates, ["i", "h", "j"].map(str::to_owned)).map(formula).collect();
+    }
+    written(templates, [joint, joint.saturating_sub(1), joint + 1].map(|of| of.to_string())).map(formula).collect()
+}
+
+/// In the place of a joint's number: letters, i for the joint, h = i - 1 and j = i + 1 for its neighbours.
+pub(super) const ANY: usize = usize::MAX;
+
+fn written(templates: Templates, [i, p, n]: [String; 3]) -> impl Iterator<Item = (Quantity, String)> {
+    let text = move |template: &str| template.replace("{i}", &i).replace("{p}", &p).replace("{n}", &n);
+    templates.iter().map(move |&(quantity, template)| (quantity, text(template)))
 }

@@ -359,7 +359,7 @@ fn heading<'a>(robot: &Robot, program: &Program, joint: usize, step: Step) -> Ve
 
 /// The recursion of which a program is made: the regressor and what is made of the reduced recursion know origins of
 /// frames, not centres of mass.
-fn recursion(program: &Program) -> Form {
+pub(super) fn recursion(program: &Program) -> Form {
     let is_reduced = program.form != Form::SevenSteps
         && (Function::TORQUES.contains(&program.function) || !program.choices.is_empty());
     if is_reduced || program.function == Function::Regressor { Form::Reduced } else { Form::SevenSteps }

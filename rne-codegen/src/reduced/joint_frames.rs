@@ -79,6 +79,13 @@ impl JointFrames {
         if frames == FrameChoice::default() {
             return Self::read(robot, frames, Embedding::default());
         }
+        // what no reading can mend is not read a hundred times
+        let kinds: Vec<_> = robot.rows().map(|row| row.kind).collect();
+        let can_carry = kinds.windows(2).any(|pair| pair == [JointKind::Revolute, JointKind::Prismatic]);
+        let can_turn = kinds.last() == Some(&JointKind::Revolute);
+        if (frames.carried && !can_carry) || (frames.turned_last && !can_turn) {
+            return None;
+        }
         // roots: every fourth reading has a given one
         let Link { com, first_moment, .. } = robot.rows().last()?.link;
         let unknowns = [com[0], com[1], first_moment[0], first_moment[1]].map(|x| Some(x.abs()));
