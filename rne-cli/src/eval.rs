@@ -16,7 +16,7 @@ use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::state::{Given, State};
 use crate::worksheet::{self, Axes, Narrowed};
-use crate::{answer, arguments, golden, limits, show, worksheet_file};
+use crate::{answer, arguments, golden, limits, plan_file, show, states, worksheet_file};
 
 /// Compute a function at one state; --trace shows every vector
 #[derive(Args)]
@@ -24,7 +24,7 @@ use crate::{answer, arguments, golden, limits, show, worksheet_file};
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
-  rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv
+  rne eval robots/planar2.yaml --states states.csv -o torques.csv
 
 A LIST has a number per joint, base to tip: `rne explain arguments`.")]
 pub(crate) struct Arguments {
@@ -69,6 +69,18 @@ pub(crate) struct Arguments {
         "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
+    /// At each state of a CSV or npy file, or of - (a pipe)
+    #[arg(long, value_name = "TABLE", conflicts_with_all = [
+        "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
+        "golden", "trace", "json", "csv", "compare",
+    ])]
+    states: Option<PathBuf>,
+    /// Where their results go: CSV, or npy by its name
+    #[arg(short, long = "output", value_name = "TABLE", requires = "states")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out", hide = true)]
+    force: bool,
     /// The worksheet of the seven steps
     #[arg(long)]
     trace: bool,
@@ -114,6 +126,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot()?;
+    if let Some(states) = &arguments.states {
+        let file = &arguments.arm.file;
+        return states::Job {
+            robot_file: file,
+            arm: &plan_file::compiled_arm(file, &robot)?,
+            function: arguments.function.unwrap_or(Function::InverseDynamics),
+            states,
+            out: arguments.out.as_deref(),
+            force: arguments.force,
+        }
+        .run();
+    }
     if let Some(states) = arguments.golden {
         let settings: Vec<String> =
             arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();

@@ -43,6 +43,7 @@ mod search;
 mod shell;
 mod show;
 mod state;
+mod states;
 mod terminal;
 mod tour;
 mod trajectory_file;

@@ -86,6 +86,18 @@ pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
 /// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise, and
 /// `sources`, which were read for it, stay in any case. Returns what was done, for the reader.
 pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool) -> Result<String, Failure> {
+    check_new(path, Some(text), sources, force)?;
+    let shown = path.display();
+    let word = match replace(path, text) {
+        Ok(Written::Anew) => "wrote",
+        Ok(Written::Unchanged) => "up to date:",
+        Err(error) => return Err(unwritable(path, &error)),
+    };
+    Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
+}
+
+/// Whether a file may be written: none stands there, or one with this text, or `force` says so, and none of `sources`.
+pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
     let shown = path.display();
     if sources.iter().any(|source| is_same(path, source)) {
         return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
@@ -94,7 +106,7 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
         Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
         Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file; name another"))),
         Existing::Unreadable(error) => return Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
-        Existing::Text(old) if old == text => {}
+        Existing::Text(old) if Some(old.as_str()) == text => {}
         Existing::Text(_) | Existing::Other if !force => {
             return Err(Failure::usage(format_args!(
                 "{shown} is there already and stays as it is; {TYPED}--force{TYPED:#} overwrites it"
@@ -102,12 +114,7 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
         }
         Existing::Nothing | Existing::Text(_) | Existing::Other => {}
     }
-    let word = match replace(path, text) {
-        Ok(Written::Anew) => "wrote",
-        Ok(Written::Unchanged) => "up to date:",
-        Err(error) => return Err(unwritable(path, &error)),
-    };
-    Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
+    Ok(())
 }
 
 /// Why a file cannot be written: its folder is missing, or what the system says; not of the temporary file beside it.

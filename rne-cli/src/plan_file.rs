@@ -8,6 +8,7 @@ use std::time::Duration;
 use indicatif::ProgressBar;
 use rne_codegen::plan::{PlanFile, PlanSet, Trick};
 use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
+use rne_machine::CompiledArm;
 use rne_model::{Robot, plan_of, read_file, robot_of};
 
 use crate::input_file::is_stream;
@@ -111,6 +112,15 @@ pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<
         Ok((function, program.is_rewritten, program.operations().total()))
     };
     plan.described().into_iter().map(count).collect()
+}
+
+/// An arm whose functions run over many states, by its plan file if it has one.
+pub(crate) fn compiled_arm(file: &Path, robot: &Robot) -> Result<CompiledArm, Failure> {
+    let arm = CompiledArm::from_robot(robot);
+    Ok(match read(file, robot)? {
+        Some(read) if robot.run_time.is_empty() => arm.by_plan(read.plan),
+        _ => arm,
+    })
 }
 
 /// Compiles the functions of one robot, by its plan file if it has one, which is read when it is needed.

@@ -54,7 +54,7 @@ impl Job<'_> {
         let columns = columns(compiled, self.arm);
         let mut table = Table::open(self.states, &columns)?;
         let outputs: Vec<String> = compiled.program().outputs.iter().map(|output| output.name.to_string()).collect();
-        let mut results = Results::open(self, &outputs, table.states)?;
+        let mut results = Results::open(self, &outputs)?;
         let progress = progress(self.states, table.states, results.is_terminal());
         let start = Instant::now();
         let mut states = 0_usize;
@@ -259,8 +259,7 @@ struct Kept {
 }
 
 impl Results {
-    fn open(job: &Job<'_>, outputs: &[String], states: Option<u64>) -> Result<Self, Failure> {
-        let _ = states;
+    fn open(job: &Job<'_>, outputs: &[String]) -> Result<Self, Failure> {
         let header = outputs.join(",") + "\n";
         let Some(path) = job.out.filter(|out| !is_standard_input(out)) else {
             let is_terminal = io::stdout().is_terminal();
@@ -268,8 +267,8 @@ impl Results {
             out.write_all(header.as_bytes()).map_err(stopped)?;
             return Ok(Self::Csv { out, is_terminal, width: outputs.len(), kept: None });
         };
-        output_file::check_new(path, &[job.robot_file, job.states], job.force)?;
-        let unwritable = |error: io::Error| Failure::input(format_args!("{} cannot be written: {error}", path.display()));
+        output_file::check_new(path, None, &[job.robot_file, job.states], job.force)?;
+        let unwritable = |error: io::Error| output_file::unwritable(path, &error);
         let file = output_file::beside(path).map_err(unwritable)?;
         let kept = Kept { path: path.to_owned(), file };
         let handle = kept.file.reopen().map_err(unwritable)?;
