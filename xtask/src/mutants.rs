@@ -38,11 +38,13 @@ pub(crate) enum Check {
     Functions,
     /// C, beside the derived code.
     Code,
+    /// What a student reads: equations, closed forms and pictures, beside the runtime and Lagrange's equations.
+    Views,
 }
 
 impl Check {
     /// All, in the order of the document.
-    pub(crate) const ALL: [Self; 4] = [Self::Compare, Self::Prove, Self::Functions, Self::Code];
+    pub(crate) const ALL: [Self; 5] = [Self::Compare, Self::Prove, Self::Functions, Self::Code, Self::Views];
 
     /// Arguments of `cargo test`.
     pub(crate) fn tests(self) -> &'static [&'static str] {
@@ -51,6 +53,21 @@ impl Check {
             Self::Prove => &["-p", "rne-codegen", "--lib", "--", "are_the_seven_steps"],
             Self::Functions => &["--test", "functions", "--", "equality::", "golden::"],
             Self::Code => &["--test", "c_code"],
+            Self::Views => &[
+                "-p",
+                "rne-inspection",
+                "-p",
+                "rne-symbolic",
+                "-p",
+                "rne-plot",
+                "--lib",
+                "--tests",
+                "--",
+                "lagranges",
+                "equation",
+                "torque",
+                "part",
+            ],
         }
     }
 
@@ -61,6 +78,7 @@ impl Check {
             Self::Prove => "The passes of the reduced form",
             Self::Functions => "The other functions",
             Self::Code => "C",
+            Self::Views => "The teaching views",
         }
     }
 
@@ -78,6 +96,9 @@ Only a refusal by the proof counts; a test that fails in another way does not. W
 of force is chosen otherwise nothing is wrong: every choice of them is the same function; such a change is no mutant."
             }
             Self::Functions => "Compared with the runtime and with independent values, function by function.",
+            Self::Views => {
+                "Equations beside the runtime, closed forms beside Lagrange's equations, parts beside their sum."
+            }
             Self::Code => "The C code does not compile, or its bits are not those of the derived code.",
         }
     }
