@@ -127,7 +127,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.arm.robot()?;
     if let Some(states) = &arguments.states {
-        let file = &arguments.arm.file;
+        let file = arguments.arm.file();
         return states::Job {
             robot_file: file,
             arm: &plan_file::compiled_arm(file, &robot)?,

@@ -41,7 +41,9 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
         match name {
             "payload" => payload.map(str::to_owned).into(),
             "parameters" => arm.robot().run_time.names.clone(),
-            "q" | "qd" | "qdd" | "tau" | "sin" | "cos" => (1..=elements).map(|joint| format!("{name}{joint}")).collect(),
+            "q" | "qd" | "qdd" | "tau" | "sin" | "cos" => {
+                (1..=elements).map(|joint| format!("{name}{joint}")).collect()
+            }
             _ => axes.map(|axis| format!("{name}_{axis}")).into(),
         }
     };
@@ -82,9 +84,10 @@ impl Job<'_> {
         results.finish()?;
         #[allow(clippy::cast_precision_loss)] // of a rate, three digits are told
         let rate = states as f64 / start.elapsed().as_secs_f64().max(1e-9);
-        let place = self.out.filter(|out| !is_standard_input(out)).map_or(String::new(), |out| {
-            format!("{GOOD}wrote{GOOD:#} {}: ", out.display())
-        });
+        let place = self
+            .out
+            .filter(|out| !is_standard_input(out))
+            .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
         Ok(Outcome::remark(format!(
             "{place}{} of {states} states {QUIET}({rate:.2e} a second, reading and writing included){QUIET:#}\n",
             self.function
@@ -139,11 +142,8 @@ impl Table {
     }
 
     fn csv(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
-        let mut reader = csv::ReaderBuilder::new()
-            .comment(Some(b'#'))
-            .trim(csv::Trim::All)
-            .has_headers(true)
-            .from_reader(file);
+        let mut reader =
+            csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).has_headers(true).from_reader(file);
         let header = reader.headers().map_err(|error| Failure::input(format_args!("{name}: {error}")))?.clone();
         let has = |c: char| header.iter().any(|cell| cell.contains(c));
         let separator = if header.len() == 1 { [';', '\t'].into_iter().find(|c| has(*c)) } else { None };
@@ -168,7 +168,11 @@ impl Table {
                 wanted.join(", ")
             )));
         }
-        Ok(Self { states: None, name, rows: Rows::Csv { reader: Box::new(reader), columns, record: csv::StringRecord::new() } })
+        Ok(Self {
+            states: None,
+            name,
+            rows: Rows::Csv { reader: Box::new(reader), columns, record: csv::StringRecord::new() },
+        })
     }
 
     fn npy(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {

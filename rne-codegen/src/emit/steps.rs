@@ -21,8 +21,9 @@ pub fn steps(robot: &Robot, program: &Program) -> Vec<String> {
         program.statements.iter().any(is_here) || (step == Step::Torque && program.function.returns_torques())
     };
     let has_kind = |kind| robot.rows().any(|row| row.kind == kind);
+    let has_first_moment = robot.rows().any(|row| row.link.has_first_moment());
     let of = |step, kind| match recursion {
-        Form::SevenSteps => formulas(step, kind, ANY),
+        Form::SevenSteps => formulas(step, kind, ANY, has_first_moment),
         Form::Reduced => reduced_formulas(step, kind, ANY),
     };
     let mut lines = Vec::new();
