@@ -20,17 +20,25 @@
 //! # Ok::<(), rne_codegen::CompileError>(())
 //! ```
 #![warn(missing_debug_implementations)]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 
 mod dataflow;
+#[cfg(feature = "native")]
+mod native;
 mod schedule;
 mod selection;
+#[cfg(feature = "native")]
+mod translation;
 
 use rne_codegen::{Name, Program};
 use rne_runtime::machine::Code;
 pub use rne_runtime::machine::{Destination, Source, WrongArrays};
 
 use dataflow::Dataflow;
+#[cfg(feature = "native")]
+pub use native::{Native, NativeError};
+#[cfg(feature = "native")]
+pub use translation::Number;
 
 /// A program made ready to run over many states.
 #[derive(Clone, Debug)]

@@ -83,7 +83,7 @@ fn events(dataflow: &Dataflow, carried: &[Vec<Value>]) -> Vec<Event> {
 }
 
 /// Which values the outputs depend on.
-fn live(dataflow: &Dataflow) -> Vec<bool> {
+pub(crate) fn live(dataflow: &Dataflow) -> Vec<bool> {
     let mut is_live = vec![false; dataflow.values.len()];
     let mut open: Vec<Value> = dataflow.outputs.clone();
     while let Some(value) = open.pop() {
@@ -214,7 +214,9 @@ struct Memory {
 impl Memory {
     /// A slot for a value: the one that was freed last, for it is in the cache.
     fn take(&mut self, value: Value) -> Option<Slot> {
-        let slot = if let Some(slot) = self.free.pop() { slot } else {
+        let slot = if let Some(slot) = self.free.pop() {
+            slot
+        } else {
             self.count = self.count.checked_add(1).filter(|count| *count < NOWHERE)?;
             self.count - 1
         };
