@@ -26,9 +26,10 @@ const STATES: usize = 1024;
 const REPETITIONS: usize = 300;
 const BUILDS: usize = 20;
 
-const HEADER: &str = "\
-                    batches                 single calls                              chained
-robot            derived  machine  times  derived  machine  times   native  times  derived   native  times  build";
+const HEADER: &str = concat!(
+    "                 batches                  single calls                                   chained\n",
+    "robot            derived  machine  times  derived  machine  times   native  times  derived   native  times  build"
+);
 
 macro_rules! arms {
     ($($Arm:ident: $name:literal;)*) => {

@@ -1,7 +1,8 @@
 //! Compiled functions of a robot, run where they are: for arms that are known at run time only.
 //!
 //! A [`Machine`] is made of a [`Program`], in some ten microseconds and without trusting it with anything: safe code
-//! interprets it over blocks of states, on the widest vector unit of the processor.
+//! interprets it over blocks of states, on the widest vector unit of the processor. Single states are computed at the
+//! speed of derived code with the feature `native`, by `Native`.
 //!
 //! ```
 //! use rne_codegen::{Compiler, Form, Function, Target};
