@@ -41,14 +41,14 @@
 //!   that Cranelift has for C on the host: that of [`Function`].
 //! - **Memory.** The function reads inputs, writes outputs and reads constants at fixed places: an input by its index
 //!   among the inputs, an output by its index among the outputs, constants by the places they were given. Both lengths
-//!   are compared before every call, and the constants belong to the function. It calls nothing. Inputs do
-//!   not change while outputs are written: one is borrowed shared, the other mutably.
-//! - **Stack.** A long program keeps kilobytes there. Every page is touched in order (`enable_probestack`), as in code of
-//!   rustc, so that a stack that is too small ends at its guard page.
+//!   are compared before every call, and the constants belong to the function. It calls nothing. Inputs do not change
+//!   while outputs are written: one is borrowed shared, the other mutably.
+//! - **Stack.** A long program keeps kilobytes there. Every page is touched in order (`enable_probestack`), as in code
+//!   of rustc, so that a stack that is too small ends at its guard page.
 //! - **Lifetime.** [`Pages`] has the memory of the function and is freed with the [`Native`], the pointer's only owner,
 //!   which hands it to nobody. A call borrows the `Native`. (On Windows Cranelift frees nothing.)
-//! - **Threads.** The function changes nothing but the outputs. What has its memory stands in a mutex that nobody locks, so
-//!   that the compiler sees by itself that a `Native` is `Send` and `Sync`.
+//! - **Threads.** The function changes nothing but the outputs. What has its memory stands in a mutex that nobody
+//!   locks, so that the compiler sees by itself that a `Native` is `Send` and `Sync`.
 //! - **Instructions.** Cranelift asks the processor what it has, and is refused where it lacks the fused multiply-add
 //!   of the vector unit.
 #![allow(unsafe_code)]
