@@ -81,6 +81,7 @@
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
 //! | `compiled` | any arm at run time, nearly as fast as a derived one: [`compiled::CompiledArm`]; it brings the compiler |
+//! | `native` | single calls of it as instructions of the processor, as fast as derived ones; it brings Cranelift |
 //! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
 //! | `rayon` | batches on all cores |
 //! | `core_float_math` | without `std`: fused multiply-add in the reduced form, with a nightly compiler (a stable one says E0554) |
@@ -159,7 +160,7 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Machine,
+        EvaluationError, Form, Function, Machine, Number,
     };
 }
 

@@ -4,8 +4,7 @@ use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedAr
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rne::BatchScalar;
-use rne::compiled::Array;
+use rne::compiled::{Array, Number};
 
 /// An argument: its name, how many elements it has for a state, and what was given.
 pub(crate) struct Given<'py> {
@@ -31,7 +30,7 @@ pub(crate) struct Held<'py, T: Element> {
     is_fortran: bool,
 }
 
-impl<'py, T: Element + BatchScalar> Held<'py, T> {
+impl<'py, T: Element + Number> Held<'py, T> {
     /// Takes an array as it is where its layout allows, a copy where not.
     pub(crate) fn of(given: &Given<'py>, dtype: &str) -> PyResult<Self> {
         let &Given { name, elements, ref value } = given;
@@ -108,7 +107,7 @@ fn converted<'py, T: Element>(
 }
 
 /// How many states the arguments have; `None` where all are one row.
-pub(crate) fn states<T: Element + BatchScalar>(held: &[Held<'_, T>]) -> PyResult<Option<usize>> {
+pub(crate) fn states<T: Element + Number>(held: &[Held<'_, T>]) -> PyResult<Option<usize>> {
     let mut states = None;
     for held in held {
         states = match (states, held.states) {

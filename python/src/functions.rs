@@ -3,8 +3,7 @@
 use numpy::{Element, PyArrayDyn, PyArrayMethods};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use rne::BatchScalar;
-use rne::compiled::{Arguments, CompiledArm, Destination, Function};
+use rne::compiled::{Arguments, CompiledArm, Destination, Function, Number};
 use rne_codegen::{Layout, Record};
 
 use crate::arrays::{Given, Held, are_single, room, states};
@@ -55,7 +54,7 @@ pub(crate) fn evaluate<'py>(
     }
 }
 
-fn evaluate_in<'py, T: Element + BatchScalar>(
+fn evaluate_in<'py, T: Element + Number>(
     py: Python<'py>,
     arm: &CompiledArm,
     function: Function,

@@ -7,10 +7,10 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{CompileError, Compiler, Form, Function, Target};
 use rne_model::{Reader, Robot, plan_of, read_file};
+use rne_runtime::VectorUnit;
 use rne_runtime::machine::Destination;
-use rne_runtime::{BatchScalar, VectorUnit};
 
-use crate::{Arguments, ArmError, CompiledFunction, EvaluationError};
+use crate::{Arguments, ArmError, CompiledFunction, EvaluationError, Number};
 
 /// An arm that is read when the program runs, and computes nearly as fast as one that is derived: every function is
 /// compiled when it is first called, once, from whatever thread, and runs on the widest vector unit.
@@ -192,7 +192,7 @@ impl CompiledArm {
     ///
     /// # Errors
     /// When the function cannot be compiled, an argument is missing or has another size, or the room for the results.
-    pub fn run<T: BatchScalar>(
+    pub fn run<T: Number>(
         &self,
         function: Function,
         states: usize,

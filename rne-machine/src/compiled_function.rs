@@ -1,10 +1,10 @@
 //! One function of one arm, ready to run.
 
 use rne_codegen::{CompileError, Program};
+use rne_runtime::VectorUnit;
 use rne_runtime::machine::{Destination, Source};
-use rne_runtime::{BatchScalar, VectorUnit};
 
-use crate::{Arguments, EvaluationError, Machine};
+use crate::{Arguments, EvaluationError, Machine, Number};
 
 /// A function of an arm that was compiled when it was first asked for.
 #[derive(Clone, Debug)]
@@ -14,6 +14,8 @@ pub struct CompiledFunction {
     arrays: Vec<(&'static str, usize)>,
     /// Of each input of the machine: which array, and which element of it.
     inputs: Vec<(usize, usize)>,
+    #[cfg(feature = "native")]
+    natives: std::sync::Arc<crate::number::natively::Natives>,
 }
 
 impl CompiledFunction {
@@ -32,7 +34,14 @@ impl CompiledFunction {
         };
         let inputs = machine.inputs().iter().map(|name| place(*name)).collect::<Option<_>>().ok_or_else(too_large)?;
         let arrays = arrays.iter().map(|array| (array.name, array.elements.len())).collect();
-        Ok(Self { program, machine, arrays, inputs })
+        Ok(Self {
+            program,
+            machine,
+            arrays,
+            inputs,
+            #[cfg(feature = "native")]
+            natives: std::sync::Arc::default(),
+        })
     }
 
     /// The program that it runs: its statements, counts, constants.
@@ -63,7 +72,7 @@ impl CompiledFunction {
     ///
     /// # Errors
     /// When an argument is missing or has another size, or the room for the results.
-    pub fn run<T: BatchScalar>(
+    pub fn run<T: Number>(
         &self,
         unit: VectorUnit,
         states: usize,
@@ -83,11 +92,12 @@ impl CompiledFunction {
         self.machine.code().run(unit, states, &sources, results).map_err(|_| room)
     }
 
-    /// Computes one state, the first of the arguments.
+    /// Computes one state, the first of the arguments: with the bits it has among many. With the feature `native` as
+    /// instructions of the processor, compiled when it is first asked for.
     ///
     /// # Errors
     /// When an argument is missing or has another size, or the room for the results.
-    pub fn run_one<T: BatchScalar>(
+    pub fn run_one<T: Number>(
         &self,
         unit: VectorUnit,
         arguments: &Arguments<'_, T>,
@@ -102,6 +112,10 @@ impl CompiledFunction {
                 arguments.get(name)?.first(element, elements).copied()
             })
             .collect();
+        #[cfg(feature = "native")]
+        if T::call(&self.natives, unit, &self.program, &inputs, results) {
+            return Ok(());
+        }
         let room = EvaluationError::Room { outputs: self.outputs(), states: 1 };
         self.machine.code().run_one(unit, &inputs, results).map_err(|_| room)
     }

@@ -1,7 +1,8 @@
 //! Compiled functions of a robot, run where they are: for arms that are known at run time only.
 //!
 //! A [`Machine`] is made of a [`Program`], in some ten microseconds and without trusting it with anything: safe code
-//! interprets it over blocks of states, on the widest vector unit of the processor.
+//! interprets it over blocks of states, on the widest vector unit of the processor. Single states are computed at the
+//! speed of derived code with the feature `native`, by `Native`.
 //!
 //! ```
 //! use rne_codegen::{Compiler, Form, Function, Target};
@@ -20,16 +21,21 @@
 //! # Ok::<(), rne_codegen::CompileError>(())
 //! ```
 #![warn(missing_debug_implementations)]
-#![forbid(unsafe_code)]
+#![cfg_attr(not(feature = "native"), forbid(unsafe_code))]
 
 mod arguments;
 mod compiled_arm;
 mod compiled_function;
 mod dataflow;
 mod error;
+#[cfg(feature = "native")]
+mod native;
+mod number;
 mod one_state;
 mod schedule;
 mod selection;
+#[cfg(feature = "native")]
+mod translation;
 
 pub use arguments::{ARGUMENTS, Arguments, Array};
 pub use compiled_arm::CompiledArm;
@@ -43,6 +49,9 @@ use rne_runtime::machine::Code;
 pub use rne_runtime::machine::{Destination, Source, WrongArrays};
 
 use dataflow::Dataflow;
+#[cfg(feature = "native")]
+pub use native::{Native, NativeError};
+pub use number::Number;
 
 /// A program made ready to run over many states.
 #[derive(Clone, Debug)]

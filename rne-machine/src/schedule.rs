@@ -83,7 +83,7 @@ fn events(dataflow: &Dataflow, carried: &[Vec<Value>]) -> Vec<Event> {
 }
 
 /// Which values the outputs depend on.
-fn live(dataflow: &Dataflow) -> Vec<bool> {
+pub(crate) fn live(dataflow: &Dataflow) -> Vec<bool> {
     let mut is_live = vec![false; dataflow.values.len()];
     let mut open: Vec<Value> = dataflow.outputs.clone();
     while let Some(value) = open.pop() {

@@ -34,6 +34,7 @@ const CRATES: [&str; 13] = [
     "rne-runtime",
     "rne-codegen",
     "rne-macro",
+    "rne-machine",
     "rne-diagnose",
     "rne-inspection",
     "rne-symbolic",

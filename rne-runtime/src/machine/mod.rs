@@ -32,11 +32,13 @@
 mod arrays;
 mod code;
 mod execution;
+mod kernel;
 mod many;
 mod one;
 
 pub use arrays::{Destination, Source, WrongArrays};
 pub use code::{Code, Instruction, NOWHERE, Operation, Slot, Turn};
+pub use kernel::{Kernel, Step};
 
 use arrays::States;
 use many::Many;

@@ -91,6 +91,9 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
 /// Angles up to this, in rad, are reduced exactly enough.
 const LIMIT: f32 = 1e5;
 
+/// Angles whose squares have no greater sum, in rad², are within it.
+pub(crate) const SQUARE_LIMIT: f32 = 0.99 * LIMIT * LIMIT;
+
 macro_rules! float {
     ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx:ident, $other:ident]) => {
         impl Float for $type {
@@ -124,7 +127,7 @@ macro_rules! float {
 
             #[inline(always)]
             fn is_square_within_limit(self) -> bool {
-                self <= (0.99 * LIMIT * LIMIT).into()
+                self <= SQUARE_LIMIT.into()
             }
 
             #[cfg(feature = "std")]

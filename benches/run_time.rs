@@ -1,0 +1,179 @@
+//! What an arm costs that is known at run time only, beside the derived code of the same arm.
+//!
+//! ```sh
+//! cargo run --release --manifest-path benches/Cargo.toml --no-default-features --features run_time --bin run_time
+//! ```
+//!
+//! Nanoseconds per state of inverse dynamics in double precision, reduced form with the shipped plan, one thread; the
+//! minima of many alternating repetitions over the same 1,024 states.
+//!
+//! - batches: the derived one and the machine, on the widest vector unit
+//! - single calls one after the other: the derived one, as this program was compiled; the machine with one state;
+//!   native code. The processor may overlap a call with the next
+//! - chained: every position depends on a torque of the call before (times 1e-300, below rounding)
+//! - build: milliseconds from the compiled program to native code
+
+use std::hint::black_box;
+use std::time::Instant;
+
+use rne::{BatchInverseDynamics, InverseDynamics, VectorUnit};
+use rne_codegen::plan::PlanFile;
+use rne_codegen::{Compiler, Form, Function, Program, Target};
+use rne_machine::{Destination, Machine, Native, Source};
+use rne_model::Robot;
+
+const STATES: usize = 1024;
+const REPETITIONS: usize = 300;
+const BUILDS: usize = 20;
+
+const HEADER: &str = concat!(
+    "                 batches                  single calls                                   chained\n",
+    "robot            derived  machine  times  derived  machine  times   native  times  derived   native  times  build"
+);
+
+macro_rules! arms {
+    ($($Arm:ident: $name:literal;)*) => {
+        $(
+            #[derive(InverseDynamics, BatchInverseDynamics)]
+            #[robot(builtin = $name, form = "reduced")]
+            struct $Arm;
+        )*
+
+        fn main() {
+            println!("{HEADER}");
+            $(println!("{}", row(&$Arm, $name));)*
+        }
+    };
+}
+arms! {
+    Puma560: "puma560";
+    Panda: "panda";
+    Iiwa14: "iiwa14";
+    Ur5: "ur5";
+    Cobra600: "scara_cobra600";
+    Stanford: "stanford";
+}
+
+/// Numbers of every joint, of every state.
+type Numbers<const DOF: usize> = Vec<[f64; DOF]>;
+
+fn row<const DOF: usize, R: BatchInverseDynamics<DOF>>(derived: &R, name: &str) -> String {
+    let unit = VectorUnit::widest();
+    let [latency, throughput] = [Target::Latency, Target::Throughput].map(|target| program(name, target));
+    let machine = Machine::new(&throughput).expect("a small program");
+    let native = Native::<f64>::new(&latency).expect("a processor that Cranelift knows");
+
+    let mut random = fastrand::Rng::with_seed(1);
+    let motion: [Numbers<DOF>; 3] =
+        std::array::from_fn(|_| (0..STATES).map(|_| std::array::from_fn(|_| 2.0 * random.f64() - 1.0)).collect());
+    let [q, qd, qdd] = &motion;
+    let columns = motion.each_ref().map(|numbers| columns(numbers));
+    let sources: Vec<Source<'_, f64>> = machine
+        .inputs()
+        .iter()
+        .map(|input| {
+            let (quantity, joint) = quantity_and_joint(&input.to_string());
+            Source::Column(&columns[quantity][joint])
+        })
+        .collect();
+    let [of_machine, of_native] = [machine.inputs(), native.inputs()].map(|inputs| {
+        let inputs: Vec<_> = inputs.iter().map(|input| quantity_and_joint(&input.to_string())).collect();
+        let of_state = |state: usize| inputs.iter().map(|(quantity, joint)| motion[*quantity][state][*joint]).collect();
+        (0..STATES).map(of_state).collect::<Vec<Vec<f64>>>()
+    });
+
+    let mut torques: [Vec<f64>; DOF] = std::array::from_fn(|_| vec![0.0; STATES]);
+    let mut rows = vec![0.0; DOF * STATES];
+    let mut tau = [0.0; DOF];
+    let mut times = [f64::INFINITY; 7];
+    for _ in 0..REPETITIONS {
+        fastest(&mut times[0], || {
+            let [q, qd, qdd] = columns.each_ref().map(|columns| columns.each_ref().map(Vec::as_slice));
+            let tau = torques.each_mut().map(Vec::as_mut_slice);
+            derived.inverse_dynamics_batch_on(unit, q, qd, qdd, tau).expect("columns of one length");
+        });
+        fastest(&mut times[1], || {
+            let columns = Destination::Columns(rows.chunks_mut(STATES).collect());
+            machine.code().run(unit, STATES, &sources, columns).expect("columns of one length");
+        });
+        fastest(&mut times[2], || {
+            for state in 0..STATES {
+                black_box(derived.inverse_dynamics(black_box(&q[state]), &qd[state], &qdd[state]));
+            }
+        });
+        fastest(&mut times[3], || {
+            for state in &of_machine {
+                machine.code().run_one(unit, state, &mut tau).expect("a state");
+                black_box(&tau);
+            }
+        });
+        fastest(&mut times[4], || {
+            for state in &of_native {
+                native.call(state, &mut tau).expect("a state");
+                black_box(&tau);
+            }
+        });
+        fastest(&mut times[5], || {
+            let mut before = 0.0;
+            for state in 0..STATES {
+                let q = q[state].map(|angle| angle + before);
+                before = derived.inverse_dynamics(&q, &qd[state], &qdd[state])[0] * 1e-300;
+            }
+            black_box(before);
+        });
+        fastest(&mut times[6], || {
+            let mut before = 0.0;
+            let mut inputs = of_native[0].clone();
+            for state in &of_native {
+                inputs.iter_mut().zip(state).for_each(|(input, number)| *input = number + before);
+                native.call(&inputs, &mut tau).expect("a state");
+                before = tau[0] * 1e-300;
+            }
+            black_box(before);
+        });
+    }
+    let mut build = f64::INFINITY;
+    for _ in 0..BUILDS {
+        fastest(&mut build, || drop(black_box(Native::<f64>::new(&latency))));
+    }
+    #[allow(clippy::cast_precision_loss)] // of a thousand states
+    let build = build * STATES as f64 * 1e-6;
+    let [derived_batch, machine_batch, derived, machine, native, derived_chained, native_chained] = times;
+    format!(
+        "{name:<15} {derived_batch:>8.1} {machine_batch:>8.1} {:>6.2} {derived:>8.1} {machine:>8.1} {:>6.2} \
+         {native:>8.1} {:>6.2} {derived_chained:>8.1} {native_chained:>8.1} {:>6.2} {build:>6.2}",
+        machine_batch / derived_batch,
+        machine / derived,
+        native / derived,
+        native_chained / derived_chained,
+    )
+}
+
+fn program(name: &str, target: Target) -> Program {
+    let file = rne_robots::find(name).expect("it is shipped");
+    let robot = Robot::from_yaml(file.yaml).expect("a shipped robot");
+    let plan = PlanFile::read(name, file.plan.expect("it has a plan"), &robot).expect("a shipped plan");
+    let compiler = Compiler::new(&robot).for_target(target).with_plans(plan);
+    compiler.compile(Function::InverseDynamics, Form::Reduced).expect("a shipped plan")
+}
+
+/// `qd3`: the second quantity of the motion, the third joint.
+fn quantity_and_joint(input: &str) -> (usize, usize) {
+    let (quantity, joint) = input.split_at(input.trim_end_matches(|c: char| c.is_ascii_digit()).len());
+    let quantity = ["q", "qd", "qdd"].iter().position(|name| *name == quantity).expect("an argument of the torques");
+    (quantity, joint.parse::<usize>().expect("the number of a joint") - 1)
+}
+
+/// One column per joint.
+fn columns<const DOF: usize>(numbers: &[[f64; DOF]]) -> [Vec<f64>; DOF] {
+    std::array::from_fn(|joint| numbers.iter().map(|numbers| numbers[joint]).collect())
+}
+
+/// Nanoseconds per state, if it is less than before.
+fn fastest(best: &mut f64, work: impl FnOnce()) {
+    let start = Instant::now();
+    work();
+    #[allow(clippy::cast_precision_loss)] // of a thousand states
+    let time = start.elapsed().as_nanos() as f64 / STATES as f64;
+    *best = best.min(time);
+}

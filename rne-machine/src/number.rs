@@ -1,0 +1,61 @@
+//! The numbers of a state.
+
+use rne_runtime::BatchScalar;
+
+/// A number of a state: `f64` and `f32`, and no other type.
+#[cfg(feature = "native")]
+pub trait Number: BatchScalar + Into<f64> + crate::translation::sealed::Number + natively::Natively {}
+
+/// A number of a state: `f64` and `f32`, and no other type.
+#[cfg(not(feature = "native"))]
+pub trait Number: BatchScalar + Into<f64> {}
+
+impl Number for f32 {}
+impl Number for f64 {}
+
+/// One state at a time, as instructions of the processor.
+#[cfg(feature = "native")]
+pub(crate) mod natively {
+    use std::sync::OnceLock;
+
+    use rne_codegen::Program;
+    use rne_runtime::VectorUnit;
+
+    use crate::native::Native;
+
+    /// A function in either precision, compiled when a single state is first asked for; `None` when Cranelift cannot:
+    /// then the machine computes single states too.
+    #[derive(Debug, Default)]
+    pub struct Natives {
+        double: OnceLock<Option<Native<f64>>>,
+        single: OnceLock<Option<Native<f32>>>,
+    }
+
+    /// What has a precision of its own.
+    pub trait Natively: Sized {
+        /// Computes a state on the widest unit, with the bits of the machine there; false when nothing was computed.
+        fn call(natives: &Natives, unit: VectorUnit, program: &Program, inputs: &[Self], outputs: &mut [Self]) -> bool;
+    }
+
+    macro_rules! natively {
+        ($type:ident, $precision:ident) => {
+            impl Natively for $type {
+                fn call(
+                    natives: &Natives,
+                    unit: VectorUnit,
+                    program: &Program,
+                    inputs: &[Self],
+                    outputs: &mut [Self],
+                ) -> bool {
+                    if unit.name() != VectorUnit::widest().name() {
+                        return false;
+                    }
+                    let native = natives.$precision.get_or_init(|| Native::on(unit, program).ok());
+                    native.as_ref().is_some_and(|native| native.call(inputs, outputs).is_ok())
+                }
+            }
+        };
+    }
+    natively!(f64, double);
+    natively!(f32, single);
+}

@@ -1,0 +1,394 @@
+//! A program in the language of Cranelift.
+//!
+//! What is fetched (an input, a constant) is loaded anew at each use: then it is an operand in memory, and needs no
+//! register for as long as it is used.
+
+use std::collections::HashMap;
+
+use cranelift_codegen::ir::condcodes::FloatCC;
+use cranelift_codegen::ir::{self, AbiParam, InstBuilder, MemFlags, Type};
+use cranelift_codegen::isa::TargetFrontendConfig;
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use rne_codegen::Operator;
+use rne_runtime::machine::{Kernel, Step};
+
+use crate::Number;
+use crate::dataflow::{Dataflow, Definition, Fused, Value};
+use crate::schedule;
+
+pub(crate) mod sealed {
+    use cranelift_codegen::ir::{Type, types};
+
+    pub trait Number {
+        const TYPE: Type;
+        /// Integers as wide.
+        const BITS: Type;
+
+        fn nearest(value: f64) -> Self;
+
+        fn of_bits(bits: u8) -> Self;
+    }
+
+    macro_rules! number {
+        ($type:ident, $TYPE:ident, $BITS:ident) => {
+            impl Number for $type {
+                const TYPE: Type = types::$TYPE;
+                const BITS: Type = types::$BITS;
+
+                #[allow(clippy::cast_possible_truncation, trivial_numeric_casts)]
+                fn nearest(value: f64) -> Self {
+                    value as Self
+                }
+
+                fn of_bits(bits: u8) -> Self {
+                    Self::from_bits(bits.into())
+                }
+            }
+        };
+    }
+    number!(f32, F32, I32);
+    number!(f64, F64, I64);
+}
+
+/// Numbers that an instruction computes sines and cosines of: as many as a register of Cranelift has, where every
+/// processor of the family has such registers.
+#[allow(clippy::cast_possible_truncation)] // 16 bytes
+const fn lanes<T>() -> u8 {
+    if cfg!(any(target_arch = "x86_64", target_arch = "aarch64")) { 16 / size_of::<T>() as u8 } else { 1 }
+}
+
+/// Writes the function of pointers to the inputs, the outputs and the constants that are returned here. It returns 1,
+/// or 0 with nothing written when an angle is beyond the range of the kernel.
+pub(crate) fn write<T: Number>(
+    function: &mut ir::Function,
+    target: TargetFrontendConfig,
+    dataflow: &Dataflow,
+    kernel: &Kernel,
+) -> Vec<T> {
+    let pointer = target.pointer_type();
+    function.signature.params.extend([AbiParam::new(pointer); 3]);
+    function.signature.returns.push(AbiParam::new(pointer));
+    let mut memory = FunctionBuilderContext::new();
+    let mut builder = FunctionBuilder::new(function, &mut memory);
+    let entry = builder.create_block();
+    builder.append_block_params_for_function_params(entry);
+    builder.switch_to_block(entry);
+    let [inputs, outputs, constants] = [0, 1, 2].map(|index| builder.block_params(entry)[index]);
+
+    let is_live = schedule::live(dataflow);
+    let mut last = vec![0; dataflow.values.len()];
+    for (value, definition) in dataflow.values.iter().enumerate().filter(|(value, _)| is_live[*value]) {
+        definition.operands().into_iter().for_each(|operand| last[operand] = value);
+    }
+    let mut translation = Translation {
+        builder,
+        pointer,
+        dataflow,
+        kernel,
+        is_live,
+        last,
+        inputs,
+        outputs,
+        table: constants,
+        constants: Vec::new(),
+        places: HashMap::new(),
+        computed: vec![None; dataflow.values.len()],
+    };
+    translation.program();
+    translation.builder.seal_all_blocks();
+    translation.builder.finalize();
+    translation.constants
+}
+
+struct Translation<'a, T> {
+    builder: FunctionBuilder<'a>,
+    pointer: Type,
+    dataflow: &'a Dataflow,
+    kernel: &'a Kernel,
+    is_live: Vec<bool>,
+    /// Which value uses each one last.
+    last: Vec<Value>,
+    inputs: ir::Value,
+    outputs: ir::Value,
+    table: ir::Value,
+    /// What stands in the table.
+    constants: Vec<T>,
+    /// Where a number of these bits stands so many times.
+    places: HashMap<(u64, u8), usize>,
+    computed: Vec<Option<ir::Value>>,
+}
+
+impl<T: Number> Translation<'_, T> {
+    fn program(&mut self) {
+        let (before, all) = (self.dataflow.before_turns, self.dataflow.values.len());
+        let mut outputs = vec![Vec::new(); all];
+        for (index, output) in self.dataflow.outputs.iter().enumerate() {
+            outputs[*output].push(index);
+        }
+        for value in 0..before {
+            self.compute(value);
+        }
+        self.turns();
+        // nothing is written before the range of the angles is known
+        for (value, indices) in outputs.iter().enumerate() {
+            if value >= before {
+                self.compute(value);
+            }
+            for index in indices {
+                let result = self.operand(value);
+                self.builder.ins().store(MemFlags::trusted(), result, self.outputs, place::<T>(*index));
+            }
+        }
+        self.give_back(1);
+    }
+
+    fn give_back(&mut self, result: i64) {
+        let result = self.builder.ins().iconst(self.pointer, result);
+        self.builder.ins().return_(&[result]);
+    }
+
+    /// A value that is computed, if something needs it.
+    fn compute(&mut self, value: Value) {
+        if !self.is_live[value] {
+            return;
+        }
+        let result = match self.dataflow.values[value] {
+            Definition::Input(_) | Definition::Constant(_) | Definition::Sine(_) | Definition::Cosine(_) => return,
+            Definition::Negative(x) => {
+                let x = self.operand(x);
+                self.builder.ins().fneg(x)
+            }
+            Definition::Binary(operator, x, y) => {
+                // the second operand is the one that may be in memory
+                let commutes = matches!(operator, Operator::Sum | Operator::Product);
+                let (x, y) = if commutes && self.is_fetched(x) { (y, x) } else { (x, y) };
+                let (x, y) = (self.operand(x), self.operand(y));
+                match operator {
+                    Operator::Sum => self.builder.ins().fadd(x, y),
+                    Operator::Difference => self.builder.ins().fsub(x, y),
+                    Operator::Product => self.builder.ins().fmul(x, y),
+                    Operator::Quotient => self.builder.ins().fdiv(x, y),
+                }
+            }
+            Definition::Fused(fused, [z, x, y]) => {
+                // the result takes the register of the first factor
+                let is_free = |operand: Value| !self.is_fetched(operand) && self.last[operand] == value;
+                let (x, y) = if !is_free(x) && is_free(y) { (y, x) } else { (x, y) };
+                let (z, x, y) = (self.operand(z), self.operand(x), self.operand(y));
+                match fused {
+                    Fused::Plus => self.plus_product(z, x, y),
+                    Fused::Minus => self.minus_product(z, x, y),
+                    Fused::Less => {
+                        let z = self.builder.ins().fneg(z);
+                        self.plus_product(z, x, y)
+                    }
+                }
+            }
+            Definition::BySign(operands) => {
+                let [x, a, b] = operands.map(|operand| self.operand(operand));
+                let zero = self.constant(T::nearest(0.0), 1);
+                let is_below = self.builder.ins().fcmp(FloatCC::LessThan, x, zero);
+                let otherwise = self.builder.ins().select(is_below, b, zero);
+                let is_above = self.builder.ins().fcmp(FloatCC::GreaterThan, x, zero);
+                self.builder.ins().select(is_above, a, otherwise)
+            }
+        };
+        self.computed[value] = Some(result);
+    }
+
+    fn is_fetched(&self, value: Value) -> bool {
+        matches!(self.dataflow.values[value], Definition::Input(_) | Definition::Constant(_))
+    }
+
+    fn operand(&mut self, value: Value) -> ir::Value {
+        match (self.dataflow.values[value], self.computed[value]) {
+            (_, Some(result)) => result,
+            (Definition::Input(index), None) => {
+                self.builder.ins().load(T::TYPE, unchanging(), self.inputs, place::<T>(index))
+            }
+            (Definition::Constant(k), None) => self.constant(T::nearest(k), 1),
+            // values are in order of evaluation, and all that are live are computed
+            (definition, None) => unreachable!("{definition:?} is used before it is computed"),
+        }
+    }
+
+    /// A number of the table, in so many lanes.
+    fn constant(&mut self, number: T, lanes: u8) -> ir::Value {
+        let bits = number.into().to_bits();
+        let index = *self.places.entry((bits, lanes)).or_insert_with(|| {
+            self.constants.extend(core::iter::repeat_n(number, lanes.into()));
+            self.constants.len() - usize::from(lanes)
+        });
+        self.builder.ins().load(of_lanes(T::TYPE, lanes), unchanging(), self.table, place::<T>(index))
+    }
+
+    fn plus_product(&mut self, z: ir::Value, x: ir::Value, y: ir::Value) -> ir::Value {
+        if self.kernel.is_fused {
+            return self.builder.ins().fma(x, y, z);
+        }
+        let product = self.builder.ins().fmul(x, y);
+        self.builder.ins().fadd(z, product)
+    }
+
+    fn minus_product(&mut self, z: ir::Value, x: ir::Value, y: ir::Value) -> ir::Value {
+        if self.kernel.is_fused {
+            let x = self.builder.ins().fneg(x);
+            return self.builder.ins().fma(x, y, z);
+        }
+        let product = self.builder.ins().fmul(x, y);
+        self.builder.ins().fsub(z, product)
+    }
+
+    /// All sines and cosines, as many at once as a register has lanes.
+    fn turns(&mut self) {
+        let lanes = lanes::<T>();
+        let angles: Vec<ir::Value> = self.dataflow.angles.iter().map(|angle| self.operand(*angle)).collect();
+        let registers: Vec<ir::Value> =
+            angles.chunks(lanes.into()).map(|angles| self.register(angles, lanes)).collect();
+        self.leave_beyond_range(&registers, lanes);
+        let results: Vec<[ir::Value; 2]> =
+            registers.into_iter().map(|angles| self.sines_and_cosines(angles, lanes)).collect();
+        for value in self.dataflow.before_turns..self.dataflow.values.len() {
+            let (turn, which) = match self.dataflow.values[value] {
+                Definition::Sine(turn) if self.is_live[value] => (turn, 0),
+                Definition::Cosine(turn) if self.is_live[value] => (turn, 1),
+                _ => continue,
+            };
+            let (register, lane) = (turn / usize::from(lanes), turn % usize::from(lanes));
+            #[allow(clippy::cast_possible_truncation)] // of a register
+            let result = self.lane(results[register][which], lane as u8, lanes);
+            self.computed[value] = Some(result);
+        }
+    }
+
+    /// Numbers in a register, zeros in its other lanes.
+    fn register(&mut self, numbers: &[ir::Value], lanes: u8) -> ir::Value {
+        if lanes == 1 {
+            return numbers[0];
+        }
+        let register = self.builder.ins().scalar_to_vector(of_lanes(T::TYPE, lanes), numbers[0]);
+        (1..lanes)
+            .zip(&numbers[1..])
+            .fold(register, |register, (lane, number)| self.builder.ins().insertlane(register, *number, lane))
+    }
+
+    fn lane(&mut self, register: ir::Value, lane: u8, lanes: u8) -> ir::Value {
+        if lanes == 1 { register } else { self.builder.ins().extractlane(register, lane) }
+    }
+
+    /// Returns when the kernel is not right for an angle, or one is no number: then the sum of their squares is not
+    /// within the limit.
+    fn leave_beyond_range(&mut self, registers: &[ir::Value], lanes: u8) {
+        let Some((first, others)) = registers.split_first() else { return };
+        let first = self.builder.ins().fmul(*first, *first);
+        let squares = others.iter().fold(first, |sum, angles| self.plus_product(sum, *angles, *angles));
+        let first = self.lane(squares, 0, lanes);
+        let sum = (1..lanes).fold(first, |sum, lane| {
+            let square = self.lane(squares, lane, lanes);
+            self.builder.ins().fadd(sum, square)
+        });
+        let limit = self.constant(T::nearest(self.kernel.limit_of_squares), 1);
+        let is_within = self.builder.ins().fcmp(FloatCC::LessThanOrEqual, sum, limit);
+        let [within, beyond] = [(); 2].map(|()| self.builder.create_block());
+        self.builder.set_cold_block(beyond);
+        self.builder.ins().brif(is_within, within, &[], beyond, &[]);
+        self.builder.switch_to_block(beyond);
+        self.give_back(0);
+        self.builder.switch_to_block(within);
+    }
+
+    /// The kernel, operation by operation.
+    fn sines_and_cosines(&mut self, angles: ir::Value, lanes: u8) -> [ir::Value; 2] {
+        let kernel = self.kernel;
+        let mut results: Vec<Option<ir::Value>> = Vec::with_capacity(kernel.steps.len());
+        for step in &kernel.steps {
+            let mut at = |index: usize| match (results[index], kernel.steps[index]) {
+                (None, Step::Constant(k)) => self.constant(T::nearest(k), lanes),
+                (result, _) => result.unwrap_or(angles),
+            };
+            let result = match *step {
+                Step::Angle => angles,
+                // fetched where it is used
+                Step::Constant(_) => {
+                    results.push(None);
+                    continue;
+                }
+                Step::Negative(x) => {
+                    let x = at(x);
+                    self.builder.ins().fneg(x)
+                }
+                Step::Sum(x, y) => {
+                    let (x, y) = (at(x), at(y));
+                    self.builder.ins().fadd(x, y)
+                }
+                Step::Difference(x, y) => {
+                    let (x, y) = (at(x), at(y));
+                    self.builder.ins().fsub(x, y)
+                }
+                Step::Product(x, y) => {
+                    let (x, y) = (at(x), at(y));
+                    self.builder.ins().fmul(x, y)
+                }
+                Step::Quotient(x, y) => {
+                    let (x, y) = (at(x), at(y));
+                    self.builder.ins().fdiv(x, y)
+                }
+                Step::Plus(z, x, y) => {
+                    let (z, x, y) = (at(z), at(x), at(y));
+                    self.plus_product(z, x, y)
+                }
+                Step::Minus(z, x, y) => {
+                    let (z, x, y) = (at(z), at(x), at(y));
+                    self.minus_product(z, x, y)
+                }
+                Step::SineInQuadrant(operands) => {
+                    let operands = operands.map(at);
+                    self.in_quadrant(operands, false, lanes)
+                }
+                Step::CosineInQuadrant(operands) => {
+                    let operands = operands.map(at);
+                    self.in_quadrant(operands, true, lanes)
+                }
+            };
+            results.push(Some(result));
+        }
+        [kernel.sine, kernel.cosine].map(|step| results[step].unwrap_or(angles))
+    }
+
+    /// Of a sine and a cosine one of the two, exchanged by the lowest bit of n, with the sign in the next bit of n or,
+    /// for the cosine, of n + 1.
+    fn in_quadrant(&mut self, operands: [ir::Value; 3], is_cosine: bool, lanes: u8) -> ir::Value {
+        let (number, bits) = (of_lanes(T::TYPE, lanes), of_lanes(T::BITS, lanes));
+        let flags = MemFlags::new().with_endianness(ir::Endianness::Little);
+        let [n, sine, cosine] = operands.map(|operand| self.builder.ins().bitcast(bits, flags, operand));
+        let [one, two] = [1, 2].map(|k| {
+            let k = self.constant(T::of_bits(k), lanes);
+            self.builder.ins().bitcast(bits, flags, k)
+        });
+        let (own, sign) = if is_cosine { (cosine, self.builder.ins().iadd(n, one)) } else { (sine, n) };
+        let other = self.builder.ins().bxor(sine, cosine);
+        let is_odd = self.builder.ins().band(n, one);
+        let is_odd = self.builder.ins().ineg(is_odd);
+        let exchange = self.builder.ins().band(other, is_odd);
+        let sign = self.builder.ins().band(sign, two);
+        let sign = self.builder.ins().ishl_imm(sign, i64::from(T::TYPE.bits()) - 2);
+        let result = self.builder.ins().bxor(own, exchange);
+        let result = self.builder.ins().bxor(result, sign);
+        self.builder.ins().bitcast(number, flags, result)
+    }
+}
+
+/// Of memory that is there and stays as it is while the function runs. Registers stand at any number's place.
+fn unchanging() -> MemFlags {
+    MemFlags::new().with_notrap().with_readonly().with_can_move()
+}
+
+/// Registers of so many lanes, and numbers by themselves.
+fn of_lanes(number: Type, lanes: u8) -> Type {
+    number.by(lanes.into()).unwrap_or(number)
+}
+
+/// Where a number of an array stands, in bytes.
+fn place<T>(index: usize) -> i32 {
+    i32::try_from(index * size_of::<T>()).expect("arrays have thousands of numbers")
+}
