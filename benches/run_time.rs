@@ -12,14 +12,17 @@
 //!   native code. The processor may overlap a call with the next
 //! - chained: every position depends on a torque of the call before (times 1e-300, below rounding)
 //! - build: milliseconds from the compiled program to native code
+//!
+//! Then, on every vector unit: torques against the derived batch of that unit, and the other functions, which have no
+//! derived batch, against a loop over derived calls.
 
 use std::hint::black_box;
 use std::time::Instant;
 
-use rne::{BatchInverseDynamics, InverseDynamics, VectorUnit};
+use rne::{BatchInverseDynamics, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, MassMatrix, VectorUnit};
 use rne_codegen::plan::PlanFile;
 use rne_codegen::{Compiler, Form, Function, Program, Target};
-use rne_machine::{Destination, Machine, Native, Source};
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Machine, Native, Source};
 use rne_model::Robot;
 
 const STATES: usize = 1024;
@@ -31,10 +34,14 @@ const HEADER: &str = concat!(
     "robot            derived  machine  times  derived  machine  times   native  times  derived   native  times  build"
 );
 
+const OF_FUNCTIONS: &str = "robot           unit     function                       derived  machine  times";
+
 macro_rules! arms {
     ($($Arm:ident: $name:literal;)*) => {
         $(
-            #[derive(InverseDynamics, BatchInverseDynamics)]
+            #[derive(
+                InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, InverseDynamicsDerivatives,
+            )]
             #[robot(builtin = $name, form = "reduced")]
             struct $Arm;
         )*
@@ -42,6 +49,8 @@ macro_rules! arms {
         fn main() {
             println!("{HEADER}");
             $(println!("{}", row(&$Arm, $name));)*
+            println!("\n{OF_FUNCTIONS}");
+            $(functions(&$Arm, $name);)*
         }
     };
 }
@@ -147,6 +156,61 @@ fn row<const DOF: usize, R: BatchInverseDynamics<DOF>>(derived: &R, name: &str) 
         native / derived,
         native_chained / derived_chained,
     )
+}
+
+/// A line for each function on each unit.
+fn functions<const DOF: usize, R>(derived: &R, name: &str)
+where
+    R: BatchInverseDynamics<DOF> + MassMatrix<DOF> + ForwardDynamics<DOF> + InverseDynamicsDerivatives<DOF>,
+{
+    let file = rne_robots::find(name).expect("it is shipped");
+    let arm = CompiledArm::with_plan(file.yaml, file.plan.expect("it has a plan")).expect("a shipped robot");
+    let mut random = fastrand::Rng::with_seed(2);
+    let motion: [Numbers<DOF>; 3] =
+        std::array::from_fn(|_| (0..STATES).map(|_| std::array::from_fn(|_| 2.0 * random.f64() - 1.0)).collect());
+    let columns = motion.each_ref().map(|numbers| columns(numbers));
+    let slices = columns.each_ref().map(|columns| columns.each_ref().map(Vec::as_slice));
+    let [q, qd, qdd] = slices.each_ref().map(|slices| Array::Columns(slices));
+    let arguments = Arguments::new().q(q).qd(qd).qdd(qdd).tau(qdd);
+    let [q, qd, qdd] = &motion;
+    for unit in VectorUnit::all() {
+        for function in [
+            Function::InverseDynamics,
+            Function::MassMatrix,
+            Function::ForwardDynamics,
+            Function::InverseDynamicsDerivatives,
+        ] {
+            let compiled = arm.function(function).expect("a shipped plan");
+            let mut results = vec![0.0; compiled.outputs() * STATES];
+            let mut torques: [Vec<f64>; DOF] = std::array::from_fn(|_| vec![0.0; STATES]);
+            let mut times = [f64::INFINITY; 2];
+            for _ in 0..REPETITIONS {
+                fastest(&mut times[0], || match function {
+                    Function::InverseDynamics => {
+                        let [q, qd, qdd] = slices;
+                        let tau = torques.each_mut().map(Vec::as_mut_slice);
+                        derived.inverse_dynamics_batch_on(unit, q, qd, qdd, tau).expect("columns of one length");
+                    }
+                    Function::MassMatrix => (0..STATES).for_each(|state| {
+                        black_box(derived.mass_matrix(black_box(&q[state])));
+                    }),
+                    Function::ForwardDynamics => (0..STATES).for_each(|state| {
+                        black_box(derived.forward_dynamics(black_box(&q[state]), &qd[state], &qdd[state]));
+                    }),
+                    _ => (0..STATES).for_each(|state| {
+                        black_box(derived.inverse_dynamics_derivatives(black_box(&q[state]), &qd[state], &qdd[state]));
+                    }),
+                });
+                fastest(&mut times[1], || {
+                    let columns = Destination::Columns(results.chunks_mut(STATES).collect());
+                    compiled.run(unit, STATES, &arguments, columns).expect("columns of one length");
+                });
+            }
+            let [derived, machine] = times;
+            let (unit, function) = (unit.name(), function.name());
+            println!("{name:<15} {unit:<8} {function:<29} {derived:>8.1} {machine:>8.1} {:>6.2}", machine / derived);
+        }
+    }
 }
 
 fn program(name: &str, target: Target) -> Program {

@@ -5,7 +5,7 @@ use std::array::from_fn;
 use std::fmt::Debug;
 
 use fastrand::Rng;
-use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function};
+use rne::compiled::{Arguments, Array, CompiledArm, Destination, Form, Function, Number};
 use rne::{BatchInverseDynamics, BatchScalar, InverseDynamics, VectorUnit};
 
 macro_rules! robots {
@@ -89,11 +89,7 @@ fn a_robot_read_at_run_time_has_the_bits_of_the_derived_one() {
         check_of::<f64, DOF>(file, robot, &arm);
         check_of::<f32, DOF>(file, robot, &arm);
     }
-    fn check_of<T: BatchScalar, const DOF: usize>(
-        file: &str,
-        robot: &impl BatchInverseDynamics<DOF>,
-        arm: &CompiledArm,
-    ) {
+    fn check_of<T: Number, const DOF: usize>(file: &str, robot: &impl BatchInverseDynamics<DOF>, arm: &CompiledArm) {
         let compiled = arm.function(Function::InverseDynamics).expect("a function that compiles");
         for length in LENGTHS {
             let states = States::<T, DOF>::random(length);

@@ -89,7 +89,7 @@ const STEPS: &[Step] = &[
         about: "shipped and random robots at thousands of states",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne", "--test", "robots", "--test", "random"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "robot_texts",
@@ -110,6 +110,20 @@ const STEPS: &[Step] = &[
         about: "the C of every shipped robot beside the derived code",
         variables: &[],
         command: &["cargo", "test", "--package", "rne", "--test", "c_code_of_every_robot"],
+        needs: Needs::Time,
+    },
+    Step {
+        name: "native",
+        about: "single calls of an arm at run time as instructions of the processor",
+        variables: &[],
+        command: &["cargo", "test", "--package", "rne-machine", "--features", "native", "--test", "native"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "python",
+        about: "the wheel in a clean environment, against numpy and Pinocchio, and the notebooks",
+        variables: &[],
+        command: &["cargo", "xtask", "python", "--install", "--peers", "--notebooks"],
         needs: Needs::Nothing,
     },
     Step {
