@@ -1,4 +1,4 @@
-//! docs/performance.md measured anew: the blocks that name a machine and a date.
+//! docs/performance.md and docs/run-time.md measured anew: the blocks that name a machine and a date.
 
 use std::fs;
 
@@ -10,7 +10,7 @@ use crate::Verdict;
 use crate::instructions::{self, Instructions};
 use crate::{batch_profile, growth, machine, single_calls};
 
-/// Writes the measured blocks of docs/performance.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
+/// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
 ///
 /// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
 /// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.
@@ -45,9 +45,9 @@ enum Block {
     BatchProfile,
     /// What grows with the number of joints
     Growth,
+    /// Nanoseconds of an arm at run time, of docs/run-time.md
+    RunTime,
 }
-
-const PAGE: &str = "docs/performance.md";
 
 impl Performance {
     pub(crate) fn run(&self) -> Result<Verdict> {
@@ -57,7 +57,8 @@ impl Performance {
             if self.print {
                 print!("{text}");
             } else {
-                machine::write(PAGE, &replaced(&machine::read(PAGE)?, block.name(), &text)?)?;
+                let page = block.page();
+                machine::write(page, &replaced(&machine::read(page)?, block.name(), &text)?)?;
                 println!("{}: written", block.name());
             }
         }
@@ -74,6 +75,15 @@ impl Block {
             Self::Batch => "batch",
             Self::BatchProfile => "batch_profile",
             Self::Growth => "growth",
+            Self::RunTime => "run_time",
+        }
+    }
+
+    /// Where it stands.
+    fn page(self) -> &'static str {
+        match self {
+            Self::RunTime => "docs/run-time.md",
+            _ => "docs/performance.md",
         }
     }
 
@@ -100,6 +110,11 @@ impl Block {
             Self::BatchProfile => {
                 let rustc = cmd!(shell, "rustc --version").quiet().read()?;
                 format!("{rustc}, x86_64 with AVX-512.\n\n{}", batch_profile::table(None)?)
+            }
+            Self::RunTime => {
+                let options = ["--quiet", "--release", "--no-default-features", "--features", "run_time", "--locked"];
+                let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
+                here(&shell)? + &listing(bench)?
             }
             Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
         })
@@ -149,7 +164,7 @@ fn listing(command: Cmd<'_>) -> Result<String> {
 /// A page with another text in one of its blocks.
 fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
     let start = format!("<!-- begin: measured {name},");
-    ensure!(page.lines().any(|line| line.starts_with(&start)), "{PAGE} has no block `{name}`");
+    ensure!(page.lines().any(|line| line.starts_with(&start)), "the page has no block `{name}`");
     let mut is_inside = false;
     let mut replaced = String::new();
     for line in page.lines() {
@@ -170,7 +185,7 @@ fn replaced(page: &str, name: &str, text: &str) -> Result<String> {
 mod tests {
     use clap::ValueEnum;
 
-    use super::{Block, PAGE, replaced, without_empty_lines, without_load};
+    use super::{Block, replaced, without_empty_lines, without_load};
     use crate::machine;
 
     #[test]
@@ -183,9 +198,9 @@ mod tests {
     }
 
     #[test]
-    fn the_page_has_every_block() {
-        let page = machine::read(PAGE).expect("the page");
+    fn the_pages_have_every_block() {
         for block in Block::value_variants() {
+            let page = machine::read(block.page()).expect("the page");
             let value = block.to_possible_value().expect("no block is hidden");
             assert_eq!(block.name(), value.get_name());
             assert!(replaced(&page, block.name(), "").is_ok());

@@ -89,7 +89,7 @@ const STEPS: &[Step] = &[
         about: "shipped and random robots at thousands of states",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne", "--test", "robots", "--test", "random"],
-        needs: Needs::Time,
+        needs: Needs::Nothing,
     },
     Step {
         name: "robot_texts",
