@@ -24,16 +24,14 @@ use crate::{answer, arguments, golden, limits, plan_file, show, states, workshee
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
-  rne eval robots/planar2.yaml --states states.csv -o torques.csv
-
-A LIST has a number per joint, base to tip: `rne explain arguments`.")]
+  rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv")]
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
     /// Which function: `rne explain functions`
     #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true)]
     function: Option<Function>,
-    /// Joint positions, rad or m
+    /// Positions, base to tip: `rne explain arguments`
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     q: Option<List>,
     /// Joint velocities, rad/s or m/s
@@ -69,7 +67,7 @@ pub(crate) struct Arguments {
         "gravity", "trace", "json", "csv", "compare",
     ])]
     golden: Option<u16>,
-    /// At each state of a CSV or npy file, or of - (a pipe)
+    /// At each state of a CSV or npy file; - is a pipe
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
         "golden", "trace", "json", "csv", "compare",
