@@ -36,10 +36,6 @@ fn pose<T: Number>(numbers: &[T]) -> Pose<T> {
 
 /// One state. Arrays have one element per joint: rad, rad/s, rad/s², N m for revolute joints; m, m/s, m/s², N for
 /// prismatic ones.
-///
-/// # Errors
-/// Each returns an error when an argument does not have one element per joint, or when the function cannot be compiled
-/// for this robot.
 impl CompiledArm {
     /// Any function for one state: its numbers, in the order of the function's [layout](Function::layout), into
     /// `results`. Nothing is allocated for more than the arguments.
@@ -69,11 +65,17 @@ impl CompiledArm {
     }
 
     /// Torques with a free tip, τ(q, q̇, q̈).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics<T: Number>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<T>, EvaluationError> {
         self.numbers(Function::InverseDynamics, &motion(q, qd, qdd))
     }
 
     /// Torques when the last link exerts `wrench` on its environment: τ = τ_free + Jᵀ w.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics_with_wrench<T: Number>(
         &self,
         q: &[T],
@@ -86,6 +88,9 @@ impl CompiledArm {
     }
 
     /// Torques when `payload` is fixed to the tip.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics_with_payload<T: Number>(
         &self,
         q: &[T],
@@ -98,6 +103,9 @@ impl CompiledArm {
     }
 
     /// Torques from the sines and cosines of the joint positions; `q` is used for prismatic joints alone.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics_from_sin_cos<T: Number>(
         &self,
         sin: &[T],
@@ -111,72 +119,114 @@ impl CompiledArm {
     }
 
     /// Torques that hold the arm still against gravity, τ(q, 0, 0).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn gravity_torques<T: Number>(&self, q: &[T]) -> Result<Vec<T>, EvaluationError> {
         self.numbers(Function::GravityTorques, &motion(q, &[], &[]))
     }
 
     /// Coriolis, centrifugal and gravity torques, τ(q, q̇, 0).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn bias_torques<T: Number>(&self, q: &[T], qd: &[T]) -> Result<Vec<T>, EvaluationError> {
         self.numbers(Function::BiasTorques, &motion(q, qd, &[]))
     }
 
     /// The mass matrix M(q), row by row.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn mass_matrix<T: Number>(&self, q: &[T]) -> Result<Matrix<T>, EvaluationError> {
         self.rows(Function::MassMatrix, &motion(q, &[], &[]))
     }
 
     /// The Coriolis matrix C(q, q̇) of Christoffel, row by row.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn coriolis_matrix<T: Number>(&self, q: &[T], qd: &[T]) -> Result<Matrix<T>, EvaluationError> {
         self.rows(Function::CoriolisMatrix, &motion(q, qd, &[]))
     }
 
     /// Accelerations from torques, q̈(q, q̇, τ).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn forward_dynamics<T: Number>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<Vec<T>, EvaluationError> {
         self.numbers(Function::ForwardDynamics, &motion(q, qd, &[]).tau(Array::Rows(tau)))
     }
 
     /// The tip in the world, base and tool included.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn forward_kinematics<T: Number>(&self, q: &[T]) -> Result<Pose<T>, EvaluationError> {
         self.numbers(Function::ForwardKinematics, &motion(q, &[], &[])).map(|numbers| pose(&numbers))
     }
 
     /// The frame of every row of the table in the world.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn link_poses<T: Number>(&self, q: &[T]) -> Result<Vec<Pose<T>>, EvaluationError> {
         let numbers = self.numbers(Function::LinkPoses, &motion(q, &[], &[]))?;
         Ok(numbers.chunks_exact(12).map(pose).collect())
     }
 
     /// The geometric Jacobian of the tip in world axes: three linear rows, then three angular ones.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn jacobian<T: Number>(&self, q: &[T]) -> Result<Matrix<T>, EvaluationError> {
         self.rows(Function::Jacobian, &motion(q, &[], &[]))
     }
 
     /// J̇ q̇: the acceleration of the tip in world axes when q̈ = 0, linear, then angular.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn jacobian_rate_times_velocity<T: Number>(&self, q: &[T], qd: &[T]) -> Result<[T; 6], EvaluationError> {
         self.numbers(Function::JacobianRateTimesVelocity, &motion(q, qd, &[])).map(|numbers| array(&numbers))
     }
 
     /// Kinetic energy, J.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn kinetic_energy<T: Number>(&self, q: &[T], qd: &[T]) -> Result<T, EvaluationError> {
         self.numbers(Function::KineticEnergy, &motion(q, qd, &[])).map(|numbers| numbers[0])
     }
 
     /// Potential energy, J.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn potential_energy<T: Number>(&self, q: &[T]) -> Result<T, EvaluationError> {
         self.numbers(Function::PotentialEnergy, &motion(q, &[], &[])).map(|numbers| numbers[0])
     }
 
     /// The centre of mass of all links in the world, m.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn centre_of_mass<T: Number>(&self, q: &[T]) -> Result<[T; 3], EvaluationError> {
         self.numbers(Function::CentreOfMass, &motion(q, &[], &[])).map(|numbers| array(&numbers))
     }
 
     /// The Jacobian of the centre of mass in world axes, three rows.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn centre_of_mass_jacobian<T: Number>(&self, q: &[T]) -> Result<Matrix<T>, EvaluationError> {
         self.rows(Function::CentreOfMassJacobian, &motion(q, &[], &[]))
     }
 
     /// Torques per inertial parameter: joint, link, (m, m cx, m cy, m cz, Jxx, Jxy, Jxz, Jyy, Jyz, Jzz).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn regressor<T: Number>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Vec<[T; 10]>>, EvaluationError> {
         let numbers = self.numbers(Function::Regressor, &motion(q, qd, qdd))?;
         let links = |torque: &[T]| torque.chunks_exact(10).map(array).collect();
@@ -184,6 +234,9 @@ impl CompiledArm {
     }
 
     /// ∂τ/∂q and ∂τ/∂q̇ of [`inverse_dynamics`](Self::inverse_dynamics).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics_derivatives<T: Number>(
         &self,
         q: &[T],
@@ -196,6 +249,9 @@ impl CompiledArm {
     }
 
     /// Force and moment that link i-1 exerts on link i, at joint i, in axes fixed to link i.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn joint_wrenches<T: Number>(&self, q: &[T], qd: &[T], qdd: &[T]) -> Result<Vec<Wrench<T>>, EvaluationError> {
         let numbers = self.numbers(Function::JointWrenches, &motion(q, qd, qdd))?;
         let wrench = |numbers: &[T]| Wrench { force: array(&numbers[..3]), moment: array(&numbers[3..]) };
@@ -203,6 +259,9 @@ impl CompiledArm {
     }
 
     /// Torques on a base that moves as told, under gravity as told, with a free tip.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn inverse_dynamics_on_moving_base<T: Number>(
         &self,
         q: &[T],
@@ -219,6 +278,9 @@ impl CompiledArm {
     }
 
     /// What rotors behind gears and friction add to the torques.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
     pub fn actuator_torques<T: Number>(&self, qd: &[T], qdd: &[T]) -> Result<Vec<T>, EvaluationError> {
         self.numbers(Function::ActuatorTorques, &motion(&[], qd, qdd))
     }
