@@ -1,7 +1,7 @@
 //! Python's door to rne: any arm at run time, with numpy in and out.
 //!
-//! Thin: [`arm`] has the class, [`dynamics`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the machine, [`load`] how an arm is read,
-//! [`errors`] what goes wrong. The package around it is in `rne/`.
+//! Thin: [`arm`] has the class, [`dynamics`] and [`insight`] its methods, [`arrays`] what numpy's arrays are to the
+//! machine, [`load`] how an arm is read, [`errors`] what goes wrong. The package around it is in `rne/`.
 
 mod arm;
 mod arrays;

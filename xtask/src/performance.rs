@@ -10,7 +10,8 @@ use crate::Verdict;
 use crate::instructions::{self, Instructions};
 use crate::{batch_profile, growth, machine, single_calls};
 
-/// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->` and `<!-- end -->`
+/// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->`
+/// and `<!-- end -->`
 ///
 /// All blocks take about ten minutes on an idle machine. The blocks of operations do not depend on the machine:
 /// RNE_WRITE_DOCUMENTS=1 cargo test --test documents. CARGO_TARGET_DIR is obeyed.

@@ -64,17 +64,18 @@ impl Python {
             install.quiet().ignore_stderr().run().is_ok()
         };
         let maturin = builder.join("bin/maturin");
-        if !maturin.exists() && !(self.install && pip(&builder, &[MATURIN])) {
+        if !(maturin.exists() || self.install && pip(&builder, &[MATURIN])) {
             return Err(Missing::error("there is no maturin; `cargo xtask python --install` gets it"));
         }
         let wheels = folder.join("wheels");
         let _ = std::fs::remove_dir_all(&wheels);
         let build = cmd!(
             shell,
-            "{maturin} build --quiet --release --locked --manifest-path python/Cargo.toml --target-dir {folder} --out {wheels}"
+            "{maturin} build --quiet --release --locked --manifest-path python/Cargo.toml
+                --target-dir {folder} --out {wheels}"
         );
         machine::without_flags(build).quiet().run()?;
-        let wheel = std::fs::read_dir(&wheels)?.filter_map(|entry| Some(entry.ok()?.path())).next();
+        let wheel = std::fs::read_dir(&wheels)?.find_map(|entry| Some(entry.ok()?.path()));
         let Some(wheel) = wheel else { return Ok(Verdict::from(false)) };
         let python = user.join("bin/python");
         let mut packages = TESTS.to_vec();

@@ -7,9 +7,9 @@
 //!
 //! - Registers are made by [`Lanes::splat`] and [`Vector::load`]. Both traits are private to this crate, so that no
 //!   other can call them, although it can name the types (as what the public `BatchScalar` computes with).
-//! - Within this crate the types are a parameter of [`Work::run`](super::vector::Work::run) alone, which takes the proof
-//!   as an argument, and of what it calls: generated code, which makes constants of the scalar that it is given, and
-//!   the loop of the machine.
+//! - Within this crate the types are a parameter of [`Work::run`](super::vector::Work::run) alone, which takes the
+//!   proof as an argument, and of what it calls: generated code, which makes constants of the scalar that it is given,
+//!   and the loop of the machine.
 //! - A processor that has a unit keeps it.
 #![allow(unsafe_code)]
 
