@@ -80,7 +80,7 @@
 //! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own |
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
-//! | `compiled` | any arm at run time, nearly as fast as a derived one: [`compiled::CompiledArm`]; it brings the compiler |
+//! | `compiled` | any arm at run time, nearly as fast as a derived one: `compiled::CompiledArm`; it brings the compiler |
 //! | `native` | single calls of it as instructions of the processor, as fast as derived ones; it brings Cranelift |
 //! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
 //! | `rayon` | batches on all cores |
