@@ -413,7 +413,8 @@ unsafe fn evaluate<T: BatchScalar, I: Raw<T>>(
 }
 
 fn of_input(index: usize, failure: Failure) -> Failure {
-    Failure { message: format!("input {index}: {}", failure.message), ..failure }
+    let Failure { status, message } = failure;
+    Failure::new(status, format!("input {index}: {message}"))
 }
 
 /// Gives an arm that was made, or NULL.

@@ -15,7 +15,7 @@ use crate::status::{Failure, Status, c_text};
 /// What it points to is this library's: made by rne_arm_load_file() and its like, freed by rne_arm_free().
 #[derive(Debug)]
 pub struct Arm {
-    arm: CompiledArm,
+    compiled: CompiledArm,
     name: CString,
     joints: Vec<CString>,
 }
@@ -39,7 +39,7 @@ impl Arm {
         let robot = arm.robot();
         let name = c_text(&robot.name);
         let joints = robot.joints.iter().map(|joint| c_text(&joint.name)).collect();
-        Self { arm, name, joints }
+        Self { compiled: arm, name, joints }
     }
 
     /// Of a robot file and the plan file beside it.
@@ -78,7 +78,7 @@ impl Arm {
 
     /// What computes.
     pub(crate) fn compiled(&self) -> &CompiledArm {
-        &self.arm
+        &self.compiled
     }
 
     pub(crate) fn name(&self) -> &CString {
@@ -90,7 +90,7 @@ impl Arm {
     }
 
     pub(crate) fn limits(&self, joint: usize) -> Result<Limits, Failure> {
-        let limits = self.arm.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?.limits;
+        let limits = self.compiled.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?.limits;
         let (lower, upper) = limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let or_none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Limits { lower, upper, velocity: or_none(limits.velocity), effort: or_none(limits.effort) })
@@ -103,7 +103,7 @@ impl Arm {
 
     /// A function, compiled.
     pub(crate) fn function(&self, id: u32) -> Result<&CompiledFunction, Failure> {
-        Ok(self.arm.function(function(id)?)?)
+        Ok(self.compiled.function(function(id)?)?)
     }
 
     /// The name of an argument of a function, and how many elements it has for a state.

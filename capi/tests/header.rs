@@ -8,8 +8,7 @@ fn the_header_is_that_of_the_functions() {
     let mut config = cbindgen::Config::from_file(folder.join("cbindgen.toml")).expect("a configuration");
     config.header = Some(include_str!("../include/head.txt").trim_end().to_owned());
     let sources = ["status.rs", "handle.rs", "border.rs"].map(|file| folder.join("src").join(file));
-    let builder =
-        sources.iter().fold(cbindgen::Builder::new().with_config(config), |builder, file| builder.with_src(file));
+    let builder = sources.iter().fold(cbindgen::Builder::new().with_config(config), cbindgen::Builder::with_src);
     let mut text = Vec::new();
     builder.generate().expect("a header").write(&mut text);
     let text = String::from_utf8(text).expect("UTF-8");

@@ -57,10 +57,8 @@ impl Capi {
         let prefix = self.prefix.clone().unwrap_or_else(|| folder.join("prefix"));
         fs::create_dir_all(&prefix).with_context(|| prefix.display().to_string())?;
         let prefix = prefix.canonicalize()?;
-        let build = cmd!(
-            shell,
-            "cargo build --quiet --release --locked --manifest-path capi/Cargo.toml --target-dir {folder}"
-        );
+        let build =
+            cmd!(shell, "cargo build --quiet --release --locked --manifest-path capi/Cargo.toml --target-dir {folder}");
         machine::without_flags(build).quiet().run()?;
         lay_out(&folder.join("release"), &prefix)?;
         println!("capi: {}", prefix.display());
