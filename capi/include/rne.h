@@ -191,8 +191,8 @@ enum rne_status rne_arm_load_text(const char *yaml, struct rne_arm **arm);
  * Makes an arm of a chain of a URDF, in standard rows; no angle is taken for a near multiple of pi/12.
  *
  * `base` and `tip` name the links at its ends: NULL is the root, and the one leaf of the tree. The movable joints
- * `lock_names[0 … lock_count - 1]` stand still at `lock_values`, rad or m; with `lock_others` every other movable joint
- * off the chain does, at zero.
+ * `lock_names[0 … lock_count - 1]` stand still at `lock_values`, rad or m; with `lock_others` every other movable
+ * joint off the chain does, at zero.
  */
 enum rne_status rne_arm_load_urdf(const char *path,
                                   const char *base,
@@ -236,8 +236,8 @@ const char *rne_arm_joint_name(const struct rne_arm *arm,
 enum rne_status rne_arm_joint_limits(const struct rne_arm *arm, size_t joint, struct rne_limits *limits);
 
 /**
- * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is that
- * of every arm. It may be another in another version of this library: do not store it.
+ * The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is
+ * that of every arm. It may be another in another version of this library: do not store it.
  */
 enum rne_status rne_function_find(const char *name,
                                   uint32_t *id);
@@ -278,10 +278,10 @@ enum rne_status rne_function_argument(const struct rne_arm *arm,
 /**
  * Computes a function for one state, in double precision.
  *
- * `outputs` has room for `output_count` numbers, just as many as rne_function_outputs() tells. Inputs that the function
- * does not take are not read. After a failure nothing has been written. The second call of a thread and those that follow
- * allocate nothing, take no lock and do not call the operating system; the first allocates what the thread keeps, and
- * compiles the function unless rne_function_prepare() has. A failure allocates its message.
+ * `outputs` has room for `output_count` numbers, just as many as rne_function_outputs() tells. Inputs that the
+ * function does not take are not read. After a failure nothing has been written. The second call of a thread and those
+ * that follow allocate nothing, take no lock and do not call the operating system; the first allocates what the thread
+ * keeps, and compiles the function unless rne_function_prepare() has. A failure allocates its message.
  */
 enum rne_status rne_evaluate(const struct rne_arm *arm,
                              uint32_t id,
@@ -293,8 +293,9 @@ enum rne_status rne_evaluate(const struct rne_arm *arm,
 /**
  * Computes a function for so many states, in double precision, in the calling thread, on its widest vector unit.
  *
- * `outputs` has room for `output_count` numbers: `states` rows of as many as rne_function_outputs() tells. Each row has
- * the bits that rne_evaluate() gives that state. Otherwise as rne_evaluate(), but that some hundred bytes are allocated.
+ * `outputs` has room for `output_count` numbers: `states` rows of as many as rne_function_outputs() tells. Each row
+ * has the bits that rne_evaluate() gives that state. Otherwise as rne_evaluate(), but that some hundred bytes are
+ * allocated.
  */
 enum rne_status rne_evaluate_batch(const struct rne_arm *arm,
                                    uint32_t id,

@@ -91,12 +91,12 @@ pub unsafe extern "C" fn rne_arm_load_text(yaml: *const c_char, arm: *mut *mut A
 /// Makes an arm of a chain of a URDF, in standard rows; no angle is taken for a near multiple of pi/12.
 ///
 /// `base` and `tip` name the links at its ends: NULL is the root, and the one leaf of the tree. The movable joints
-/// `lock_names[0 … lock_count - 1]` stand still at `lock_values`, rad or m; with `lock_others` every other movable joint
-/// off the chain does, at zero.
+/// `lock_names[0 … lock_count - 1]` stand still at `lock_values`, rad or m; with `lock_others` every other movable
+/// joint off the chain does, at zero.
 ///
 /// # Safety
-/// `path`, `base`, `tip` and the names are NULL or end with a zero byte; there are `lock_count` names and values; `arm` is
-/// NULL or a place for a pointer.
+/// `path`, `base`, `tip` and the names are NULL or end with a zero byte; there are `lock_count` names and values; `arm`
+/// is NULL or a place for a pointer.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_arm_load_urdf(
     path: *const c_char,
@@ -193,8 +193,8 @@ pub unsafe extern "C" fn rne_arm_joint_limits(arm: *const Arm, joint: usize, lim
     status::status(|| unsafe { give(limits, "limits", reference(arm, "arm")?.limits(joint)?) })
 }
 
-/// The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is that
-/// of every arm. It may be another in another version of this library: do not store it.
+/// The id of a function by its name: "inverse_dynamics", "mass_matrix", …; `docs/functions.md` has them all. An id is
+/// that of every arm. It may be another in another version of this library: do not store it.
 ///
 /// # Safety
 /// `name` is NULL or ends with a zero byte; `id` is NULL or a place for a number.
@@ -271,13 +271,14 @@ pub unsafe extern "C" fn rne_function_argument(
 
 /// Computes a function for one state, in double precision.
 ///
-/// `outputs` has room for `output_count` numbers, just as many as rne_function_outputs() tells. Inputs that the function
-/// does not take are not read. After a failure nothing has been written. The second call of a thread and those that follow
-/// allocate nothing, take no lock and do not call the operating system; the first allocates what the thread keeps, and
-/// compiles the function unless rne_function_prepare() has. A failure allocates its message.
+/// `outputs` has room for `output_count` numbers, just as many as rne_function_outputs() tells. Inputs that the
+/// function does not take are not read. After a failure nothing has been written. The second call of a thread and those
+/// that follow allocate nothing, take no lock and do not call the operating system; the first allocates what the thread
+/// keeps, and compiles the function unless rne_function_prepare() has. A failure allocates its message.
 ///
 /// # Safety
-/// `arm` is NULL or an arm; there are `input_count` inputs with as many numbers as they say, and room for `output_count`.
+/// `arm` is NULL or an arm; there are `input_count` inputs with as many numbers as they say, and room for
+/// `output_count`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn rne_evaluate(
     arm: *const Arm,
@@ -293,8 +294,9 @@ pub unsafe extern "C" fn rne_evaluate(
 
 /// Computes a function for so many states, in double precision, in the calling thread, on its widest vector unit.
 ///
-/// `outputs` has room for `output_count` numbers: `states` rows of as many as rne_function_outputs() tells. Each row has
-/// the bits that rne_evaluate() gives that state. Otherwise as rne_evaluate(), but that some hundred bytes are allocated.
+/// `outputs` has room for `output_count` numbers: `states` rows of as many as rne_function_outputs() tells. Each row
+/// has the bits that rne_evaluate() gives that state. Otherwise as rne_evaluate(), but that some hundred bytes are
+/// allocated.
 ///
 /// # Safety
 /// As rne_evaluate().
@@ -506,8 +508,8 @@ unsafe fn slice<'a, T>(pointer: *const T, count: usize, what: &str) -> Result<&'
 /// An array of C's to be written to, which [`checked`] has let pass.
 ///
 /// # Safety
-/// It has room for `count` numbers, and nobody else uses it as long as the slice is used. Whatever bytes C has there are
-/// numbers; they are written to and not read.
+/// It has room for `count` numbers, and nobody else uses it as long as the slice is used. Whatever bytes C has there
+/// are numbers; they are written to and not read.
 unsafe fn slice_mut<'a, T: BatchScalar>(pointer: *mut T, count: usize) -> &'a mut [T] {
     if count == 0 {
         return &mut [];

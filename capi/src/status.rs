@@ -104,8 +104,8 @@ fn tell(failure: &Failure) {
 
 /// Does the work of a call: its value, or nothing and the words of why.
 pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Status> {
-    // What a panic leaves half done is not seen again: handles are not changed by a call, but for what is compiled once,
-    // and that is whole or not there.
+    // What a panic leaves half done is not seen again: handles are not changed by a call, but for what is compiled
+    // once, and that is whole or not there.
     let failure = match catch_unwind(AssertUnwindSafe(work)) {
         Ok(Ok(value)) => return Ok(value),
         Ok(Err(failure)) => failure,

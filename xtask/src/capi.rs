@@ -21,8 +21,8 @@ const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
 ///
-/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples and a
-/// program of sixteen threads are compiled against it and run, under valgrind where it is there.
+/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples
+/// and a program of sixteen threads are compiled against it and run, under valgrind where it is there.
 #[derive(Args)]
 #[command(after_help = "\
 Needs cc and c++; skips valgrind, pkg-config and CMake, each with one line, where they are not there.
