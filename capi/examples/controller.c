@@ -20,7 +20,7 @@ typedef struct controller {
   rne_input inputs[2];
 } controller;
 
-/* Reads and compiles: some milliseconds, files, memory. Not in the control loop. 0, or why not is on stderr. */
+/* Reads and compiles: tens of milliseconds, files, memory. Not in the control loop. 0, or why not is on stderr. */
 static int controller_configure(controller *self, const char *path) {
   memset(self, 0, sizeof *self);
   rne_status status = path ? rne_arm_load_file(path, &self->arm) : rne_arm_builtin("puma560", &self->arm);

@@ -248,7 +248,7 @@ enum rne_status rne_function_find(const char *name,
 uint32_t rne_function_count(void);
 
 /**
- * Compiles a function of an arm now, in some milliseconds; otherwise its first use does.
+ * Compiles a function of an arm now, in some ten milliseconds; otherwise its first use does.
  */
 enum rne_status rne_function_prepare(const struct rne_arm *arm, uint32_t id);
 

@@ -210,7 +210,7 @@ pub extern "C" fn rne_function_count() -> u32 {
     u32::try_from(Function::ALL.len()).unwrap_or(u32::MAX)
 }
 
-/// Compiles a function of an arm now, in some milliseconds; otherwise its first use does.
+/// Compiles a function of an arm now, in some ten milliseconds; otherwise its first use does.
 ///
 /// # Safety
 /// `arm` is NULL or an arm.
