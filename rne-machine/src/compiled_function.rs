@@ -6,6 +6,9 @@ use rne_runtime::machine::{Destination, Source};
 
 use crate::{Arguments, EvaluationError, Machine, Number};
 
+/// As many inputs find room on the stack: those of an arm of twenty joints, of most functions.
+const FEW: usize = 64;
+
 /// A function of an arm that was compiled when it was first asked for.
 #[derive(Clone, Debug)]
 pub struct CompiledFunction {
@@ -93,7 +96,8 @@ impl CompiledFunction {
     }
 
     /// Computes one state, the first of the arguments: with the bits it has among many. With the feature `native` as
-    /// instructions of the processor, compiled when it is first asked for.
+    /// instructions of the processor, compiled when it is first asked for. With up
+    /// to 64 inputs nothing is allocated but what the thread keeps of its first call.
     ///
     /// # Errors
     /// When an argument is missing or has another size, or the room for the results.
@@ -104,20 +108,27 @@ impl CompiledFunction {
         results: &mut [T],
     ) -> Result<(), EvaluationError> {
         self.check(1, arguments)?;
-        let inputs: Vec<T> = self
-            .inputs
-            .iter()
-            .filter_map(|&(array, element)| {
-                let (name, elements) = self.arrays[array];
-                arguments.get(name)?.first(element, elements).copied()
-            })
-            .collect();
+        let count = self.inputs.len();
+        let (mut few, mut many);
+        let inputs: &mut [T] = if count <= FEW {
+            few = [T::zero(); FEW];
+            &mut few[..count]
+        } else {
+            many = vec![T::zero(); count];
+            &mut many
+        };
+        for (input, &(array, element)) in inputs.iter_mut().zip(&self.inputs) {
+            let (name, elements) = self.arrays[array];
+            let number = arguments.get(name).and_then(|array| array.first(element, elements));
+            let wrong = EvaluationError::Argument { argument: name, elements, states: 1 };
+            *input = *number.ok_or(wrong)?;
+        }
         #[cfg(feature = "native")]
-        if T::call(&self.natives, unit, &self.program, &inputs, results) {
+        if T::call(&self.natives, unit, &self.program, inputs, results) {
             return Ok(());
         }
         let room = EvaluationError::Room { outputs: self.outputs(), states: 1 };
-        self.machine.code().run_one(unit, &inputs, results).map_err(|_| room)
+        self.machine.code().run_one(unit, inputs, results).map_err(|_| room)
     }
 
     /// Refuses arguments that are not there or have another size, whether the program uses them or not.

@@ -207,6 +207,26 @@ fn a_state_has_the_same_bits_in_every_layout_and_alone() {
 }
 
 /// Angles beyond the kernel of sine and cosine, infinities and NaN: as in single calls, and no neighbour notices.
+/// More numbers than find room on the stack of a single call.
+#[test]
+fn a_long_arm_is_computed_alone_as_among_others() {
+    const JOINTS: usize = 24;
+    let joint = "  - {type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: pi/2}, link: {mass: 1, com: [-0.1, 0, 0]}}\n";
+    let head = "format: 1\nname: snake\nsource: own\nconvention: standard\ngravity: [0, 0, -9.81]\njoints:\n";
+    let arm = CompiledArm::from_yaml(&(head.to_owned() + &joint.repeat(JOINTS))).expect("an arm");
+    let mut rng = Rng::with_seed(24);
+    let rows: Vec<f64> = (0..3 * 3 * JOINTS).map(|_| rng.f64()).collect();
+    let [q, qd, qdd] = [0, 1, 2].map(|index| &rows[index * 3 * JOINTS..][..3 * JOINTS]);
+    let given = Arguments::new().q(Array::Rows(q)).qd(Array::Rows(qd)).qdd(Array::Rows(qdd));
+    let mut many = [0.0; 3 * JOINTS];
+    arm.run(Function::InverseDynamics, 3, &given, Destination::Rows(&mut many)).expect("numbers");
+    for state in 0..3 {
+        let part = |rows: &'_ [f64]| rows[state * JOINTS..][..JOINTS].to_vec();
+        let one = arm.inverse_dynamics(&part(q), &part(qd), &part(qdd)).expect("numbers");
+        assert!(are_same(&one, &part(&many)));
+    }
+}
+
 #[test]
 fn large_angles_and_no_numbers_stay_with_their_state() {
     let arm = arms().find(|arm| arm.robot().name == "puma560").expect("a shipped robot");

@@ -4,6 +4,7 @@
 //! published; `.ci/run` is the list of those that must succeed before a change lands.
 
 mod batch_profile;
+mod capi;
 mod certificate;
 mod counts;
 mod features;
@@ -66,6 +67,7 @@ enum Task {
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
+    Capi(capi::Capi),
     Page(page::Page),
     Playground(playground::Playground),
 }
@@ -103,6 +105,7 @@ impl Task {
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Python(task) => ("python", task.install, task.run()),
+            Self::Capi(task) => ("capi", task.install, task.run()),
             Self::Page(task) => ("page", task.install, task.run()),
             Self::Playground(task) => ("playground", task.install, task.run()),
         }

@@ -1,0 +1,82 @@
+//! Inputs in a caller's arrays, checked, and a function over them.
+
+use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination};
+use rne_runtime::{BatchScalar, VectorUnit};
+
+use crate::handle::Arm;
+use crate::status::{Failure, Status};
+
+/// An argument: its numbers and how far apart they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Given<'a, T> {
+    pub(crate) name: &'a str,
+    pub(crate) numbers: &'a [T],
+    /// How far apart states are; 0 where all have the same.
+    pub(crate) state: usize,
+    /// How far apart elements are; 0 means 1.
+    pub(crate) element: usize,
+}
+
+/// What is given, as the machine takes it. What the function does not take is not looked at, but for its name.
+fn arguments<'a, T: BatchScalar>(
+    function: &CompiledFunction,
+    inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
+    states: usize,
+) -> Result<Arguments<'a, T>, Failure> {
+    let mut arguments = Arguments::new();
+    let mut taken = 0_u64;
+    for given in inputs {
+        let Given { name, numbers, state, element } = given?;
+        let Some(place) = ARGUMENTS.iter().position(|argument| *argument == name) else {
+            let message = format!("there is no argument `{name}`; there are {}", ARGUMENTS.join(", "));
+            return Err(Failure::new(Status::UnknownName, message));
+        };
+        if taken & 1 << place != 0 {
+            return Err(Failure::new(Status::WrongSize, format!("`{name}` is there twice")));
+        }
+        taken |= 1 << place;
+        let Some(&(name, elements)) = function.arguments().iter().find(|(argument, _)| *argument == name) else {
+            continue;
+        };
+        let apart = element.max(1);
+        let last = |count: usize, apart: usize| count.saturating_sub(1).checked_mul(apart);
+        let needed = || last(states, state)?.checked_add(last(elements, apart)?)?.checked_add(1);
+        if states > 0 && elements > 0 && needed().is_none_or(|needed| numbers.len() < needed) {
+            let needed = needed().map_or("more than memory can hold".to_owned(), |needed| needed.to_string());
+            let message = format!(
+                "`{name}` has {elements} elements for each of {states} states: with a state_stride of {state} and an \
+                 element_stride of {apart} that is {needed} numbers; `count` says {}",
+                numbers.len()
+            );
+            return Err(Failure::new(Status::WrongSize, message));
+        }
+        let array = Array::Strided { numbers, state, element: apart };
+        arguments = arguments.with(name, array).unwrap_or(arguments);
+    }
+    Ok(arguments)
+}
+
+/// Computes one state. After the first call of a thread nothing is allocated.
+pub(crate) fn one<'a, T: BatchScalar>(
+    arm: &Arm,
+    id: u32,
+    inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
+    outputs: &mut [T],
+) -> Result<(), Failure> {
+    let function = arm.function(id)?;
+    let arguments = arguments(function, inputs, 1)?;
+    Ok(function.run_one(VectorUnit::widest(), &arguments, outputs)?)
+}
+
+/// Computes so many states.
+pub(crate) fn many<'a, T: BatchScalar>(
+    arm: &Arm,
+    id: u32,
+    states: usize,
+    inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
+    outputs: &mut [T],
+) -> Result<(), Failure> {
+    let function = arm.function(id)?;
+    let arguments = arguments(function, inputs, states)?;
+    Ok(function.run(VectorUnit::widest(), states, &arguments, Destination::Rows(outputs))?)
+}

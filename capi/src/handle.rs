@@ -1,0 +1,142 @@
+//! The arm behind a handle: how it is read, and what it tells of itself.
+
+use std::ffi::{CStr, CString};
+use std::path::Path;
+use std::sync::LazyLock;
+
+use rne_codegen::UnknownName;
+use rne_convert::{Options, Selection, Urdf};
+use rne_machine::{ARGUMENTS, ArmError, CompiledArm, CompiledFunction, Function};
+
+use crate::status::{Failure, Status, c_text};
+
+/// An arm. Its functions are compiled when they are first called, once; any number of threads may use it at once.
+///
+/// What it points to is this library's: made by rne_arm_load_file() and its like, freed by rne_arm_free().
+#[derive(Debug)]
+pub struct Arm {
+    compiled: CompiledArm,
+    name: CString,
+    joints: Vec<CString>,
+}
+
+/// What a joint may do. Infinite where the robot file says nothing.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Lower end of its position, rad or m.
+    pub lower: f64,
+    /// Upper end of its position, rad or m.
+    pub upper: f64,
+    /// Largest speed, rad/s or m/s.
+    pub velocity: f64,
+    /// Largest torque or force, N m or N.
+    pub effort: f64,
+}
+
+impl Arm {
+    fn new(arm: CompiledArm) -> Self {
+        let robot = arm.robot();
+        let name = c_text(&robot.name);
+        let joints = robot.joints.iter().map(|joint| c_text(&joint.name)).collect();
+        Self { compiled: arm, name, joints }
+    }
+
+    /// Of a robot file and the plan file beside it.
+    pub(crate) fn of_file(path: &str) -> Result<Self, Failure> {
+        Ok(Self::new(CompiledArm::from_file(path)?))
+    }
+
+    /// Of the text of a robot file.
+    pub(crate) fn of_text(text: &str) -> Result<Self, Failure> {
+        Ok(Self::new(CompiledArm::from_yaml(text)?))
+    }
+
+    /// Of a chain of a URDF; its numbers stay as they are.
+    pub(crate) fn of_urdf(path: &str, selection: Selection) -> Result<Self, Failure> {
+        let bytes = rne_model::read_file(Path::new(path))
+            .map_err(|error| Failure::from(ArmError::Unreadable { path: path.into(), error }))?;
+        let text = String::from_utf8(bytes)
+            .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is no text in UTF-8")))?;
+        let options = Options { selection, snap: false, ..Options::default() };
+        let imported = Urdf::read(path, &text)?.import(&options)?;
+        Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
+    }
+
+    /// Of a robot in the box, with its plan.
+    pub(crate) fn of_box(name: &str) -> Result<Self, Failure> {
+        let file = rne_robots::find(name).ok_or_else(|| {
+            let names: Vec<&str> = rne_robots::ROBOTS.iter().map(|robot| robot.name).collect();
+            let message = format!("there is no robot `{name}` in the box; there are {}", names.join(", "));
+            Failure::new(Status::UnknownName, message)
+        })?;
+        Ok(Self::new(match file.plan {
+            Some(plan) => CompiledArm::with_plan(file.yaml, plan)?,
+            None => CompiledArm::from_yaml(file.yaml)?,
+        }))
+    }
+
+    /// What computes.
+    pub(crate) fn compiled(&self) -> &CompiledArm {
+        &self.compiled
+    }
+
+    pub(crate) fn name(&self) -> &CString {
+        &self.name
+    }
+
+    pub(crate) fn joint_name(&self, joint: usize) -> Result<&CString, Failure> {
+        self.joints.get(joint).ok_or_else(|| self.no_joint(joint))
+    }
+
+    pub(crate) fn limits(&self, joint: usize) -> Result<Limits, Failure> {
+        let limits = self.compiled.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?.limits;
+        let (lower, upper) = limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let or_none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
+        Ok(Limits { lower, upper, velocity: or_none(limits.velocity), effort: or_none(limits.effort) })
+    }
+
+    fn no_joint(&self, joint: usize) -> Failure {
+        let message = format!("there is no joint {joint}: this arm has {}, counted from 0", self.joints.len());
+        Failure::new(Status::OutOfRange, message)
+    }
+
+    /// A function, compiled.
+    pub(crate) fn function(&self, id: u32) -> Result<&CompiledFunction, Failure> {
+        Ok(self.compiled.function(function(id)?)?)
+    }
+
+    /// The name of an argument of a function, and how many elements it has for a state.
+    pub(crate) fn argument(&self, id: u32, argument: usize) -> Result<(&'static CStr, usize), Failure> {
+        let arguments = self.function(id)?.arguments();
+        let none = || {
+            let message = format!("there is no argument {argument}: it takes {}, counted from 0", arguments.len());
+            Failure::new(Status::OutOfRange, message)
+        };
+        let &(name, elements) = arguments.get(argument).ok_or_else(none)?;
+        Ok((argument_name(name).ok_or_else(none)?, elements))
+    }
+}
+
+/// The function of an id.
+pub(crate) fn function(id: u32) -> Result<Function, Failure> {
+    let found = usize::try_from(id).ok().and_then(|id| Function::ALL.get(id).copied());
+    found.ok_or_else(|| {
+        let message = format!("no function has the id {id}; rne_function_find() gives them");
+        Failure::new(Status::OutOfRange, message)
+    })
+}
+
+/// The id of a function.
+pub(crate) fn function_id(name: &str) -> Result<u32, Failure> {
+    let function: Function =
+        name.parse().map_err(|error: UnknownName| Failure::new(Status::UnknownName, error.to_string()))?;
+    let id = Function::ALL.iter().position(|other| *other == function).and_then(|id| u32::try_from(id).ok());
+    id.ok_or_else(|| Failure::new(Status::UnknownName, format!("there is no function `{name}`")))
+}
+
+/// The name of an argument as C reads it.
+fn argument_name(name: &str) -> Option<&'static CStr> {
+    static NAMES: LazyLock<Vec<CString>> = LazyLock::new(|| ARGUMENTS.iter().map(|name| c_text(name)).collect());
+    NAMES.iter().map(CString::as_c_str).find(|known| known.to_bytes() == name.as_bytes())
+}

@@ -1,0 +1,188 @@
+//! The C library: laid out below a prefix, and the programs of C and C++ that use it there.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use clap::Args;
+use xshell::{Shell, cmd};
+
+use crate::Verdict;
+use crate::machine::{self, Missing};
+
+/// What a static library of Rust wants of the system.
+const SYSTEM: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
+
+/// What checks memory, and what finds the library as others do.
+const PACKAGES: [&str; 3] = ["valgrind", "cmake", "pkg-config"];
+
+/// Warnings that examples must not have.
+const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
+
+/// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
+///
+/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples
+/// and a program of sixteen threads are compiled against it and run, under valgrind where it is there.
+#[derive(Args)]
+#[command(after_help = "\
+Needs cc and c++; skips valgrind, pkg-config and CMake, each with one line, where they are not there.
+
+Examples:
+  cargo xtask capi                        with what is there, below target/capi/prefix
+  cargo xtask capi --install              Debian's valgrind, cmake and pkg-config first
+  cargo xtask capi --prefix ~/.local      for your own programs")]
+pub(crate) struct Capi {
+    /// Get Debian's valgrind, cmake and pkg-config
+    #[arg(long)]
+    pub(crate) install: bool,
+    /// Where include/ and lib/ go [default: target/capi/prefix]
+    #[arg(long, value_name = "DIR")]
+    prefix: Option<PathBuf>,
+}
+
+impl Capi {
+    pub(crate) fn run(&self) -> Result<Verdict> {
+        let shell = machine::shell()?;
+        for compiler in ["cc", "c++"] {
+            if !machine::has(compiler) {
+                return Err(Missing::error(format!("there is no {compiler}")));
+            }
+        }
+        if self.install
+            && let Err(error) = machine::packages(&PACKAGES, true)
+        {
+            println!("capi: {error}");
+        }
+        let folder = machine::target_folder("target")?.join("capi");
+        let prefix = self.prefix.clone().unwrap_or_else(|| folder.join("prefix"));
+        fs::create_dir_all(&prefix).with_context(|| prefix.display().to_string())?;
+        let prefix = prefix.canonicalize()?;
+        let build =
+            cmd!(shell, "cargo build --quiet --release --locked --manifest-path capi/Cargo.toml --target-dir {folder}");
+        machine::without_flags(build).quiet().run()?;
+        lay_out(&folder.join("release"), &prefix)?;
+        println!("capi: {}", prefix.display());
+        let programs = folder.join("programs");
+        fs::create_dir_all(&programs)?;
+        Ok(Verdict::from(holds(&shell, &prefix, &programs)? && cmake(&shell, &prefix, &programs)?))
+    }
+}
+
+/// What the shared library is called here.
+fn shared() -> String {
+    format!("librne{}", std::env::consts::DLL_SUFFIX)
+}
+
+/// Copies what was built, and writes what finds it.
+fn lay_out(built: &Path, prefix: &Path) -> Result<()> {
+    let copy = |from: &Path, to: &str| -> Result<()> {
+        let to = prefix.join(to);
+        fs::create_dir_all(to.parent().unwrap_or(prefix))?;
+        fs::copy(from, &to).with_context(|| format!("{} to {}", from.display(), to.display()))?;
+        Ok(())
+    };
+    let shared = shared();
+    copy(&machine::root().join("capi/include/rne.h"), "include/rne.h")?;
+    copy(&built.join(&shared), &format!("lib/{shared}"))?;
+    copy(&built.join("librne.a"), "lib/librne.a")?;
+    let manifest = machine::read("capi/Cargo.toml")?;
+    let version = manifest.lines().find_map(|line| line.strip_prefix("version = \"")?.strip_suffix('"'));
+    let version = version.context("capi/Cargo.toml has no version")?;
+    for (folder, file) in
+        [("lib/pkgconfig", "rne.pc"), ("lib/cmake/rne", "rneConfig.cmake"), ("lib/cmake/rne", "rneConfigVersion.cmake")]
+    {
+        let text = machine::read(&format!("capi/cmake/{file}.in"))?;
+        // CMake separates by semicolons
+        let system = if file == "rne.pc" { SYSTEM.to_owned() } else { SYSTEM.replace(' ', ";") };
+        let text = text.replace("@VERSION@", version).replace("@SHARED@", &shared).replace("@SYSTEM@", &system);
+        fs::create_dir_all(prefix.join(folder))?;
+        fs::write(prefix.join(folder).join(file), text).with_context(|| file.to_owned())?;
+    }
+    Ok(())
+}
+
+/// Compiles the programs against the prefix and runs them.
+fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
+    let library = prefix.join("lib");
+    let mut flags = vec![format!("-I{}", prefix.join("include").display()), format!("-L{}", library.display())];
+    flags.push("-lrne".to_owned());
+    if machine::has("pkg-config") {
+        let found = cmd!(shell, "pkg-config --cflags --libs rne").env("PKG_CONFIG_PATH", library.join("pkgconfig"));
+        flags = found.quiet().read()?.split_whitespace().map(str::to_owned).collect();
+    } else {
+        println!("pkg-config: skipped, it is not there");
+    }
+    let has_valgrind = machine::has("valgrind");
+    if !has_valgrind {
+        println!("valgrind: skipped, it is not there");
+    }
+    let rpath = format!("-Wl,-rpath,{}", library.display());
+    let archive = library.join("librne.a");
+    let include = prefix.join("include");
+    let system: Vec<&str> = SYSTEM.split(' ').collect();
+    let sources = [
+        ("capi/examples/torque.c", "cc", "-std=c11"),
+        ("capi/examples/torque.cpp", "c++", "-std=c++17"),
+        ("capi/examples/controller.c", "cc", "-std=c11"),
+        ("capi/tests/threads.c", "cc", "-std=c11"),
+    ];
+    let mut holds = true;
+    for (source, compiler, standard) in sources {
+        let name = Path::new(source).file_name().unwrap_or_default().to_string_lossy().replace('.', "_");
+        let program = programs.join(&name);
+        let flags = &flags;
+        cmd!(shell, "{compiler} {standard} -O1 -g {STRICT...} {source} {flags...} -pthread {rpath} -o {program}")
+            .quiet()
+            .run()?;
+        holds &= runs(shell, &program, has_valgrind)?;
+    }
+    // the static one
+    let program = programs.join("torque_static");
+    let source = "capi/examples/torque.c";
+    cmd!(shell, "cc -std=c11 {STRICT...} -I{include} {source} {archive} {system...} -o {program}").quiet().run()?;
+    Ok(holds & runs(shell, &program, false)?)
+}
+
+/// Runs a program as it is, and under valgrind: no error, and nothing lost.
+fn runs(shell: &Shell, program: &Path, has_valgrind: bool) -> Result<bool> {
+    let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let output = cmd!(shell, "{program}").quiet().ignore_status().output()?;
+    let mut holds = output.status.success();
+    let mut told = if holds { "runs" } else { "fails" }.to_owned();
+    if holds && has_valgrind {
+        let check = cmd!(
+            shell,
+            "valgrind --quiet --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite {program}"
+        );
+        let checked = check.quiet().ignore_status().output()?;
+        holds = checked.status.success();
+        told += if holds { ", valgrind finds nothing" } else { ", valgrind finds fault" };
+        if !holds {
+            print!("{}", String::from_utf8_lossy(&checked.stderr));
+        }
+    }
+    println!("{name}: {told}");
+    if !holds {
+        print!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    }
+    Ok(holds)
+}
+
+/// The examples by find_package(rne), shared and static.
+fn cmake(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
+    if !machine::has("cmake") {
+        println!("cmake: skipped, it is not there");
+        return Ok(true);
+    }
+    let build = programs.join("cmake");
+    let found = format!("-DCMAKE_PREFIX_PATH={}", prefix.display());
+    cmd!(shell, "cmake -S capi/examples -B {build} {found}").quiet().ignore_stdout().run()?;
+    cmd!(shell, "cmake --build {build}").quiet().ignore_stdout().run()?;
+    let tested = cmd!(shell, "ctest --test-dir {build} --output-on-failure").quiet().ignore_status().output()?;
+    let holds = tested.status.success();
+    println!("cmake: {}", if holds { "find_package(rne) finds it, shared and static" } else { "fails" });
+    if !holds {
+        print!("{}", String::from_utf8_lossy(&tested.stdout));
+    }
+    Ok(holds)
+}
