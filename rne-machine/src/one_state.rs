@@ -40,6 +40,7 @@ fn pose<T: BatchScalar>(numbers: &[T]) -> Pose<T> {
 /// # Errors
 /// Each returns an error when an argument does not have one element per joint, or when the function cannot be compiled
 /// for this robot.
+#[allow(clippy::missing_errors_doc)] // it stands above, of all of them
 impl CompiledArm {
     /// Any function for one state: its numbers, in the order of the function's [layout](Function::layout), into
     /// `results`. Nothing is allocated for more than the arguments.
