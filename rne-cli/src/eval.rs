@@ -11,6 +11,7 @@ use serde_json::{Value, json};
 
 use crate::arm::{ChosenArm, Setting};
 use crate::compare::{self, Manner};
+use crate::input_file::is_standard_input;
 use crate::letters::Letters;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
@@ -24,7 +25,8 @@ use crate::{answer, arguments, golden, limits, plan_file, show, states, workshee
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
-  rne eval robots/planar2.yaml --golden 100 > robots/planar2.golden.csv")]
+  rne eval planar2 --states docs/states.csv -o torques.csv")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
     #[command(flatten)]
     arm: ChosenArm,
@@ -70,7 +72,7 @@ pub(crate) struct Arguments {
     /// At each state of a CSV or npy file; - is a pipe
     #[arg(long, value_name = "TABLE", conflicts_with_all = [
         "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
-        "golden", "trace", "json", "csv", "compare",
+        "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
     ])]
     states: Option<PathBuf>,
     /// Where their results go: CSV, or npy by its name
@@ -123,6 +125,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 }
 
 fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.out.is_some() && arguments.states.is_none() {
+        return Err(Failure::usage("-o is where the results of --states go; those of one state are printed"));
+    }
+    let is_read_twice = |states: &PathBuf| is_standard_input(states) && is_standard_input(arguments.arm.file());
+    if arguments.states.as_ref().is_some_and(is_read_twice) {
+        return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
+    }
     let robot = arguments.arm.robot()?;
     if let Some(states) = &arguments.states {
         let file = arguments.arm.file();

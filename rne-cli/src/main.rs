@@ -43,6 +43,8 @@ mod search;
 mod shell;
 mod show;
 mod state;
+mod state_results;
+mod state_table;
 mod states;
 mod terminal;
 mod tour;

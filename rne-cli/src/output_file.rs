@@ -2,7 +2,7 @@
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read as _, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
@@ -64,23 +64,55 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
 /// Writes a file through a temporary one beside it, so that a reader finds the old text or the new one. A file that has
 /// the text already keeps its date, so nothing is built again.
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
-    // The file behind a symbolic link, not the link.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    if matches!(existing(&path), Existing::Text(old) if old == text) {
+    if matches!(existing(path), Existing::Text(old) if old == text) {
         return Ok(Written::Unchanged);
     }
-    let permissions = fs::metadata(&path).ok().map(|metadata| metadata.permissions());
-    if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
-        return Err(io::Error::new(ErrorKind::PermissionDenied, "it is write-protected"));
-    }
-    let mut file = beside(&path)?;
-    file.write_all(text.as_bytes())?;
-    if let Some(permissions) = permissions {
-        file.as_file().set_permissions(permissions)?;
-    }
-    file.as_file().sync_all()?;
-    file.persist(&path)?;
+    let replacement = Replacement::begin(path)?;
+    replacement.file()?.write_all(text.as_bytes())?;
+    replacement.keep()?;
     Ok(Written::Anew)
+}
+
+/// A file beside the one whose place it takes when it is whole; it is gone when it is not kept.
+pub(crate) struct Replacement {
+    file: NamedTempFile,
+    path: PathBuf,
+    /// Those of the file that is there.
+    permissions: Option<fs::Permissions>,
+}
+
+impl Replacement {
+    /// An empty one.
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
+        // The file behind a symbolic link, not the link.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let permissions = fs::metadata(&path).ok().map(|metadata| metadata.permissions());
+        if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
+            return Err(io::Error::new(ErrorKind::PermissionDenied, "it is write-protected"));
+        }
+        Ok(Self { file: beside(&path)?, path, permissions })
+    }
+
+    /// Another one of the same file.
+    pub(crate) fn again(&self) -> io::Result<Self> {
+        Self::begin(&self.path)
+    }
+
+    /// The file, to be written and read, from its beginning.
+    pub(crate) fn file(&self) -> io::Result<File> {
+        self.file.reopen()
+    }
+
+    /// Takes the place of the file.
+    pub(crate) fn keep(self) -> io::Result<()> {
+        let Self { file, path, permissions } = self;
+        if let Some(permissions) = permissions {
+            file.as_file().set_permissions(permissions)?;
+        }
+        file.as_file().sync_all()?;
+        file.persist(&path)?;
+        Ok(())
+    }
 }
 
 /// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise, and

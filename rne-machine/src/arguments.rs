@@ -35,7 +35,7 @@ impl<'a, T> Array<'a, T> {
             Array::Columns(columns) => Array::Columns(columns.get(range).unwrap_or_default()),
             Array::Same(numbers) => Array::Same(numbers.get(range).unwrap_or_default()),
             Array::Strided { numbers, state, element } => {
-                let numbers = numbers.get(range.start * element..).unwrap_or_default();
+                let numbers = numbers.get(range.start.saturating_mul(element)..).unwrap_or_default();
                 Array::Strided { numbers, state, element }
             }
         }
@@ -159,5 +159,21 @@ arguments! {
 impl<T> Default for Arguments<'_, T> {
     fn default() -> Self {
         Self::new()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_of_an_array_that_reaches_too_far_has_nothing() {
+        let numbers = [1.0, 2.0, 3.0];
+        for element in [usize::MAX, usize::MAX / 2] {
+            let part = Array::Strided { numbers: &numbers, state: 1, element }.part(6, 3..6);
+            assert!(part.source(0, 3, 1).is_none(), "{part:?}");
+        }
+        let part = Array::Strided { numbers: &numbers, state: 0, element: 1 }.part(3, 1..3);
+        assert_eq!(part.first(1, 2), Some(&3.0));
     }
 }

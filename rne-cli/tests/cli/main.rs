@@ -21,6 +21,7 @@ mod report;
 mod search;
 mod shipped;
 mod show;
+mod states;
 mod terminal;
 mod views;
 mod worksheet;

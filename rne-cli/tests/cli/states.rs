@@ -1,0 +1,404 @@
+//! `rne eval --states`: files of states, CSV and arrays of numpy, against `rne eval` of each state.
+
+use std::fs;
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::path::Path;
+use std::process::Stdio;
+
+use rne_codegen::{Argument, Function};
+use serde_json::Value;
+
+use crate::call::{Called, called, command, fails, fine, folder, rne, rne_reading};
+
+/// The columns that a function asks for, as it tells them.
+fn columns(robot: &str, function: &str) -> Vec<String> {
+    let said = rne_reading(&["eval", robot, "--function", function, "--states", "-"], "t\n0\n").err;
+    let needed = said.split("needed are ").nth(1).and_then(|rest| rest.split(", others are passed over").next());
+    needed.unwrap_or_else(|| panic!("{function}: {said}")).split(", ").map(str::to_owned).collect()
+}
+
+/// A number of a state: small, of both signs, never the same.
+fn number(state: usize, column: usize) -> f64 {
+    let steps = u32::try_from((state * 31 + column * 17 + 5) % 97).expect("small");
+    f64::from(steps) / 40.0 - 1.2
+}
+
+/// Rows of an array as numpy saves it.
+fn npy(kind: &str, fortran: &str, shape: &str, numbers: &[u8]) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': {fortran}, 'shape': {shape}, }}");
+    header.push_str(&" ".repeat(127_usize.saturating_sub(10 + header.len())));
+    header.push('\n');
+    let length = u16::try_from(header.len()).expect("a short header").to_le_bytes();
+    [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes(), numbers].concat()
+}
+
+fn bytes(numbers: &[f64]) -> Vec<u8> {
+    numbers.iter().flat_map(|number| number.to_le_bytes()).collect()
+}
+
+/// The shape in the header of an array, and its numbers.
+fn read_npy(path: &Path) -> (String, Vec<f64>) {
+    let file = fs::read(path).expect("an array");
+    assert_eq!(&file[..8], b"\x93NUMPY\x01\x00", "the version that every numpy reads");
+    let length = usize::from(u16::from_le_bytes([file[8], file[9]]));
+    let header = String::from_utf8(file[10..10 + length].to_vec()).expect("text");
+    assert!(header.contains("'descr': '<f8'") && header.contains("'fortran_order': False"), "{header}");
+    let shape = header.split("'shape': (").nth(1).and_then(|rest| rest.split(')').next()).expect("a shape");
+    let numbers = file[10 + length..].chunks_exact(8);
+    (
+        shape.trim_end_matches([',', ' ']).to_owned(),
+        numbers.map(|bytes| f64::from_le_bytes(bytes.try_into().expect("eight"))).collect(),
+    )
+}
+
+/// The header and the numbers of CSV.
+fn table(text: &str) -> (Vec<&str>, Vec<Vec<f64>>) {
+    let mut lines = text.lines();
+    let header = lines.next().expect("a header").split(',').collect();
+    let row = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    (header, lines.map(row).collect())
+}
+
+fn flat(value: &Value, numbers: &mut Vec<f64>) {
+    match value {
+        Value::Array(parts) => parts.iter().for_each(|part| flat(part, numbers)),
+        // in their order, which is not that of their names
+        Value::Object(parts) => ["rotation", "translation", "force", "moment", "dq", "dqd"]
+            .iter()
+            .filter_map(|name| parts.get(*name))
+            .for_each(|part| flat(part, numbers)),
+        number => numbers.push(number.as_f64().expect("a number")),
+    }
+}
+
+/// One state by `rne eval`.
+fn single(robot: &str, function: Function, columns: &[String], state: &[f64]) -> Vec<f64> {
+    let list = |prefix: &str| -> Option<String> {
+        let is_of = |column: &&String| {
+            column
+                .strip_prefix(prefix)
+                .is_some_and(|rest| rest.parse::<usize>().is_ok() || ["_x", "_y", "_z"].contains(&rest))
+        };
+        let numbers: Vec<String> = columns
+            .iter()
+            .zip(state)
+            .filter(|(column, _)| is_of(column))
+            .map(|(_, number)| number.to_string())
+            .collect();
+        (!numbers.is_empty()).then(|| numbers.join(","))
+    };
+    let mut arguments =
+        vec!["eval".to_owned(), robot.into(), "--json".into(), "--function".into(), function.to_string()];
+    let mut give = |option: &str, list: Option<String>| {
+        arguments.extend(list.into_iter().flat_map(|list| [option.to_owned(), list]));
+    };
+    for (option, prefix) in [("--q", "q"), ("--qd", "qd"), ("--qdd", "qdd"), ("--tau", "tau")] {
+        give(option, list(prefix));
+    }
+    give("--wrench", list("force").zip(list("moment")).map(|(force, moment)| format!("{force},{moment}")));
+    give("--base-omega", list("base_omega"));
+    give("--base-omega-dot", list("base_omega_dot"));
+    give("--base-acceleration", list("base_acceleration"));
+    give("--gravity", list("base_gravity"));
+    if function.takes(Argument::Payload) {
+        let from = columns.iter().position(|column| column == "m").expect("a mass");
+        let payload: Vec<String> = state[from..from + 10].iter().map(f64::to_string).collect();
+        give("--payload", Some(payload.join(",")));
+    }
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    let json: Value = serde_json::from_str(&fine(&arguments)).expect("JSON");
+    let mut numbers = Vec::new();
+    flat(&json["result"], &mut numbers);
+    numbers
+}
+
+/// Every function, of a file of CSV whose columns stand in any order and of an array, is that of each state by itself.
+#[test]
+fn every_function_is_that_of_single_states() {
+    const STATES: usize = 2;
+    let folder = folder("states_functions");
+    let path = |name: &str| folder.join(name).display().to_string();
+    for function in Function::ALL {
+        let (robot, name) = ("robots/stanford.yaml", function.name());
+        let columns = columns(robot, name);
+        let mut states: Vec<Vec<f64>> =
+            (0..STATES).map(|state| (0..columns.len()).map(|column| number(state, column)).collect()).collect();
+        let place = |wanted: &str| columns.iter().position(|column| column == wanted);
+        for state in &mut states {
+            if let Some(mass) = place("m") {
+                state[mass] = state[mass].abs();
+            }
+            for joint in 1..=6 {
+                if let (Some(q), Some(sin), Some(cos)) =
+                    (place(&format!("q{joint}")), place(&format!("sin{joint}")), place(&format!("cos{joint}")))
+                {
+                    (state[sin], state[cos]) = state[q].sin_cos();
+                }
+            }
+        }
+        // the columns from the last to the first, and one that nobody asks for
+        let line =
+            |cells: Vec<String>| format!("{},no number\n", cells.into_iter().rev().collect::<Vec<_>>().join(","));
+        let mut csv = line(columns.clone());
+        csv.extend(states.iter().map(|state| line(state.iter().map(f64::to_string).collect())));
+        fs::write(path("in.csv"), csv).expect("a file");
+        let called = rne(&["eval", robot, "--function", name, "--states", &path("in.csv")]);
+        assert_eq!(called.status, 0, "{called:?}");
+        assert!(called.err.starts_with(&format!("{name} of {STATES} states (")), "{called:?}");
+        let (header, found) = table(&called.out);
+        assert!((1..header.len()).all(|at| !header[..at].contains(&header[at])), "two columns of a name: {header:?}");
+
+        let shape = format!("({STATES}, {})", columns.len());
+        fs::write(path("in.npy"), npy("<f8", "False", &shape, &bytes(&states.concat()))).expect("a file");
+        let arguments =
+            ["eval", robot, "--function", name, "--states", &path("in.npy"), "-o", &path("out.npy"), "--force"];
+        let wrote = rne(&arguments);
+        assert!(wrote.status == 0 && wrote.out.is_empty() && wrote.err.starts_with("wrote "), "{wrote:?}");
+        let (shape, numbers) = read_npy(&folder.join("out.npy"));
+        assert_eq!(shape, format!("{STATES}, {}", header.len()), "{name}");
+        assert_eq!(numbers, found.concat(), "{name}: the same as CSV");
+
+        for (state, found) in states.iter().zip(&found) {
+            let expected = single(robot, function, &columns, state);
+            assert_eq!(found.len(), expected.len(), "{name}");
+            let scale = expected.iter().fold(1.0_f64, |scale, x| scale.max(x.abs()));
+            let error = found.iter().zip(&expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(error <= 1e-12 * scale, "{name}: {found:?} is not {expected:?}");
+        }
+    }
+}
+
+fn gravity(states: &str) -> Called {
+    rne_reading(&["eval", "planar2", "--function", "gravity_torques", "--states", "-"], states)
+}
+
+#[test]
+fn columns_of_results_are_named() {
+    let header = |function: &str| {
+        let columns = columns("planar2", function).join(",") + "\n";
+        rne_reading(&["eval", "planar2", "--function", function, "--states", "-"], &columns).out
+    };
+    assert_eq!(header("inverse_dynamics"), "tau1,tau2\n");
+    assert_eq!(header("forward_dynamics"), "qdd1,qdd2\n");
+    assert_eq!(header("kinetic_energy"), "kinetic_energy\n");
+    assert_eq!(header("mass_matrix"), "mass_matrix_1_1,mass_matrix_1_2,mass_matrix_2_1,mass_matrix_2_2\n");
+    assert!(header("joint_wrenches").starts_with("joint_wrenches_1_force_1,joint_wrenches_1_force_2,"));
+}
+
+/// What spreadsheets and shells write.
+#[test]
+fn csv_has_many_faces() {
+    let plain = gravity("q1,q2\n0.3,-0.7\n1,2\n");
+    assert_eq!(plain.status, 0, "{plain:?}");
+    for other in [
+        "\u{feff}q1,q2\r\n0.3,-0.7\r\n1,2\r\n",
+        "# measured\n\n\"q1\", \"q2\" \n \"0.3\" , -0.7\n# half of it\n\n1.0,2e0",
+        "note,q2,q1\n\"a, b\",-0.70,0.3\n,+2,1.\n",
+    ] {
+        assert_eq!(gravity(other).out, plain.out, "{other}");
+    }
+    let empty = gravity("q1,q2\n");
+    assert_eq!(
+        (empty.status, empty.out.as_str(), empty.err.as_str()),
+        (0, "tau1,tau2\n", "gravity_torques of 0 states\n")
+    );
+    assert!(gravity("q1,q2\n1,2\n").err.starts_with("gravity_torques of 1 state ("));
+}
+
+/// States without a finite result have none, and are counted.
+#[test]
+fn what_is_not_finite_is_told() {
+    let found = gravity("q1,q2\n1,2\n1e400,0\nNaN,0\n1,2\n");
+    assert_eq!(found.status, 0, "{found:?}");
+    assert!(found.err.ends_with("note: the results of 2 states are not finite; the first is state 2\n"), "{found:?}");
+    let lines: Vec<&str> = found.out.lines().collect();
+    assert_eq!((lines[1], lines[2], lines[3]), (lines[4], "NaN,NaN", "NaN,NaN"));
+    assert!(gravity("q1,q2\ninf,0\n").err.ends_with("note: the result of state 1 is not finite\n"));
+}
+
+/// Nothing is printed beside a message where the mistake is among the first states.
+#[test]
+fn mistakes_in_csv_have_a_line() {
+    for (states, said) in [
+        ("", "<standard input> is empty; its header is q1,q2, in any order"),
+        ("q1\n1\n", "<standard input>: the header has no column `q2` (there is `q1`); needed are q1, q2"),
+        ("# angles\nQ1,Q2\n1,2\n", ": the header has no column `q1` (there is `Q1`)"),
+        ("1,2\n3,4\n", ": the header has no column `q1`; needed are q1, q2, others are passed over"),
+        ("q1;q2\n1;2\n", "(it has semicolons; columns are separated by commas)"),
+        ("q1\tq2\n1\t2\n", "(it has tabs; columns are separated by commas)"),
+        ("q1,q2,q1\n1,2,3\n", ": the column `q1` is there twice"),
+        ("q1,q2\n1,2\n\n1,pi/2\n", ":4: `q2` is `pi/2`, which is no number"),
+        ("q1,q2\r\n1,2\r\n# and\r\n\r\n1,pi/2", ":5: `q2` is `pi/2`, which is no number"),
+        ("q1,q2,of\n1,2,\"a\nb\"\n1,x,\"a\nb\"\n", ":4: `q2` is `x`, which is no number"),
+        ("q1,q2\n1,\n", ":2: `q2` is empty"),
+        ("q1,q2\n1,2\u{1b}[31m\n", ":2: `q2` is `2\\u{1b}[31m`, which is no number"),
+        ("q1,q2\n1,2\n1,2,3\n", ":3: 3 cells where the header has 2"),
+        ("q1,q2\n1\n", ":2: 1 cell where the header has 2"),
+        ("q1,q2\n\"1,2\n3,4\n", ":2: 1 cell where the header has 2; a quote in it is not closed on its line"),
+    ] {
+        let found = gravity(states);
+        assert!(found.status == 1 && found.out.is_empty(), "{states:?}: {found:?}");
+        assert!(found.err.contains(said), "{states:?}: {}", found.err);
+    }
+    let long = gravity(&("q1,q2\n\"".to_owned() + &"1\n".repeat(1 << 20)));
+    assert!(
+        long.err.contains(":2: the line has more than a million characters, or a quote in it is not closed"),
+        "{long:?}"
+    );
+}
+
+fn reading(bytes: &[u8]) -> Called {
+    let mut command = command(&["eval", "planar2", "--function", "gravity_torques", "--states", "-"]);
+    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("rne starts");
+    let _ = child.stdin.take().expect("a pipe").write_all(bytes);
+    called(child.wait_with_output().expect("rne ends"))
+}
+
+#[test]
+fn arrays_of_numpy_are_read() {
+    let states = [0.5, -0.75, 1.0, 2.0, 0.25, 0.0];
+    let expected = gravity("q1,q2\n0.5,-0.75\n1,2\n0.25,0\n").out;
+    let big: Vec<u8> = states.iter().flat_map(|x: &f64| x.to_be_bytes()).collect();
+    #[allow(clippy::cast_possible_truncation)] // these have few digits
+    let single: Vec<u8> = states.iter().flat_map(|x| (*x as f32).to_le_bytes()).collect();
+    for (kind, numbers) in [("<f8", bytes(&states)), (">f8", big), ("<f4", single)] {
+        assert_eq!(reading(&npy(kind, "False", "(3, 2)", &numbers)).out, expected, "{kind}");
+    }
+    let one = gravity("q1,q2\n0.5,-0.75\n").out;
+    assert_eq!(reading(&npy("<f8", "True", "(1, 2)", &bytes(&states[..2]))).out, one, "either order of one row");
+    assert_eq!(reading(&npy("<f8", "False", "(0, 2)", &[])).out, "tau1,tau2\n");
+}
+
+#[test]
+fn mistakes_in_arrays_are_told() {
+    let six = bytes(&[0.0; 6]);
+    for (kind, fortran, shape, said) in [
+        ("<f8", "False", "(6,)", "the array has 1 axis; its shape is (states, 2)"),
+        ("<f8", "False", "(1, 3, 2)", "the array has 3 axes; its shape is (states, 2)"),
+        ("<f8", "False", "(2, 3)", "the array has 3 columns where there are 2: q1, q2"),
+        ("<f8", "True", "(3, 2)", "the array is in Fortran's order; save numpy.ascontiguousarray(states)"),
+        ("<i8", "False", "(3, 2)", "the numbers are `<i8`; save them as float64 or float32"),
+        ("<f8", "False", "(4, 2)", "the file ends before the last of 4 states"),
+        ("<f8", "False", "(9223372036854775807, 2)", "no array of numpy: its shape is too large"),
+        ("<f8", "False", "(0, 0xffffffffffffffff, 2)", "no array of numpy: its shape is too large"),
+        ("<f8", "False", "(0, 9999999999, 9999999999, 2)", "no array of numpy: its shape is too large"),
+        ("<f8", "False", "(-3, 2)", "no array of numpy: dimension cannot be negative"),
+        ("<f8", "False", "3, 2)", "no array of numpy: could not parse"),
+    ] {
+        let found = reading(&npy(kind, fortran, shape, &six));
+        assert!(found.status == 1 && found.out.is_empty(), "{kind} {shape}: {found:?}");
+        assert!(found.err.contains(said), "{kind} {shape}: {}", found.err);
+    }
+    let whole = npy("<f8", "False", "(3, 2)", &six);
+    for length in 1..whole.len() {
+        if length > 12 && length % 7 != 0 {
+            continue;
+        }
+        let found = reading(&whole[..length]);
+        let said =
+            if length < 128 { "the file ends in its header" } else { "the file ends before the last of 3 states" };
+        assert!(found.status == 1 && found.out.is_empty() && found.err.contains(said), "{length}: {found:?}");
+    }
+    let long = [b"\x93NUMPY\x02\x00".as_slice(), &u32::MAX.to_le_bytes(), b"{}"].concat();
+    assert!(reading(&long).err.contains("no array of numpy: its header is too long"));
+    assert!(reading(b"\xff\xfeq\x001\x00").err.contains("looks like UTF-16; save the file as UTF-8"));
+}
+
+#[test]
+fn files_stay_unless_told_otherwise() {
+    let folder = folder("states_files");
+    let path = |name: &str| folder.join(name).display().to_string();
+    let (states, out) = (path("states.csv"), path("out.csv"));
+    fs::write(&states, "q1,q2\n1,2\n").expect("a file");
+    fs::write(path("wrong.csv"), "q1,q2\n1,x\n").expect("a file");
+    let to = |states: &str, out: &str, more: &[&str]| {
+        let all = [&["eval", "planar2", "--function", "gravity_torques", "--states", states, "-o", out], more].concat();
+        rne(&all)
+    };
+    assert_eq!(to(&path("wrong.csv"), &out, &[]).status, 1);
+    assert!(!folder.join("out.csv").exists(), "it appears when it is whole");
+    let wrote = to(&states, &out, &[]);
+    assert!(
+        wrote.status == 0 && wrote.err.starts_with(&format!("wrote {out}: gravity_torques of 1 state (")),
+        "{wrote:?}"
+    );
+    let text = fs::read_to_string(&out).expect("results");
+    assert_eq!(text, gravity("q1,q2\n1,2\n").out);
+    for (out, more, status, said) in [
+        (&out, &[][..], 2, "is there already and stays as it is; --force overwrites it"),
+        (&states, &["--force"], 2, "is the file that is read; name another"),
+        (&folder.display().to_string(), &["--force"], 2, "is a folder; name a file in it"),
+        (&path("nowhere/out.csv"), &[], 1, "make it first"),
+    ] {
+        let found = to(&states, out, more);
+        assert!(found.status == status && found.err.contains(said), "{found:?}");
+    }
+    assert_eq!(to(&states, &out, &["--force"]).status, 0);
+    let rest = fs::read_dir(&folder).expect("a folder").count();
+    assert_eq!(rest, 3, "nothing else is left");
+}
+
+/// A link leads to the file that is written, and a file that is protected stays.
+#[cfg(unix)]
+#[test]
+fn links_and_protected_files_are_respected() {
+    use std::os::unix::fs::{PermissionsExt as _, symlink};
+    let folder = folder("states_links");
+    let path = |name: &str| folder.join(name).display().to_string();
+    fs::write(path("states.csv"), "q1,q2\n1,2\n").expect("a file");
+    for name in ["out.csv", "out.npy"] {
+        fs::write(path(name), "old").expect("a file");
+        fs::set_permissions(path(name), fs::Permissions::from_mode(0o600)).expect("permissions");
+        let link = format!("link_to_{name}");
+        symlink(name, path(&link)).expect("a link");
+        let to = |out: &str| {
+            let states = path("states.csv");
+            rne(&["eval", "planar2", "--function", "gravity_torques", "--states", &states, "-o", &path(out), "--force"])
+        };
+        assert_eq!(to(&link).status, 0);
+        assert!(fs::symlink_metadata(path(&link)).expect("it is there").is_symlink());
+        assert_ne!(fs::read(path(name)).expect("results"), b"old");
+        assert_eq!(fs::metadata(path(name)).expect("results").permissions().mode() & 0o777, 0o600);
+        fs::set_permissions(path(name), fs::Permissions::from_mode(0o400)).expect("permissions");
+        let found = to(name);
+        assert!(found.status == 1 && found.err.contains("it is write-protected"), "{found:?}");
+    }
+}
+
+/// `rne eval … | head` is no error, and results come as they are computed.
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let states = "q1,q2\n".to_owned() + &"0.1,0.2\n".repeat(40_000);
+    let mut command = command(&["eval", "planar2", "--function", "gravity_torques", "--states", "-"]);
+    let command = command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = command.spawn().expect("rne starts");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    let writer = std::thread::spawn(move || {
+        let _ = stdin.write_all(states.as_bytes());
+    });
+    let mut out = BufReader::new(child.stdout.take().expect("a pipe"));
+    let mut line = String::new();
+    out.read_line(&mut line).expect("a line");
+    assert_eq!(line, "tau1,tau2\n");
+    drop(out);
+    let called = called(child.wait_with_output().expect("rne ends"));
+    writer.join().expect("it ends");
+    assert!(called.status == 0 && called.err.is_empty(), "{called:?}");
+}
+
+#[test]
+fn options_that_do_not_go_with_states_are_refused() {
+    let of_one = ["eval", "planar2", "--q", "1,2", "--qd", "1,2", "--qdd", "1,2", "-o", "nowhere.csv"];
+    fails(2, &of_one, &["-o is where the results of --states go"]);
+    for other in [["--q", "1,2"], ["--axes", "link"], ["--step", "4"], ["--golden", "3"]] {
+        fails(
+            2,
+            &["eval", "planar2", "--states", "nowhere.csv", other[0], other[1]],
+            &["cannot be used with", other[0]],
+        );
+    }
+    fails(2, &["eval", "-", "--states", "-"], &["FILE and --states are both standard input"]);
+    fails(1, &["eval", "planar2", "--states", "nowhere.csv"], &["the states nowhere.csv cannot be read"]);
+    fails(1, &["eval", "planar2", "--states", "robots"], &["the states robots cannot be read"]);
+}
