@@ -25,7 +25,7 @@ use crate::{answer, arguments, golden, limits, plan_file, show, states, workshee
 Examples:
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
   rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
-  rne eval planar2 --states docs/states.csv -o torques.csv")]
+  rne eval robots/planar2.yaml --states docs/states.csv -o torques.csv")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// Which function: `rne explain functions`
     #[arg(long, value_name = "F", value_parser = arguments::function(), hide_possible_values = true)]
     function: Option<Function>,
-    /// Positions, base to tip: `rne explain arguments`
+    /// Joint positions, base to tip, rad or m
     #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
     q: Option<List>,
     /// Joint velocities, rad/s or m/s
