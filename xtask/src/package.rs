@@ -61,12 +61,13 @@ impl Package {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
         let target = machine::target_folder("target")?;
-        // a folder of its own, and empty: cargo takes what it built of a package of this version for this one
-        let build = target.join("packaged");
-        let _ = fs::remove_dir_all(&build);
+        // a folder that never was before: of a package of this version, cargo takes for this one what it built in the
+        // same folder, and what it unpacked from there into its own
+        let build = tempfile::Builder::new().prefix("packaged-").tempdir_in(&target)?;
+        let build = build.path();
         let packaged = build.join("package");
         machine::without_flags(cmd!(shell, "cargo package --workspace --allow-dirty --quiet"))
-            .env("CARGO_TARGET_DIR", &build)
+            .env("CARGO_TARGET_DIR", build)
             .run()?;
 
         let folder = tempfile::tempdir()?;
@@ -89,7 +90,7 @@ impl Package {
         fs::write(user.join("src/main.rs"), MAIN)?;
         let manifest = user.join("Cargo.toml");
         let derived = machine::without_flags(cmd!(shell, "cargo run --quiet --manifest-path {manifest}"))
-            .env("CARGO_TARGET_DIR", &build)
+            .env("CARGO_TARGET_DIR", build)
             .read()?;
         // a packaged crate is a workspace of its own; the patches come by a file beside it
         let config = folder.path().join("patch.toml");
@@ -101,7 +102,7 @@ impl Package {
             shell,
             "cargo run --quiet --config {config} --manifest-path {command_line} -- {call...}"
         ))
-        .env("CARGO_TARGET_DIR", &build)
+        .env("CARGO_TARGET_DIR", build)
         .read()?;
         let (derived, evaluated) = (numbers(&derived)?, numbers(&evaluated)?);
         println!("packages: {} crates; a crate of them alone prints {derived:?}", CRATES.len());
