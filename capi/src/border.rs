@@ -11,7 +11,7 @@ use std::ptr;
 
 use rne_convert::Selection;
 use rne_machine::Function;
-use rne_runtime::BatchScalar;
+use rne_machine::Number;
 
 use crate::evaluation::{self, Given};
 use crate::handle::{self, Arm, Limits};
@@ -371,7 +371,7 @@ impl Raw<f32> for InputF32 {
 ///
 /// # Safety
 /// As [`rne_evaluate`].
-unsafe fn evaluate<T: BatchScalar, I: Raw<T>>(
+unsafe fn evaluate<T: Number, I: Raw<T>>(
     arm: *const Arm,
     id: u32,
     states: Option<usize>,
@@ -510,7 +510,7 @@ unsafe fn slice<'a, T>(pointer: *const T, count: usize, what: &str) -> Result<&'
 /// # Safety
 /// It has room for `count` numbers, and nobody else uses it as long as the slice is used. Whatever bytes C has there
 /// are numbers; they are written to and not read.
-unsafe fn slice_mut<'a, T: BatchScalar>(pointer: *mut T, count: usize) -> &'a mut [T] {
+unsafe fn slice_mut<'a, T: Number>(pointer: *mut T, count: usize) -> &'a mut [T] {
     if count == 0 {
         return &mut [];
     }

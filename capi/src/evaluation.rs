@@ -1,7 +1,7 @@
 //! Inputs in a caller's arrays, checked, and a function over them.
 
-use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination};
-use rne_runtime::{BatchScalar, VectorUnit};
+use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination, Number};
+use rne_runtime::VectorUnit;
 
 use crate::handle::Arm;
 use crate::status::{Failure, Status};
@@ -18,7 +18,7 @@ pub(crate) struct Given<'a, T> {
 }
 
 /// What is given, as the machine takes it. What the function does not take is not looked at, but for its name.
-fn arguments<'a, T: BatchScalar>(
+fn arguments<'a, T: Number>(
     function: &CompiledFunction,
     inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
     states: usize,
@@ -57,7 +57,7 @@ fn arguments<'a, T: BatchScalar>(
 }
 
 /// Computes one state. After the first call of a thread nothing is allocated.
-pub(crate) fn one<'a, T: BatchScalar>(
+pub(crate) fn one<'a, T: Number>(
     arm: &Arm,
     id: u32,
     inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
@@ -69,7 +69,7 @@ pub(crate) fn one<'a, T: BatchScalar>(
 }
 
 /// Computes so many states.
-pub(crate) fn many<'a, T: BatchScalar>(
+pub(crate) fn many<'a, T: Number>(
     arm: &Arm,
     id: u32,
     states: usize,
