@@ -31,7 +31,7 @@ def test_single_precision_is_kept():
     assert single.dtype == np.float32
     assert np.abs(single - tau).max() < 1e-4 * np.abs(tau).max()
     assert arm.inverse_dynamics(q.astype(np.float32), qd, qdd).dtype == np.float64
-    assert arm.inverse_dynamics(q.astype(np.float32), [0] * 6, [0] * 6).dtype == np.float32 or True
+    assert arm.inverse_dynamics(q.astype(np.float32), [0] * 6, [0] * 6).dtype == np.float32
 
 
 def test_integers_and_lists_are_numbers():
@@ -93,8 +93,6 @@ def test_mistakes_in_files_have_line_and_column():
 
 
 def test_files_and_their_plans(tmp_path):
-    from pathlib import Path
-
     file = tmp_path / "arm.yaml"
     file.write_text(arm.yaml)
     bare = rne.load(file)
@@ -102,7 +100,6 @@ def test_files_and_their_plans(tmp_path):
     (tmp_path / "arm.plan.yaml").write_text("nonsense")
     with pytest.raises(rne.RobotFileError):
         rne.load(str(file))
-    assert isinstance(Path(file), Path)
 
 
 def test_pickle_and_copies():
@@ -132,7 +129,7 @@ def test_insight():
     assert "joint 2" in arm.show(joint=2) and "w2_z" in arm.show(joint=2)
     with pytest.raises(IndexError, match="1 to 6"):
         arm.show(joint=7)
-    assert "double puma560_inverse_dynamics" in arm.code("c") or "puma560_inverse_dynamics" in arm.code("c")
+    assert "puma560_inverse_dynamics" in arm.code("c")
     assert "fn inverse_dynamics" in arm.code("rust")
     with pytest.raises(ValueError, match="c or rust"):
         arm.code("fortran")

@@ -96,8 +96,8 @@ impl CompiledFunction {
     }
 
     /// Computes one state, the first of the arguments: with the bits it has among many. With the feature `native` as
-    /// instructions of the processor, compiled when it is first asked for. With up
-    /// to 64 inputs nothing is allocated but what the thread keeps of its first call.
+    /// instructions of the processor, compiled when it is first asked for. With up to 64 inputs nothing is allocated
+    /// but what the thread keeps of its first call.
     ///
     /// # Errors
     /// When an argument is missing or has another size, or the room for the results.

@@ -128,13 +128,9 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event]) -> O
     let is_sine = |value: Value| matches!(dataflow.values[value], Definition::Sine(_) | Definition::Cosine(_));
     let mut memory = Memory { slots: vec![None; count], free: Vec::new(), count: 0 };
     let (mut angles, mut rest, mut turns) = (Vec::new(), Vec::new(), Vec::new());
-    let mut accumulator = None;
+    let (mut accumulator, mut is_turned) = (None, false);
     for (at, event) in events.iter().enumerate() {
-        let into = if turns.is_empty() && !events[..at].iter().any(|event| matches!(event, Event::Turns)) {
-            &mut angles
-        } else {
-            &mut rest
-        };
+        let into = if is_turned { &mut rest } else { &mut angles };
         match *event {
             Event::Output(index) => {
                 into.push(Instruction { operation: Operation::Output(u32::try_from(index).ok()?), store: NOWHERE });
@@ -156,6 +152,7 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event]) -> O
                 }
                 memory.release(dataflow.angles.iter().copied().filter(|angle| last[*angle] == at));
                 accumulator = None;
+                is_turned = true;
             }
             Event::Compute(value) => {
                 let definition = &dataflow.values[value];

@@ -48,6 +48,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
     ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
+    ("cargo xtask python", "xtask/src/verify.rs", "\"xtask\", \"python\", \"--install\""),
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
