@@ -1,0 +1,33 @@
+//! What identification and watching read: a run of states with accelerations, evenly filtered.
+
+/// A run without gaps, filtered: what a log says of an arm between two interruptions, with accelerations.
+///
+/// Every list has a list per joint, base to tip, in the order of the robot file; each of those has as many numbers as
+/// `time`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// Seconds, growing.
+    pub time: Vec<f64>,
+    /// Positions, rad or m.
+    pub q: Vec<Vec<f64>>,
+    /// Velocities, rad/s or m/s.
+    pub qd: Vec<Vec<f64>>,
+    /// Accelerations, rad/s² or m/s².
+    pub qdd: Vec<Vec<f64>>,
+    /// Torques or forces of the actuators, N m or N.
+    pub tau: Vec<Vec<f64>>,
+}
+
+impl Motion {
+    /// How many states there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+}
