@@ -75,6 +75,20 @@ typedef enum rne_status {
 } rne_status;
 
 /**
+ * How a joint moves: which units its position, rate, acceleration and torque have.
+ */
+typedef enum rne_joint_kind {
+  /**
+   * About its axis: rad, rad/s, rad/s², N m.
+   */
+  RNE_JOINT_KIND_REVOLUTE = 0,
+  /**
+   * Along its axis: m, m/s, m/s², N.
+   */
+  RNE_JOINT_KIND_PRISMATIC = 1,
+} rne_joint_kind;
+
+/**
  * An arm. Its functions are compiled when they are first called, once; any number of threads may use it at once.
  *
  * What it points to is this library's: made by rne_arm_load_file() and its like, freed by rne_arm_free().
@@ -231,6 +245,11 @@ const char *rne_arm_joint_name(const struct rne_arm *arm,
                                size_t joint);
 
 /**
+ * Whether a joint turns or slides: which units its numbers have.
+ */
+enum rne_status rne_arm_joint_kind(const struct rne_arm *arm, size_t joint, enum rne_joint_kind *kind);
+
+/**
  * What a joint may do, by the robot file.
  */
 enum rne_status rne_arm_joint_limits(const struct rne_arm *arm, size_t joint, struct rne_limits *limits);
@@ -306,6 +325,21 @@ enum rne_status rne_evaluate_batch(const struct rne_arm *arm,
                                    size_t output_count);
 
 /**
+ * rne_evaluate_batch() in so many threads, the caller's among them; `threads` of 0 is one for each core.
+ *
+ * The others are started and end within the call, each with some thousand states at a time: fewer states take fewer
+ * threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do all.
+ */
+enum rne_status rne_evaluate_batch_threads(const struct rne_arm *arm,
+                                           uint32_t id,
+                                           size_t threads,
+                                           size_t states,
+                                           const struct rne_input *inputs,
+                                           size_t input_count,
+                                           double *outputs,
+                                           size_t output_count);
+
+/**
  * rne_evaluate() in single precision.
  */
 enum rne_status rne_evaluate_f32(const struct rne_arm *arm,
@@ -325,6 +359,18 @@ enum rne_status rne_evaluate_batch_f32(const struct rne_arm *arm,
                                        size_t input_count,
                                        float *outputs,
                                        size_t output_count);
+
+/**
+ * rne_evaluate_batch_threads() in single precision.
+ */
+enum rne_status rne_evaluate_batch_threads_f32(const struct rne_arm *arm,
+                                               uint32_t id,
+                                               size_t threads,
+                                               size_t states,
+                                               const struct rne_input_f32 *inputs,
+                                               size_t input_count,
+                                               float *outputs,
+                                               size_t output_count);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -14,7 +14,7 @@ use rne_machine::Function;
 use rne_machine::Number;
 
 use crate::evaluation::{self, Given};
-use crate::handle::{self, Arm, Limits};
+use crate::handle::{self, Arm, JointKind, Limits};
 use crate::status::{self, Failure, Status, guarded};
 
 /// An argument of a function, in double precision. Element j of state s is data[s * state_stride + j * element_stride].
@@ -183,6 +183,16 @@ pub unsafe extern "C" fn rne_arm_joint_name(arm: *const Arm, joint: usize) -> *c
     guarded(|| Ok(unsafe { reference(arm, "arm") }?.joint_name(joint)?.as_ptr())).unwrap_or(ptr::null())
 }
 
+/// Whether a joint turns or slides: which units its numbers have.
+///
+/// # Safety
+/// `arm` is NULL or an arm; `kind` is NULL or a place for it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rne_arm_joint_kind(arm: *const Arm, joint: usize, kind: *mut JointKind) -> Status {
+    // SAFETY: the caller's promise of both pointers.
+    status::status(|| unsafe { give(kind, "kind", reference(arm, "arm")?.joint_kind(joint)?) })
+}
+
 /// What a joint may do, by the robot file.
 ///
 /// # Safety
@@ -289,7 +299,7 @@ pub unsafe extern "C" fn rne_evaluate(
     output_count: usize,
 ) -> Status {
     // SAFETY: the caller's promise of all pointers.
-    unsafe { evaluate(arm, id, None, inputs, input_count, outputs, output_count) }
+    unsafe { evaluate(arm, id, Extent::One, inputs, input_count, outputs, output_count) }
 }
 
 /// Computes a function for so many states, in double precision, in the calling thread, on its widest vector unit.
@@ -311,7 +321,29 @@ pub unsafe extern "C" fn rne_evaluate_batch(
     output_count: usize,
 ) -> Status {
     // SAFETY: the caller's promise of all pointers.
-    unsafe { evaluate(arm, id, Some(states), inputs, input_count, outputs, output_count) }
+    unsafe { evaluate(arm, id, Extent::Many(states), inputs, input_count, outputs, output_count) }
+}
+
+/// rne_evaluate_batch() in so many threads, the caller's among them; `threads` of 0 is one for each core.
+///
+/// The others are started and end within the call, each with some thousand states at a time: fewer states take fewer
+/// threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do all.
+///
+/// # Safety
+/// As rne_evaluate().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rne_evaluate_batch_threads(
+    arm: *const Arm,
+    id: u32,
+    threads: usize,
+    states: usize,
+    inputs: *const Input,
+    input_count: usize,
+    outputs: *mut f64,
+    output_count: usize,
+) -> Status {
+    // SAFETY: the caller's promise of all pointers.
+    unsafe { evaluate(arm, id, Extent::Threads(states, threads), inputs, input_count, outputs, output_count) }
 }
 
 /// rne_evaluate() in single precision.
@@ -328,7 +360,7 @@ pub unsafe extern "C" fn rne_evaluate_f32(
     output_count: usize,
 ) -> Status {
     // SAFETY: the caller's promise of all pointers.
-    unsafe { evaluate(arm, id, None, inputs, input_count, outputs, output_count) }
+    unsafe { evaluate(arm, id, Extent::One, inputs, input_count, outputs, output_count) }
 }
 
 /// rne_evaluate_batch() in single precision.
@@ -346,7 +378,26 @@ pub unsafe extern "C" fn rne_evaluate_batch_f32(
     output_count: usize,
 ) -> Status {
     // SAFETY: the caller's promise of all pointers.
-    unsafe { evaluate(arm, id, Some(states), inputs, input_count, outputs, output_count) }
+    unsafe { evaluate(arm, id, Extent::Many(states), inputs, input_count, outputs, output_count) }
+}
+
+/// rne_evaluate_batch_threads() in single precision.
+///
+/// # Safety
+/// As rne_evaluate().
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn rne_evaluate_batch_threads_f32(
+    arm: *const Arm,
+    id: u32,
+    threads: usize,
+    states: usize,
+    inputs: *const InputF32,
+    input_count: usize,
+    outputs: *mut f32,
+    output_count: usize,
+) -> Status {
+    // SAFETY: the caller's promise of all pointers.
+    unsafe { evaluate(arm, id, Extent::Threads(states, threads), inputs, input_count, outputs, output_count) }
 }
 
 /// An input of either precision.
@@ -367,14 +418,22 @@ impl Raw<f32> for InputF32 {
     }
 }
 
+/// How much is computed: one state, states, or states in so many threads.
+#[derive(Clone, Copy)]
+enum Extent {
+    One,
+    Many(usize),
+    Threads(usize, usize),
+}
+
 /// Computes one state, or as many as told.
 ///
 /// # Safety
 /// As [`rne_evaluate`].
-unsafe fn evaluate<T: Number, I: Raw<T>>(
+unsafe fn evaluate<T: Number + Send + Sync, I: Raw<T>>(
     arm: *const Arm,
     id: u32,
-    states: Option<usize>,
+    extent: Extent,
     inputs: *const I,
     input_count: usize,
     outputs: *mut T,
@@ -407,9 +466,10 @@ unsafe fn evaluate<T: Number, I: Raw<T>>(
         // SAFETY: the caller's promise of the room; it is apart from all that is read.
         let outputs = unsafe { slice_mut(outputs, output_count) };
         let given = inputs.iter().enumerate().map(read);
-        match states {
-            None => evaluation::one(arm, id, given, outputs),
-            Some(states) => evaluation::many(arm, id, states, given, outputs),
+        match extent {
+            Extent::One => evaluation::one(arm, id, given, outputs),
+            Extent::Many(states) => evaluation::many(arm, id, states, given, outputs),
+            Extent::Threads(states, threads) => evaluation::on_threads(arm, id, (states, threads), given, outputs),
         }
     })
 }

@@ -1,10 +1,17 @@
 //! Inputs in a caller's arrays, checked, and a function over them.
 
-use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination, Number};
+use std::panic::resume_unwind;
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+
+use rne_machine::{ARGUMENTS, Arguments, Array, CompiledFunction, Destination, EvaluationError, Number};
 use rne_runtime::VectorUnit;
 
 use crate::handle::Arm;
 use crate::status::{Failure, Status};
+
+/// States that a thread takes at once: some tens of microseconds of torques.
+const TASK: usize = 4096;
 
 /// An argument: its numbers and how far apart they are.
 #[derive(Clone, Copy, Debug)]
@@ -79,4 +86,54 @@ pub(crate) fn many<'a, T: Number>(
     let function = arm.function(id)?;
     let arguments = arguments(function, inputs, states)?;
     Ok(function.run(VectorUnit::widest(), states, &arguments, Destination::Rows(outputs))?)
+}
+
+/// Computes so many states in as many threads, the caller's among them; 0 are as many as there are cores. What a state
+/// gives does not depend on who computes it.
+pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
+    arm: &Arm,
+    id: u32,
+    (states, threads): (usize, usize),
+    inputs: impl Iterator<Item = Result<Given<'a, T>, Failure>>,
+    outputs: &mut [T],
+) -> Result<(), Failure> {
+    let function = arm.function(id)?;
+    let given: Vec<Given<'a, T>> = inputs.collect::<Result<_, _>>()?;
+    // all that is wrong is told before a number is written
+    let all = arguments(function, given.iter().copied().map(Ok), states)?;
+    let threads = match threads {
+        0 => thread::available_parallelism().map_or(1, usize::from),
+        threads => threads,
+    };
+    let (width, helpers) = (function.outputs(), threads.min(states.div_ceil(TASK)).saturating_sub(1));
+    if helpers == 0 {
+        return Ok(function.run(VectorUnit::widest(), states, &all, Destination::Rows(outputs))?);
+    }
+    if states.checked_mul(width) != Some(outputs.len()) {
+        return Err(EvaluationError::Room { outputs: width, states }.into());
+    }
+    // what is missing: of no states everything else fits
+    function.run(VectorUnit::widest(), 0, &all, Destination::Rows(&mut []))?;
+    let tasks = Mutex::new(outputs.chunks_mut((TASK * width).max(1)).enumerate());
+    let work = || -> Result<(), Failure> {
+        loop {
+            let task = tasks.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some((index, room)) = task else { return Ok(()) };
+            let (first, count) = (index * TASK, room.len() / width.max(1));
+            let part = given.iter().map(|given| {
+                Ok(Given { numbers: given.numbers.get(first * given.state..).unwrap_or_default(), ..*given })
+            });
+            let arguments = arguments(function, part, count)?;
+            function.run(VectorUnit::widest(), count, &arguments, Destination::Rows(room))?;
+        }
+    };
+    thread::scope(|scope| {
+        // where the system has no thread to give, the others do the work
+        let start = |_| thread::Builder::new().spawn_scoped(scope, work).ok();
+        let running: Vec<_> = (0..helpers).filter_map(start).collect();
+        let mine = work();
+        running
+            .into_iter()
+            .fold(mine, |result, thread| result.and(thread.join().unwrap_or_else(|payload| resume_unwind(payload))))
+    })
 }

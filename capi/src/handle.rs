@@ -5,7 +5,7 @@ use std::path::Path;
 use std::sync::LazyLock;
 
 use rne_codegen::UnknownName;
-use rne_convert::{Options, Selection, Urdf};
+use rne_convert::{Options, Selection};
 use rne_machine::{ARGUMENTS, ArmError, CompiledArm, CompiledFunction, Function};
 
 use crate::status::{Failure, Status, c_text};
@@ -18,6 +18,16 @@ pub struct Arm {
     compiled: CompiledArm,
     name: CString,
     joints: Vec<CString>,
+}
+
+/// How a joint moves: which units its position, rate, acceleration and torque have.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JointKind {
+    /// About its axis: rad, rad/s, rad/s², N m.
+    Revolute = 0,
+    /// Along its axis: m, m/s, m/s², N.
+    Prismatic = 1,
 }
 
 /// What a joint may do. Infinite where the robot file says nothing.
@@ -59,7 +69,7 @@ impl Arm {
         let text = String::from_utf8(bytes)
             .map_err(|_| Failure::new(Status::InvalidFile, format!("{path} is no text in UTF-8")))?;
         let options = Options { selection, snap: false, ..Options::default() };
-        let imported = Urdf::read(path, &text)?.import(&options)?;
+        let imported = rne_convert::import(path, &text, &options)?;
         Ok(Self::new(CompiledArm::from_yaml(&imported.text)?))
     }
 
@@ -94,6 +104,14 @@ impl Arm {
         let (lower, upper) = limits.position.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
         let or_none = |limit: Option<f64>| limit.unwrap_or(f64::INFINITY);
         Ok(Limits { lower, upper, velocity: or_none(limits.velocity), effort: or_none(limits.effort) })
+    }
+
+    pub(crate) fn joint_kind(&self, joint: usize) -> Result<JointKind, Failure> {
+        let joint = self.compiled.robot().joints.get(joint).ok_or_else(|| self.no_joint(joint))?;
+        Ok(match joint.row.kind {
+            rne_model::JointKind::Revolute => JointKind::Revolute,
+            rne_model::JointKind::Prismatic => JointKind::Prismatic,
+        })
     }
 
     fn no_joint(&self, joint: usize) -> Failure {

@@ -10,5 +10,5 @@ mod evaluation;
 mod handle;
 mod status;
 
-pub use handle::{Arm, Limits};
+pub use handle::{Arm, JointKind, Limits};
 pub use status::Status;

@@ -5,12 +5,13 @@ use std::ffi::{CStr, CString, c_char};
 use std::ptr::{null, null_mut};
 
 use rne::border::{
-    Input, InputF32, rne_arm_builtin, rne_arm_dof, rne_arm_free, rne_arm_joint_limits, rne_arm_joint_name,
-    rne_arm_load_file, rne_arm_load_text, rne_arm_load_urdf, rne_arm_name, rne_evaluate, rne_evaluate_batch,
-    rne_evaluate_batch_f32, rne_evaluate_f32, rne_function_argument, rne_function_arguments, rne_function_count,
-    rne_function_find, rne_function_outputs, rne_function_prepare, rne_last_error, rne_version,
+    Input, InputF32, rne_arm_builtin, rne_arm_dof, rne_arm_free, rne_arm_joint_kind, rne_arm_joint_limits,
+    rne_arm_joint_name, rne_arm_load_file, rne_arm_load_text, rne_arm_load_urdf, rne_arm_name, rne_evaluate,
+    rne_evaluate_batch, rne_evaluate_batch_f32, rne_evaluate_batch_threads, rne_evaluate_batch_threads_f32,
+    rne_evaluate_f32, rne_function_argument, rne_function_arguments, rne_function_count, rne_function_find,
+    rne_function_outputs, rne_function_prepare, rne_last_error, rne_version,
 };
-use rne::{Arm, Limits, Status};
+use rne::{Arm, JointKind, Limits, Status};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
 
 /// The words of the last failure.
@@ -164,6 +165,15 @@ fn an_arm_tells_of_itself() {
         assert_eq!(text(rne_arm_joint_name(arm.0, 5)), "j6");
         assert!(rne_arm_joint_name(arm.0, 6).is_null());
         assert!(words().contains("there is no joint 6: this arm has 6"), "{}", words());
+        let mut kind = JointKind::Prismatic;
+        assert_eq!(rne_arm_joint_kind(arm.0, 5, &raw mut kind), Status::Ok);
+        assert_eq!(kind, JointKind::Revolute);
+        let stanford = made(|arm| rne_arm_builtin(c"stanford".as_ptr(), arm));
+        assert_eq!(rne_arm_joint_kind(stanford.0, 2, &raw mut kind), Status::Ok);
+        assert_eq!(kind, JointKind::Prismatic);
+        assert_eq!(rne_arm_joint_kind(arm.0, 6, &raw mut kind), Status::OutOfRange);
+        assert_eq!(rne_arm_joint_kind(arm.0, 0, null_mut()), Status::NullPointer);
+        assert_eq!(rne_arm_joint_kind(null(), 0, &raw mut kind), Status::NullPointer);
         let mut limits = Limits { lower: 0.0, upper: 0.0, velocity: 0.0, effort: 0.0 };
         assert_eq!(rne_arm_joint_limits(arm.0, 0, &raw mut limits), Status::Ok);
         let end = 160_f64.to_radians();
@@ -307,6 +317,62 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
         assert!(rne_arm_name(null()).is_null() && rne_arm_joint_name(null(), 0).is_null());
         assert_eq!(rne_arm_dof(null()), 0);
     }
+}
+
+/// However many threads, and however arrays lie: the bits of one thread. Mistakes are told, and nothing is written then.
+#[test]
+fn threads_change_no_number() {
+    let (arm, id) = (puma(), id(c"bias_torques"));
+    // three tasks, and some states that fill none
+    const STATES: usize = 3 * 4096 + 17;
+    let q: Vec<f64> = (0_u32..).map(|index| f64::from(index % 1009) * 0.003).take(6 * STATES).collect();
+    let same = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
+    for inputs in
+        [[input(c"q", &q, 6, 1), input(c"qd", &same, 0, 0)], [input(c"q", &q, 1, STATES), input(c"qd", &q, 6, 1)]]
+    {
+        let mut expected = vec![f64::NAN; 6 * STATES];
+        assert_eq!(many(&arm, id, STATES, &inputs, &mut expected), Status::Ok, "{}", words());
+        for threads in [0, 1, 2, 5, 1000] {
+            let mut found = vec![f64::NAN; 6 * STATES];
+            let call = |states: usize, inputs: &[Input], room: &mut [f64]| {
+                let (to, count) = (room.as_mut_ptr(), room.len());
+                // SAFETY: slices.
+                unsafe {
+                    rne_evaluate_batch_threads(arm.0, id, threads, states, inputs.as_ptr(), inputs.len(), to, count)
+                }
+            };
+            let room = found.len();
+            assert_eq!(call(STATES, &inputs, &mut found[..room - 1]), Status::WrongSize);
+            assert_eq!(call(STATES, &inputs[..1], &mut found), Status::MissingArgument, "{}", words());
+            assert_eq!(call(STATES + 1, &inputs, &mut found), Status::WrongSize, "{}", words());
+            assert_eq!(call(usize::MAX, &inputs, &mut found), Status::WrongSize, "{}", words());
+            assert!(found.iter().all(|number| number.is_nan()));
+            assert_eq!(call(STATES, &inputs, &mut found), Status::Ok, "{}", words());
+            assert_eq!(found, expected, "{threads} threads");
+            assert_eq!(call(0, &inputs, &mut []), Status::Ok);
+        }
+    }
+    // in single precision
+    #[allow(clippy::cast_possible_truncation)] // rounding is the purpose
+    let q: Vec<f32> = q.iter().map(|x| *x as f32).collect();
+    let of = |name: &CStr| InputF32 {
+        name: name.as_ptr(),
+        data: q.as_ptr(),
+        count: q.len(),
+        state_stride: 6,
+        element_stride: 1,
+    };
+    let inputs = [of(c"q"), of(c"qd")];
+    let [mut expected, mut found] = [(); 2].map(|()| vec![f32::NAN; 6 * STATES]);
+    let (one, many, count) = (expected.as_mut_ptr(), found.as_mut_ptr(), found.len());
+    // SAFETY: slices.
+    let statuses = unsafe {
+        [
+            rne_evaluate_batch_f32(arm.0, id, STATES, inputs.as_ptr(), 2, one, count),
+            rne_evaluate_batch_threads_f32(arm.0, id, 3, STATES, inputs.as_ptr(), 2, many, count),
+        ]
+    };
+    assert_eq!((statuses, &found), ([Status::Ok; 2], &expected));
 }
 
 #[test]

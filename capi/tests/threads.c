@@ -1,4 +1,5 @@
-/* Sixteen threads, one arm, which none of them has used before: every result has the same bits. */
+/* Sixteen threads, one arm, which none of them has used before: every result has the same bits. So have the rows of a
+ * batch that the library computes in sixteen threads of its own. */
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
@@ -39,6 +40,17 @@ int main(void) {
     if (why) return fprintf(stderr, "thread %d: %s: %s\n", t, (const char *)why, rne_last_error());
     if (memcmp(results[t], results[0], sizeof results[0]) != 0) return fprintf(stderr, "thread %d differs\n", t);
   }
+  enum { STATES = 40000 };
+  static double rows[STATES][6], expected[STATES][6], found[STATES][6];
+  for (int s = 0; s < STATES; s++)
+    for (int joint = 0; joint < 6; joint++) rows[s][joint] = 0.001 * ((7 * s + joint) % 1000);
+  const rne_input inputs[] = {{"q", rows[0], 6 * STATES, 6, 0}, {"qd", rows[1], 6, 0, 0}};
+  uint32_t id;
+  if (rne_function_find("bias_torques", &id) != RNE_STATUS_OK) return 1;
+  if (rne_evaluate_batch(arm, id, STATES, inputs, 2, expected[0], 6 * STATES) != RNE_STATUS_OK) return 1;
+  if (rne_evaluate_batch_threads(arm, id, THREADS, STATES, inputs, 2, found[0], 6 * STATES) != RNE_STATUS_OK)
+    return fprintf(stderr, "batch: %s\n", rne_last_error());
+  if (memcmp(found, expected, sizeof expected) != 0) return fprintf(stderr, "a batch differs\n");
   rne_arm_free(arm);
   printf("%d threads, %d calls each: the same bits\n", THREADS, CALLS * FUNCTIONS);
   return 0;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use pyo3::exceptions::{PyKeyError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use rne_convert::{Options, Selection, Urdf};
+use rne_convert::{Options, Selection};
 use rne_model::{Convention, Reader, read_file};
 
 use crate::arm::{Arm, Origin};
@@ -108,10 +108,10 @@ pub(crate) fn load(
     let lock: Vec<(String, f64)> = lock.unwrap_or_default().into_iter().collect();
     let selection = Selection { base, tip, lock, lock_others };
     let options = Options { selection, convention, snap, keep_unphysical, ..Options::default() };
-    let imported = py.detach(|| Urdf::read(&name, &text)?.import(&options));
+    let imported = py.detach(|| rne_convert::import(&name, &text, &options));
     let imported = imported.map_err(|report| of_report(py, &report))?;
     let held = imported.account.held.iter().cloned().collect();
-    Arm::of(py, Origin { robot: imported.text, held, ..origin })
+    Arm::of(py, Origin { robot: imported.text.clone(), held, ..origin })
 }
 
 enum Given {

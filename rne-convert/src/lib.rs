@@ -2,7 +2,7 @@
 //!
 //! Strings in, data out: nothing here opens a file or prints. [`Urdf::import`] makes a robot file of a chain of a URDF,
 //! [`convert()`] writes a table in the other convention, [`export()`] writes it as a URDF, [`robot_file::write`] is the
-//! writer of robot files.
+//! writer of robot files. [`import()`] is for programs that read one URDF many times: it keeps what it made.
 //!
 //! Numbers are turned in twice the precision and rounded once. So a length that is 0.4318 in the URDF is 0.4318 in the
 //! table, and what is zero on paper is zero: the compiler folds it away.
@@ -17,6 +17,7 @@ mod dynamics;
 mod export;
 mod geometry;
 mod import;
+mod kept;
 pub mod robot_file;
 mod scan;
 mod snap;
@@ -29,5 +30,6 @@ pub use comparison::Difference;
 pub use conventions::{Converted, convert};
 pub use export::{Exported, NoBody, export};
 pub use import::{Account, Imported, Options};
+pub use kept::import;
 pub use snap::{Snapped, TOLERANCE};
 pub use urdf::Urdf;

@@ -1,0 +1,124 @@
+//! Imports that were made before: a URDF that is read again costs no second conversion.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rne_model::Report;
+
+use crate::import::{Imported, Options};
+use crate::urdf::Urdf;
+
+/// Imports, the latest last, by what they were made of.
+static KEPT: Mutex<VecDeque<(Content, Arc<Imported>)>> = Mutex::new(VecDeque::new());
+
+/// How many of them are kept.
+const MOST: usize = 32;
+
+/// How many bytes of URDFs are kept with them: two of the largest that are read.
+const MOST_BYTES: usize = 32 << 20;
+
+/// All that decides an import. Meshes and other files that a URDF names are never opened, and a document type, by which
+/// XML includes others, is refused: a text is all of it.
+#[derive(Debug, PartialEq, Eq)]
+struct Content {
+    /// It stands in the robot file, and in reports.
+    file: String,
+    text: String,
+    /// As `Debug` writes them, which tells -0.0 from 0.0 and has every field, later ones too.
+    options: String,
+}
+
+/// [`Urdf::read`] and [`Urdf::import`] at once, or what they gave this process for the same file name, text and options.
+///
+/// # Errors
+/// As those two; a refusal is not kept.
+pub fn import(file: &str, text: &str, options: &Options) -> Result<Arc<Imported>, Report> {
+    let content = Content { file: file.to_owned(), text: text.to_owned(), options: format!("{options:?}") };
+    let known = |kept: &VecDeque<(Content, Arc<Imported>)>| {
+        kept.iter().find(|(other, _)| *other == content).map(|(_, imported)| Arc::clone(imported))
+    };
+    if let Some(imported) = known(&KEPT.lock().unwrap_or_else(PoisonError::into_inner)) {
+        return Ok(imported);
+    }
+    let imported = Arc::new(Urdf::read(file, text)?.import(options)?);
+    let mut kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    // another thread may have made it meanwhile: one for all
+    if let Some(imported) = known(&kept) {
+        return Ok(imported);
+    }
+    kept.push_back((content, Arc::clone(&imported)));
+    while kept.len() > MOST || kept.iter().map(|(content, _)| content.text.len()).sum::<usize>() > MOST_BYTES {
+        kept.pop_front();
+    }
+    Ok(imported)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::chain::Selection;
+
+    const ROD: &str = r#"<robot name="rod"><link name="base"/>
+<link name="rod"><inertial><origin xyz="0 0 -0.25"/><mass value="2"/>
+<inertia ixx="0.04" ixy="0" ixz="0" iyy="0.04" iyz="0" izz="0"/></inertial></link>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="rod"/><axis xyz="0 1 0"/></joint>
+<joint name="finger" type="continuous"><parent link="rod"/><child link="tip"/><axis xyz="1 0 0"/></joint>
+<link name="tip"><inertial><mass value="0.1"/>
+<inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial></link></robot>"#;
+
+    #[test]
+    fn the_same_text_is_converted_once() {
+        let made = import("rod.urdf", ROD, &Options::default()).expect("an arm");
+        assert!(Arc::ptr_eq(&made, &import("rod.urdf", ROD, &Options::default()).expect("an arm")));
+        let anew = Urdf::read("rod.urdf", ROD).expect("a URDF").import(&Options::default()).expect("an arm");
+        assert_eq!(made.text, anew.text);
+    }
+
+    #[test]
+    fn whatever_decides_an_import_tells_it_from_others() {
+        let held = |at: f64| Selection {
+            tip: Some("rod".to_owned()),
+            lock: vec![("finger".to_owned(), at)],
+            ..<_>::default()
+        };
+        let at = |at: f64| Options { selection: held(at), ..Options::default() };
+        let first = import("rod.urdf", ROD, &at(0.0)).expect("an arm");
+        let others = [
+            import("other.urdf", ROD, &at(0.0)),
+            import("rod.urdf", &ROD.replace("0.25", "0.26"), &at(0.0)),
+            import("rod.urdf", ROD, &at(-0.0)),
+            import("rod.urdf", ROD, &at(0.5)),
+            import("rod.urdf", ROD, &Options { snap: false, ..at(0.0) }),
+            import("rod.urdf", ROD, &Options { convention: rne_model::Convention::Modified, ..at(0.0) }),
+            import("rod.urdf", ROD, &Options::default()),
+        ];
+        for (index, other) in others.into_iter().enumerate() {
+            assert!(!Arc::ptr_eq(&first, &other.expect("an arm")), "{index}");
+        }
+        assert!(Arc::ptr_eq(&first, &import("rod.urdf", ROD, &at(0.0)).expect("an arm")));
+    }
+
+    #[test]
+    fn a_refusal_is_made_anew() {
+        let none =
+            Options { selection: Selection { tip: Some("hand".to_owned()), ..<_>::default() }, ..<_>::default() };
+        let told = |file| import(file, ROD, &none).expect_err("no such tip").render(false);
+        assert_eq!(told("rod.urdf"), told("rod.urdf"));
+        assert!(told("arms/rod.urdf").contains("arms/rod.urdf"));
+    }
+
+    #[test]
+    fn what_is_kept_is_bounded() {
+        for index in 0..2 * MOST {
+            import(&format!("{index}.urdf"), ROD, &Options::default()).expect("an arm");
+        }
+        // a comment makes it as long as it may be
+        let long = format!("<!--{}-->{ROD}", " ".repeat(12 << 20));
+        for index in 0..4 {
+            import(&format!("long{index}.urdf"), &long, &Options::default()).expect("an arm");
+        }
+        let kept = KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+        assert!(kept.len() <= MOST, "{}", kept.len());
+        assert!(kept.iter().map(|(content, _)| content.text.len()).sum::<usize>() <= MOST_BYTES);
+    }
+}
