@@ -327,7 +327,8 @@ pub unsafe extern "C" fn rne_evaluate_batch(
 /// rne_evaluate_batch() in so many threads, the caller's among them; `threads` of 0 is one for each core.
 ///
 /// The others are started and end within the call, each with some thousand states at a time: fewer states take fewer
-/// threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do all.
+/// threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do
+/// all.
 ///
 /// # Safety
 /// As rne_evaluate().

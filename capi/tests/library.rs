@@ -319,7 +319,8 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     }
 }
 
-/// However many threads, and however arrays lie: the bits of one thread. Mistakes are told, and nothing is written then.
+/// However many threads, and however arrays lie: the bits of one thread. Mistakes are told, and nothing is written
+/// then.
 #[test]
 fn threads_change_no_number() {
     let (arm, id) = (puma(), id(c"bias_torques"));

@@ -113,16 +113,19 @@ const EXIT_STATUS: &str = "\
 0    fine. `rne check`: no file has an error, lints or not; `rne emit --check`:
      the file is what rne would write
 1    the input is at fault: a robot file or a plan has an error or cannot be
-     read, a result is not finite, a file that is checked is stale, torques
-     differ and `rne diagnose` cannot say why, a value differs from that of
-     `rne eval --trace --compare`, or the output cannot be written
+     read, the result of one state is not finite, a file that is checked is
+     stale, torques differ and `rne diagnose` cannot say why, a value differs
+     from that of `rne eval --trace --compare`, or the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file that rne does
      not overwrite
 130  `rne search` was ended by a second Ctrl-C; the plan file is what it was
 
-Errors go to standard error, and nothing to standard output then. A reader that
-goes away (`rne show … | head`) is no error.
+Errors go to standard error, and nothing to standard output then; but what
+`rne eval --states` has printed of states before a mistake stays, while a file
+of -o appears whole or not at all. There a result that is not finite is NaN or
+inf in its row, with a note and status 0. A reader that goes away
+(`rne show … | head`) is no error.
 ";
 
 /// Names, each with words below it.

@@ -31,6 +31,8 @@ pub(crate) struct Table {
     pub(crate) states: Option<u64>,
     name: String,
     rows: Rows,
+    /// The column of a mass, which is not negative.
+    mass: Option<usize>,
 }
 
 enum Rows {
@@ -43,6 +45,8 @@ enum Rows {
     Npy {
         numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
         width: usize,
+        /// How many states were read.
+        read: usize,
     },
 }
 
@@ -72,8 +76,8 @@ impl Read for Bounded {
 }
 
 impl Table {
-    /// Opens a file that has these columns: by name in CSV, in this order in an array.
-    pub(crate) fn open(path: &Path, columns: &[String]) -> Result<Self, Failure> {
+    /// Opens a file that has these columns: by name in CSV, in this order in an array. One of them may be a mass.
+    pub(crate) fn open(path: &Path, columns: &[String], mass: Option<usize>) -> Result<Self, Failure> {
         let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
         let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
         let file: Box<dyn Read> = if is_standard_input(path) {
@@ -90,9 +94,9 @@ impl Table {
             return Err(Failure::input(format_args!("{name} looks like UTF-16; save the file as UTF-8")));
         }
         if first.starts_with(&MAGIC[..MAGIC.len().min(first.len())]) && !first.is_empty() {
-            return Self::npy(name, file, columns);
+            return Ok(Self { mass, ..Self::npy(name, file, columns)? });
         }
-        Self::csv(name, file, columns)
+        Ok(Self { mass, ..Self::csv(name, file, columns)? })
     }
 
     fn csv(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
@@ -131,7 +135,7 @@ impl Table {
             }
         }
         let rows = Rows::Csv { reader: Box::new(reader), end, columns, record: csv::ByteRecord::new() };
-        Ok(Self { states: None, name, rows })
+        Ok(Self { states: None, name, rows, mass: None })
     }
 
     fn npy(name: String, mut file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
@@ -169,12 +173,15 @@ impl Table {
                 return Err(wrong(&format_args!("the numbers are {}; save them as float64 or float32", quoted(&kind))));
             }
         };
-        Ok(Self { states: Some(states), name, rows: Rows::Npy { numbers, width: wanted.len() } })
+        let rows = Rows::Npy { numbers, width: wanted.len(), read: 0 };
+        Ok(Self { states: Some(states), name, rows, mass: None })
     }
 
     /// Appends the rows of the next part; how many there are.
     pub(crate) fn read(&mut self, rows: &mut Vec<f64>) -> Result<usize, Failure> {
-        let name = &self.name;
+        let (name, mass) = (&self.name, self.mass);
+        // of the row that was read last
+        let negative = |row: &[f64]| mass.and_then(|mass| row.get(mass)).copied().filter(|mass| *mass < 0.0);
         match &mut self.rows {
             Rows::Csv { reader, end, columns, record } => {
                 let mut count = 0;
@@ -195,6 +202,7 @@ impl Table {
                     if !is_there {
                         break;
                     }
+                    let begin = rows.len();
                     for (place, column) in &*columns {
                         let cell = inner(record.get(*place).unwrap_or_default());
                         let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
@@ -207,11 +215,17 @@ impl Table {
                             Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
                         })?);
                     }
+                    if let Some(negative) = negative(&rows[begin..]) {
+                        let (line, column) = (last_line(reader, record), &columns[mass.unwrap_or_default()].1);
+                        return Err(Failure::input(format_args!(
+                            "{name}:{line}: `{column}` is a mass, {negative} kg: no body has less than 0"
+                        )));
+                    }
                     count += 1;
                 }
                 Ok(count)
             }
-            Rows::Npy { numbers, width } => {
+            Rows::Npy { numbers, width, read } => {
                 for number in numbers.by_ref().take(PART * *width) {
                     let number = number.map_err(|error| {
                         let all = self.states.unwrap_or_default();
@@ -223,6 +237,15 @@ impl Table {
                         })
                     })?;
                     rows.push(number);
+                }
+                for row in rows.chunks_exact((*width).max(1)) {
+                    *read += 1;
+                    if let Some(negative) = negative(row) {
+                        let column = mass.unwrap_or_default() + 1;
+                        return Err(Failure::input(format_args!(
+                            "{name}: state {read}: column {column} is a mass, {negative} kg: no body has less than 0"
+                        )));
+                    }
                 }
                 Ok(rows.len() / (*width).max(1))
             }

@@ -42,6 +42,12 @@ fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
     compiled.arguments().iter().flat_map(of).collect()
 }
 
+/// The column of a payload's mass.
+fn mass(compiled: &CompiledFunction) -> Option<usize> {
+    let payload = compiled.arguments().iter().position(|(name, _)| *name == "payload")?;
+    Some(compiled.arguments()[..payload].iter().map(|(_, elements)| elements).sum())
+}
+
 /// The columns of its results: torques and accelerations by their symbols, others by the function's name and their
 /// places in it, from 1, as those of a matrix by row and column.
 fn results(function: Function, dof: usize) -> Vec<String> {
@@ -72,7 +78,7 @@ impl Job<'_> {
     pub(crate) fn run(&self) -> Result<Outcome, Failure> {
         let compiled = self.arm.function(self.function).map_err(Failure::input)?;
         let columns = columns(compiled, self.arm);
-        let mut table = Table::open(self.states, &columns)?;
+        let mut table = Table::open(self.states, &columns, mass(compiled))?;
         let outputs = results(self.function, self.arm.dof());
         let read = [self.robot_file, self.states];
         let mut results = Results::open(self.out.filter(|out| !is_standard_input(out)), &read, self.force, &outputs)?;

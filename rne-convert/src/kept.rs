@@ -28,7 +28,8 @@ struct Content {
     options: String,
 }
 
-/// [`Urdf::read`] and [`Urdf::import`] at once, or what they gave this process for the same file name, text and options.
+/// [`Urdf::read`] and [`Urdf::import`] at once, or what they gave this process for the same file name, text and
+/// options.
 ///
 /// # Errors
 /// As those two; a refusal is not kept.

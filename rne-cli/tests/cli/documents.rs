@@ -11,9 +11,10 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 18] = [
+const DOCUMENTS: [&str; 20] = [
     "README.md",
     "CONTRIBUTING.md",
+    "docs/c-library.md",
     "docs/command-line.md",
     "docs/firmware.md",
     "docs/inspection.md",
@@ -28,6 +29,7 @@ const DOCUMENTS: [&str; 18] = [
     "docs/lecture/results.md",
     "docs/lecture/two-links.md",
     "docs/robot-file.md",
+    "docs/run-time.md",
     "docs/teaching.md",
     "robots/README.md",
 ];
@@ -50,6 +52,9 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask tool book", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"book\""),
     ("cargo xtask python", "xtask/src/verify.rs", "\"xtask\", \"python\", \"--install\""),
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
+    // with the flags of pkg-config, below the prefix that it was given
+    ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
+    ("cc capi/examples/torque.c", "xtask/src/capi.rs", "(\"capi/examples/torque.c\", \"cc\""),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
@@ -153,7 +158,7 @@ fn tried(folder: &Path, document: &str, command: &str) -> Option<String> {
 /// The commands in backticks of a line of prose.
 fn in_prose(line: &str) -> impl Iterator<Item = &str> {
     let quoted = line.split('`').skip(1).step_by(2);
-    let starts = ["cargo ", "rne ", ".ci/run", "RNE_"];
+    let starts = ["cargo ", "rne ", ".ci/run", "RNE_EXHAUSTIVE=", "RNE_WRITE_DOCUMENTS="];
     quoted.filter(move |words| starts.iter().any(|start| words.starts_with(start)) && !is_pattern(words))
 }
 

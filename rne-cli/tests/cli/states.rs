@@ -216,6 +216,38 @@ fn what_is_not_finite_is_told() {
     assert!(gravity("q1,q2\ninf,0\n").err.ends_with("note: the result of state 1 is not finite\n"));
 }
 
+/// A body of negative mass is refused, as `rne eval --payload` refuses it, in its row.
+#[test]
+fn a_negative_mass_of_a_payload_is_refused() {
+    let arguments = ["eval", "planar2", "--function", "inverse_dynamics_with_payload", "--states", "-"];
+    let names = columns("planar2", "inverse_dynamics_with_payload");
+    let place = names.iter().position(|name| name == "m").expect("a mass");
+    let row = |mass: f64| {
+        let mut numbers = vec![0.5; names.len()];
+        numbers[place] = mass;
+        numbers
+    };
+    let line = |mass: f64| row(mass).iter().map(f64::to_string).collect::<Vec<_>>().join(",") + "\n";
+    let table = |masses: &[f64]| names.join(",") + "\n" + &masses.iter().map(|mass| line(*mass)).collect::<String>();
+    let found = rne_reading(&arguments, &table(&[1.0, 0.0, -0.25, 1.0]));
+    assert!(found.status == 1 && found.out.is_empty(), "{found:?}");
+    let said = "<standard input>:4: `m` is a mass, -0.25 kg: no body has less than 0";
+    assert!(found.err.contains(said), "{found:?}");
+    assert_eq!(rne_reading(&arguments, &table(&[1.0, 0.0, -0.0])).status, 0);
+
+    let folder = folder("states_payload");
+    let (path, out) = (folder.join("in.npy"), folder.join("out.npy"));
+    // in the second part
+    let masses = |state: usize| if state == 20_000 { -0.25 } else { 1.0 };
+    let numbers: Vec<f64> = (1..=20_001).flat_map(|state| row(masses(state))).collect();
+    let shape = format!("(20001, {})", names.len());
+    fs::write(&path, npy("<f8", "False", &shape, &bytes(&numbers))).expect("a file");
+    let [path, output] = [&path, &out].map(|path| path.display().to_string());
+    let said = format!("{path}: state 20000: column {} is a mass, -0.25 kg", place + 1);
+    fails(1, &[&arguments[..5], &[path.as_str(), "-o", &output]].concat(), &[&said]);
+    assert!(!out.exists(), "a file is whole or not there");
+}
+
 /// Nothing is printed beside a message where the mistake is among the first states.
 #[test]
 fn mistakes_in_csv_have_a_line() {
@@ -385,6 +417,38 @@ fn a_reader_that_goes_away_is_no_error() {
     let called = called(child.wait_with_output().expect("rne ends"));
     writer.join().expect("it ends");
     assert!(called.status == 0 && called.err.is_empty(), "{called:?}");
+}
+
+/// The most memory, in kB, that `rne eval` had while it read so many states from a pipe.
+#[cfg(target_os = "linux")]
+fn peak(states: usize) -> u64 {
+    let mut command = command(&["eval", "planar2", "--states", "-"]);
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("rne");
+    let mut stdin = child.stdin.take().expect("a pipe");
+    const PART: usize = 1000;
+    let part = bytes(&(0..6 * PART).map(|index| number(index / 6, index % 6)).collect::<Vec<_>>());
+    stdin.write_all(&npy("<f8", "False", &format!("({states}, 6)"), &[])).expect("it reads");
+    for _ in 0..states / PART {
+        stdin.write_all(&part).expect("it reads");
+    }
+    // it waits for the end of the pipe
+    let status = fs::read_to_string(format!("/proc/{}/status", child.id())).expect("it runs");
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("the most memory it had");
+    drop(stdin);
+    assert!(child.wait().expect("it ends").success());
+    line.trim().trim_end_matches(" kB").parse().expect("a number")
+}
+
+/// A million states, ten and a hundred with `RNE_EXHAUSTIVE` set:
+/// `RNE_EXHAUSTIVE=1 cargo test --release -p rne-cli --test cli -- memory_does_not_grow --nocapture`.
+#[cfg(target_os = "linux")]
+#[test]
+fn memory_does_not_grow_with_the_states() {
+    let is_exhaustive = std::env::var_os("RNE_EXHAUSTIVE").is_some();
+    let counts = if is_exhaustive { &[1_000_000, 10_000_000, 100_000_000][..] } else { &[40_000, 160_000] };
+    let peaks: Vec<u64> = counts.iter().map(|&states| peak(states)).collect();
+    println!("{counts:?} states of planar2 in a pipe: {peaks:?} kB at most");
+    assert!(peaks.iter().max().expect("some") - peaks[0] < 2_000, "{peaks:?} kB of {counts:?} states");
 }
 
 #[test]
