@@ -160,7 +160,7 @@ pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
         ARGUMENTS, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Machine, Number,
+        EvaluationError, Form, Function, Machine, Number, PlanFile, SearchOptions, SearchProgress,
     };
 }
 

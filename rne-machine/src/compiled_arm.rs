@@ -46,6 +46,8 @@ pub struct CompiledArm(Arc<Compiled>);
 struct Compiled {
     robot: Robot,
     form: Form,
+    /// That of which the plans are, where one was given.
+    file: Option<PlanFile>,
     /// Those of a plan file, or those that are chosen when they are first needed.
     plans: OnceLock<PlanSet>,
     functions: [OnceLock<Result<CompiledFunction, CompileError>>; Function::ALL.len()],
@@ -106,7 +108,7 @@ impl CompiledArm {
             Some(plan) => Some(PlanFile::read(name_of_plan, &String::from_utf8_lossy(plan), &robot)?),
             None => None,
         };
-        let arm = Self::new(robot, Form::Reduced, plan.map(PlanSet::from));
+        let arm = Self::new(robot, Form::Reduced, plan, None);
         let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
         // another thread may have read it meanwhile: one arm for all
         if let Some(arm) = known(&read) {
@@ -122,12 +124,14 @@ impl CompiledArm {
     /// The arm of a robot file that has been read otherwise, with parameters that stay free, say.
     #[must_use]
     pub fn from_robot(robot: &Robot) -> Self {
-        Self::new(robot.clone(), Form::Reduced, None)
+        Self::new(robot.clone(), Form::Reduced, None, None)
     }
 
-    fn new(robot: Robot, form: Form, plans: Option<PlanSet>) -> Self {
-        let plans = plans.map_or_else(OnceLock::new, OnceLock::from);
-        Self(Arc::new(Compiled { robot, form, plans, functions: [const { OnceLock::new() }; Function::ALL.len()] }))
+    /// `plans` are those that were chosen before, where no file has them.
+    fn new(robot: Robot, form: Form, file: Option<PlanFile>, plans: Option<PlanSet>) -> Self {
+        let plans = file.clone().map(PlanSet::from).or(plans).map_or_else(OnceLock::new, OnceLock::from);
+        let functions = [const { OnceLock::new() }; Function::ALL.len()];
+        Self(Arc::new(Compiled { robot, form, file, plans, functions }))
     }
 
     /// The same arm in another form: the default is the reduced one, with the fewest operations.
@@ -136,20 +140,27 @@ impl CompiledArm {
         if form == self.0.form {
             return self.clone();
         }
-        Self::new(self.0.robot.clone(), form, self.0.plans.get().cloned())
+        let Compiled { robot, file, plans, .. } = &*self.0;
+        Self::new(robot.clone(), form, file.clone(), plans.get().cloned())
     }
 
     /// The same arm by the choices of a plan file, such as a search has found.
     #[must_use]
     pub fn by_plan(&self, plan: PlanFile) -> Self {
-        Self::new(self.0.robot.clone(), self.0.form, Some(plan.into()))
+        Self::new(self.0.robot.clone(), self.0.form, Some(plan), None)
+    }
+
+    /// The plan file by which it is compiled: one that was read, or that a [search](Self::search) has found.
+    #[must_use]
+    pub fn plan(&self) -> Option<&PlanFile> {
+        self.0.file.as_ref()
     }
 
     /// The same arm with the rotors of its motors, in all that moves them.
     #[must_use]
     pub fn with_rotors(&self) -> Self {
-        let Compiled { robot, form, plans, .. } = &*self.0;
-        Self::new(robot.clone().with_rotors(), *form, plans.get().cloned())
+        let Compiled { robot, form, file, plans, .. } = &*self.0;
+        Self::new(robot.clone().with_rotors(), *form, file.clone(), plans.get().cloned())
     }
 
     /// The table.
@@ -175,7 +186,7 @@ impl CompiledArm {
     /// # Errors
     /// When it cannot be compiled for this robot: its numbers overflow, say.
     pub fn function(&self, function: Function) -> Result<&CompiledFunction, EvaluationError> {
-        let Compiled { robot, form, plans, functions } = &*self.0;
+        let Compiled { robot, form, plans, functions, .. } = &*self.0;
         let compiled = functions[function as usize].get_or_init(|| {
             let mut compiler = Compiler::new(robot).for_target(Target::Throughput);
             if *form == Form::Reduced {

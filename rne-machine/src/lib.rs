@@ -33,6 +33,7 @@ mod native;
 mod number;
 mod one_state;
 mod schedule;
+mod search;
 mod selection;
 #[cfg(feature = "native")]
 mod translation;
@@ -42,7 +43,9 @@ pub use compiled_arm::CompiledArm;
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use one_state::Derivatives;
+pub use rne_codegen::plan::{PlanFile, SearchOptions};
 pub use rne_codegen::{Form, Function};
+pub use search::SearchProgress;
 
 use rne_codegen::{Name, Program};
 use rne_runtime::machine::Code;

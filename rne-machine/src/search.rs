@@ -1,0 +1,128 @@
+//! The search for fewer operations, in a program that runs.
+
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+use rne_codegen::CompileError;
+use rne_codegen::plan::{SearchOptions, search};
+
+use crate::{CompiledArm, EvaluationError};
+
+/// How far a search has come.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct SearchProgress {
+    /// The part of the time that is over, 0 to 1.
+    pub share: f64,
+    /// Operations of the best torques so far.
+    pub operations: usize,
+}
+
+impl CompiledArm {
+    /// Looks for fewer operations for so long, from the plan at hand on: the arm by the plan that was found, which
+    /// [`plan`](Self::plan) has for a file beside the robot file. It is proved to be the same arm.
+    ///
+    /// `progress` is called often, some hundred times a second, and ends the search by [`ControlFlow::Break`] with what
+    /// it has. `options` name functions of which the graphs are rewritten besides, and the seed of random numbers.
+    ///
+    /// ```
+    /// use std::ops::ControlFlow;
+    /// use std::time::{Duration, Instant};
+    ///
+    /// use rne_machine::{CompiledArm, SearchOptions};
+    ///
+    /// # let yaml = "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [
+    /// #     {type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: 2.5, com: [-0.4, 0, 0]}}]}";
+    /// let arm = CompiledArm::from_yaml(yaml)?;
+    /// let found = arm.search(Duration::from_millis(10), &SearchOptions::default(), |so_far| {
+    ///     println!("{:.0} %: {} operations", 100.0 * so_far.share, so_far.operations);
+    ///     ControlFlow::Continue(())
+    /// })?;
+    /// let plan = found.plan().expect("a search gives one").to_yaml(); // NAME.plan.yaml
+    /// # assert!(plan.contains("format: 2"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// For an arm with run-time parameters, which has no plan; or when the result cannot be proved, which would be a
+    /// mistake of this library.
+    pub fn search(
+        &self,
+        time: Duration,
+        options: &SearchOptions,
+        mut progress: impl FnMut(SearchProgress) -> ControlFlow<()>,
+    ) -> Result<Self, EvaluationError> {
+        if !self.robot().run_time.is_empty() {
+            let why = "an arm with run-time parameters has no plan; search for the arm with their values".to_owned();
+            return Err(CompileError::Plan(why).into());
+        }
+        let start = Instant::now();
+        let mut is_over = false;
+        let plan = search(self.robot(), self.plan(), options, &mut |so_far| {
+            let share = if time.is_zero() { 1.0 } else { start.elapsed().as_secs_f64() / time.as_secs_f64() }.min(1.0);
+            // what has been stopped is asked again, by the next part of the search
+            is_over |= progress(SearchProgress { share, operations: so_far.best.total() }).is_break() || share >= 1.0;
+            (!is_over).then_some(share)
+        })?;
+        Ok(self.by_plan(plan))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Form, Function};
+
+    fn puma() -> CompiledArm {
+        let file = rne_robots::find("puma560").expect("it is shipped");
+        CompiledArm::from_yaml(file.yaml).expect("a shipped robot")
+    }
+
+    fn operations(arm: &CompiledArm) -> usize {
+        arm.function(Function::InverseDynamics).expect("a function that compiles").program().operations().total()
+    }
+
+    #[test]
+    fn what_was_found_is_the_same_arm_by_a_plan_that_can_be_kept() {
+        let arm = puma();
+        let options = SearchOptions { seed: 3, ..SearchOptions::default() };
+        let found = arm.search(Duration::ZERO, &options, |_| ControlFlow::Continue(())).expect("a plan");
+        assert!(arm.plan().is_none() && operations(&found) <= operations(&arm.in_form(Form::SevenSteps)));
+        let (q, qd, qdd) = ([0.3, -0.8, 0.4, 1.0, 0.5, -0.2], [0.1; 6], [0.7; 6]);
+        let torques = |arm: &CompiledArm| arm.inverse_dynamics(&q, &qd, &qdd).expect("numbers");
+        for (found, expected) in std::iter::zip(torques(&found), torques(&arm)) {
+            let found: f64 = found;
+            assert!((found - expected).abs() < 1e-12 * 50.0, "{found} {expected}");
+        }
+        let yaml = rne_robots::find("puma560").expect("it is shipped").yaml;
+        let read = CompiledArm::with_plan(yaml, &found.plan().expect("a plan").to_yaml()).expect("both texts");
+        assert_eq!(operations(&read), operations(&found));
+        assert_eq!(torques(&read), torques(&found));
+    }
+
+    #[test]
+    fn who_is_told_of_the_progress_may_end_it() {
+        let arm = puma();
+        let mut told = Vec::new();
+        let stop = |so_far: SearchProgress| {
+            told.push(so_far);
+            if told.len() < 3 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+        };
+        let day = Duration::from_secs(86_400);
+        let found = arm.search(day, &SearchOptions::default(), stop).expect("a plan");
+        assert!((3..10).contains(&told.len()), "{told:?}");
+        assert!(told.is_sorted_by(|a, b| a.operations >= b.operations && a.share <= b.share && b.share < 1.0));
+        assert!(found.plan().is_some(), "it has what there was");
+    }
+
+    #[test]
+    fn run_time_parameters_have_no_plan() {
+        let text =
+            "{format: 1, name: rod, source: own, convention: standard, gravity: [0, -9.81, 0], parameters: {m: 2},
+            joints: [{type: revolute, dh: {theta: 0, d: 0, a: 0.8, alpha: 0}, link: {mass: m, com: [-0.4, 0, 0]}}]}";
+        let robot = rne_model::Reader::new("rod").run_time(&["m"]).read(text).expect("an arm").robot;
+        let arm = CompiledArm::from_robot(&robot);
+        let error = arm.search(Duration::ZERO, &SearchOptions::default(), |_| ControlFlow::Continue(()));
+        assert!(error.expect_err("no plan").to_string().contains("run-time parameters"));
+    }
+}
