@@ -1,19 +1,19 @@
 //! What the class `Arm` tells of itself: code, counts, parameters, slips, better plans, pages.
 
-use std::time::Instant;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
 
 use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne::DynArm;
-use rne::compiled::Form;
+use rne::compiled::{Form, SearchOptions};
 use rne_codegen::emit::{self, Precision, Prefix, Selection};
-use rne_codegen::plan::{PlanFile, SearchOptions, search};
 use rne_diagnose::{Diagnosis, Observation};
-use rne_model::JointKind;
 
 use crate::arm::{Arm, Origin, name};
 use crate::errors::of_evaluation;
+use crate::notebook;
 
 #[pymethods]
 impl Arm {
@@ -160,19 +160,10 @@ impl Arm {
         }
         let rewrite = functions.iter().map(|function| name(function)).collect::<PyResult<_>>()?;
         let options = SearchOptions { rewrite, seed };
-        let known = match &self.origin.plan {
-            Some(plan) => PlanFile::read("plan", plan, self.robot()).ok(),
-            None => None,
-        };
-        let (start, mut told) = (Instant::now(), Instant::now());
+        let mut told = Instant::now();
         let mut failed = None;
-        let robot = self.robot();
         let found = py.detach(|| {
-            search(robot, known.as_ref(), &options, &mut |so_far| {
-                let over = if seconds > 0.0 { start.elapsed().as_secs_f64() / seconds } else { 1.0 };
-                if failed.is_some() {
-                    return None;
-                }
+            self.arm.search(Duration::from_secs_f64(seconds), &options, |so_far| {
                 if told.elapsed().as_millis() >= 100 {
                     told = Instant::now();
                     Python::attach(|py| {
@@ -180,21 +171,21 @@ impl Arm {
                             // the plan so far is worth having: Ctrl-C ends the search, not the program
                             failed = Some(Ok(()));
                         } else if let Some(progress) = &progress
-                            && let Err(error) = progress.call1(py, (over.min(1.0), so_far.best.total()))
+                            && let Err(error) = progress.call1(py, (so_far.share, so_far.operations))
                         {
                             failed = Some(Err(error));
                         }
                     });
                 }
-                (over < 1.0 && failed.is_none()).then_some(over)
+                if failed.is_some() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             })
         });
         if let Some(Err(error)) = failed {
             return Err(error);
         }
-        let plan = found.map_err(|error| of_evaluation(&error))?;
-        let origin = Origin { plan: Some(plan.to_yaml()), ..self.origin.clone() };
-        Self::of(py, origin)
+        let found = found.map_err(|error| of_evaluation(&error))?;
+        let plan = found.plan().map(rne::compiled::PlanFile::to_yaml);
+        Self::of(py, Origin { plan, ..self.origin.clone() })
     }
 
     /// The page of `rne report`: one file of HTML that needs no network.
@@ -203,46 +194,9 @@ impl Arm {
         py.detach(|| rne_report::page(self.robot(), Some(&reduced))).map_err(|error| of_evaluation(&error))
     }
 
-    /// The table, the counts and the page, for notebooks.
-    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let robot = self.robot();
-        let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
-        let mut html = format!(
-            "<p><b>{}</b>: {} joints, {} table</p><table><tr><th>joint<th>type<th>θ (rad)<th>d (m)<th>a (m)<th>α (rad)\
-             <th>mass (kg)</tr>",
-            escape(robot.title.as_deref().unwrap_or(&robot.name)),
-            robot.dof(),
-            self.rows()
-        );
-        for joint in &robot.joints {
-            let (row, kind) = (
-                &joint.row,
-                match joint.row.kind {
-                    JointKind::Revolute => "revolute",
-                    JointKind::Prismatic => "prismatic",
-                },
-            );
-            html += &format!(
-                "<tr><td>{}<td>{kind}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
-                escape(&joint.name),
-                row.dh.theta.radians,
-                row.dh.d,
-                row.dh.a,
-                row.dh.alpha.radians,
-                row.link.mass
-            );
-        }
-        html += "</table><table><tr><th>torques<th>mul<th>add<th>sin/cos</tr>";
-        for form in Form::ALL {
-            let counts = self.program("inverse_dynamics", Some(form.name()))?.operations();
-            html += &format!("<tr><td>{form}<td>{}<td>{}<td>{}</tr>", counts.mul, counts.add, counts.sincos);
-        }
-        html += "</table>";
-        let page = escape(&self.report(py)?);
-        html += &format!(
-            "<details><summary>the seven steps, joint by joint</summary><iframe sandbox=\"allow-scripts\" \
-             style=\"width:100%;height:640px;border:0\" srcdoc=\"{page}\"></iframe></details>"
-        );
-        Ok(html)
+    /// The table, the counts, and the code of the torques joint by joint with what folded, for notebooks; the page that
+    /// `report` makes, which moves, is too large for a cell.
+    fn _repr_html_(&self) -> PyResult<String> {
+        notebook::cell(self.robot(), self.rows(), |function, form| self.program(function, Some(form)))
     }
 }

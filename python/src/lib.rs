@@ -10,6 +10,7 @@ mod errors;
 mod functions;
 mod insight;
 mod load;
+mod notebook;
 
 use pyo3::prelude::*;
 

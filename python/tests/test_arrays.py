@@ -134,7 +134,10 @@ def test_insight():
     with pytest.raises(ValueError, match="c or rust"):
         arm.code("fortran")
     html = arm._repr_html_()
-    assert "<table>" in html and "srcdoc" in html
+    assert html.count("<table>") == 2 and html.count("<details>") == 6 and "q6" in html and "w6_z" in html
+    assert html.count("<tr>") == 1 + 6 + 1 + 2 * 6, "the table, and counts in both forms"
+    assert "&lt;" not in arm.name and "<script" not in html and len(html) < 60_000
+    assert all(len(robot._repr_html_()) < 100_000 for robot in map(rne.robots.__getitem__, rne.robots))
     told = arm.diagnose(q[0], qd[0], qdd[0], -tau[0])
     assert not told["agrees"] and told["explanations"]
     assert arm.diagnose(q[0], qd[0], qdd[0], tau[0])["agrees"]

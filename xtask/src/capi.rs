@@ -16,16 +16,22 @@ const SYSTEM: &str = "-lgcc_s -lutil -lrt -lpthread -lm -ldl -lc";
 /// What checks memory, and what finds the library as others do.
 const PACKAGES: [&str; 3] = ["valgrind", "cmake", "pkg-config"];
 
+/// What a program is told to find by itself: what it reads and writes beyond what is its own, of the library too where
+/// that is the system's memory, what is not freed, and what C does not define.
+const SANITIZERS: [&str; 4] =
+    ["-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-fno-omit-frame-pointer", "-g"];
+
 /// Warnings that examples must not have.
 const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
 ///
 /// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples
-/// and a program of sixteen threads are compiled against it and run, under valgrind where it is there.
+/// and a program of sixteen threads are compiled against it and run, under valgrind where it is there, and with the
+/// compiler's sanitizers of addresses, leaks and undefined behaviour.
 #[derive(Args)]
 #[command(after_help = "\
-Needs cc and c++; skips valgrind, pkg-config and CMake, each with one line, where they are not there.
+Needs cc and c++; skips valgrind, the sanitizers, pkg-config and CMake, each with one line, where they are not there.
 
 Examples:
   cargo xtask capi                        with what is there, below target/capi/prefix
@@ -126,6 +132,12 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
         ("capi/examples/controller.c", "cc", "-std=c11"),
         ("capi/tests/threads.c", "cc", "-std=c11"),
     ];
+    let sanitized = programs.join("sanitized");
+    fs::create_dir_all(&sanitized)?;
+    let has_sanitizers = has_sanitizers(shell, &sanitized)?;
+    if !has_sanitizers {
+        println!("sanitizers: skipped, cc and c++ have none");
+    }
     let mut holds = true;
     for (source, compiler, standard) in sources {
         let name = Path::new(source).file_name().unwrap_or_default().to_string_lossy().replace('.', "_");
@@ -135,12 +147,42 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
             .quiet()
             .run()?;
         holds &= runs(shell, &program, has_valgrind)?;
+        if has_sanitizers {
+            let program = sanitized.join(&name);
+            let compile = cmd!(shell, "{compiler} {standard} -O1 {SANITIZERS...} {STRICT...} {source} {flags...}");
+            compile.args(["-pthread", &rpath, "-o"]).arg(&program).quiet().run()?;
+            holds &= is_clean(shell, &program)?;
+        }
     }
     // the static one
     let program = programs.join("torque_static");
     let source = "capi/examples/torque.c";
     cmd!(shell, "cc -std=c11 {STRICT...} -I{include} {source} {archive} {system...} -o {program}").quiet().run()?;
     Ok(holds & runs(shell, &program, false)?)
+}
+
+/// Whether both compilers have them, and what they make runs here.
+fn has_sanitizers(shell: &Shell, folder: &Path) -> Result<bool> {
+    let (source, program) = (folder.join("empty.c"), folder.join("empty"));
+    fs::write(&source, "int main(void) { return 0; }\n")?;
+    Ok(["cc -xc", "c++ -xc++"].iter().all(|compiler| {
+        let (compiler, language) = compiler.split_once(' ').unwrap_or_default();
+        let compile = cmd!(shell, "{compiler} {language} {SANITIZERS...} {source} -o {program}").quiet();
+        compile.ignore_stderr().run().is_ok() && cmd!(shell, "{program}").quiet().ignore_stderr().run().is_ok()
+    }))
+}
+
+/// Runs a program that has the sanitizers: they find nothing.
+fn is_clean(shell: &Shell, program: &Path) -> Result<bool> {
+    let name = program.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let run = cmd!(shell, "{program}").env("ASAN_OPTIONS", "detect_leaks=1:strict_string_checks=1");
+    let output = run.quiet().ignore_status().output()?;
+    let holds = output.status.success();
+    println!("{name}: the sanitizers find {}", if holds { "nothing" } else { "fault" });
+    if !holds {
+        print!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));
+    }
+    Ok(holds)
 }
 
 /// Runs a program as it is, and under valgrind: no error, and nothing lost.

@@ -8,7 +8,7 @@ use xshell::{Cmd, Shell, cmd};
 
 use crate::Verdict;
 use crate::instructions::{self, Instructions};
-use crate::{batch_profile, growth, machine, single_calls};
+use crate::{batch_profile, growth, machine, python, single_calls};
 
 /// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->`
 /// and `<!-- end -->`
@@ -48,6 +48,8 @@ enum Block {
     Growth,
     /// Nanoseconds of an arm at run time, of docs/run-time.md
     RunTime,
+    /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched; of docs/run-time.md
+    FromPython,
 }
 
 impl Performance {
@@ -77,13 +79,14 @@ impl Block {
             Self::BatchProfile => "batch_profile",
             Self::Growth => "growth",
             Self::RunTime => "run_time",
+            Self::FromPython => "from_python",
         }
     }
 
     /// Where it stands.
     fn page(self) -> &'static str {
         match self {
-            Self::RunTime => "docs/run-time.md",
+            Self::RunTime | Self::FromPython => "docs/run-time.md",
             _ => "docs/performance.md",
         }
     }
@@ -116,6 +119,10 @@ impl Block {
                 let options = ["--quiet", "--release", "--no-default-features", "--features", "run_time", "--locked"];
                 let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
                 here(&shell)? + &listing(bench)?
+            }
+            Self::FromPython => {
+                let head = here(&shell)?;
+                format!("{head}```text\n{}\n```\n", python::beside_peers()?)
             }
             Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
         })

@@ -1,8 +1,11 @@
 //! The Python package: a wheel, and its tests in an environment that has nothing but the wheel.
 
-use anyhow::Result;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
 use clap::Args;
-use xshell::cmd;
+use xshell::{Shell, cmd};
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
@@ -16,13 +19,22 @@ const TESTS: [&str; 1] = ["pytest>=8"];
 /// What they need to hold the wheel against Pinocchio on real arms.
 const PEERS: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
+/// What is timed beside the wheel, besides: the version of `benches/peers/run`.
+const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
+
 /// What runs the notebooks.
 const NOTEBOOKS: [&str; 3] = ["nbclient>=0.10", "ipykernel>=6", "matplotlib>=3"];
+
+/// What somebody types first.
+const FIRST: &str = "import rne\n\
+                     arm = rne.robots['puma560']\n\
+                     print('python, no compiler on PATH:', arm.gravity_torques([0.1] * 6), 'N m')";
 
 /// Builds the Python wheel and tests it in a clean environment
 ///
 /// The wheel is built by maturin, installed with numpy into an empty virtual environment, and tested there: against
-/// numpy on random arms, and with --peers against Pinocchio on real ones; then the notebooks run.
+/// numpy on random arms, and with --peers against Pinocchio on real ones; then the notebooks run. With --install it is
+/// tried once more in an environment that is made anew, where no compiler is on PATH.
 #[derive(Args)]
 #[command(after_help = "\
 Needs python3 with venv; what else it needs is fetched into target/python.
@@ -30,7 +42,8 @@ Needs python3 with venv; what else it needs is fetched into target/python.
 Examples:
   cargo xtask python              with what is installed there
   cargo xtask python --install    install it first
-  cargo xtask python --install --peers --notebooks")]
+  cargo xtask python --install --peers --notebooks
+  cargo xtask python --install --sdist    minutes: pip builds it, and gets Rust")]
 pub(crate) struct Python {
     /// Install what is missing, with pip, below target/
     #[arg(long)]
@@ -41,47 +54,102 @@ pub(crate) struct Python {
     /// Run the notebooks of python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
+    /// Install the source distribution where no Rust is on PATH; CI_FULL does so too
+    #[arg(long, requires = "install")]
+    pub(crate) sdist: bool,
 }
 
 impl Python {
     pub(crate) fn run(&self) -> Result<Verdict> {
-        let shell = machine::shell()?;
-        let folder = machine::target_folder("target")?.join("python");
-        let (builder, user) = (folder.join("builder"), folder.join("user"));
+        let place = Place::new()?;
+        let mut packages = TESTS.to_vec();
+        packages.extend(PEERS.iter().filter(|_| self.peers));
+        packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
+        let wheel = place.wheel(self.install)?;
+        let python = place.user(&wheel, &packages, self.install)?;
+        let shell = &place.shell;
+        let mut holds = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests").quiet().run().is_ok();
+        if self.notebooks {
+            holds &= cmd!(shell, "{python} python/notebooks/run.py").quiet().run().is_ok();
+        }
+        if self.install {
+            holds &= place.holds_without_compiler(&wheel)?;
+        }
+        if self.sdist || self.install && std::env::var_os("CI_FULL").is_some() {
+            holds &= place.holds_from_sources()?;
+        }
+        Ok(Verdict::from(holds))
+    }
+}
+
+/// Torques from Python beside those of other packages, timed: the table that `benches/peers/python/from_python.py`
+/// prints.
+pub(crate) fn beside_peers() -> Result<String> {
+    let place = Place::new()?;
+    let packages = [&TESTS[..], &PEERS, &[TOOLBOX]].concat();
+    let wheel = place.wheel(true)?;
+    let python = place.user(&wheel, &packages, true)?;
+    let shell = &place.shell;
+    Ok(cmd!(shell, "{python} benches/peers/python/from_python.py").quiet().read()?)
+}
+
+/// Where wheels and environments are.
+struct Place {
+    shell: Shell,
+    folder: PathBuf,
+}
+
+impl Place {
+    fn new() -> Result<Self> {
         if !machine::has("python3") {
             return Err(Missing::error("there is no python3"));
         }
-        for venv in [&builder, &user] {
-            if !venv.join("bin/python").exists()
-                && cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err()
-            {
-                return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
-            }
+        Ok(Self { shell: machine::shell()?, folder: machine::target_folder("target")?.join("python") })
+    }
+
+    /// A virtual environment, its Python; one that is there already stays.
+    fn environment(&self, name: &str) -> Result<PathBuf> {
+        let (shell, venv) = (&self.shell, self.folder.join(name));
+        let python = venv.join("bin/python");
+        if !python.exists() && cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
+            return Err(Missing::error("python3 cannot make a virtual environment (python3-venv)"));
         }
-        let pip = |venv: &std::path::Path, packages: &[&str]| {
-            let python = venv.join("bin/python");
-            let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
-            install.quiet().ignore_stderr().run().is_ok()
-        };
-        let maturin = builder.join("bin/maturin");
-        if !(maturin.exists() || self.install && pip(&builder, &[MATURIN])) {
+        Ok(python)
+    }
+
+    fn pip(&self, python: &Path, packages: &[&str]) -> bool {
+        let shell = &self.shell;
+        let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
+        install.quiet().ignore_stderr().run().is_ok()
+    }
+
+    fn maturin(&self, install: bool) -> Result<PathBuf> {
+        let python = self.environment("builder")?;
+        let maturin = python.with_file_name("maturin");
+        if !(maturin.exists() || install && self.pip(&python, &[MATURIN])) {
             return Err(Missing::error("there is no maturin; `cargo xtask python --install` gets it"));
         }
+        Ok(maturin)
+    }
+
+    /// The wheel, built.
+    fn wheel(&self, install: bool) -> Result<PathBuf> {
+        let (shell, folder, maturin) = (&self.shell, &self.folder, self.maturin(install)?);
         let wheels = folder.join("wheels");
-        let _ = std::fs::remove_dir_all(&wheels);
+        let _ = fs::remove_dir_all(&wheels);
         let build = cmd!(
             shell,
             "{maturin} build --quiet --release --locked --manifest-path python/Cargo.toml
                 --target-dir {folder} --out {wheels}"
         );
         machine::without_flags(build).quiet().run()?;
-        let wheel = std::fs::read_dir(&wheels)?.find_map(|entry| Some(entry.ok()?.path()));
-        let Some(wheel) = wheel else { return Ok(Verdict::from(false)) };
-        let python = user.join("bin/python");
-        let mut packages = TESTS.to_vec();
-        packages.extend(PEERS.iter().filter(|_| self.peers));
-        packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
-        if self.install && !pip(&user, &packages) {
+        only_file(&wheels)
+    }
+
+    /// The environment of the tests with the wheel and these packages, its Python.
+    fn user(&self, wheel: &Path, packages: &[&str], install: bool) -> Result<PathBuf> {
+        let (shell, python) = (&self.shell, self.environment("user")?);
+        if install && !self.pip(&python, packages) {
             return Err(Missing::error(format!("{} cannot be fetched", packages.join(", "))));
         }
         let install = cmd!(
@@ -89,13 +157,57 @@ impl Python {
             "{python} -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps {wheel}"
         );
         install.quiet().run()?;
-        if cmd!(shell, "{python} -c 'import numpy'").quiet().ignore_stderr().run().is_err() && !pip(&user, &["numpy"]) {
+        let imports = cmd!(shell, "{python} -c 'import numpy'").quiet().ignore_stderr().run();
+        if imports.is_err() && !self.pip(&python, &["numpy"]) {
             return Err(Missing::error("there is no numpy; `cargo xtask python --install` gets it"));
         }
-        let mut holds = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests").quiet().run().is_ok();
-        if self.notebooks {
-            holds &= cmd!(shell, "{python} python/notebooks/run.py").quiet().run().is_ok();
-        }
-        Ok(Verdict::from(holds))
+        Ok(python)
     }
+
+    /// The wheel where nothing else is, by its own requirements; PATH has the environment alone: no cc, no cargo.
+    fn holds_without_compiler(&self, wheel: &Path) -> Result<bool> {
+        let _ = fs::remove_dir_all(self.folder.join("clean"));
+        let python = self.environment("clean")?;
+        let alone = python.parent().context("an environment has a folder of programs")?;
+        let wheel = wheel.display().to_string();
+        if !self.pip(&python, &[&[wheel.as_str()], &TESTS[..]].concat()) {
+            return Err(Missing::error("the wheel cannot be installed with what it requires"));
+        }
+        let shell = &self.shell;
+        let first = cmd!(shell, "{python} -c {FIRST}").env("PATH", alone);
+        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests").env("PATH", alone);
+        Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
+    }
+
+    /// The source distribution as pip builds it where there is a C compiler, which links, and no Rust: maturin asks for
+    /// the package `puccinialin` then, by which pip gets one.
+    fn holds_from_sources(&self) -> Result<bool> {
+        let (shell, maturin) = (&self.shell, self.maturin(true)?);
+        let sources = self.folder.join("sources");
+        let _ = fs::remove_dir_all(&sources);
+        cmd!(shell, "{maturin} sdist --quiet --manifest-path python/Cargo.toml --out {sources}").quiet().run()?;
+        let sdist = only_file(&sources)?;
+        let _ = fs::remove_dir_all(self.folder.join("built"));
+        let python = self.environment("built")?;
+        // programs of the system, without the folders where rustup puts its own
+        let home = self.folder.join("home");
+        fs::create_dir_all(&home)?;
+        let path = format!("{}:/usr/bin:/bin", python.with_file_name("").display());
+        let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {sdist}");
+        let install = ["CARGO", "CARGO_HOME", "CARGO_TARGET_DIR", "RUSTUP_HOME", "RUSTUP_TOOLCHAIN"]
+            .into_iter()
+            .fold(machine::without_flags(install), xshell::Cmd::env_remove);
+        if install.env("PATH", &path).env("XDG_CACHE_HOME", &home).quiet().run().is_err() {
+            return Ok(false);
+        }
+        let size = fs::metadata(&sdist)?.len() / 1024;
+        println!("python, built by pip from {} KiB of sources:", size);
+        Ok(cmd!(shell, "{python} -c {FIRST}").env("PATH", &path).quiet().run().is_ok())
+    }
+}
+
+/// The file of a folder that has one.
+fn only_file(folder: &Path) -> Result<PathBuf> {
+    let file = fs::read_dir(folder)?.find_map(|entry| Some(entry.ok()?.path()));
+    file.with_context(|| format!("{} is empty", folder.display()))
 }

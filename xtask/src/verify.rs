@@ -107,8 +107,8 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "c_code",
-        about: "the C of every shipped robot beside the derived code",
-        variables: &[],
+        about: "every shipped robot: derived code beside its C, the machine and the interpreter at a million states",
+        variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--package", "rne", "--test", "c_code_of_every_robot"],
         needs: Needs::Time,
     },

@@ -1,0 +1,88 @@
+//! What a notebook shows of an arm.
+
+use std::fmt::Write as _;
+
+use pyo3::PyResult;
+use rne::compiled::{Form, Function};
+use rne_codegen::Program;
+use rne_codegen::emit::{self, Selection};
+use rne_model::{JointKind, Robot};
+
+/// Of whose counts a notebook has a row.
+const COUNTED: [Function; 6] = [
+    Function::InverseDynamics,
+    Function::GravityTorques,
+    Function::MassMatrix,
+    Function::ForwardDynamics,
+    Function::Jacobian,
+    Function::InverseDynamicsDerivatives,
+];
+
+/// The table, the counts of some functions, and the annotated torques of the seven steps, joint by joint. Some tens of
+/// kilobytes, and no script: it is kept in the notebook, and shown where notebooks are not trusted.
+pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> PyResult<Program>) -> PyResult<String> {
+    let escape = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    let title = escape(robot.title.as_deref().unwrap_or(&robot.name));
+    let mut html = format!(
+        "<p><b>{title}</b>: {} joints, {rows} table</p><table><tr><th>joint<th>type<th>θ (rad)<th>d (m)<th>a (m)\
+         <th>α (rad)<th>mass (kg)</tr>",
+        robot.dof()
+    );
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let (kind, dh) = (joint.row.kind, &joint.row.dh);
+        let variable = |is_variable: bool, constant: f64| match (is_variable, constant) {
+            (true, 0.0) => format!("q{}", index + 1),
+            (true, constant) => {
+                let sign = if constant < 0.0 { '−' } else { '+' };
+                format!("q{} {sign} {:.6}", index + 1, constant.abs())
+            }
+            (false, constant) => format!("{constant:.6}"),
+        };
+        let word = match kind {
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+        };
+        let _ = write!(
+            html,
+            "<tr><td>{}<td>{word}<td>{}<td>{}<td>{:.6}<td>{:.6}<td>{:.6}</tr>",
+            escape(&joint.name),
+            variable(kind == JointKind::Revolute, dh.theta.radians),
+            variable(kind == JointKind::Prismatic, dh.d),
+            dh.a,
+            dh.alpha.radians,
+            joint.row.link.mass
+        );
+    }
+    html += "</table><table><tr><th>operations<th>form<th>mul<th>add<th>div<th>sin/cos</tr>";
+    for function in COUNTED {
+        for form in Form::ALL {
+            // what cannot be compiled, for it divides by zero, has no row
+            let Ok(program) = program(function.name(), form.name()) else { continue };
+            let counts = program.operations();
+            let _ = write!(
+                html,
+                "<tr><td>{function}<td>{form}<td>{}<td>{}<td>{}<td>{}</tr>",
+                counts.mul, counts.add, counts.div, counts.sincos
+            );
+        }
+    }
+    html += "</table>";
+    let torques = program(Function::InverseDynamics.name(), Form::SevenSteps.name())?;
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let what = Selection { joint: Some(index + 1), explain: true, ..Selection::default() };
+        let listing = emit::listing(robot, &torques, what).to_string();
+        // the table and the counts stand above
+        let code = listing.find("    //").map_or("", |start| &listing[start..]);
+        let code: Vec<&str> = code.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
+        let _ = write!(
+            html,
+            "<details><summary>the seven steps of joint {}, {}</summary><pre style=\"line-height:1.3\">{}</pre>\
+             </details>",
+            index + 1,
+            escape(&joint.name),
+            escape(code.join("\n").trim_end())
+        );
+    }
+    html += "<p><code>arm.report()</code> is a page of HTML in which the arm moves and every equation has its numbers.";
+    Ok(html)
+}
