@@ -6,6 +6,7 @@ mod comparison;
 mod compiler;
 mod derived;
 mod driver;
+mod machine;
 mod special;
 mod states;
 
@@ -16,4 +17,10 @@ shipped::for_each_robot!(robots!);
 #[test]
 fn c_code_of_every_robot_is_derived_code_bit_for_bit() {
     comparison::compare_all(&robots());
+}
+
+/// A million states of robots and functions with `RNE_EXHAUSTIVE` set, as `cargo xtask verify` does.
+#[test]
+fn the_machine_and_the_interpreter_are_derived_code() {
+    machine::compare_all(&robots());
 }

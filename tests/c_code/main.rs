@@ -8,6 +8,7 @@ mod compiler;
 mod derived;
 mod driver;
 mod kernel;
+mod machine;
 mod parameters;
 mod special;
 mod states;
@@ -23,4 +24,9 @@ derived::robots! {
 #[test]
 fn c_code_is_derived_code_bit_for_bit() {
     comparison::compare_all(&robots());
+}
+
+#[test]
+fn the_machine_and_the_interpreter_are_derived_code() {
+    machine::compare_all(&robots());
 }
