@@ -44,6 +44,7 @@ Examples:
   cargo xtask python --install    install it first
   cargo xtask python --install --peers --notebooks
   cargo xtask python --install --sdist    minutes: pip builds it, and gets Rust")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Python {
     /// Install what is missing, with pip, below target/
     #[arg(long)]
@@ -201,7 +202,7 @@ impl Place {
             return Ok(false);
         }
         let size = fs::metadata(&sdist)?.len() / 1024;
-        println!("python, built by pip from {} KiB of sources:", size);
+        println!("python, built by pip from {size} KiB of sources:");
         Ok(cmd!(shell, "{python} -c {FIRST}").env("PATH", &path).quiet().run().is_ok())
     }
 }
