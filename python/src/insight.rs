@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyIndexError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne::DynArm;
-use rne::compiled::{Form, SearchOptions};
+use rne::compiled::SearchOptions;
 use rne_codegen::emit::{self, Precision, Prefix, Selection};
 use rne_diagnose::{Diagnosis, Observation};
 

@@ -131,7 +131,7 @@ def main():
                 arm = rne.load(models / f"{name}.yaml")
                 label = f"frne {roboticstoolbox.__version__}"
                 worst = max(worst, compare(label, name, arm, states, toolbox_of(name), repetitions))
-    sys.exit(worst > 1e-9)
+    sys.exit(int(worst > 1e-9))
 
 
 if __name__ == "__main__":
