@@ -7,7 +7,7 @@ use crate::spelling::listed;
 
 /// What a column has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Quantity {
+pub(crate) enum Quantity {
     Position,
     Velocity,
     Effort,
@@ -99,22 +99,22 @@ impl Columns {
         let places: Vec<_> = self.names.iter().map(place).collect();
         if places.iter().all(Option::is_none) { Vec::new() } else { places }
     }
-
-    /// Every column that is read, once.
-    #[cfg(feature = "parquet")]
-    pub(crate) fn places(&self) -> Vec<usize> {
-        let others = self.velocity.iter().chain(&self.effort).flatten();
-        let mut places: Vec<usize> = self.time.iter().chain(&self.position).chain(others).copied().collect();
-        places.sort_unstable();
-        places.dedup();
-        places
-    }
 }
 
-fn is_time(name: &str) -> bool {
+pub(crate) fn is_time(name: &str) -> bool {
     let name = without_unit(name).to_lowercase();
     let last = name.rsplit(['/', '.']).next().unwrap_or_default();
     TIMES.contains(&last) || TIMES.contains(&name.trim_start_matches('/'))
+}
+
+/// What a list of numbers has, by the last word of its name.
+#[cfg(feature = "parquet")]
+pub(crate) fn list(name: &str) -> Option<Quantity> {
+    let last = name.rsplit(['/', '.', '_']).next().unwrap_or_default().to_lowercase();
+    // observation.state: what collections for learning have
+    let is_state = last == "state" && name.starts_with("observation");
+    let of_word = WORDS.iter().find(|(_, words)| words.contains(&last.as_str())).map(|(quantity, _)| *quantity);
+    of_word.or(is_state.then_some(Quantity::Position))
 }
 
 /// What a column has, the word that says so, and the joint's name.

@@ -20,7 +20,7 @@ pub(crate) struct CsvTable {
     columns: Columns,
     clock: Clock,
     size: u64,
-    row: i64,
+    row: u64,
 }
 
 /// When a row was measured.

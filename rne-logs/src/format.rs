@@ -6,6 +6,11 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use crate::csv_table::CsvTable;
+#[cfg(feature = "rosbag")]
+use crate::mcap_bag::McapBag;
+use crate::npy_array::NpyArray;
+#[cfg(feature = "parquet")]
+use crate::parquet_table::ParquetTable;
 use crate::sample::Source;
 #[cfg(feature = "rosbag")]
 use crate::sqlite_bag::SqliteBag;
@@ -99,7 +104,13 @@ impl Format {
         Ok(match self {
             #[cfg(feature = "rosbag")]
             Self::Sqlite => Box::new(SqliteBag::open(path, options.topic.as_deref())?),
+            #[cfg(feature = "rosbag")]
+            Self::Mcap => Box::new(McapBag::open(path, options.topic.as_deref())?),
+            #[cfg(feature = "parquet")]
+            Self::Parquet => Box::new(ParquetTable::open(path, options)?),
+            Self::Npy => Box::new(NpyArray::open(path, options)?),
             Self::Csv => Box::new(CsvTable::open(path, options)?),
+            #[cfg(not(all(feature = "rosbag", feature = "parquet")))]
             other => return Err(LogError::file(path, format_args!("this build does not read {other}"))),
         })
     }

@@ -82,6 +82,7 @@ impl Grid {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
 mod tests {
     use super::*;
 

@@ -47,9 +47,9 @@ impl Kernel {
             let place = k as f64 / half as f64;
             sinc * bessel(beta * (1.0 - place * place).max(0.0).sqrt())
         };
-        let mut weights: Vec<f64> = (0..=half).map(at).collect();
+        let weights: Vec<f64> = (0..=half).map(at).collect();
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-        weights.iter_mut().for_each(|weight| *weight /= sum);
+        let weights = weights.into_iter().map(|weight| weight / sum).collect();
         Self { weights, step }
     }
 

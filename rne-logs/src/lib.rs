@@ -24,14 +24,21 @@ mod csv_table;
 mod error;
 mod format;
 mod grid;
+#[cfg(any(feature = "rosbag", feature = "parquet"))]
+mod guard;
 #[cfg(feature = "rosbag")]
 mod joint_state;
 mod joints;
 mod kernel;
 mod log;
+#[cfg(feature = "rosbag")]
+mod mcap_bag;
 mod motion;
 mod motions;
+mod npy_array;
 mod options;
+#[cfg(feature = "parquet")]
+mod parquet_table;
 mod pass;
 mod sample;
 mod spectrum;

@@ -129,6 +129,12 @@ impl Log {
         &self.layout
     }
 
+    /// Whether efforts are multiplied: they are currents.
+    #[must_use]
+    pub fn has_torque_constants(&self) -> bool {
+        !self.options.torque_constants.is_empty()
+    }
+
     /// The files, in the order in which they are read.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {

@@ -1,7 +1,7 @@
 //! Where the motion of a log ends and its noise begins: the spectrum of positions.
 //!
 //! The method of P. D. Welch (1967): segments of a power of two of rows, at least `seconds` long, half overlapping,
-//! their mean subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side lobes at −92 dB).
+//! their line of least squares subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side lobes at −92 dB).
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -61,10 +61,10 @@ impl Spectrum {
         self.segments += 1;
         let mut values = vec![Complex::default(); length];
         for (rows, power) in self.rows.iter_mut().zip(&mut self.power) {
+            let (level, slope) = line(rows);
             #[expect(clippy::cast_precision_loss, reason = "a power of two below 2^17")]
-            let mean = rows.iter().sum::<f64>() / length as f64;
-            for ((value, row), weight) in values.iter_mut().zip(&*rows).zip(&self.window) {
-                *value = Complex::new((row - mean) * weight, 0.0);
+            for (i, ((value, row), weight)) in values.iter_mut().zip(&*rows).zip(&self.window).enumerate() {
+                *value = Complex::new((row - level - slope * i as f64) * weight, 0.0);
             }
             self.fft.process(&mut values);
             for (power, value) in power.iter_mut().zip(&values) {
@@ -101,6 +101,17 @@ impl Spectrum {
         };
         Some(self.power.iter().map(of).collect())
     }
+}
+
+/// The line of least squares through rows: its first value, and what it grows by from row to row.
+#[expect(clippy::cast_precision_loss, reason = "rows of a segment")]
+fn line(rows: &[f64]) -> (f64, f64) {
+    let count = rows.len() as f64;
+    let middle = (count - 1.0) / 2.0;
+    let mean = rows.iter().sum::<f64>() / count;
+    let product: f64 = rows.iter().enumerate().map(|(i, row)| (i as f64 - middle) * (row - mean)).sum();
+    let slope = 12.0 * product / (count * (count * count - 1.0));
+    (mean - slope * middle, slope)
 }
 
 #[cfg(test)]

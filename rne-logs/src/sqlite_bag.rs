@@ -1,5 +1,7 @@
 //! Bags of ROS 2 in SQLite: `*.db3`.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
@@ -41,6 +43,7 @@ pub(crate) struct SqliteBag {
 
 impl SqliteBag {
     pub(crate) fn open(path: &Path, wanted: Option<&str>) -> Result<Self, LogError> {
+        check_length(path)?;
         let connection = connect(path).map_err(|error| unreadable(path, &error))?;
         let topics = topics(path, &connection)?;
         let pairs: Vec<(String, String)> = topics.iter().map(|topic| (topic.1.clone(), topic.2.clone())).collect();
@@ -133,6 +136,31 @@ impl Source for SqliteBag {
     }
 }
 
+/// Whether the file is as long as its head says. SQLite takes what is missing of the last page for zeros.
+fn check_length(path: &Path) -> Result<(), LogError> {
+    let wrong = |error| LogError::file(path, format_args!("the file cannot be read: {error}"));
+    let mut file = File::open(path).map_err(wrong)?;
+    let length = file.metadata().map_err(wrong)?.len();
+    let mut head = [0; 100];
+    if file.read_exact(&mut head).is_err() {
+        return Err(LogError::file(
+            path,
+            format_args!("the bag is cut off: it has {length} bytes, less than its head"),
+        ));
+    }
+    let number = |at: usize| u64::from(u32::from_be_bytes([head[at], head[at + 1], head[at + 2], head[at + 3]]));
+    let page = match u64::from(u16::from_be_bytes([head[16], head[17]])) {
+        1 => 65_536,
+        page => page,
+    };
+    // the number of pages is valid where the counter beside it is that of the last change
+    let wanted = if number(24) == number(92) { page * number(28) } else { 0 };
+    if length < wanted {
+        return Err(LogError::file(path, format_args!("the bag is cut off: it has {length} bytes of {wanted}")));
+    }
+    Ok(())
+}
+
 fn connect(path: &Path) -> rusqlite::Result<Connection> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
     let connection = Connection::open_with_flags(path, flags)?;
@@ -144,11 +172,8 @@ fn connect(path: &Path) -> rusqlite::Result<Connection> {
 /// The topics of a bag: number, name, type and encoding.
 fn topics(path: &Path, connection: &Connection) -> Result<Vec<(i64, String, String, String)>, LogError> {
     let wrong = |error: rusqlite::Error| unreadable(path, &error);
-    let mut tables = connection
-        .prepare("SELECT name FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')")
-        .map_err(wrong)?;
-    let count = tables.query_map([], |_| Ok(())).map_err(wrong)?.filter(Result::is_ok).count();
-    drop(tables);
+    let tables = "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')";
+    let count: i64 = connection.query_row(tables, [], |row| row.get(0)).map_err(wrong)?;
     if count < 2 {
         let what = "the SQLite file has no tables `topics` and `messages`: it is no bag of ROS 2";
         return Err(LogError::file(path, what));

@@ -12,7 +12,7 @@ use crate::{Log, LogError};
 const LISTED: usize = 1000;
 
 /// Seconds of a segment of the spectrum, and those that are tried where no run is as long.
-const SEGMENTS: [f64; 2] = [4.0, 1.0];
+const SEGMENTS: [f64; 3] = [4.0, 2.0, 1.0];
 
 /// The lowest cut-off that a spectrum chooses, Hz: a lower one costs seconds at both ends of a run.
 const LOWEST: f64 = 2.0;
@@ -183,7 +183,7 @@ impl Survey {
             }
             if let Some(begins) = begins {
                 if let Some(grid) = grid.take() {
-                    grid.finish(&mut |row| spectra.iter_mut().for_each(|spectrum| spectrum.push(row)));
+                    grid.finish(&mut |row| push(&mut spectra, row));
                 }
                 spectra.iter_mut().for_each(Spectrum::end_run);
                 runs.begin(log.seconds(state.time), begins);
@@ -194,11 +194,11 @@ impl Survey {
             agreement.push(state.time, &state.numbers);
             let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
             grid.push(state.time, &state.numbers, &mut |row| {
-                spectra.iter_mut().for_each(|spectrum| spectrum.push(row));
+                push(&mut spectra, row);
             });
         }
         if let Some(grid) = grid {
-            grid.finish(&mut |row| spectra.iter_mut().for_each(|spectrum| spectrum.push(row)));
+            grid.finish(&mut |row| push(&mut spectra, row));
         }
         let counts = pass.counts;
         let cutoff = match log.options.cutoff {
@@ -243,6 +243,12 @@ impl Log {
     pub(crate) fn dropped(&self, kernel: &Kernel) -> usize {
         let differences = if self.layout.has_velocities { 1 } else { 2 };
         kernel.half() + differences * Kernel::of_difference()
+    }
+}
+
+fn push(spectra: &mut [Spectrum], row: &[f64]) {
+    for spectrum in spectra {
+        spectrum.push(row);
     }
 }
 

@@ -79,7 +79,7 @@ impl TimeUnit {
 
     /// When a row is, of a table whose rows follow each other by a number of seconds.
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
-    pub(crate) fn step(row: i64, step: f64) -> i64 {
+    pub(crate) fn step(row: u64, step: f64) -> i64 {
         Self::Seconds.number(row as f64 * step).unwrap_or(i64::MAX)
     }
 }

@@ -48,6 +48,6 @@ pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&s
 }
 
 /// Whether a type is that of joint states; ROS 1 and some writers leave out `msg`.
-fn is_joint_state(kind: &str) -> bool {
+pub(crate) fn is_joint_state(kind: &str) -> bool {
     kind == TYPE || kind == "sensor_msgs/JointState" || kind == "sensor_msgs::msg::dds_::JointState_"
 }

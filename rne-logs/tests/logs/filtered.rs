@@ -17,7 +17,7 @@ fn sines_in_the_pass_band_come_out_with_their_derivatives() {
         let (_folder, path) = file("sines.csv", csv(&times((rate * 12.0) as u32, rate)));
         for derive_velocities in [false, true] {
             let options = Options { cutoff: Some(cutoff), derive_velocities, ..Options::default() };
-            let motions = runs(&[path.clone()], options, 100_000).unwrap();
+            let motions = runs(std::slice::from_ref(&path), options, 100_000).unwrap();
             assert_eq!(motions.len(), 1);
             let (_, motion) = &motions[0];
             assert!(motion.len() as f64 > rate * 9.0, "{}", motion.len());
@@ -75,7 +75,7 @@ fn jittering_stamps_are_resampled() {
     let (_folder, path) = file("jitter.csv", csv(&times));
     for derive_velocities in [false, true] {
         let options = Options { cutoff: Some(8.0), derive_velocities, ..Options::default() };
-        let motions = runs(&[path.clone()], options, 100_000).unwrap();
+        let motions = runs(std::slice::from_ref(&path), options, 100_000).unwrap();
         let (_, motion) = &motions[0];
         for (joint, sine) in SINES.iter().enumerate() {
             let w = 2.0 * PI * sine.frequency;
@@ -103,10 +103,10 @@ fn pieces_joined_are_the_whole() {
         .collect();
     let (_folder, path) = file("pieces.csv", csv(&times));
     let options = Options { cutoff: Some(9.0), ..Options::default() };
-    let whole = runs(&[path.clone()], options.clone(), usize::MAX / 2).unwrap();
+    let whole = runs(std::slice::from_ref(&path), options.clone(), usize::MAX / 2).unwrap();
     assert_eq!(whole.len(), 5);
     for length in [1, 7, 64, 500, 651] {
-        assert_eq!(runs(&[path.clone()], options.clone(), length).unwrap(), whole, "{length}");
+        assert_eq!(runs(std::slice::from_ref(&path), options.clone(), length).unwrap(), whole, "{length}");
     }
 }
 

@@ -50,7 +50,7 @@ fn a_jump_splits_a_run() {
         .skip(1)
         .map(|line| {
             let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
-            cells[2] = (cells[2].parse::<f64>().unwrap() + 6.283).to_string();
+            cells[2] = (cells[2].parse::<f64>().unwrap() + std::f64::consts::TAU).to_string();
             cells.join(",") + "\n"
         })
         .collect::<String>();
@@ -97,7 +97,7 @@ fn degrees_are_not_guessed() {
         .collect();
     let (_folder, path) = file("degrees.csv", header + &degrees);
     let options = Options { cutoff: Some(8.0), ..Options::default() };
-    let error = runs(&[path.clone()], options.clone(), 1000).unwrap_err();
+    let error = runs(std::slice::from_ref(&path), options.clone(), 1000).unwrap_err();
     assert!(error.is_of_request() && error.to_string().contains("--degrees"), "{error}");
     let options = Options { angles: rne_logs::Angles::Degrees, ..options };
     let motions = runs(&[path], options.clone(), 1000).unwrap();
@@ -114,8 +114,9 @@ fn degrees_are_not_guessed() {
 fn currents_become_torques_by_their_constants() {
     let (_folder, path) = file("currents.csv", csv(&even(0.0, 400)));
     let options = Options { cutoff: Some(8.0), ..Options::default() };
-    let plain = runs(&[path.clone()], options.clone(), 1000).unwrap();
-    let with = |torque_constants| runs(&[path.clone()], Options { torque_constants, ..options.clone() }, 1000);
+    let plain = runs(std::slice::from_ref(&path), options.clone(), 1000).unwrap();
+    let with =
+        |torque_constants| runs(std::slice::from_ref(&path), Options { torque_constants, ..options.clone() }, 1000);
     let scaled = with(vec![2.0, -4.0]).unwrap();
     for i in 0..plain[0].1.len() {
         assert_eq!(scaled[0].1.tau[0][i], 2.0 * plain[0].1.tau[0][i]);
@@ -133,7 +134,7 @@ fn joints_are_found_by_name_and_in_the_order_asked_for() {
     let (_folder, path) = file("names.csv", text);
     let open = |names: &[&str]| {
         let joints = Some(names.iter().map(|name| (*name).to_owned()).collect());
-        survey(&[path.clone()], Options { joints, ..Options::default() })
+        survey(std::slice::from_ref(&path), Options { joints, ..Options::default() })
     };
     let (log, turned) = open(&["b", "a"]).unwrap();
     let (_, plain) = open(&["a", "b"]).unwrap();
@@ -165,7 +166,7 @@ fn times_in_other_units_are_asked_for() {
         })
         .collect();
     let (_folder, path) = file("ns.csv", nanoseconds);
-    let error = survey(&[path.clone()], Options::default()).err().unwrap();
+    let error = survey(std::slice::from_ref(&path), Options::default()).err().unwrap();
     assert!(error.to_string().contains("--time-unit"), "{error}");
     let (log, found) = survey(&[path], Options { time_unit: TimeUnit::Nanoseconds, ..Options::default() }).unwrap();
     assert!((log.layout().step - 0.01).abs() < 1e-6);

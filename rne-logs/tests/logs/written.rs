@@ -78,3 +78,43 @@ pub(crate) fn runs(paths: &[PathBuf], options: Options, length: usize) -> Result
     }
     Ok(runs)
 }
+
+/// A message of `sensor_msgs/msg/JointState`, written by the rules of CDR: numbers stand at multiples of their size,
+/// counted from behind the four bytes of the encoding.
+pub(crate) fn joint_state(time: i64, names: &[&str], lists: [&[f64]; 3], is_little: bool) -> Vec<u8> {
+    let mut bytes = vec![];
+    let align = |bytes: &mut Vec<u8>, to: usize| bytes.resize(bytes.len().next_multiple_of(to), 0);
+    let number = |bytes: &mut Vec<u8>, number: u32| {
+        align(bytes, 4);
+        bytes.extend(if is_little { number.to_le_bytes() } else { number.to_be_bytes() });
+    };
+    let text = |bytes: &mut Vec<u8>, text: &str| {
+        number(bytes, text.len() as u32 + 1);
+        bytes.extend(text.as_bytes());
+        bytes.push(0);
+    };
+    number(&mut bytes, time.div_euclid(1_000_000_000) as u32);
+    number(&mut bytes, time.rem_euclid(1_000_000_000) as u32);
+    text(&mut bytes, "base");
+    number(&mut bytes, names.len() as u32);
+    for name in names {
+        text(&mut bytes, name);
+    }
+    for list in lists {
+        number(&mut bytes, list.len() as u32);
+        for x in list {
+            align(&mut bytes, 8);
+            bytes.extend(if is_little { x.to_le_bytes() } else { x.to_be_bytes() });
+        }
+    }
+    [vec![0, u8::from(is_little), 0, 0], bytes].concat()
+}
+
+/// The rows of [`csv`]: time, positions, velocities, torques.
+pub(crate) fn rows(times: &[f64]) -> Vec<(f64, [[f64; 2]; 3])> {
+    let row = |time: &f64| {
+        let [a, b] = SINES.map(|sine| sine.at(*time));
+        (*time, [[a[0], b[0]], [a[1], b[1]], [3.0 * a[0] + 2.0, 3.0 * b[0] + 2.0]])
+    };
+    times.iter().map(row).collect()
+}
