@@ -8,6 +8,8 @@ use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
+#[cfg(feature = "logs")]
+use crate::log;
 use crate::terminal::HELP_STYLES;
 use crate::{
     check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
@@ -27,7 +29,6 @@ Examples:
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
   rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
-  rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 
 FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.")]
 pub(crate) struct Arguments {
@@ -45,6 +46,8 @@ pub(crate) enum Command {
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
     Plot(plot::Arguments),
+    #[cfg(feature = "logs")]
+    Log(log::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

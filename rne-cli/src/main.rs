@@ -28,6 +28,10 @@ mod layout;
 mod letters;
 mod limits;
 mod list;
+#[cfg(feature = "logs")]
+mod log;
+#[cfg(feature = "logs")]
+mod log_report;
 mod mistyped;
 mod new;
 mod numbers;
@@ -92,6 +96,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),
+        #[cfg(feature = "logs")]
+        Some(Command::Log(arguments)) => ("rne log", log::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
         Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),
         Some(Command::Convert(arguments)) => ("rne convert", convert::run(&arguments)),

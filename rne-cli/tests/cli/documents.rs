@@ -11,7 +11,7 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 20] = [
+const DOCUMENTS: [&str; 21] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
@@ -28,6 +28,7 @@ const DOCUMENTS: [&str; 20] = [
     "docs/lecture/reduced.md",
     "docs/lecture/results.md",
     "docs/lecture/two-links.md",
+    "docs/logs.md",
     "docs/robot-file.md",
     "docs/run-time.md",
     "docs/teaching.md",
@@ -87,6 +88,11 @@ pub(crate) fn copy(name: &str) -> PathBuf {
                 fs::copy(&path, folder.join(part).join(path.file_name().expect("a name"))).expect("a copy");
             }
         }
+    }
+    let logs = Path::new("rne-logs/tests/data");
+    fs::create_dir_all(folder.join(logs)).expect("a folder");
+    for log in ["ur10.db3", "panda.db3"] {
+        fs::copy(Path::new(ROOT).join(logs).join(log), folder.join(logs).join(log)).expect("a copy");
     }
     // by which a clone is known
     fs::copy(Path::new(ROOT).join("Cargo.toml"), folder.join("Cargo.toml")).expect("a copy");

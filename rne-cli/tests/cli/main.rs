@@ -15,6 +15,7 @@ mod help;
 #[cfg(unix)]
 mod hostile;
 mod import;
+mod log;
 mod plans;
 mod plot;
 mod report;

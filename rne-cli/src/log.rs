@@ -1,0 +1,252 @@
+//! `rne log`: what a log of an arm has, and its motion, filtered.
+
+use std::fmt::Write as _;
+use std::io::{self, BufWriter, IsTerminal as _, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser as _};
+use indicatif::{ProgressBar, ProgressStyle};
+use rne_logs::{Angles, Cutoff, Log, LogError, Motion, Options, Survey, TimeUnit};
+
+use crate::input_file::is_standard_input;
+use crate::log_report::{self, Reply};
+use crate::numbers::List;
+use crate::outcome::{Failure, Outcome};
+use crate::output_file::{Replacement, check_new, unwritable};
+use crate::robot_file;
+use crate::terminal::GOOD;
+
+/// Say what a log of an arm has; filter it, with accelerations
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne log rne-logs/tests/data/ur10.db3
+  rne log rne-logs/tests/data/panda.db3 --cutoff 4 -o motion.csv
+  rne log rne-logs/tests/data/ur10.db3 --robot ur10 --json
+
+Bags of ROS 2 (*.db3, *.mcap), Parquet, CSV, npy; their columns: docs/logs.md.")]
+pub(crate) struct Arguments {
+    /// Files, one behind another; of a folder the bags inside
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The joints of this robot file, by name
+    #[arg(long, value_name = "FILE", conflicts_with = "joints")]
+    robot: Option<PathBuf>,
+    /// The log's names of the joints, base to tip
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    joints: Option<Vec<String>>,
+    /// The topic of a bag; of a table, how names of columns begin
+    #[arg(long, value_name = "T")]
+    topic: Option<String>,
+    /// Efforts are currents: N m/A, one number or one per joint
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    torque_constant: Option<List>,
+    /// Positions and velocities are in degrees
+    #[arg(long, conflicts_with = "radians")]
+    degrees: bool,
+    /// They are not, however far they range
+    #[arg(long)]
+    radians: bool,
+    /// Of the filter; the spectrum chooses it, unless given
+    #[arg(long, value_name = "HZ")]
+    cutoff: Option<f64>,
+    /// A longer interval splits a run
+    #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
+    gap: f64,
+    /// Derive velocities from positions, measured or not
+    #[arg(long)]
+    derive_velocities: bool,
+    /// Take times of recording, not those of messages
+    #[arg(long)]
+    recorded: bool,
+    /// Of a table's times
+    #[arg(long, value_name = "UNIT", default_value = "s", value_parser = time_unit())]
+    time_unit: TimeUnit,
+    /// Rows per second of a table without times
+    #[arg(long, value_name = "HZ")]
+    rate: Option<f64>,
+    /// Of an array, in order
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "time,q,qd,tau")]
+    columns: Vec<String>,
+    /// Write the filtered motion as CSV; `-`: standard output
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// What the log has, as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+fn time_unit() -> impl clap::builder::TypedValueParser<Value = TimeUnit> {
+    let units = [TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds];
+    PossibleValuesParser::new(units.map(TimeUnit::name))
+        .map(move |name| units.into_iter().find(|unit| unit.name() == name).unwrap_or_default())
+}
+
+impl Arguments {
+    fn options(&self) -> Result<Options, Failure> {
+        let joints = match (&self.joints, &self.robot) {
+            (Some(joints), _) => Some(joints.clone()),
+            (None, Some(file)) => Some(robot_file::robot(file)?.joints.into_iter().map(|joint| joint.name).collect()),
+            (None, None) => None,
+        };
+        let angles = match (self.degrees, self.radians) {
+            (true, _) => Angles::Degrees,
+            (_, true) => Angles::Radians,
+            _ => Angles::Unsaid,
+        };
+        Ok(Options {
+            joints,
+            topic: self.topic.clone(),
+            torque_constants: self.torque_constant.as_ref().map(|List(list)| list.clone()).unwrap_or_default(),
+            angles,
+            gap: self.gap,
+            cutoff: self.cutoff,
+            derive_velocities: self.derive_velocities,
+            recorded: self.recorded,
+            time_unit: self.time_unit,
+            rate: self.rate,
+            columns: self.columns.clone(),
+        })
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if let Some(stream) = arguments.files.iter().find(|file| is_standard_input(file)) {
+        let what = format!("{} is standard input; a log is read twice, so name a file", stream.display());
+        return Err(Failure::usage(what));
+    }
+    let options = arguments.options()?;
+    let out = arguments.out.as_deref();
+    let is_result_shown = out.is_some_and(is_standard_output);
+    if let Some(path) = out.filter(|path| !is_standard_output(path)) {
+        let sources: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+        check_new(path, None, &sources, arguments.force)?;
+    }
+    let log = Log::open(&arguments.files, options).map_err(|error| failure(&error))?;
+    let bar = progress("read", is_result_shown);
+    let survey = log.survey(|share| bar.set_position(thousandths(share)));
+    bar.finish_and_clear();
+    let survey = survey.map_err(|error| failure(&error))?;
+    let at_fault = survey.may_be_degrees(&log).is_some() || survey.cutoff == Cutoff::Unknown;
+    let text = if is_result_shown {
+        String::new()
+    } else if arguments.json {
+        Outcome::json(&Reply::of(&log, &survey))?.text
+    } else {
+        log_report::text(&log, &survey)
+    };
+    let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
+    let states = if is_result_shown {
+        let mut out = BufWriter::new(io::stdout().lock());
+        let written = write(&log, &survey, &ProgressBar::hidden(), &mut out);
+        match written.and_then(|states| out.flush().map(|()| states).map_err(Stopped::Unwritable)) {
+            // `rne log … -o - | head` has read enough
+            Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
+            Err(Stopped::Unwritable(error)) => {
+                return Err(Failure::input(format_args!("the output cannot be written: {error}")));
+            }
+            Err(Stopped::Unreadable(error)) => return Err(failure(&error)),
+            Ok(states) => states,
+        }
+    } else {
+        write_file(&log, &survey, path)?
+    };
+    if states == 0 {
+        let what = format!(
+            "{}: no run is longer than the two ends that the filter drops, {} states each; a higher --cutoff drops less",
+            arguments.files[0].display(),
+            survey.dropped
+        );
+        return Err(Failure::input(what));
+    }
+    let remark = match is_result_shown {
+        true => String::new(),
+        false => format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display()),
+    };
+    Ok(Outcome { text, remark, at_fault: false })
+}
+
+fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-") || path == Path::new("/dev/stdout")
+}
+
+/// What stops the writing.
+enum Stopped {
+    Unreadable(LogError),
+    Unwritable(io::Error),
+}
+
+fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
+    let unwritable = |error: io::Error| unwritable(path, &error);
+    let replacement = Replacement::begin(path).map_err(unwritable)?;
+    let mut out = BufWriter::new(replacement.file().map_err(unwritable)?);
+    let bar = progress("filtered", false);
+    let written = write(log, survey, &bar, &mut out);
+    bar.finish_and_clear();
+    let states = written.map_err(|stopped| match stopped {
+        Stopped::Unreadable(error) => failure(&error),
+        Stopped::Unwritable(error) => unwritable(error),
+    })?;
+    out.flush().map_err(unwritable)?;
+    drop(out);
+    if states > 0 {
+        replacement.keep().map_err(unwritable)?;
+    }
+    Ok(states)
+}
+
+/// Writes the filtered motion; how many states it has.
+fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) -> Result<u64, Stopped> {
+    let mut motions = log.motions(survey).map_err(Stopped::Unreadable)?;
+    let joints = log.layout().joints.len();
+    let mut header = "t".to_owned();
+    for (quantity, is_there) in [("q", true), ("qd", true), ("qdd", true), ("tau", log.layout().has_efforts)] {
+        for joint in (1..=joints).filter(|_| is_there) {
+            let _ = write!(header, ",{quantity}{joint}");
+        }
+    }
+    writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
+    let mut states = 0;
+    let mut line = String::new();
+    while let Some(piece) = motions.next() {
+        let piece = piece.map_err(Stopped::Unreadable)?;
+        bar.set_position(thousandths(motions.progress()));
+        let Motion { time, q, qd, qdd, tau } = &piece.motion;
+        for (i, time) in time.iter().enumerate() {
+            line.clear();
+            let _ = write!(line, "{time}");
+            for list in [q, qd, qdd, tau].into_iter().flatten() {
+                let _ = write!(line, ",{}", list[i]);
+            }
+            writeln!(out, "{line},{}", piece.run + 1).map_err(Stopped::Unwritable)?;
+        }
+        states += time.len() as u64;
+    }
+    Ok(states)
+}
+
+/// An error of a log: of the file, or of what was asked of it.
+fn failure(error: &LogError) -> Failure {
+    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
+}
+
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 0 to 1")]
+fn thousandths(share: f64) -> u64 {
+    (share.clamp(0.0, 1.0) * 1000.0) as u64
+}
+
+/// A bar on a terminal that shows nothing else.
+fn progress(word: &str, is_result_shown: bool) -> ProgressBar {
+    if is_result_shown && io::stdout().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(1000);
+    match ProgressStyle::with_template(&format!("{{bar:30}} {{percent}} % {word}, {{eta}} to go")) {
+        Ok(style) => bar.with_style(style.progress_chars("=> ")),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,95 @@
+//! `rne log`: what logs have, their motions, and what is wrong with them.
+
+use std::fs;
+
+use crate::call::{fails, fine, folder, rne};
+
+const UR10: &str = "rne-logs/tests/data/ur10.db3";
+const PANDA: &str = "rne-logs/tests/data/panda.db3";
+
+#[test]
+fn a_log_is_described() {
+    let said = fine(&["log", UR10, "--robot", "ur10", "--cutoff", "8"]);
+    for part in [
+        "rosbag2, SQLite, /joint_states",
+        "460 of 460 messages are states, at 125 Hz",
+        "wrist_3_joint",
+        "cut-off 8 Hz, given: passes below 5.333 Hz",
+        "--torque-constant",
+    ] {
+        assert!(said.contains(part), "no `{part}` in {said}");
+    }
+    assert!(!said.contains('\u{1B}'), "a pipe has no colours");
+    let json: serde_json::Value = serde_json::from_str(&fine(&["log", PANDA, "--json"])).expect("JSON");
+    assert_eq!((json["states"].as_u64(), json["run_count"].as_u64()), (Some(300), Some(1)));
+    assert_eq!(
+        (json["joints"][6]["name"].as_str(), json["cutoff_from"].as_str()),
+        (Some("fer_joint7"), Some("spectrum"))
+    );
+}
+
+/// The filtered motion is one that other commands take: the torques of its states are those of the plot's kind.
+#[test]
+fn a_motion_is_what_other_commands_read() {
+    let folder = folder("log_motion");
+    let motion = folder.join("motion.csv");
+    let path = motion.to_str().expect("UTF-8");
+    let called = rne(&["log", UR10, "--robot", "ur10", "--cutoff", "8", "-o", path]);
+    assert!(called.status == 0 && called.err.contains("wrote"), "{called:?}");
+    let text = fs::read_to_string(&motion).expect("the motion");
+    assert!(
+        text.starts_with("t,q1,q2,q3,q4,q5,q6,qd1,")
+            && text.lines().next().is_some_and(|line| line.ends_with("tau6,run"))
+    );
+    // 48 states of the filter and 4 of the differences at each end
+    assert_eq!(text.lines().count(), 1 + 460 - 2 * 52);
+    assert_eq!(fine(&["log", UR10, "--robot", "ur10", "--cutoff", "8", "-o", "-"]), text);
+    let torques = fine(&["eval", "ur10", "--function", "inverse_dynamics", "--states", path]);
+    assert_eq!(torques.lines().count(), text.lines().count());
+    assert!(fine(&["plot", "ur10", "--trajectory", path]).contains("<svg"));
+    // a motion is a log itself
+    assert!(fine(&["log", path, "--cutoff", "8"]).contains("356 of 356 messages are states"));
+    fails(2, &["log", UR10, "-o", path], &["--force"]);
+    fails(2, &["log", path, "-o", path, "--force"], &["is the file that is read"]);
+}
+
+#[test]
+fn what_is_wrong_is_said() {
+    let folder = folder("log_wrong");
+    let write = |name: &str, bytes: &[u8]| {
+        let path = folder.join(name);
+        fs::write(&path, bytes).expect("a file");
+        path.to_str().expect("UTF-8").to_owned()
+    };
+    fails(2, &["log", PANDA, "--robot", "panda"], &["no joint panda_joint1", "fer_joint1", "--joints"]);
+    fails(2, &["log", PANDA, "--joints", "fer_joint1,fer_jont2"], &["did you mean fer_joint2?"]);
+    fails(2, &["log", PANDA, "--topic", "/joints"], &["no topic /joints", "/joint_states"]);
+    fails(2, &["log", PANDA, "--cutoff", "12"], &["too high for samples at 30 Hz"]);
+    fails(2, &["log", PANDA, "--torque-constant", "1,2"], &["2 torque constants for 7 joints"]);
+    fails(2, &["log", "-"], &["read twice"]);
+    fails(1, &["log", "missing.db3"], &["missing.db3"]);
+    let whole = fs::read(format!("{}/{PANDA}", crate::call::ROOT)).expect("the bag");
+    let cut = write("cut.db3", &whole[..100_000]);
+    fails(1, &["log", &cut], &["cut.db3: the bag is cut off: it has 100000 bytes of 135168"]);
+    let short = write("short.csv", b"time,q1\n0,1\n0.1,1\n0.2,1\n");
+    fails(1, &["log", &short, "--cutoff", "1", "-o", "-"], &["no run is longer"]);
+}
+
+/// Degrees are asked for, not taken.
+#[test]
+fn degrees_are_asked_for() {
+    let folder = folder("log_degrees");
+    let path = folder.join("degrees.csv");
+    let mut text = "time,q1\n".to_owned();
+    for i in 0..400 {
+        let time = f64::from(i) * 0.01;
+        text += &format!("{time},{}\n", 60.0 * (time * 2.0).sin());
+    }
+    fs::write(&path, text).expect("a file");
+    let path = path.to_str().expect("UTF-8");
+    let called = rne(&["log", path, "--cutoff", "5"]);
+    assert!(called.status == 1 && called.out.contains("--degrees"), "{called:?}");
+    fails(2, &["log", path, "--cutoff", "5", "-o", "-"], &["more than 4π", "--degrees", "--radians"]);
+    let said = fine(&["log", path, "--cutoff", "5", "--degrees"]);
+    assert!(said.contains("-1.047 … 1.047"), "{said}");
+}

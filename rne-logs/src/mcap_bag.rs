@@ -1,0 +1,286 @@
+//! Bags of ROS 2 in MCAP.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use mcap::McapError;
+use mcap::records::{Record, op};
+use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+
+use crate::LogError;
+use crate::guard::guarded;
+use crate::joint_state;
+use crate::sample::{Sample, Source};
+use crate::topic::{self, is_joint_state};
+
+/// Bytes that are asked for at once.
+const PART: usize = 1 << 16;
+
+/// The longest record of any topic, and the longest chunk: an image of some megabytes has to pass.
+const LONGEST_RECORD: usize = 32 << 20;
+
+/// A record begins with its kind, a byte, and its length, eight.
+const HEAD: usize = 9;
+
+/// The longest message that is taken for joint states, bytes.
+const LONGEST_MESSAGE: usize = 1 << 20;
+
+/// A bag, read as it was written. Nothing is asked of its end: the index there may be missing, the file may not.
+pub(crate) struct McapBag {
+    path: PathBuf,
+    file: File,
+    size: u64,
+    given: u64,
+    reader: LinearReader,
+    /// The chunk whose records are read.
+    chunk: Option<Box<Chunk>>,
+    wanted: Option<String>,
+    /// By number: the names of schemas.
+    schemas: BTreeMap<u16, String>,
+    channels: BTreeMap<u16, Channel>,
+    /// The topic that is read.
+    topic: Option<String>,
+    count: u64,
+    ended: bool,
+}
+
+/// A chunk of the file, that a reader of its own takes apart.
+///
+/// The library's reader of whole files would do that too; of a chunk that is not compressed it believes the lengths of
+/// records, and counts below zero.
+struct Chunk {
+    reader: LinearReader,
+    bytes: Vec<u8>,
+    given: usize,
+}
+
+impl Chunk {
+    /// Of what stands in the record of a chunk.
+    fn of(body: &[u8]) -> Result<Self, McapError> {
+        if let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, body)?
+            && header.compression.is_empty()
+        {
+            check_records(&data)?;
+        }
+        let mut bytes = Vec::with_capacity(HEAD + body.len());
+        bytes.push(op::CHUNK);
+        bytes.extend((body.len() as u64).to_le_bytes());
+        bytes.extend(body);
+        let options = options().with_skip_start_magic(true).with_skip_end_magic(true);
+        Ok(Self { reader: LinearReader::new_with_options(options), bytes, given: 0 })
+    }
+
+    fn feed(&mut self, needs: usize) {
+        let count = needs.max(PART).min(self.bytes.len() - self.given);
+        self.reader.insert(count).copy_from_slice(&self.bytes[self.given..self.given + count]);
+        self.reader.notify_read(count);
+        self.given += count;
+    }
+}
+
+/// Whether records fill what they stand in.
+fn check_records(mut data: &[u8]) -> Result<(), McapError> {
+    while !data.is_empty() {
+        let length = data.get(1..HEAD).and_then(|length| length.try_into().ok()).map(u64::from_le_bytes);
+        let length = length.and_then(|length| usize::try_from(length).ok()?.checked_add(HEAD));
+        data = length.and_then(|length| data.get(length..)).ok_or(McapError::UnexpectedEoc)?;
+    }
+    Ok(())
+}
+
+fn options() -> LinearReaderOptions {
+    LinearReaderOptions::default().with_validate_chunk_crcs(true).with_record_length_limit(LONGEST_RECORD)
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct Channel {
+    topic: String,
+    kind: String,
+    encoding: String,
+}
+
+impl McapBag {
+    pub(crate) fn open(path: &Path, wanted: Option<&str>) -> Result<Self, LogError> {
+        let wrong = |error| LogError::file(path, format_args!("the file cannot be read: {error}"));
+        let file = File::open(path).map_err(wrong)?;
+        let size = file.metadata().map_err(wrong)?.len();
+        Ok(Self {
+            path: path.to_owned(),
+            file,
+            size,
+            given: 0,
+            reader: LinearReader::new_with_options(options().with_emit_chunks(true)),
+            chunk: None,
+            wanted: wanted.map(str::to_owned),
+            schemas: BTreeMap::new(),
+            channels: BTreeMap::new(),
+            topic: None,
+            count: 0,
+            ended: false,
+        })
+    }
+
+    /// A channel that begins: whether it is the topic's is known then.
+    fn begin(&mut self, number: u16, channel: Channel) -> Result<(), LogError> {
+        if self.channels.get(&number) == Some(&channel) {
+            return Ok(());
+        }
+        let is_meant = match &self.wanted {
+            Some(wanted) => *wanted == channel.topic,
+            None => is_joint_state(&channel.kind),
+        };
+        let name = channel.topic.clone();
+        let encoding = channel.encoding.clone();
+        self.channels.insert(number, channel);
+        if !is_meant || self.topic.as_ref() == Some(&name) {
+            return Ok(());
+        }
+        let pairs = self.pairs();
+        topic::choose(&self.path, &pairs, self.wanted.as_deref())?;
+        if encoding != "cdr" {
+            return Err(LogError::file(
+                &self.path,
+                format_args!("the topic {name} is encoded as {encoding:?}, not as cdr"),
+            ));
+        }
+        self.topic = Some(name);
+        Ok(())
+    }
+
+    fn pairs(&self) -> Vec<(String, String)> {
+        let mut pairs: Vec<_> =
+            self.channels.values().map(|channel| (channel.topic.clone(), channel.kind.clone())).collect();
+        pairs.sort();
+        pairs.dedup();
+        pairs
+    }
+
+    fn wrong(&self, error: &McapError) -> LogError {
+        let (given, count) = (self.given, self.count);
+        let at = format!("before byte {given} of {}, behind {count} joint states", self.size);
+        LogError::file(
+            &self.path,
+            match error {
+                McapError::UnexpectedEof if self.chunk.is_none() => {
+                    format!("the file is cut off: it ends within a record, {at}; `mcap recover` keeps what is whole")
+                }
+                McapError::RecordTooLarge { len, .. } => {
+                    format!("a record of {len} bytes, {at}: the file is corrupt, or has larger messages than are read")
+                }
+                McapError::UnsupportedCompression(name) => {
+                    format!("chunks are compressed with {name:?}: zstd and lz4 are read")
+                }
+                error => format!("the file is corrupt {at}: {error}"),
+            },
+        )
+    }
+}
+
+/// What an event of the reader says, without what it borrows.
+enum Event {
+    Needs(usize),
+    Chunk(Box<Chunk>),
+    Schema(u16, String),
+    Channel(u16, u16, String, String),
+    State(Result<(), String>),
+    Other,
+}
+
+impl McapBag {
+    fn event(&mut self, sample: &mut Sample) -> Result<Option<Event>, McapError> {
+        let reader = self.chunk.as_mut().map_or(&mut self.reader, |chunk| &mut chunk.reader);
+        let Some(event) = reader.next_event() else { return Ok(None) };
+        let (opcode, data) = match event? {
+            LinearReadEvent::ReadRequest(needs) => return Ok(Some(Event::Needs(needs))),
+            LinearReadEvent::Record { opcode, data } => (opcode, data),
+        };
+        if opcode == op::CHUNK {
+            return Ok(Some(Event::Chunk(Box::new(Chunk::of(data)?))));
+        }
+        if !matches!(opcode, op::SCHEMA | op::CHANNEL | op::MESSAGE) {
+            return Ok(Some(Event::Other));
+        }
+        Ok(Some(match mcap::parse_record(opcode, data)? {
+            Record::Schema { header, .. } => Event::Schema(header.id, header.name),
+            Record::Channel(channel) => {
+                Event::Channel(channel.id, channel.schema_id, channel.topic, channel.message_encoding)
+            }
+            Record::Message { header, data } => {
+                let Some(channel) = self.channels.get(&header.channel_id) else {
+                    return Err(McapError::UnknownChannel(header.sequence, header.channel_id));
+                };
+                if self.topic.as_ref() != Some(&channel.topic) {
+                    return Ok(Some(Event::Other));
+                }
+                Event::State(if data.len() > LONGEST_MESSAGE {
+                    Err(format!("it has {} bytes", data.len()))
+                } else {
+                    let recorded = i64::try_from(header.log_time).unwrap_or(i64::MAX);
+                    joint_state::decode(&data, recorded, sample)
+                })
+            }
+            _ => Event::Other,
+        }))
+    }
+}
+
+impl Source for McapBag {
+    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+        while !self.ended {
+            let event = guarded(|| self.event(sample)).unwrap_or(Err(McapError::UnexpectedEoc));
+            match event.map_err(|error| self.wrong(&error))? {
+                None if self.chunk.is_some() => self.chunk = None,
+                None => self.ended = true,
+                Some(Event::Chunk(chunk)) => self.chunk = Some(chunk),
+                Some(Event::Needs(needs)) => {
+                    if let Some(chunk) = &mut self.chunk {
+                        chunk.feed(needs);
+                        continue;
+                    }
+                    let buffer = self.reader.insert(needs.max(PART));
+                    let count = loop {
+                        match self.file.read(buffer) {
+                            Err(error) if error.kind() == std::io::ErrorKind::Interrupted => {}
+                            Err(error) => return Err(self.wrong(&McapError::Io(error))),
+                            Ok(count) => break count,
+                        }
+                    };
+                    self.given += count as u64;
+                    self.reader.notify_read(count);
+                }
+                Some(Event::Schema(number, name)) => {
+                    self.schemas.insert(number, name);
+                }
+                Some(Event::Channel(number, schema, topic, encoding)) => {
+                    let kind = self.schemas.get(&schema).cloned().unwrap_or_else(|| "no type".to_owned());
+                    self.begin(number, Channel { topic, kind, encoding })?;
+                }
+                Some(Event::State(state)) => {
+                    self.count += 1;
+                    state.map_err(|what| {
+                        let topic = self.topic.as_deref().unwrap_or_default();
+                        let what = format!("message {} of {topic} cannot be read: {what}", self.count);
+                        LogError::file(&self.path, what)
+                    })?;
+                    return Ok(true);
+                }
+                Some(Event::Other) => {}
+            }
+        }
+        if self.topic.is_none() {
+            topic::choose(&self.path, &self.pairs(), self.wanted.as_deref())?;
+        }
+        Ok(false)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a bar of some hundred steps")]
+    fn progress(&self) -> f64 {
+        (self.given as f64 / self.size.max(1) as f64).min(1.0)
+    }
+
+    fn topic(&self) -> Option<&str> {
+        self.topic.as_deref()
+    }
+}

@@ -1,0 +1,406 @@
+//! The same motion in every format.
+
+use std::collections::BTreeMap;
+use std::io::Cursor;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use mcap::records::MessageHeader;
+use parquet::basic::{Compression, GzipLevel, ZstdLevel};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, FloatType, Int64Type};
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
+use parquet::schema::parser::parse_message_type;
+use rne_logs::{Format, LogError, Motion, Options};
+use tempfile::TempDir;
+
+use crate::written::{SINES, csv, file, joint_state, rows, runs, survey};
+
+const NAMES: [&str; 2] = ["elbow", "wrist"];
+
+pub(crate) fn times() -> Vec<f64> {
+    (0..1500).map(|i| f64::from(i) * 0.008).collect()
+}
+
+fn nanoseconds(time: f64) -> i64 {
+    (time * 1e9).round() as i64
+}
+
+/// A bag in MCAP, with an image topic among the joint states.
+pub(crate) fn mcap(times: &[f64], compression: Option<mcap::Compression>, topics: &[&str]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut writer =
+        mcap::WriteOptions::new().compression(compression).chunk_size(Some(20_000)).create(&mut bytes).unwrap();
+    let image = writer.add_schema("sensor_msgs/msg/Image", "ros2msg", b"").unwrap();
+    let image = writer.add_channel(image, "/image", "cdr", &BTreeMap::new()).unwrap();
+    let state = writer.add_schema("sensor_msgs/msg/JointState", "ros2msg", b"").unwrap();
+    let states: Vec<u16> =
+        topics.iter().map(|topic| writer.add_channel(state, topic, "cdr", &BTreeMap::new()).unwrap()).collect();
+    for (i, (time, [q, qd, tau])) in rows(times).into_iter().enumerate() {
+        let log_time = 5_000_000 + nanoseconds(time) as u64;
+        let header = |channel_id| MessageHeader { channel_id, sequence: i as u32, log_time, publish_time: log_time };
+        if i % 100 == 0 {
+            writer.write_to_known_channel(&header(image), &[7; 5000]).unwrap();
+        }
+        let message = joint_state(nanoseconds(time), &NAMES, [&q, &qd, &tau], true);
+        for state in &states {
+            writer.write_to_known_channel(&header(*state), &message).unwrap();
+        }
+    }
+    writer.finish().unwrap();
+    drop(writer);
+    bytes.into_inner()
+}
+
+/// A bag in SQLite; with or without the index of times.
+pub(crate) fn sqlite(times: &[f64], is_little: bool, is_indexed: bool) -> (TempDir, PathBuf) {
+    let (folder, path) = file("bag.db3", "");
+    let bag = rusqlite::Connection::open(&path).unwrap();
+    bag.execute_batch(
+        "CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT, serialization_format TEXT);
+         CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER, data BLOB);
+         INSERT INTO topics VALUES (1, '/image', 'sensor_msgs/msg/Image', 'cdr');
+         INSERT INTO topics VALUES (2, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr');
+         BEGIN;",
+    )
+    .unwrap();
+    for (time, [q, qd, tau]) in rows(times) {
+        let message = joint_state(nanoseconds(time), &NAMES, [&q, &qd, &tau], is_little);
+        bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (2, ?1, ?2)", (nanoseconds(time), message))
+            .unwrap();
+    }
+    bag.execute_batch("COMMIT").unwrap();
+    if is_indexed {
+        bag.execute_batch("CREATE INDEX timestamp_idx ON messages (timestamp ASC)").unwrap();
+    }
+    (folder, path)
+}
+
+fn parquet(
+    schema: &str,
+    properties: WriterProperties,
+    groups: usize,
+    mut write: impl FnMut(usize, &mut SerializedRowGroupWriter<'_, &mut Vec<u8>>),
+) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let schema = Arc::new(parse_message_type(schema).unwrap());
+    let mut writer = SerializedFileWriter::new(&mut bytes, schema, Arc::new(properties)).unwrap();
+    for group in 0..groups {
+        let mut row_group = writer.next_row_group().unwrap();
+        write(group, &mut row_group);
+        row_group.close().unwrap();
+    }
+    writer.close().unwrap();
+    bytes
+}
+
+fn doubles(
+    group: &mut SerializedRowGroupWriter<'_, &mut Vec<u8>>,
+    numbers: &[f64],
+    levels: Option<(&[i16], Option<&[i16]>)>,
+) {
+    let mut column = group.next_column().unwrap().unwrap();
+    let (definitions, repetitions) = levels.unzip();
+    column.typed::<DoubleType>().write_batch(numbers, definitions, repetitions.flatten()).unwrap();
+    column.close().unwrap();
+}
+
+/// A column per number, in three groups of rows.
+pub(crate) fn scalars(times: &[f64], properties: WriterProperties) -> Vec<u8> {
+    let schema = "message log { REQUIRED INT64 stamp (TIMESTAMP(NANOS, true));
+        REQUIRED DOUBLE elbow_position; REQUIRED DOUBLE wrist_position;
+        REQUIRED DOUBLE elbow_velocity; REQUIRED DOUBLE wrist_velocity;
+        OPTIONAL DOUBLE elbow_effort; OPTIONAL DOUBLE wrist_effort; OPTIONAL BINARY remark (STRING); }";
+    let each = times.len().div_ceil(3);
+    parquet(schema, properties, 3, |group, writer| {
+        let rows = rows(&times[group * each..times.len().min((group + 1) * each)]);
+        let mut column = writer.next_column().unwrap().unwrap();
+        let stamps: Vec<i64> = rows.iter().map(|(time, _)| nanoseconds(*time)).collect();
+        column.typed::<Int64Type>().write_batch(&stamps, None, None).unwrap();
+        column.close().unwrap();
+        for quantity in 0..3 {
+            for joint in 0..2 {
+                let numbers: Vec<f64> = rows.iter().map(|(_, row)| row[quantity][joint]).collect();
+                let levels = vec![1; rows.len()];
+                doubles(writer, &numbers, (quantity == 2).then_some((&levels, None)));
+            }
+        }
+        let mut column = writer.next_column().unwrap().unwrap();
+        let levels = vec![0; rows.len()];
+        column.typed::<ByteArrayType>().write_batch(&[], Some(&levels), None).unwrap();
+        column.close().unwrap();
+    })
+}
+
+/// Lists, of names too.
+fn lists(times: &[f64], has_names: bool) -> Vec<u8> {
+    let names = "REQUIRED group name (LIST) { REPEATED group list { REQUIRED BINARY element (STRING); } }";
+    let list =
+        |name: &str| format!("OPTIONAL group {name} (LIST) {{ REPEATED group list {{ OPTIONAL DOUBLE element; }} }}");
+    let schema = format!(
+        "message log {{ REQUIRED DOUBLE timestamp; {} {} {} {} }}",
+        if has_names { names } else { "" },
+        list("position"),
+        list("velocity"),
+        list("effort")
+    );
+    let properties = WriterProperties::builder().build();
+    parquet(&schema, properties, 1, |_, writer| {
+        let rows = rows(times);
+        doubles(writer, times, None);
+        if has_names {
+            let mut column = writer.next_column().unwrap().unwrap();
+            let texts: Vec<ByteArray> = rows.iter().flat_map(|_| NAMES.map(ByteArray::from)).collect();
+            let (definitions, repetitions) = (vec![1; texts.len()], [0, 1].repeat(rows.len()));
+            column.typed::<ByteArrayType>().write_batch(&texts, Some(&definitions), Some(&repetitions)).unwrap();
+            column.close().unwrap();
+        }
+        for quantity in 0..3 {
+            let numbers: Vec<f64> = rows.iter().flat_map(|(_, row)| row[quantity]).collect();
+            let (definitions, repetitions) = (vec![3; numbers.len()], [0, 1].repeat(rows.len()));
+            doubles(writer, &numbers, Some((&definitions, Some(&repetitions))));
+        }
+    })
+}
+
+pub(crate) fn npy(times: &[f64], is_time: bool, kind: &str) -> Vec<u8> {
+    let width = if is_time { 7 } else { 6 };
+    let header = format!("{{'descr': '{kind}', 'fortran_order': False, 'shape': ({}, {width}), }}", times.len());
+    let header = format!("{header:<117}\n");
+    let mut bytes = [b"\x93NUMPY\x01\x00".as_slice(), &(header.len() as u16).to_le_bytes(), header.as_bytes()].concat();
+    for (time, row) in rows(times) {
+        let numbers = is_time.then_some(time).into_iter().chain(row.into_iter().flatten());
+        for number in numbers {
+            match kind {
+                "<f8" => bytes.extend(number.to_le_bytes()),
+                ">f8" => bytes.extend(number.to_be_bytes()),
+                _ => bytes.extend((number as f32).to_le_bytes()),
+            }
+        }
+    }
+    bytes
+}
+
+fn options() -> Options {
+    Options { cutoff: Some(8.0), ..Options::default() }
+}
+
+fn only(path: PathBuf, options: Options) -> Motion {
+    let mut runs = runs(&[path], options, 1000).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(runs.len(), 1);
+    runs.remove(0).1
+}
+
+fn of(name: &str, bytes: Vec<u8>, format: Format, options: Options) -> Motion {
+    let (_folder, path) = file(name, bytes);
+    let (log, _) = survey(std::slice::from_ref(&path), options.clone()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(log.layout().format, format);
+    only(path, options)
+}
+
+fn expected() -> Motion {
+    of("log.csv", csv(&times()).into_bytes(), Format::Csv, options())
+}
+
+#[test]
+fn every_format_has_the_same_motion() {
+    let expected = expected();
+    let times = times();
+    for compression in [None, Some(mcap::Compression::Zstd), Some(mcap::Compression::Lz4)] {
+        let bytes = mcap(&times, compression, &["/joint_states"]);
+        assert_eq!(of("bag.mcap", bytes, Format::Mcap, options()), expected, "{compression:?}");
+    }
+    for (is_little, is_indexed) in [(true, true), (false, true), (true, false)] {
+        let (_folder, path) = sqlite(&times, is_little, is_indexed);
+        assert_eq!(only(path, options()), expected, "{is_little} {is_indexed}");
+    }
+    let compressions = [
+        Compression::UNCOMPRESSED,
+        Compression::SNAPPY,
+        Compression::LZ4_RAW,
+        Compression::GZIP(GzipLevel::default()),
+        Compression::ZSTD(ZstdLevel::default()),
+    ];
+    for compression in compressions {
+        let properties = WriterProperties::builder().set_compression(compression).set_data_page_size_limit(1000);
+        let bytes = scalars(&times, properties.build());
+        assert_eq!(of("log.parquet", bytes, Format::Parquet, options()), expected, "{compression:?}");
+    }
+    for has_names in [true, false] {
+        assert_eq!(of("log.parquet", lists(&times, has_names), Format::Parquet, options()), expected);
+    }
+    for kind in ["<f8", ">f8"] {
+        assert_eq!(of("log.npy", npy(&times, true, kind), Format::Npy, options()), expected, "{kind}");
+    }
+    let untimed = Options { rate: Some(125.0), columns: ["q", "qd", "tau"].map(str::to_owned).to_vec(), ..options() };
+    assert_eq!(of("log.npy", npy(&times, false, "<f8"), Format::Npy, untimed), expected);
+    // of single precision
+    let single = of("log.npy", npy(&times, true, "<f4"), Format::Npy, options());
+    // its times are, too, and so is the grid: at each state's own time it is the sine, to the ripple
+    for (time, found) in single.time.iter().zip(&single.q[0]) {
+        assert!((found - SINES[0].at(*time)[0]).abs() < 0.8 * 1e-3 + 1e-5);
+    }
+}
+
+#[test]
+fn names_of_lists_and_bags_are_the_joints() {
+    for (name, bytes) in [
+        ("bag.mcap", mcap(&times(), None, &["/joint_states"])),
+        ("log.parquet", lists(&times(), true)),
+        ("log.parquet", scalars(&times(), WriterProperties::builder().build())),
+    ] {
+        let (_folder, path) = file(name, bytes);
+        let joints = |names: &[&str]| Options {
+            joints: Some(names.iter().map(|name| (*name).to_owned()).collect()),
+            ..options()
+        };
+        let turned = only(path.clone(), joints(&["wrist", "elbow"]));
+        let plain = only(path.clone(), options());
+        assert_eq!((&turned.q[0], &turned.tau[1]), (&plain.q[1], &plain.tau[0]));
+        let error = runs(&[path], joints(&["wrist", "elbo"]), 1000).unwrap_err();
+        assert!(error.to_string().contains("no joint elbo (did you mean elbow?); it has elbow, wrist"), "{error}");
+    }
+}
+
+/// A log of two files is one, if the second goes on where the first ends.
+#[test]
+fn files_that_follow_each_other_are_one_run() {
+    let times = times();
+    let (first, second) = times.split_at(700);
+    let (_a, one) = file("bag_0.mcap", mcap(first, None, &["/js"]));
+    let (_b, two) = file("bag_1.mcap", mcap(second, None, &["/js"]));
+    let runs = runs(&[one, two], options(), 1000).unwrap();
+    assert_eq!(runs.len(), 1);
+    assert_eq!(runs[0].1, expected());
+}
+
+fn error(path: PathBuf, options: Options) -> LogError {
+    match survey(&[path], options) {
+        Ok(_) => panic!("it is read"),
+        Err(error) => error,
+    }
+}
+
+#[test]
+fn topics_are_named_where_there_are_several() {
+    let bytes = mcap(&times(), None, &["/left", "/right"]);
+    let (_folder, path) = file("two.mcap", bytes);
+    let asked = error(path.clone(), Options::default());
+    let several = "several topics have joint states: /left, /right; name one with --topic";
+    assert!(asked.is_of_request() && asked.to_string().contains(several), "{asked}");
+    let topic = |topic: &str| Options { topic: Some(topic.to_owned()), ..options() };
+    assert_eq!(only(path.clone(), topic("/right")), expected());
+    let asked = error(path.clone(), topic("/rigt"));
+    assert!(asked.to_string().contains("there is no topic /rigt (did you mean /right?)"), "{asked}");
+    let asked = error(path, topic("/image"));
+    assert!(asked.to_string().contains("the topic /image has sensor_msgs/msg/Image"), "{asked}");
+
+    let (_folder, path) = sqlite(&times(), true, true);
+    let asked = error(path, topic("/joint_state"));
+    assert!(asked.to_string().contains("(did you mean /joint_states?); joint states are in /joint_states"), "{asked}");
+
+    let (_folder, path) = file("none.mcap", mcap(&times(), None, &[]));
+    let asked = error(path, Options::default());
+    assert!(asked.to_string().contains("no topic has sensor_msgs/msg/JointState; it has"), "{asked}");
+}
+
+#[test]
+fn other_schemas_are_told() {
+    let text = parquet(
+        "message log { REQUIRED DOUBLE time; REQUIRED BINARY q1 (STRING); }",
+        WriterProperties::builder().build(),
+        1,
+        |_, writer| {
+            doubles(writer, &[0.0, 1.0], None);
+            let mut column = writer.next_column().unwrap().unwrap();
+            let texts = ["a", "b"].map(ByteArray::from);
+            column.typed::<ByteArrayType>().write_batch(&texts, None, None).unwrap();
+            column.close().unwrap();
+        },
+    );
+    let sales = parquet(
+        "message log { REQUIRED FLOAT price; REQUIRED FLOAT count; }",
+        WriterProperties::builder().build(),
+        1,
+        |_, writer| {
+            for _ in 0..2 {
+                let mut column = writer.next_column().unwrap().unwrap();
+                column.typed::<FloatType>().write_batch(&[0.0, 1.0], None, None).unwrap();
+                column.close().unwrap();
+            }
+        },
+    );
+    for (name, bytes, wanted) in [
+        ("text.parquet", text, "the column q1 has texts, not numbers"),
+        ("sales.parquet", sales, "no column is the position of a joint"),
+        ("empty.db3", Vec::new(), "the file is empty, no rosbag2, SQLite"),
+        ("text.mcap", b"hello".to_vec(), "does not begin as one of rosbag2, MCAP does"),
+        ("old.bag", b"#ROSBAG V2.0\n".to_vec(), "a bag of ROS 1"),
+        ("empty.csv", Vec::new(), "the file is empty"),
+        ("numbers.csv", b"0,1,2\n3,4,5\n".to_vec(), "the first line has numbers"),
+        ("no_time.csv", b"q1,q2\n3,4\n".to_vec(), "no column has times"),
+        ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is no number"),
+        ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, the header 3"),
+        ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not grow"),
+        ("binary.csv", vec![1, 0, 2, 0], "zero bytes"),
+        ("ints.npy", npy(&times()[..3], true, "<i8"), "the numbers are"),
+        ("wide.npy", npy(&times()[..3], false, "<f8"), "--columns says what there is"),
+    ] {
+        let (_folder, path) = file(name, bytes);
+        let error = error(path, Options::default()).to_string();
+        assert!(error.contains(wanted) && error.contains(name), "{error}");
+    }
+    let (_folder, path) = file("other.db3", "");
+    rusqlite::Connection::open(&path).unwrap().execute_batch("CREATE TABLE a(b); INSERT INTO a VALUES (1)").unwrap();
+    assert!(error(path, Options::default()).to_string().contains("no tables `topics` and `messages`"));
+}
+
+/// Messages without velocities or efforts, of other joints, of some of the joints.
+#[test]
+fn what_is_missing_is_counted() {
+    let (_folder, path) = sqlite(&[], true, true);
+    let bag = rusqlite::Connection::open(&path).unwrap();
+    let mut number = 0;
+    let mut write = |names: &[&str], lists: [&[f64]; 3]| {
+        number += 1;
+        let message = joint_state(number * 8_000_000, names, lists, true);
+        bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (2, ?1, ?2)", (number, message)).unwrap();
+    };
+    for i in 0..300 {
+        let q = [f64::from(i) * 0.01, 0.5];
+        match i {
+            50 => write(&["gripper"], [&[0.0], &[], &[]]),
+            60 => write(&["elbow"], [&[0.0], &[], &[]]),
+            70 => write(&NAMES, [&[], &[], &[]]),
+            80 => write(&NAMES, [&q, &[], &[1.0]]),
+            90 => write(&NAMES, [&[f64::NAN, 0.0], &[], &[1.0, 1.0]]),
+            _ => write(&NAMES, [&q, &[], &[1.0, 2.0]]),
+        }
+    }
+    let (log, survey) = survey(std::slice::from_ref(&path), options()).unwrap();
+    assert!(!log.layout().has_velocities && log.layout().has_efforts);
+    assert_eq!(log.layout().ignored, ["gripper"]);
+    let counts = survey.counts;
+    assert_eq!((counts.messages, counts.states, counts.of_others, counts.without_joints), (300, 295, 1, 1));
+    assert_eq!((counts.without_positions, counts.without_efforts, counts.not_finite), (1, 1, 1));
+    let motion = only(path, options());
+    // velocities are differences: of a ramp, its slope
+    assert!(motion.qd[0].iter().all(|qd| (qd - 1.25).abs() < 1e-9));
+    assert!(motion.tau[1].iter().all(|tau| (tau - 2.0).abs() < 1e-12));
+}
+
+/// Headers without times: those of recording count.
+#[test]
+fn stamps_of_recording_stand_in_for_missing_ones() {
+    let (_folder, path) = sqlite(&[], true, true);
+    let bag = rusqlite::Connection::open(&path).unwrap();
+    for i in 0..200 {
+        let message = joint_state(0, &NAMES, [&[f64::from(i), 0.0], &[], &[]], true);
+        bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (2, ?1, ?2)", (i * 10_000_000, message))
+            .unwrap();
+    }
+    let options = Options { angles: rne_logs::Angles::Radians, ..options() };
+    let (log, survey) = survey(&[path], options).unwrap();
+    assert!(log.layout().recorded && !log.layout().has_efforts);
+    assert_eq!((log.layout().step, survey.efforts.len()), (0.01, 0));
+}
