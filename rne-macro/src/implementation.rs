@@ -142,26 +142,23 @@ impl Target<'_> {
     /// Whether a method is computed by the instructions that the processor has, not by those alone that the program is
     /// compiled for.
     ///
-    /// The seven steps keep their bits on every processor. A short method stays as it is: to ask and to call costs one
-    /// or two nanoseconds, and what is inlined is not written to memory and read again. On a processor of 2022, calls
-    /// one after the other, plain build (`benches/plain_build.rs` with other arms):
+    /// The seven steps keep their bits on every processor. What has no sine to compute and is short stays as it is: to
+    /// ask and to call costs one or two nanoseconds, and what is inlined is not written to memory and read again. Calls
+    /// one after the other in `f64`, plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with these arms):
     ///
     /// | | operations, angles | ns: inlined | asked |
     /// |---|---|---:|---:|
     /// | `inverse_dynamics` of gantry_ppp | 4, 0 | 1.0 | 1.7 |
     /// | `inverse_dynamics_from_sin_cos` of planar3 | 51, 0 | 4.8 | 5.1 |
-    /// | `inverse_dynamics` of planar1 | 3, 1 | 7.8 | 7.6 |
     /// | `inverse_dynamics_from_sin_cos` of spherical_rrp | 83, 0 | 9.2 | 7.9 |
+    /// | `inverse_dynamics` of planar1 | 3, 1 | 7.8 | 7.6 |
     /// | `inverse_dynamics` of scara_cobra600 | 22, 1 | 11.3 | 10.2 |
     /// | `inverse_dynamics` of planar2 | 23, 2 | 10.9 | 9.6 |
     /// | `inverse_dynamics` of planar3 | 51, 3 | 21.3 | 13.6 |
     fn asks_processor(&self, program: &Program) -> bool {
-        /// Operations of a sine and a cosine, about.
-        const TURN: usize = 40;
-        /// Less does not pay.
         const SHORT: usize = 60;
         let operations = program.operations();
-        program.form == Form::Reduced && !self.inline && operations.total() + TURN * operations.sincos >= SHORT
+        program.form == Form::Reduced && !self.inline && (operations.sincos > 0 || operations.total() >= SHORT)
     }
 
     /// The body of a method that is compiled for the processor's instructions as well.

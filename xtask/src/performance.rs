@@ -8,7 +8,7 @@ use xshell::{Cmd, Shell, cmd};
 
 use crate::Verdict;
 use crate::instructions::{self, Instructions};
-use crate::{batch_profile, growth, machine, single_calls};
+use crate::{batch_profile, growth, machine, plain_build, single_calls};
 
 /// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->`
 /// and `<!-- end -->`
@@ -48,6 +48,8 @@ enum Block {
     Growth,
     /// Nanoseconds of an arm at run time, of docs/run-time.md
     RunTime,
+    /// A plain build beside one for x86-64-v3, of docs/run-time.md
+    PlainBuild,
 }
 
 impl Performance {
@@ -77,13 +79,14 @@ impl Block {
             Self::BatchProfile => "batch_profile",
             Self::Growth => "growth",
             Self::RunTime => "run_time",
+            Self::PlainBuild => "plain_build",
         }
     }
 
     /// Where it stands.
     fn page(self) -> &'static str {
         match self {
-            Self::RunTime => "docs/run-time.md",
+            Self::RunTime | Self::PlainBuild => "docs/run-time.md",
             _ => "docs/performance.md",
         }
     }
@@ -117,6 +120,7 @@ impl Block {
                 let bench = cmd!(shell, "cargo run --manifest-path benches/Cargo.toml {options...} --bin run_time");
                 here(&shell)? + &listing(bench)?
             }
+            Self::PlainBuild => here(&shell)? + &plain_build::table()?,
             Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
         })
     }
