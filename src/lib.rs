@@ -72,6 +72,13 @@
 //! AVX-512, AVX2, SSE2 or NEON: what the processor has is found when the program runs, without `-C target-cpu`. With
 //! the feature `rayon`, on all cores.
 //!
+//! # The processor
+//!
+//! Single calls in the form `reduced` take the AVX2 and the fused multiply-add of an x86 processor that has them, in
+//! `f64` and `f32`: a plain `cargo build --release` is about as fast as one with `-C target-cpu=x86-64-v3`, and has its
+//! bits. The form `seven_steps` has the same bits on every processor. `#[robot(…, inline)]` leaves the processor out of
+//! it, so that a method can be [inlined](derive@InverseDynamics#inline) into a loop.
+//!
 //! # Features
 //!
 //! | feature | |
@@ -79,7 +86,7 @@
 //! | `arm` (default) | the robot that is known at run time: [`Arm`], `DynArm`; it brings nalgebra |
 //! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own |
 //! | `std` (default) | robot files at run time |
-//! | `batch` (default) | vector units found at run time; batches without it use that of the compiled target |
+//! | `batch` (default) | instructions of the processor found at run time, for batches and single calls; without it they are those of the compiled target |
 //! | `compiled` | any arm at run time, nearly as fast as a derived one: `compiled::CompiledArm`; it brings the compiler |
 //! | `native` | single calls of it as instructions of the processor, as fast as derived ones; it brings Cranelift |
 //! | `nalgebra` | conversions of poses and wrenches; `arm` has it |
@@ -135,7 +142,7 @@ pub use rne_runtime::{
 };
 // Derived code names them.
 #[doc(hidden)]
-pub use rne_runtime::{RunTimeParameter, batch, testing};
+pub use rne_runtime::{RunTimeParameter, batch, processor, testing};
 
 /// Any arm at run time, nearly as fast as a derived one: read, compiled to the code of a machine, and run over blocks
 /// of states on the widest vector unit.

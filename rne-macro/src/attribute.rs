@@ -20,6 +20,8 @@ pub(crate) struct Attribute {
     pub(crate) allow_lints: bool,
     /// Whether rotors belong to the arm.
     pub(crate) rotors: bool,
+    /// Whether single calls are compiled for the target alone, to be inlined.
+    pub(crate) inline: bool,
     /// Where the code is asked for as a file to read, if it is.
     pub(crate) inspect: Option<Span>,
     /// Where tests are asked for, if they are.
@@ -91,6 +93,7 @@ impl Attribute {
             max_ops: entries.max_ops,
             allow_lints: entries.seen.iter().any(|key| key == "allow_lints"),
             rotors: entries.seen.iter().any(|key| key == "rotors"),
+            inline: entries.seen.iter().any(|key| key == "inline"),
             inspect: entries.inspect,
             tests: entries.tests,
             krate: entries.krate.unwrap_or_else(|| syn::parse_quote!(::rne)),
@@ -98,7 +101,7 @@ impl Attribute {
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `tests`, `inspect`, `allow_lints` and \
+const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `inline`, `tests`, `inspect`, `allow_lints` and \
      `crate`";
 
 #[derive(Default)]
@@ -137,7 +140,17 @@ impl Entries {
         let name = key.to_string();
         if !matches!(
             name.as_str(),
-            "path" | "yaml" | "builtin" | "form" | "max_ops" | "rotors" | "tests" | "inspect" | "allow_lints" | "crate"
+            "path"
+                | "yaml"
+                | "builtin"
+                | "form"
+                | "max_ops"
+                | "rotors"
+                | "inline"
+                | "tests"
+                | "inspect"
+                | "allow_lints"
+                | "crate"
         ) {
             return Err(syn::Error::new(key.span(), format!("`{name}` is no key of `#[robot(…)]`; there are {KEYS}")));
         }
@@ -145,7 +158,7 @@ impl Entries {
             return Err(syn::Error::new(key.span(), format!("`{name}` is given twice")));
         }
         self.seen.push(name.clone());
-        if matches!(name.as_str(), "rotors" | "tests" | "inspect" | "allow_lints") {
+        if matches!(name.as_str(), "rotors" | "inline" | "tests" | "inspect" | "allow_lints") {
             match name.as_str() {
                 "tests" => self.tests = Some(key.span()),
                 "inspect" => self.inspect = Some(key.span()),

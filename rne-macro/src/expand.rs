@@ -41,7 +41,7 @@ pub(crate) fn capability(capability: Capability, input: TokenStream) -> TokenStr
         let programs = programs(&robot, capability, attribute.form, &compiler, span, &mut errors)?;
         Some((robot, programs))
     });
-    let target = Target { item: &item, krate: &attribute.krate };
+    let target = Target { item: &item, krate: &attribute.krate, inline: attribute.inline };
     let code = match &compiled {
         Some((robot, programs)) => {
             if let (Capability::InverseDynamics, Some(limit), Some(program)) =

@@ -13,6 +13,8 @@ use crate::parameters::Parameters;
 pub(crate) struct Target<'a> {
     pub(crate) item: &'a DeriveInput,
     pub(crate) krate: &'a Path,
+    /// Whether single calls are compiled for the target alone, to be inlined.
+    pub(crate) inline: bool,
 }
 
 /// The constants of a type.
@@ -53,6 +55,7 @@ impl Target<'_> {
             #evidence
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
+            #[allow(clippy::inline_always)] // into the code of the processor's instructions
             impl #impl_generics #krate::#name<#dof> for #ident #type_generics #where_clause {
                 #(#methods)*
             }
@@ -96,8 +99,10 @@ impl Target<'_> {
 
     fn method(&self, robot: &Robot, program: &Program, parameters: &Parameters) -> TokenStream {
         let krate = self.krate;
-        let (scalar, library) = (quote!(#krate::Scalar), quote!(#krate));
+        let (scalar, library, arithmetic) = (quote!(#krate::Scalar), quote!(#krate), quote!(A));
+        let is_asked = self.asks_processor(program);
         let body = emit::Body::new(program, &scalar).with_records_of(&library);
+        let body = if is_asked { body.with_arithmetic(&arithmetic) } else { body };
         // The seven steps compute the bits of the runtime, so that nothing is fused there.
         let body = match program.form {
             Form::SevenSteps => body,
@@ -121,32 +126,102 @@ impl Target<'_> {
                 } = base;
             }
         });
-        let parameters = parameters.read(krate);
+        let (count, parameters) = (parameters.names().len(), parameters.read(krate));
         let dof = Literal::usize_unsuffixed(program.dof);
         let of_trait = format_ident!("{}", function.capability().name());
         let of_trait = quote!(#krate::#of_trait).to_string().replace(' ', "");
         let documentation = description::method(robot, program, of_trait.trim_start_matches("::"));
-        let method = self.signature(function, &quote!(#dof), &quote!(#wrench #payload #base #parameters #body));
+        let dof = quote!(#dof);
+        let body = quote!(#wrench #payload #base #body);
+        let body =
+            if is_asked { self.call(function, &dof, count, &parameters, &body) } else { quote!(#parameters #body) };
+        let method = self.signature(function, &dof, &body);
         quote!(#[doc = #documentation] #method)
+    }
+
+    /// Whether a method is computed by the instructions that the processor has, not by those alone that the program is
+    /// compiled for.
+    ///
+    /// The seven steps keep their bits on every processor. What has no sine to compute and is short stays as it is: to
+    /// ask and to call costs one or two nanoseconds, and what is inlined is not written to memory and read again. Calls
+    /// one after the other in `f64`, plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with these arms):
+    ///
+    /// | | operations, angles | ns: inlined | asked |
+    /// |---|---|---:|---:|
+    /// | `inverse_dynamics` of gantry_ppp | 4, 0 | 1.0 | 1.7 |
+    /// | `inverse_dynamics_from_sin_cos` of planar3 | 51, 0 | 4.8 | 5.1 |
+    /// | `inverse_dynamics_from_sin_cos` of spherical_rrp | 83, 0 | 9.2 | 7.9 |
+    /// | `inverse_dynamics` of planar1 | 3, 1 | 7.8 | 7.6 |
+    /// | `inverse_dynamics` of scara_cobra600 | 22, 1 | 11.3 | 10.2 |
+    /// | `inverse_dynamics` of planar2 | 23, 2 | 10.9 | 9.6 |
+    /// | `inverse_dynamics` of planar3 | 51, 3 | 21.3 | 13.6 |
+    fn asks_processor(&self, program: &Program) -> bool {
+        const SHORT: usize = 60;
+        let operations = program.operations();
+        program.form == Form::Reduced && !self.inline && (operations.sincos > 0 || operations.total() >= SHORT)
+    }
+
+    /// The body of a method that is compiled for the processor's instructions as well.
+    fn call(
+        &self,
+        function: Function,
+        dof: &TokenStream,
+        parameter_count: usize,
+        parameters: &TokenStream,
+        body: &TokenStream,
+    ) -> TokenStream {
+        let krate = self.krate;
+        let (mut names, mut kinds): (Vec<_>, Vec<_>) = self.arguments(function, dof, &quote!('a)).into_iter().unzip();
+        if parameter_count > 0 {
+            let count = Literal::usize_unsuffixed(parameter_count);
+            names.push(format_ident!("parameters"));
+            kinds.push(quote!(&'a [T; #count]));
+        }
+        let returned = self.returned(function.shape(), dof);
+        quote! {
+            enum Call {}
+            impl #krate::processor::Call for Call {
+                type Arguments<'a, T: #krate::Scalar> = (#(#kinds,)*);
+                type Result<T: #krate::Scalar> = #returned;
+                #[inline(always)]
+                fn run<T: #krate::Scalar, A: #krate::processor::Arithmetic<T>>(
+                    (#(#names,)*): Self::Arguments<'_, T>,
+                ) -> Self::Result<T> {
+                    #body
+                }
+            }
+            #parameters
+            #krate::processor::run::<Call, T>((#(#names,)*))
+        }
+    }
+
+    /// The arguments of a function and their types, references of the given lifetime, in which `T` is the scalar.
+    fn arguments(&self, function: Function, dof: &TokenStream, lifetime: &TokenStream) -> Vec<(Ident, TokenStream)> {
+        let krate = self.krate;
+        let of = |argument: &Argument| {
+            let (name, kind) = match argument {
+                Argument::Sines => ("sin", quote!([T; #dof])),
+                Argument::Cosines => ("cos", quote!([T; #dof])),
+                Argument::Positions => ("q", quote!([T; #dof])),
+                Argument::Rates => ("qd", quote!([T; #dof])),
+                Argument::Accelerations => ("qdd", quote!([T; #dof])),
+                Argument::Torques => ("tau", quote!([T; #dof])),
+                Argument::Wrench => ("wrench", quote!(#krate::Wrench<T>)),
+                Argument::Payload => ("payload", quote!(#krate::Payload<T>)),
+                Argument::Base => ("base", quote!(#krate::BaseMotion<T>)),
+            };
+            (format_ident!("{name}"), quote!(&#lifetime #kind))
+        };
+        function.arguments().iter().map(of).collect()
     }
 
     /// A method of the trait with the given body, in which `T` is the scalar.
     fn signature(&self, function: Function, dof: &TokenStream, body: &TokenStream) -> TokenStream {
         let (krate, name) = (self.krate, format_ident!("{}", function.name()));
-        let arguments = function.arguments().iter().map(|argument| match argument {
-            Argument::Sines => quote!(sin: &[T; #dof]),
-            Argument::Cosines => quote!(cos: &[T; #dof]),
-            Argument::Positions => quote!(q: &[T; #dof]),
-            Argument::Rates => quote!(qd: &[T; #dof]),
-            Argument::Accelerations => quote!(qdd: &[T; #dof]),
-            Argument::Torques => quote!(tau: &[T; #dof]),
-            Argument::Wrench => quote!(wrench: &#krate::Wrench<T>),
-            Argument::Payload => quote!(payload: &#krate::Payload<T>),
-            Argument::Base => quote!(base: &#krate::BaseMotion<T>),
-        });
+        let (names, kinds): (Vec<_>, Vec<_>) = self.arguments(function, dof, &quote!()).into_iter().unzip();
         let returned = self.returned(function.shape(), dof);
         let method = quote! {
-            fn #name<T: #krate::Scalar>(&self, #(#arguments),*) -> #returned { #body }
+            fn #name<T: #krate::Scalar>(&self, #(#names: #kinds),*) -> #returned { #body }
         };
         if self.is_taken("T") { renamed(method, "T", &format_ident!("{}", self.free_name())) } else { method }
     }

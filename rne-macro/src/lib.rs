@@ -106,7 +106,8 @@ use rne_codegen::Capability;
 /// plan that a build has read; one that appears later, other than by `rne search`, is seen when the robot file is
 /// touched. Without a plan, a fixed number of plans is tried, the same on every machine.
 ///
-/// Products that are added become `Scalar::mul_add` in this form: one instruction where the target has it.
+/// Products that are added become `Scalar::mul_add` in this form: one instruction where the target has it, and on x86
+/// where the processor has it, see [`inline`](#inline).
 ///
 /// ```
 /// # use rne::InverseDynamics;
@@ -152,6 +153,37 @@ use rne_codegen::Capability;
 /// // 0.5 kg m² of the link, 50² 2e-4 of the rotor
 /// assert_eq!(Geared.inverse_dynamics(&[0.0], &[0.0], &[2.0]), [2.0]);
 /// assert_eq!(Geared.forward_dynamics(&[0.0], &[0.0], &[2.0]), [2.0]);
+/// ```
+///
+/// # `inline`
+///
+/// In the form `reduced` a call in `f64` or `f32` takes the AVX2 and the fused multiply-add of an x86 processor that
+/// has them, in a plain `cargo build --release`, with `std` and the feature `batch` (both are on by default). The
+/// processor is asked once; a call then costs a nanosecond or two more than the code itself, for it is a call. Methods
+/// so short that this does not pay do not ask, nor does a program that is compiled for such processors
+/// (`-C target-cpu=x86-64-v3`). Results have the bits of such a program, and on other processors those of a plain one:
+/// they differ in the last digits. `seven_steps` has the same bits on all of them.
+///
+/// `#[robot(path = "…", form = "reduced", inline)]` leaves it out: the code is compiled for the target of the build
+/// alone, as other functions are, and may be inlined. That pays
+///
+/// - in a tight loop of your own that the compiler can work into the code: over calls that share arguments, or of a
+///   short arm whose calls wait for each other,
+/// - in a function of yours that is compiled for more by `#[target_feature(enable = "…")]`; with
+///   `-C target-cpu=x86-64-v3` for the whole program nothing need be said,
+/// - where results have to have the same bits on all processors of x86.
+///
+/// Code for many states at once needs none of this: `BatchInverseDynamics`.
+///
+/// ```
+/// use rne::InverseDynamics;
+///
+/// #[derive(InverseDynamics)]
+/// #[robot(builtin = "planar3", form = "reduced", inline)]
+/// struct Fingers;
+///
+/// let tau = (0..100).map(|step| Fingers.gravity_torques(&[0.01 * f64::from(step), 0.5, -0.2])[0]);
+/// assert!(tau.fold(0.0, f64::max) > 0.0);
 /// ```
 ///
 /// # `tests`

@@ -56,6 +56,8 @@ mod payload;
 #[cfg(feature = "arm")]
 mod per_joint;
 mod pose;
+#[doc(hidden)]
+pub mod processor;
 #[cfg(feature = "arm")]
 mod regressor;
 mod scalar;

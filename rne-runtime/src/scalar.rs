@@ -81,6 +81,10 @@ pub trait Scalar:
     /// and on AArch64, with `std`; without it, and on Cortex-M (`f32` alone) and RISC-V, with the feature
     /// `core_float_math`, which needs a nightly compiler, for `core` has the operation in no stable one yet. It is
     /// never a call of a library.
+    ///
+    /// Derived code of the reduced form does not stop at the compiled target: in `f64` and `f32`, with the feature
+    /// `batch`, a plain build for x86-64 has it rounded once where the processor does that, unless the robot says
+    /// `inline`. This function is what such code calls for all other numbers, and on all other processors.
     #[must_use]
     #[inline]
     fn mul_add(self, factor: Self, addend: Self) -> Self {

@@ -110,7 +110,7 @@ macro_rules! robot {
                 rne::MovingBase,
                 rne::Actuation,
             )]
-            #[robot(path = $path, form = $form)]
+            #[robot(path = $path, form = $form, inline)]
             pub(crate) struct Robot;
 
             impl Everything<{ Robot::DOF }> for Robot {}

@@ -1,6 +1,9 @@
 //! C code against derived Rust code, bit for bit: both forms, both number types, all functions of robots of several
 //! kinds. `cargo xtask verify` takes every shipped robot: `every_robot.rs`.
 //!
+//! The derived code is `inline`: it has the operations of the compiled target, as C has them. What the processor's own
+//! instructions make of it is compared in `tests/processor.rs`.
+//!
 //! What the compiler of C is told is what users of embedded systems tell it.
 
 mod comparison;

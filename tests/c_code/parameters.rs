@@ -31,7 +31,7 @@ const FUNCTIONS: [Function; 7] = [
 macro_rules! desk {
     ($name:ident, $form:literal) => {
         #[derive(InverseDynamics, MassMatrix, ForwardDynamics, Energy, Kinematics)]
-        #[robot(path = "../../docs/desk_arm.yaml", form = $form)]
+        #[robot(path = "../../docs/desk_arm.yaml", form = $form, inline)]
         struct $name {
             fore: f64,
             upper: f64,
@@ -45,7 +45,7 @@ desk!(DeskReduced, "reduced");
 macro_rules! loaded {
     ($name:ident, $form:literal) => {
         #[derive(InverseDynamics, MassMatrix, ForwardDynamics, Energy, Kinematics)]
-        #[robot(path = "loaded.yaml", form = $form)]
+        #[robot(path = "loaded.yaml", form = $form, inline)]
         struct $name {
             payload: f64,
             double: f64,

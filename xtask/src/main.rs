@@ -18,6 +18,7 @@ mod mutate;
 mod package;
 mod page;
 mod performance;
+mod plain_build;
 mod playground;
 mod prose;
 mod python;

@@ -8,7 +8,7 @@ use xshell::{Cmd, Shell, cmd};
 
 use crate::Verdict;
 use crate::instructions::{self, Instructions};
-use crate::{batch_profile, growth, machine, python, single_calls};
+use crate::{batch_profile, growth, machine, plain_build, python, single_calls};
 
 /// Writes the measured blocks of docs/performance.md and docs/run-time.md, between `<!-- begin: measured NAME, … -->`
 /// and `<!-- end -->`
@@ -50,6 +50,8 @@ enum Block {
     RunTime,
     /// Torques from Python beside Pinocchio and the Robotics Toolbox, which are fetched; of docs/run-time.md
     FromPython,
+    /// A plain build beside one for x86-64-v3, of docs/run-time.md
+    PlainBuild,
 }
 
 impl Performance {
@@ -80,13 +82,14 @@ impl Block {
             Self::Growth => "growth",
             Self::RunTime => "run_time",
             Self::FromPython => "from_python",
+            Self::PlainBuild => "plain_build",
         }
     }
 
     /// Where it stands.
     fn page(self) -> &'static str {
         match self {
-            Self::RunTime | Self::FromPython => "docs/run-time.md",
+            Self::RunTime | Self::FromPython | Self::PlainBuild => "docs/run-time.md",
             _ => "docs/performance.md",
         }
     }
@@ -124,6 +127,7 @@ impl Block {
                 let head = here(&shell)?;
                 format!("{head}```text\n{}\n```\n", python::beside_peers()?)
             }
+            Self::PlainBuild => here(&shell)? + &plain_build::table()?,
             Self::Growth => without_load(&here(&shell)?) + &without_empty_lines(&growth::measured(&[])?),
         })
     }

@@ -22,6 +22,8 @@ use crate::program::{Expression, Program, Statement};
 pub struct Body<'a> {
     program: &'a Program,
     scalar: &'a TokenStream,
+    /// What has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
+    arithmetic: &'a TokenStream,
     /// Where the types of records are; tuples stand for them without.
     library: Option<&'a TokenStream>,
     fusing: Fusing,
@@ -40,7 +42,13 @@ impl<'a> Body<'a> {
     /// The body of a program, its products and sums rounded one by one.
     #[must_use]
     pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
-        Self { program, scalar, library: None, fusing: Fusing::None }
+        Self { program, scalar, arithmetic: scalar, library: None, fusing: Fusing::None }
+    }
+
+    /// The same with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
+    #[must_use]
+    pub fn with_arithmetic(self, arithmetic: &'a TokenStream) -> Self {
+        Self { arithmetic, ..self }
     }
 
     /// The same with poses and other records as types of the crate at `library`, where they are tuples otherwise.
@@ -150,16 +158,16 @@ impl<'a> Body<'a> {
 
     /// The sines and cosines, all at once.
     fn turns(&self) -> TokenStream {
-        let scalar = self.scalar;
+        let arithmetic = self.arithmetic;
         let [sines, cosines] = self.turn_names();
         let angles = self.program.sines_and_cosines.iter().map(|turn| self.plain(&turn.angle));
         match &self.program.sines_and_cosines[..] {
             [] => TokenStream::new(),
             [turn] => {
                 let (sine, cosine) = (name_or_underscore(turn.sine), name_or_underscore(turn.cosine));
-                quote!(let (#sine, #cosine) = #scalar::sin_cos(#(#angles)*);)
+                quote!(let (#sine, #cosine) = #arithmetic::sin_cos(#(#angles)*);)
             }
-            _ => quote!(let (#sines, #cosines) = #scalar::sin_cos_array([#(#angles),*]);),
+            _ => quote!(let (#sines, #cosines) = #arithmetic::sin_cos_array([#(#angles),*]);),
         }
     }
 
@@ -188,7 +196,7 @@ impl<'a> Body<'a> {
     }
 
     fn plain(&self, expression: &Expression) -> TokenStream {
-        Writing { scalar: self.scalar, fusing: &Fusing::None }.expression(expression, 0)
+        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &Fusing::None }.expression(expression, 0)
     }
 
     /// The value of a statement or, without a name, what is returned.
@@ -197,7 +205,7 @@ impl<'a> Body<'a> {
             (Fusing::Soonest(latency), Some(name)) => latency.rest(name),
             _ => 0,
         };
-        Writing { scalar: self.scalar, fusing: &self.fusing }.expression(expression, rest)
+        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &self.fusing }.expression(expression, rest)
     }
 }
 
@@ -208,6 +216,7 @@ fn name_or_underscore(name: Option<Name>) -> TokenStream {
 /// Writes expressions.
 struct Writing<'a> {
     scalar: &'a TokenStream,
+    arithmetic: &'a TokenStream,
     fusing: &'a Fusing,
 }
 
@@ -231,12 +240,12 @@ impl Writing<'_> {
             let tokens = operand(expression, Position::Negated);
             quote!(-#tokens)
         };
-        let scalar = self.scalar;
+        let (scalar, arithmetic) = (self.scalar, self.arithmetic);
         if let Some(Contraction { factors: [x, y], addend, negated }) = fused {
             let y = inner(y);
             let x = if negated == Some(Negated::Factor) { minus(x) } else { inner(x) };
             let addend = if negated == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
-            return quote!(#scalar::mul_add(#x, #y, #addend));
+            return quote!(#arithmetic::mul_add(#x, #y, #addend));
         }
         match expression {
             Expression::Variable(name) => quote!(#name),

@@ -58,7 +58,7 @@ mod scalar;
 mod unit;
 pub(crate) mod vector;
 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-mod x86_register;
+pub(crate) mod x86_register;
 
 pub use mismatch::LengthMismatch;
 pub use scalar::BatchScalar;

@@ -24,7 +24,8 @@ use pulp::Simd;
 use pulp::x86::{V3, V4};
 
 use super::vector::Vector;
-use crate::sin_cos::Lanes;
+use crate::sin_cos::registers::Register;
+use crate::sin_cos::{Float, LIMIT, Lanes};
 
 /// The proof that the processor has the unit.
 ///
@@ -201,6 +202,40 @@ macro_rules! register {
             }
         }
     };
+    (single calls $Register:ident, $element:ident, $LANES:literal, $less_or_equal:ident, $and:ident, $movemask:ident) => {
+        impl Register for $Register<V3> {
+            const LANES: usize = $LANES;
+
+            #[inline(always)]
+            fn padded<const N: usize>(numbers: &[$element; N], start: usize) -> Self {
+                let mut lanes = [$element::ZERO; $LANES];
+                for (lane, index) in lanes.iter_mut().zip(start..N) {
+                    *lane = numbers[index];
+                }
+                Self::of(cast(lanes))
+            }
+
+            #[inline(always)]
+            fn write<const N: usize>(self, numbers: &mut [$element; N], start: usize) {
+                let lanes: [$element; $LANES] = cast(self.lanes);
+                for (lane, index) in lanes.into_iter().zip(start..N) {
+                    numbers[index] = lane;
+                }
+            }
+
+            #[inline(always)]
+            fn are_within_limit(angles: &[Self]) -> bool {
+                let (unit, limit) = (Self::unit(), Self::splat(LIMIT.into()));
+                let mut are_within = !0;
+                for angle in angles {
+                    let above = unit.$less_or_equal(angle.lanes, limit.lanes);
+                    let below = unit.$less_or_equal((-limit).lanes, angle.lanes);
+                    are_within &= unit.avx.$movemask(cast(unit.$and(above, below)));
+                }
+                are_within & ((1 << $LANES) - 1) == (1 << $LANES) - 1
+            }
+        }
+    };
     (operators $Register:ident, $($Operator:ident :: $operator:ident, $function:ident),*) => {$(
         impl<S: Shift> $Operator for $Register<S> {
             type Output = Self;
@@ -254,3 +289,6 @@ register!(
     as_simd_f32s,
     as_mut_simd_f32s
 );
+// A single call wants no wider ones.
+register!(single calls Doubles, f64, 4, less_than_or_equal_f64s, and_m64s, _mm256_movemask_pd);
+register!(single calls Singles, f32, 8, less_than_or_equal_f32s, and_m32s, _mm256_movemask_ps);

@@ -1,6 +1,8 @@
 //! The kernel for an array of angles, and the one test of their range, for eight at a time.
 
 #[cfg(feature = "std")]
+use super::kernel_of_one_call;
+#[cfg(feature = "std")]
 use super::registers::Register;
 use super::{Float, kernel};
 
@@ -27,22 +29,21 @@ macro_rules! one_by_one {
 /// The same one by one, for a single angle and where there are no registers.
 #[inline(always)]
 pub(crate) fn sin_cos_lanes<T: Float, const N: usize>(angles: &[T; N], sines: &mut [T; N], cosines: &mut [T; N]) {
-    #[cfg(feature = "std")]
-    if !angles.iter().fold(true, |all, angle| all & angle.is_within_limit()) {
-        (*sines, *cosines) = beyond_limit(*angles);
-        return;
-    }
     let mut start = 0;
     while start < N {
         one_by_one!(angles, sines, cosines, start: 0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15);
         start += 16;
+    }
+    #[cfg(feature = "std")]
+    if !angles.iter().fold(true, |all, angle| all & angle.is_within_limit()) {
+        (*sines, *cosines) = beyond_limit(*angles, *sines, *cosines);
     }
 }
 
 /// The same in registers `V`; the last one may be filled up with zeros.
 #[cfg(feature = "std")]
 #[inline(always)]
-fn in_registers<V: Register, const N: usize>(
+pub(crate) fn in_registers<V: Register, const N: usize>(
     angles: &[V::Element; N],
     sines: &mut [V::Element; N],
     cosines: &mut [V::Element; N],
@@ -60,18 +61,21 @@ fn in_registers<V: Register, const N: usize>(
         }
         let are_within_limit = V::are_within_limit(&block[..count]);
         for (index, register) in block[..count].iter().enumerate() {
-            let (sine, cosine) = kernel(*register);
+            let (sine, cosine) = kernel_of_one_call(*register);
             sine.write(sines, start + index * V::LANES);
             cosine.write(cosines, start + index * V::LANES);
         }
         if !are_within_limit {
             // From the registers, not from `angles`: an array that is lent to a call has to live in memory, here as
             // well, and loading a register from numbers that have just been written one by one stalls the processor.
-            let mut copy = [V::Element::ZERO; BLOCK];
+            let mut copies = [[V::Element::ZERO; BLOCK]; 3];
             for (index, register) in block[..count].iter().enumerate() {
-                register.write(&mut copy, index * V::LANES);
+                register.write(&mut copies[0], index * V::LANES);
             }
-            let (exact_sines, exact_cosines) = beyond_limit(copy);
+            for (index, at) in (start..N.min(start + BLOCK)).enumerate() {
+                (copies[1][index], copies[2][index]) = (sines[at], cosines[at]);
+            }
+            let (exact_sines, exact_cosines) = beyond_limit(copies[0], copies[1], copies[2]);
             for (index, at) in (start..N.min(start + BLOCK)).enumerate() {
                 (sines[at], cosines[at]) = (exact_sines[index], exact_cosines[index]);
             }
@@ -80,13 +84,18 @@ fn in_registers<V: Register, const N: usize>(
     }
 }
 
-/// The same when some angle is beyond the limit, infinite or NaN: `std` for those, the kernel for the others.
+/// The same when some angle is beyond the limit, infinite or NaN: `std` for those. The others keep what the kernel
+/// found, which may have had more instructions than this is compiled with.
 #[cfg(feature = "std")]
 #[cold]
 #[inline(never)]
-fn beyond_limit<T: Float, const N: usize>(angles: [T; N]) -> ([T; N], [T; N]) {
-    let pairs = angles.map(|angle| if angle.is_within_limit() { kernel(angle) } else { angle.std_sin_cos() });
-    (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+fn beyond_limit<T: Float, const N: usize>(angles: [T; N], mut sines: [T; N], mut cosines: [T; N]) -> ([T; N], [T; N]) {
+    for (angle, (sine, cosine)) in angles.iter().zip(sines.iter_mut().zip(&mut cosines)) {
+        if !angle.is_within_limit() {
+            (*sine, *cosine) = angle.std_sin_cos();
+        }
+    }
+    (sines, cosines)
 }
 
 #[cfg(all(test, feature = "std"))]

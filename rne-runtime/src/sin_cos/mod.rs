@@ -24,12 +24,12 @@
 //! 4. [`array`](mod@array): the three for many angles, and the one test of their range.
 #![allow(clippy::inline_always)] // the kernel must be compiled with the target features of its caller
 
-mod array;
+pub(crate) mod array;
 mod lanes;
 mod polynomial;
 mod reduction;
 #[cfg(feature = "std")]
-mod registers;
+pub(crate) mod registers;
 
 pub(crate) use array::sin_cos;
 pub(crate) use lanes::Lanes;
@@ -89,7 +89,7 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
 }
 
 /// Angles up to this, in rad, are reduced exactly enough.
-const LIMIT: f32 = 1e5;
+pub(crate) const LIMIT: f32 = 1e5;
 
 /// Angles whose squares have no greater sum, in rad², are within it.
 pub(crate) const SQUARE_LIMIT: f32 = 0.99 * LIMIT * LIMIT;
@@ -145,5 +145,14 @@ float!(f32, single, P_F32, Q_F32, [f32x8, f32x4]);
 pub(crate) fn kernel<V: Lanes>(angle: V) -> (V, V) {
     let Reduced { rounded, head, excess } = V::Element::reduced(angle);
     let (sine, cosine) = polynomial::sine_and_cosine(head, excess);
+    V::in_quadrant(rounded, sine, cosine)
+}
+
+/// The same where the call waits for it, even in a register that is made for [many](Lanes::MANY).
+#[cfg(feature = "std")]
+#[inline(always)]
+fn kernel_of_one_call<V: Lanes>(angle: V) -> (V, V) {
+    let Reduced { rounded, head, excess } = V::Element::reduced(angle);
+    let (sine, cosine) = polynomial::soon(head, excess);
     V::in_quadrant(rounded, sine, cosine)
 }

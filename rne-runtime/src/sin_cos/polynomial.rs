@@ -46,7 +46,7 @@ pub(super) fn sine_and_cosine<V: Lanes>(y: V, e: V) -> (V, V) {
 // In this order and with these signs the sine of a negative zero is one, both ways.
 
 #[inline(always)]
-fn soon<V: Lanes>(y: V, e: V) -> (V, V) {
+pub(super) fn soon<V: Lanes>(y: V, e: V) -> (V, V) {
     let one = V::splat(V::Element::ONE);
     let z = y * y;
     let square = z * z;
