@@ -114,7 +114,7 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Regressor,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -122,7 +122,7 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MovingBase, Operations, Payload, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, ObserverState, Operations, Payload, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
