@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 14] = [
+const CRATES: [&str; 16] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -42,6 +42,8 @@ const CRATES: [&str; 14] = [
     "rne",
     "rne-convert",
     "rne-plot",
+    "rne-logs",
+    "rne-watch",
     "rne-cli",
 ];
 
