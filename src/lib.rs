@@ -122,7 +122,8 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, ObserverState, Operations, Payload, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, ObserverState, Operations, Payload, Pose, Regressor,
+    Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -130,8 +131,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynArm, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError, WrongJointCount,
-    WrongLength,
+    BaseParameter, BaseParameters, DynArm, DynObserverState, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError,
+    WrongJointCount, WrongLength,
 };
 // Derived code names them.
 #[doc(hidden)]

@@ -29,9 +29,7 @@ use rne::{
 #[robot(path = "../robots/puma560.yaml", tests)]
 struct Puma560;
 
-#[derive(
-    InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, MomentumObserver,
-)]
+#[derive(InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, MomentumObserver)]
 #[robot(builtin = "puma560", form = "reduced", rotors, tests)]
 struct Puma560Reduced;
 

@@ -80,8 +80,7 @@ pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, Regressor,
-    TorqueDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, Regressor, TorqueDerivatives,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;
@@ -90,6 +89,8 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use observer::DynObserverState;
 pub use observer::ObserverState;
 pub use operations::Operations;
 pub use payload::Payload;

@@ -14,6 +14,8 @@
 
 use core::array;
 
+#[cfg(all(feature = "arm", feature = "std"))]
+use crate::{Constant, DynArm, WrongLength};
 use crate::{MomentumObserver, Scalar};
 
 /// External torques without accelerations: what an observer knows from one tick of a controller to the next.
@@ -84,12 +86,10 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
         tau: &[T; DOF],
     ) -> [T; DOF] {
         let now = robot.momentum_and_rate(q, qd, tau);
-        let (half, frequency, weight) = (T::from_f64(0.5), self.frequency, self.next);
-        let (before, external) = (&*self, self.external);
+        let (frequency, weight) = (self.frequency, self.next);
         let external = array::from_fn(|i| {
-            let change = (now.momentum[i] - before.momentum[i]) * frequency;
-            let mean = change - (now.rate[i] + before.rate[i]) * half;
-            external[i] + (mean - external[i]) * weight
+            let [momentum, rate] = [[self.momentum[i], now.momentum[i]], [self.rate[i], now.rate[i]]];
+            low_pass(self.external[i], momentum, rate, frequency, weight)
         });
         (self.momentum, self.rate, self.external, self.next) = (now.momentum, now.rate, external, self.weight);
         external
@@ -112,6 +112,74 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     #[must_use]
     pub const fn momentum(&self) -> &[T; DOF] {
         &self.momentum
+    }
+}
+
+/// r of a joint, from that before and from momentum and rate, [before, now].
+#[inline]
+fn low_pass<T: Scalar>(before: T, momentum: [T; 2], rate: [T; 2], frequency: T, weight: T) -> T {
+    let change = (momentum[1] - momentum[0]) * frequency;
+    let mean = change - (rate[1] + rate[0]) * T::from_f64(0.5);
+    before + (mean - before) * weight
+}
+
+/// [`ObserverState`] for a [`DynArm`], whose number of joints is known when the program runs.
+#[cfg(all(feature = "arm", feature = "std"))]
+#[derive(Clone, Debug, PartialEq)]
+pub struct DynObserverState<T> {
+    momentum: Vec<T>,
+    rate: Vec<T>,
+    external: Vec<T>,
+    next: T,
+    weight: T,
+    frequency: T,
+}
+
+#[cfg(all(feature = "arm", feature = "std"))]
+impl<T: Scalar> DynObserverState<T> {
+    /// As [`ObserverState::new`], for so many joints.
+    #[must_use]
+    pub fn new(dof: usize, gain: f64, period: f64) -> Self {
+        let ObserverState { next, weight, frequency, .. } = ObserverState::<0, T>::new(gain, period);
+        let zeros = vec![T::zero(); dof];
+        Self { momentum: zeros.clone(), rate: zeros.clone(), external: zeros, next, weight, frequency }
+    }
+
+    /// As [`ObserverState::update`].
+    ///
+    /// # Errors
+    /// When an argument, or the arm, does not have one element per joint of the observer.
+    pub fn update<S: Constant>(
+        &mut self,
+        arm: &DynArm<S>,
+        q: &[T],
+        qd: &[T],
+        tau: &[T],
+    ) -> Result<Vec<T>, WrongLength> {
+        let [momentum, rate] = arm.momentum_and_rate(q, qd, tau)?;
+        if momentum.len() != self.external.len() {
+            return Err(WrongLength { argument: "q", expected: self.external.len(), found: momentum.len() });
+        }
+        for (i, external) in self.external.iter_mut().enumerate() {
+            let both = [[self.momentum[i], momentum[i]], [self.rate[i], rate[i]]];
+            *external = low_pass(*external, both[0], both[1], self.frequency, self.next);
+        }
+        (self.momentum, self.rate, self.next) = (momentum, rate, self.weight);
+        Ok(self.external.clone())
+    }
+
+    /// As [`ObserverState::reset`].
+    pub fn reset(&mut self) {
+        for list in [&mut self.momentum, &mut self.rate, &mut self.external] {
+            list.fill(T::zero());
+        }
+        self.next = T::zero();
+    }
+
+    /// The external torques of the last update, base to tip.
+    #[must_use]
+    pub fn external_torques(&self) -> &[T] {
+        &self.external
     }
 }
 

@@ -10,8 +10,8 @@ use rne_model::Convention::{Modified, Standard};
 use rne_model::Model;
 use rne_runtime::{
     Arm, CentreOfMass, Constant, CoriolisMatrix, Dual, DynArm, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor, Scalar, Wrench,
-    WrongLength,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor,
+    Scalar, Wrench, WrongLength,
 };
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
 

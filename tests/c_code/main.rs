@@ -8,6 +8,7 @@ mod compiler;
 mod derived;
 mod driver;
 mod kernel;
+mod observer;
 mod parameters;
 mod special;
 mod states;

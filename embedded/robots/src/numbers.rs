@@ -1,6 +1,6 @@
 //! What a function returns, number by number.
 
-use rne::{MomentumAndRate, ObserverState, Pose, TorqueDerivatives, Wrench};
+use rne::{MomentumAndRate, Pose, TorqueDerivatives, Wrench};
 
 /// Numbers in a shape.
 pub trait Numbers {

@@ -67,8 +67,7 @@ fn of_motion<'s>(
         Revolute => {
             let about_z = |v: Vector<'s>, of: Vector<'s>| v.0[1] * of.0[0] - v.0[0] * of.0[1];
             let of_frame = |motion: &Motion<'s>, wrench: &crate::reduced::backward::Wrench<'s>| {
-                about_z(motion.omega_dot, wrench.moment)
-                    + about_z(motion.acceleration, wrench.force).times(per_both)
+                about_z(motion.omega_dot, wrench.moment) + about_z(motion.acceleration, wrench.force).times(per_both)
             };
             of_frame(&link.own, &carried.own) + of_frame(&link.unturned, &carried.unturned)
         }
