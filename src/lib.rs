@@ -121,7 +121,7 @@
 #[doc(inline)]
 pub use rne_macro::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Regressor,
 };
 #[doc(inline)]
 pub use rne_model as model;
@@ -129,7 +129,8 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MovingBase, Operations, Payload, Pose, Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, ObserverState, Operations, Payload, Pose, Regressor,
+    Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]
@@ -137,8 +138,8 @@ pub use rne_runtime::{Arm, LinkTrace, Trace};
 #[cfg(all(feature = "arm", feature = "std"))]
 #[doc(inline)]
 pub use rne_runtime::{
-    BaseParameter, BaseParameters, DynArm, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError, WrongJointCount,
-    WrongLength,
+    BaseParameter, BaseParameters, DynArm, DynObserverState, DynTorqueDerivatives, DynTrace, LinkParameter, LoadError,
+    WrongJointCount, WrongLength,
 };
 // Derived code names them.
 #[doc(hidden)]

@@ -128,7 +128,7 @@ fn everything(form: &str) -> String {
 
 #[derive(
     InverseDynamics, MassMatrix, CoriolisMatrix, ForwardDynamics, Kinematics, Energy, CentreOfMass, Regressor,
-    InverseDynamicsDerivatives, JointWrenches, MovingBase,
+    InverseDynamicsDerivatives, JointWrenches, MomentumObserver, MovingBase,
 )]
 #[robot(path = \"../robot.yaml\", form = \"{form}\")]
 struct Arm;
@@ -143,6 +143,7 @@ fn main() {{
     println!(\"{{:?}}\", (Arm.kinetic_energy(&x, &x), Arm.potential_energy(&x), Arm.regressor(&x, &x, &x)));
     println!(\"{{:?}}\", (Arm.centre_of_mass(&x), Arm.centre_of_mass_jacobian(&x)));
     println!(\"{{:?}}\", (Arm.inverse_dynamics_derivatives(&x, &x, &x), Arm.joint_wrenches(&x, &x, &x)));
+    println!(\"{{:?}}\", Arm.momentum_and_rate(&x, &x, &x));
     println!(\"{{:?}}\", Arm.inverse_dynamics_on_moving_base(&x, &x, &x, &base));
 }}
 "

@@ -6,8 +6,8 @@ use std::process::Command;
 use rne::testing::{self, GoldenState, RobotFile};
 use rne::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Payload, Pose, Regressor, Scalar,
-    Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Payload, Pose,
+    Regressor, Scalar, Wrench,
 };
 
 #[derive(
@@ -22,13 +22,14 @@ use rne::{
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
+    MomentumObserver,
     MovingBase,
     Actuation,
 )]
 #[robot(path = "../robots/puma560.yaml", tests)]
 struct Puma560;
 
-#[derive(InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[derive(InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, MomentumObserver)]
 #[robot(builtin = "puma560", form = "reduced", rotors, tests)]
 struct Puma560Reduced;
 
@@ -37,7 +38,7 @@ struct Puma560Reduced;
 struct Panda;
 
 /// One joint slides, and gravity loads one joint alone.
-#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy)]
+#[derive(InverseDynamics, MassMatrix, ForwardDynamics, Kinematics, Energy, MomentumObserver)]
 #[robot(builtin = "scara_cobra600", form = "reduced", tests)]
 struct Scara {}
 
@@ -98,6 +99,7 @@ fn each_derive_has_its_tests() {
         ("puma560_regressor_tests", 1),
         ("puma560_inverse_dynamics_derivatives_tests", 1),
         ("puma560_joint_wrenches_tests", 1),
+        ("puma560_momentum_observer_tests", 2),
         ("puma560_moving_base_tests", 1),
         ("puma560_actuation_tests", 1),
         ("puma560_reduced_inverse_dynamics_tests", 3),

@@ -204,6 +204,7 @@ fn runtime(arm: &DynArm, function: Function, state: &State) -> std::result::Resu
             let wrenches = arm.joint_wrenches(q, qd, qdd)?;
             wrenches.iter().flat_map(|Wrench { force, moment }| [*force, *moment]).flatten().collect()
         }
+        Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
     })

@@ -327,6 +327,31 @@ impl Arm {
         self.compute(py, Function::JointWrenches, vec![("q", q), ("qd", qd), ("qdd", qdd)], parameters, out)
     }
 
+    /// Momentum of every joint, M(q) q̇, and the rate it would have without external torques, τ + C(q, q̇)ᵀ q̇ - g(q): two
+    /// arrays of shape (n,) or (N, n). What the momentum changes faster is the external torque.
+    #[pyo3(signature = (q, qd, tau, *, parameters=None, out=None))]
+    #[allow(clippy::too_many_arguments)]
+    fn momentum_and_rate<'py>(
+        &self,
+        py: Python<'py>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
+        parameters: Option<&Bound<'py, PyAny>>,
+        out: Option<&Bound<'py, PyAny>>,
+    ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
+        let both = self.compute(
+            py,
+            Function::MomentumAndRate,
+            vec![("q", q), ("qd", qd), ("tau", tau)],
+            parameters,
+            out,
+        )?;
+        let all = pyo3::types::PySlice::full(py);
+        let of = |index: usize| both.get_item((pyo3::types::PyEllipsis::get(py), index, &all));
+        Ok((of(0)?, of(1)?))
+    }
+
     /// What rotors behind gears and friction add to the torques, G² Jm q̈ + G² B q̇ + |G| Tc(sign q̇): shape (n,) or
     /// (N, n).
     #[pyo3(signature = (qd, qdd, *, parameters=None, out=None))]

@@ -22,7 +22,7 @@ fn shape(function: Function, dof: usize) -> Vec<usize> {
             Layout::Record(Record::Pose, _) => shape.extend([4, 4]),
             // force, then moment
             Layout::Record(Record::Wrench, _) => shape.push(6),
-            Layout::Record(Record::TorqueDerivatives, parts) => {
+            Layout::Record(Record::TorqueDerivatives | Record::MomentumAndRate, parts) => {
                 shape.push(2);
                 if let Some(part) = parts.first() {
                     of(part, shape);

@@ -166,7 +166,7 @@ Rust function returns. Without --function it is inverse_dynamics, with --wrench 
 
 /// Which options of `rne eval` a function takes, exactly.
 fn of_eval() -> String {
-    use Argument::{Positions, Rates};
+    use Argument::{Positions, Rates, Torques};
     let mut text = String::new();
     let mut row = |options: &str, functions: &str| {
         let indent = " ".repeat(18);
@@ -181,7 +181,7 @@ fn of_eval() -> String {
          inverse_dynamics_derivatives, joint_wrenches; with --wrench inverse_dynamics_with_wrench, with --payload \
          inverse_dynamics_with_payload, with the --base-… options inverse_dynamics_on_moving_base",
     );
-    row("--q --qd --tau", "forward_dynamics");
+    row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
     row("--qd --qdd", "actuator_torques; zero where no joint has a motor");
     text + "\n" + &wrap(OF_EVAL, terminal::width(WIDTH), "") + "\n"
 }

@@ -258,6 +258,17 @@ impl CompiledArm {
         Ok(numbers.chunks_exact(6).map(wrench).collect())
     }
 
+    /// The momentum of every joint, M(q) q̇, and the rate it would have without external torques, τ + C(q, q̇)ᵀ q̇ - g(q).
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
+    pub fn momentum_and_rate<T: Number>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<[Vec<T>; 2], EvaluationError> {
+        let arguments = motion(q, qd, &[]).tau(Array::Same(tau));
+        let mut momentum: Vec<T> = self.numbers(Function::MomentumAndRate, &arguments)?;
+        let rate = momentum.split_off(self.dof());
+        Ok([momentum, rate])
+    }
+
     /// Torques on a base that moves as told, under gravity as told, with a free tip.
     ///
     /// # Errors

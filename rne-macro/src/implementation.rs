@@ -244,7 +244,7 @@ impl Target<'_> {
             Shape::Record(record, _) => {
                 let name = format_ident!("{}", record.name());
                 match record {
-                    Record::TorqueDerivatives => quote!(#krate::#name<#dof, T>),
+                    Record::TorqueDerivatives | Record::MomentumAndRate => quote!(#krate::#name<#dof, T>),
                     Record::Pose | Record::Wrench => quote!(#krate::#name<T>),
                 }
             }

@@ -493,6 +493,19 @@ pub fn derive_joint_wrenches(input: TokenStream) -> TokenStream {
     expand::capability(Capability::JointWrenches, input.into()).into()
 }
 
+/// Implements the trait `MomentumObserver` for a struct: the momentum of the joints and its rate, from which
+/// `ObserverState` makes external torques without accelerations.
+///
+/// In the reduced form by the recursion of the torques, with velocities in the place of accelerations.
+///
+/// The attribute is that of [`InverseDynamics`](macro@InverseDynamics); `max_ops` concerns that derive alone. The type
+/// gets a constant with the operations of each method, `MOMENTUM_AND_RATE_OPERATIONS`; `DOF`, names and limits come
+/// with `InverseDynamics`.
+#[proc_macro_derive(MomentumObserver, attributes(robot))]
+pub fn derive_momentum_observer(input: TokenStream) -> TokenStream {
+    expand::capability(Capability::MomentumObserver, input.into()).into()
+}
+
 /// Implements the trait `MovingBase` for a struct: torques on a base that moves.
 ///
 /// Its motion (ω₀, ω̇₀, c̈₀) and gravity are arguments.

@@ -16,10 +16,10 @@ use crate::scale::{Scale, label, range, significant};
 use crate::trajectory::Trajectory;
 
 /// Pixels.
-const WIDTH: f64 = 1280.0;
-const SIDE: f64 = 40.0;
-const HEAD: f64 = 132.0;
-const PANEL: f64 = 262.0;
+pub(crate) const WIDTH: f64 = 1280.0;
+pub(crate) const SIDE: f64 = 40.0;
+pub(crate) const HEAD: f64 = 132.0;
+pub(crate) const PANEL: f64 = 262.0;
 const POWERS: f64 = 330.0;
 /// Left of a panel's axes for numbers, above them for its title, below them for times.
 const LEFT: f64 = 64.0;
@@ -27,13 +27,13 @@ const ABOVE: f64 = 40.0;
 const BELOW: f64 = 44.0;
 const GAP: f64 = 24.0;
 
-const TEXT: &str = "#222222";
-const QUIET: &str = "#595959";
+pub(crate) const TEXT: &str = "#222222";
+pub(crate) const QUIET: &str = "#595959";
 const GRID: &str = "#e4e4e4";
 const ZERO: &str = "#9a9a9a";
 
 /// Okabe and Ito, without yellow, which light backgrounds swallow; black is the total.
-const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a5195"];
+pub(crate) const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a5195"];
 /// Dashes of the lines that have a colour again.
 const DASHES: [&str; 4] = ["", "9 4", "2 4", "11 4 2 4"];
 
@@ -41,12 +41,12 @@ const DASHES: [&str; 4] = ["", "9 4", "2 4", "11 4 2 4"];
 const BUCKETS: usize = 640;
 
 /// A line of a panel.
-struct Curve<'a> {
-    name: &'a str,
-    colour: &'a str,
-    dash: &'a str,
-    width: f64,
-    values: Vec<f64>,
+pub(crate) struct Curve<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) colour: &'a str,
+    pub(crate) dash: &'a str,
+    pub(crate) width: f64,
+    pub(crate) values: Vec<f64>,
 }
 
 /// The torques and powers of a robot along a trajectory as an SVG of 1280 pixels width: for each joint its torque in
@@ -59,22 +59,8 @@ pub fn svg(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory, abou
     #[allow(clippy::cast_precision_loss)] // at most 64 joints
     let (columns_f, rows_f) = (columns as f64, rows as f64);
     let height = HEAD + rows_f * PANEL + POWERS + 12.0;
-    let mut svg = Svg::new();
-    let size = format!("0 0 {} {}", pixels(WIDTH), pixels(height));
-    let root = [
-        ("xmlns", "http://www.w3.org/2000/svg"),
-        ("viewBox", size.as_str()),
-        ("width", &pixels(WIDTH)),
-        ("height", &pixels(height)),
-        ("role", "img"),
-        ("font-family", "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"),
-        ("font-size", "15"),
-        ("fill", TEXT),
-    ];
-    svg.open("svg", &root);
     let title = robot.title.as_deref().unwrap_or(&robot.name);
-    svg.words("title", &[], &format!("Torques of {title}"));
-    svg.empty("rect", &[("width", "100%"), ("height", "100%"), ("fill", "#ffffff")]);
+    let mut svg = Svg::with_root(&format!("Torques of {title}"), height);
     svg.text(SIDE, 46.0, &[("font-size", "26"), ("font-weight", "600")], &shortened(title, 72));
     svg.text(SIDE, 74.0, &[("font-size", "16"), ("fill", QUIET)], &shortened(about, 130));
     legend(&mut svg);
@@ -110,11 +96,11 @@ fn legend(svg: &mut Svg) {
 
 /// Where a panel stands, axes, numbers and all.
 #[derive(Clone, Copy)]
-struct Place {
-    x: f64,
-    y: f64,
-    width: f64,
-    height: f64,
+pub(crate) struct Place {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 fn torque_panel(
@@ -225,13 +211,28 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
 
 /// Axes with their grid, and the curves; returns the scales.
 fn panel(svg: &mut Svg, place: Place, title: &str, trajectory: &Trajectory, curves: &[Curve<'_>]) -> (Scale, Scale) {
+    let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
+    let (across, up, _) = axes(svg, place, title, &trajectory.time, values);
+    for curve in curves {
+        svg.curve(curve, &trajectory.time, across, up);
+    }
+    (across, up)
+}
+
+/// Axes with their grid for values over times; returns the scales, and where the axes are between: [top, bottom].
+pub(crate) fn axes(
+    svg: &mut Svg,
+    place: Place,
+    title: &str,
+    time: &[f64],
+    values: impl Iterator<Item = f64>,
+) -> (Scale, Scale, [f64; 2]) {
     const ABOUT_UP: f64 = 5.0;
     let (left, right) = (place.x + LEFT, place.x + place.width);
     let (top, bottom) = (place.y + ABOVE, place.y + place.height - BELOW);
-    let (start, end) =
-        (trajectory.time.first().copied().unwrap_or(0.0), trajectory.time.last().copied().unwrap_or(1.0));
+    let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
     let across = Scale::new(start, end, left, right);
-    let (low, high) = range(curves.iter().flat_map(|curve| curve.values.iter().copied()), ABOUT_UP);
+    let (low, high) = range(values, ABOUT_UP);
     let up = Scale::new(low, high, bottom, top);
     if !title.is_empty() {
         svg.text(place.x, place.y + 26.0, &[("font-size", "17"), ("font-weight", "600")], title);
@@ -248,10 +249,7 @@ fn panel(svg: &mut Svg, place: Place, title: &str, trajectory: &Trajectory, curv
         svg.text(left - 9.0, y + 5.0, &[("text-anchor", "end"), ("fill", QUIET)], &label(tick));
     }
     svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], "t, s");
-    for curve in curves {
-        svg.curve(curve, &trajectory.time, across, up);
-    }
-    (across, up)
+    (across, up, [top, bottom])
 }
 
 /// The samples of a curve that a picture shows: of each stretch the first, the least, the largest and the last.
@@ -276,7 +274,7 @@ fn kept(values: &[f64]) -> Vec<usize> {
 }
 
 /// Elements, written one after the other.
-struct Svg {
+pub(crate) struct Svg {
     writer: Writer<Vec<u8>>,
     /// Writing to memory does not fail; if it does, the picture is empty.
     failed: bool,
@@ -287,30 +285,50 @@ impl Svg {
         Self { writer: Writer::new_with_indent(Vec::new(), b' ', 1), failed: false }
     }
 
+    /// A white picture of so many pixels; `name` is what it is called where it is not seen.
+    pub(crate) fn with_root(name: &str, height: f64) -> Self {
+        let mut svg = Self::new();
+        let size = format!("0 0 {} {}", pixels(WIDTH), pixels(height));
+        let root = [
+            ("xmlns", "http://www.w3.org/2000/svg"),
+            ("viewBox", size.as_str()),
+            ("width", &pixels(WIDTH)),
+            ("height", &pixels(height)),
+            ("role", "img"),
+            ("font-family", "Inter, 'Helvetica Neue', Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif"),
+            ("font-size", "15"),
+            ("fill", TEXT),
+        ];
+        svg.open("svg", &root);
+        svg.words("title", &[], name);
+        svg.empty("rect", &[("width", "100%"), ("height", "100%"), ("fill", "#ffffff")]);
+        svg
+    }
+
     fn event(&mut self, event: Event<'_>) {
         let written: io::Result<()> = self.writer.write_event(event);
         self.failed |= written.is_err();
     }
 
-    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
+    pub(crate) fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
         self.event(Event::Start(BytesStart::new(name).with_attributes(attributes.iter().copied())));
     }
 
-    fn close(&mut self, name: &str) {
+    pub(crate) fn close(&mut self, name: &str) {
         self.event(Event::End(BytesEnd::new(name)));
     }
 
-    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
+    pub(crate) fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
         self.event(Event::Empty(BytesStart::new(name).with_attributes(attributes.iter().copied())));
     }
 
-    fn words(&mut self, name: &str, attributes: &[(&str, &str)], words: &str) {
+    pub(crate) fn words(&mut self, name: &str, attributes: &[(&str, &str)], words: &str) {
         self.open(name, attributes);
         self.event(Event::Text(BytesText::new(&plain(words))));
         self.close(name);
     }
 
-    fn text(&mut self, x: f64, y: f64, attributes: &[(&str, &str)], words: &str) {
+    pub(crate) fn text(&mut self, x: f64, y: f64, attributes: &[(&str, &str)], words: &str) {
         let (x, y) = (pixels(x), pixels(y));
         let place = [("x", x.as_str()), ("y", y.as_str())];
         let all: Vec<(&str, &str)> = place.into_iter().chain(attributes.iter().copied()).collect();
@@ -318,7 +336,7 @@ impl Svg {
     }
 
     #[allow(clippy::too_many_arguments)] // two points and how they are joined
-    fn stroke(&mut self, x1: f64, y1: f64, x2: f64, y2: f64, colour: &str, dash: &str, width: f64) {
+    pub(crate) fn stroke(&mut self, x1: f64, y1: f64, x2: f64, y2: f64, colour: &str, dash: &str, width: f64) {
         let [x1, y1, x2, y2, width] = [x1, y1, x2, y2, width].map(pixels);
         let mut attributes = vec![
             ("x1", x1.as_str()),
@@ -334,7 +352,7 @@ impl Svg {
         self.empty("line", &attributes);
     }
 
-    fn curve(&mut self, curve: &Curve<'_>, time: &[f64], across: Scale, up: Scale) {
+    pub(crate) fn curve(&mut self, curve: &Curve<'_>, time: &[f64], across: Scale, up: Scale) {
         let mut points = String::new();
         for at in kept(&curve.values) {
             let gap = if points.is_empty() { "" } else { " " };
@@ -356,7 +374,7 @@ impl Svg {
         self.close("polyline");
     }
 
-    fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         let text = String::from_utf8(self.writer.into_inner()).unwrap_or_default();
         if self.failed { String::new() } else { text + "\n" }
     }
@@ -368,19 +386,19 @@ fn plain(text: &str) -> String {
 }
 
 /// A text of at most so many characters.
-fn shortened(text: &str, most: usize) -> String {
+pub(crate) fn shortened(text: &str, most: usize) -> String {
     let text = plain(text);
     if text.chars().count() <= most { text } else { text.chars().take(most - 1).chain(['…']).collect() }
 }
 
 /// Pixels in hundredths.
-fn pixels(value: f64) -> String {
+pub(crate) fn pixels(value: f64) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{}", rounded + 0.0)
 }
 
 /// About how wide a text is: fonts differ, and a legend has gaps for that.
-fn width_of(text: &str, size: f64) -> f64 {
+pub(crate) fn width_of(text: &str, size: f64) -> f64 {
     let of = |c: char| match c {
         '\u{300}'..='\u{36F}' => 0.0,
         'i' | 'j' | 'l' | 't' | 'f' | 'r' | ' ' | ',' | '(' | ')' | '.' => 0.34,

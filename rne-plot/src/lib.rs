@@ -1,5 +1,6 @@
 //! Torques along a trajectory, and what they are made of: the split of a torque into inertia, velocity and gravity
-//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]).
+//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]). [`panels`] draws
+//! other signals of joints in the same manner.
 //!
 //! Numbers in, data and text out: nothing here opens a file or prints.
 //!
@@ -19,11 +20,13 @@
 
 mod chart;
 mod history;
+mod panels;
 mod parts;
 mod scale;
 mod trajectory;
 
 pub use crate::chart::svg;
 pub use crate::history::{Peak, TorqueHistory};
+pub use crate::panels::{Band, Panel, PanelCurve, panels};
 pub use crate::parts::TorqueParts;
 pub use crate::trajectory::{Trajectory, TrajectoryError};

@@ -186,6 +186,27 @@ pub trait JointWrenches<const DOF: usize> {
     fn joint_wrenches<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], qdd: &[T; DOF]) -> [Wrench<T>; DOF];
 }
 
+/// The momentum of the joints p = M(q) q̇ of one state, and the rate that it has without external torques. Row i is
+/// joint i.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MomentumAndRate<const DOF: usize, T> {
+    /// p = M(q) q̇, N m s or N s.
+    pub momentum: [T; DOF],
+    /// τ + C(q, q̇)ᵀ q̇ - g(q), which is τ + ∂T/∂q - ∂V/∂q, N m or N.
+    pub rate: [T; DOF],
+}
+
+/// External torques without accelerations: what a momentum observer asks of the arm at every tick. Its state, gain and
+/// update are [`ObserverState`](crate::ObserverState).
+pub trait MomentumObserver<const DOF: usize> {
+    /// p = M(q) q̇, and τ + C(q, q̇)ᵀ q̇ - g(q) with Christoffel's C: with external torques ṗ is this rate and they, so
+    /// they are ṗ less this rate. `tau`: what the actuators deliver to the links, friction taken off.
+    ///
+    /// Rotors belong to p where the arm is taken with them: `#[robot(rotors)]`, `with_rotors`.
+    #[must_use]
+    fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T>;
+}
+
 /// Torques on a vehicle, a ship or another robot.
 pub trait MovingBase<const DOF: usize> {
     /// Torques with a free tip when frame 0 moves as `base` says, which replaces the robot's own gravity as well.

@@ -50,7 +50,10 @@ mod mass_matrix;
 #[cfg(feature = "arm")]
 mod mechanism;
 #[cfg(feature = "arm")]
+mod momentum;
+#[cfg(feature = "arm")]
 mod mount;
+mod observer;
 mod operations;
 mod payload;
 #[cfg(feature = "arm")]
@@ -79,7 +82,7 @@ pub use base_parameters::{BaseParameter, BaseParameters, LinkParameter};
 pub use batch::{BatchInverseDynamics, BatchScalar, LengthMismatch, VectorUnit};
 pub use capability::{
     Actuation, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives,
-    JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor, TorqueDerivatives,
+    JointWrenches, Kinematics, MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, Regressor, TorqueDerivatives,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use derivatives::DynTorqueDerivatives;
@@ -88,6 +91,9 @@ pub use dual::Dual;
 pub use dyn_arm::{DynArm, DynTrace};
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use error::{LoadError, WrongJointCount, WrongLength};
+#[cfg(all(feature = "arm", feature = "std"))]
+pub use observer::DynObserverState;
+pub use observer::ObserverState;
 pub use operations::Operations;
 pub use payload::Payload;
 pub use pose::Pose;

@@ -10,8 +10,8 @@ use rne_model::Convention::{Modified, Standard};
 use rne_model::Model;
 use rne_runtime::{
     Arm, CentreOfMass, Constant, CoriolisMatrix, Dual, DynArm, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
-    WrongLength,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor,
+    Scalar, Wrench, WrongLength,
 };
 use simba::simd::{AutoF32x4, AutoF64x4, SimdValue, WideF64x4};
 
@@ -58,6 +58,10 @@ fn all<T: Scalar>(arm: &Arm<6, impl Constant>, [q, qd, qdd]: &[[T; 6]; 3]) -> Ve
         derivatives.dqd.concat(),
         arm.joint_wrenches(q, qd, qdd).iter().flat_map(of_wrench).collect(),
         arm.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
+        {
+            let found = arm.momentum_and_rate(q, qd, qdd);
+            [found.momentum, found.rate].concat()
+        },
     ]
 }
 
@@ -80,6 +84,7 @@ fn all_of_dyn(arm: &DynArm, [q, qd, qdd]: &[[f64; 6]; 3]) -> Result<Vec<Vec<f64>
         derivatives.dqd.concat(),
         arm.joint_wrenches(q, qd, qdd)?.iter().flat_map(of_wrench).collect(),
         arm.inverse_dynamics_on_moving_base(q, qd, qdd, &SIX_BASE)?,
+        arm.momentum_and_rate(q, qd, qdd)?.concat(),
     ])
 }
 
@@ -315,6 +320,7 @@ fn a_wrong_length_names_the_argument() {
     assert_eq!(arm.inverse_dynamics_derivatives(&one, &two, &one), Err(wrong("qd")));
     assert_eq!(arm.joint_wrenches(&two, &one, &one), Err(wrong("q")));
     assert_eq!(arm.inverse_dynamics_on_moving_base(&one, &one, &two, &SIX_BASE), Err(wrong("qdd")));
+    assert_eq!(arm.momentum_and_rate(&one, &one, &two), Err(wrong("tau")));
     assert_eq!(arm.actuator_torques(&two, &one), Err(wrong("qd")));
     assert_eq!(arm.actuator_torques_smooth(&one, &two, 0.1), Err(wrong("qdd")));
     assert_eq!(arm.with_motors(vec![None; 2]), Err(wrong("motors")));

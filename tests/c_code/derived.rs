@@ -2,7 +2,8 @@
 
 use rne::{
     Actuation, BaseMotion, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Pose, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, Pose, Regressor,
+    Scalar, Wrench,
 };
 use rne_codegen::Form;
 pub(crate) use rne_codegen::Function;
@@ -30,6 +31,7 @@ pub(crate) trait Everything<const DOF: usize>:
     + Regressor<DOF>
     + InverseDynamicsDerivatives<DOF>
     + JointWrenches<DOF>
+    + MomentumObserver<DOF>
     + MovingBase<DOF>
     + Actuation<DOF>
 {
@@ -86,6 +88,10 @@ pub(crate) fn numbers<const DOF: usize, T: Scalar>(
             let wrenches = robot.joint_wrenches(q, qd, qdd);
             wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()
         }
+        Function::MomentumAndRate => {
+            let found = robot.momentum_and_rate(q, qd, tau);
+            [found.momentum, found.rate].concat()
+        }
         Function::InverseDynamicsOnMovingBase => robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec(),
         Function::ActuatorTorques => robot.actuator_torques(qd, qdd).to_vec(),
     }
@@ -107,6 +113,7 @@ macro_rules! robot {
                 rne::Regressor,
                 rne::InverseDynamicsDerivatives,
                 rne::JointWrenches,
+                rne::MomentumObserver,
                 rne::MovingBase,
                 rne::Actuation,
             )]

@@ -146,7 +146,7 @@ impl Driver<'_> {
                 | Function::CoriolisMatrix
                 | Function::JacobianRateTimesVelocity
                 | Function::KineticEnergy => "q, qd",
-                Function::ForwardDynamics => "q, qd, tau",
+                Function::ForwardDynamics | Function::MomentumAndRate => "q, qd, tau",
                 Function::InverseDynamicsOnMovingBase => "q, qd, qdd, omega, omega_dot, acceleration, gravity",
                 Function::ActuatorTorques => "qd, qdd",
             };
@@ -165,6 +165,7 @@ impl Driver<'_> {
                 Function::JacobianRateTimesVelocity => (format!("{real} x[6]"), "x"),
                 Function::Regressor => (format!("{real} x[{n}][{n}][10]"), "x"),
                 Function::InverseDynamicsDerivatives => (format!("{prefix}_torque_derivatives x"), "&x"),
+                Function::MomentumAndRate => (format!("{prefix}_momentum x"), "&x"),
                 Function::JointWrenches => (format!("{prefix}_wrench x[{n}]"), "x"),
                 _ => (format!("{real} x[{}]", format_args!("{}_DOF", prefix.to_ascii_uppercase())), "x"),
             };

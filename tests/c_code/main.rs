@@ -12,6 +12,7 @@ mod derived;
 mod driver;
 mod kernel;
 mod machine;
+mod observer;
 mod parameters;
 mod special;
 mod states;

@@ -308,6 +308,14 @@ impl Arm {
         numbers.chunks(6).map(wrench).collect()
     }
 
+    /// M q̇, and its rate without external torques.
+    pub(crate) fn momentum_and_rate<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> [Vec<T>; 2] {
+        let given = Given { tau, ..Given::of_joints(q, qd, &[]) };
+        let mut momentum = self.numbers(Function::MomentumAndRate, &given);
+        let rate = momentum.split_off(self.robot.dof());
+        [momentum, rate]
+    }
+
     pub(crate) fn actuator_torques<T: Scalar>(&self, qd: &[T], qdd: &[T]) -> Vec<T> {
         self.numbers(Function::ActuatorTorques, &Given::of_joints(&[], qd, qdd))
     }
@@ -354,6 +362,7 @@ pub(crate) fn of_runtime<T: Scalar>(arm: &DynArm, function: Function, given: &Gi
         Function::JointWrenches => arm
             .joint_wrenches(q, qd, qdd)
             .map(|wrenches| wrenches.iter().flat_map(|wrench| [wrench.force, wrench.moment].concat()).collect()),
+        Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau).map(|numbers| numbers.concat()),
         Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base),
         Function::ActuatorTorques => arm.actuator_torques(qd, qdd),
     };

@@ -75,6 +75,7 @@ fn standard_and_modified_rows_of_one_arm_agree() {
             agree("∂τ/∂q", &|arm| flat(arm.inverse_dynamics_derivatives(q, qd, qdd).dq));
             agree("∂τ/∂q̇", &|arm| flat(arm.inverse_dynamics_derivatives(q, qd, qdd).dqd));
             agree("T and V", &|arm| vec![arm.kinetic_energy(q, qd), arm.potential_energy(q)]);
+            agree("p", &|arm| arm.momentum_and_rate(q, qd, qdd).concat());
             // The reference points J_i and the axes of form P are those of the joints in both.
             agree("joint wrenches", &|arm| {
                 arm.joint_wrenches(q, qd, qdd).iter().flat_map(|w| [w.force, w.moment].concat()).collect()

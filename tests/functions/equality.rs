@@ -14,7 +14,7 @@ use crate::check::{Conditioning, Worst, conditioning, error_on_scale};
 use crate::golden::ROBOTS;
 
 /// Functions whose seven steps are the runtime's operations, in its order.
-const SAME_BITS: [Function; 14] = [
+const SAME_BITS: [Function; 15] = [
     Function::InverseDynamics,
     Function::InverseDynamicsWithWrench,
     Function::InverseDynamicsWithPayload,
@@ -27,6 +27,7 @@ const SAME_BITS: [Function; 14] = [
     Function::KineticEnergy,
     Function::InverseDynamicsDerivatives,
     Function::JointWrenches,
+    Function::MomentumAndRate,
     Function::InverseDynamicsOnMovingBase,
     Function::ActuatorTorques,
 ];

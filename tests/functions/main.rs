@@ -18,6 +18,7 @@ mod first_moments;
 mod golden;
 mod kinematics;
 mod matrices;
+mod momentum;
 mod operations;
 mod payload;
 mod peers;

@@ -4,7 +4,7 @@ use rne::model::Inertia;
 use rne::{BaseMotion, Payload, Pose, Scalar, Wrench};
 use rne::{
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MovingBase, Regressor,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, Regressor,
 };
 
 /// Every function but for the motors', by the sum of their traits.
@@ -19,6 +19,7 @@ pub(crate) trait Robot<const DOF: usize>:
     + Regressor<DOF>
     + InverseDynamicsDerivatives<DOF>
     + JointWrenches<DOF>
+    + MomentumObserver<DOF>
     + MovingBase<DOF>
 {
     /// What the motors add, if there are some.
@@ -36,6 +37,7 @@ pub(crate) trait Robot<const DOF: usize>:
     rne::Regressor,
     rne::InverseDynamicsDerivatives,
     rne::JointWrenches,
+    rne::MomentumObserver,
     rne::MovingBase,
     rne::Actuation,
 )]
@@ -59,6 +61,7 @@ impl Robot<6> for Puma560 {
     rne::Regressor,
     rne::InverseDynamicsDerivatives,
     rne::JointWrenches,
+    rne::MomentumObserver,
     rne::MovingBase,
 )]
 #[robot(path = "../../robots/planar2.yaml")]
@@ -96,6 +99,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
     let of_pose = |pose: &Pose<T>| [pose.rotation.concat(), pose.translation.to_vec()].concat();
     let turns = q.map(Scalar::sin_cos);
     let (sin, cos) = (turns.map(|turn| turn.0), turns.map(|turn| turn.1));
+    let momentum = robot.momentum_and_rate(q, qd, qdd);
     let derivatives = robot.inverse_dynamics_derivatives(q, qd, qdd);
     vec![
         ("inverse_dynamics", robot.inverse_dynamics(q, qd, qdd).to_vec()),
@@ -121,6 +125,7 @@ pub(crate) fn all<const DOF: usize, T: Scalar>(
             "joint_wrenches",
             robot.joint_wrenches(q, qd, qdd).iter().flat_map(|w| [w.force, w.moment].concat()).collect(),
         ),
+        ("momentum_and_rate", [momentum.momentum, momentum.rate].concat()),
         ("inverse_dynamics_on_moving_base", robot.inverse_dynamics_on_moving_base(q, qd, qdd, &base).to_vec()),
         ("actuator_torques", robot.motors(qd, qdd)),
     ]

@@ -28,7 +28,7 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 16] = [
+const CRATES: [&str; 17] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
@@ -44,6 +44,7 @@ const CRATES: [&str; 16] = [
     "rne-plot",
     "rne-logs",
     "rne-identify",
+    "rne-watch",
     "rne-cli",
 ];
 

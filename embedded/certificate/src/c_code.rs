@@ -155,6 +155,9 @@ fn cases(sources: &[Source]) -> Result<String> {
         for &function in functions {
             text.push_str(&case(prefix, *dof, function)?);
         }
+        if functions.contains(&Function::MomentumAndRate) {
+            text.push_str(&observed(prefix)?);
+        }
     }
     text.push_str("}\n");
     Ok(text)
@@ -167,6 +170,23 @@ const ARGUMENTS: [&str; 4] = [
     "const float base_omega[3] = {0.1f, -0.2f, 0.3f}, base_zero[3] = {0.0f, 0.0f, 0.0f};",
     "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
 ];
+
+/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight is Rust's, which is
+/// computed in double precision and rounded.
+fn observed(prefix: &str) -> Result<String> {
+    let form = ["seven_steps", "reduced"].into_iter().find(|form| prefix.ends_with(form)).context("a form")?;
+    let weight = -(-std::f64::consts::TAU * 20.0 * 1e-3).exp_m1();
+    #[allow(clippy::cast_possible_truncation)] // rounding to f32 is the purpose
+    let weight = weight as f32;
+    Ok(format!(
+        "    {{\n        {prefix}_observer observer;\n        float out[6];\n        \
+         {prefix}_observer_begin(&observer, 20.0f, 1e-3f);\n        observer.weight = {weight:?}f;\n        \
+         {prefix}_observer_update(&observer, s.q, s.qd, s.qdd, out);\n        \
+         {prefix}_observer_update(&observer, sines[number], cosines[number], s.qdd, out);\n        \
+         {prefix}_observer_update(&observer, cosines[number], sines[number], s.qd, out);\n        \
+         print_results(\"method {form} observer_update\", number, out, 6u);\n    }}\n"
+    ))
+}
 
 /// The call of a function and the line that it prints.
 fn case(prefix: &str, dof: usize, function: Function) -> Result<String> {

@@ -158,8 +158,15 @@ fn summary(report: &Report) -> Result<()> {
             limit.stack
         );
     }
+    let observer = report.figures(report::METHODS, "observer_update", "reduced");
+    let Figures { instructions, .. } = observer.context("the observer is among the functions")?;
+    println!("a tick of the PUMA's momentum observer on the Cortex-M4F, reduced: {instructions} instructions");
+    ensure!(instructions <= OBSERVER, "more than {OBSERVER} instructions");
     Ok(())
 }
+
+/// Instructions that a tick of the PUMA's momentum observer may take at most, in the reduced form.
+const OBSERVER: u64 = 1000;
 
 const M4F: &str = "\
 The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the

@@ -47,6 +47,12 @@ impl Report {
         Some([row("seven_steps")?.figures, row("reduced")?.figures])
     }
 
+    /// The figures of a row.
+    pub(crate) fn figures(&self, title: &str, name: &str, form: &str) -> Option<Figures> {
+        let table = self.tables.iter().find(|table| table.title == title)?;
+        table.rows.iter().find(|row| row.name == name && row.form == form).map(|row| row.figures)
+    }
+
     fn comparison(&self) -> String {
         let (instructions, agreement) = self.runtime;
         let mut text = LOOP.replace("{agreement}", &agreement.to_string());

@@ -1,6 +1,6 @@
 //! What a function returns, number by number.
 
-use rne::{Pose, TorqueDerivatives, Wrench};
+use rne::{MomentumAndRate, Pose, TorqueDerivatives, Wrench};
 
 /// Numbers in a shape.
 pub trait Numbers {
@@ -40,5 +40,12 @@ impl<const DOF: usize> Numbers for TorqueDerivatives<DOF, f32> {
     fn each(&self, act: &mut impl FnMut(f32)) {
         self.dq.each(act);
         self.dqd.each(act);
+    }
+}
+
+impl<const DOF: usize> Numbers for MomentumAndRate<DOF, f32> {
+    fn each(&self, act: &mut impl FnMut(f32)) {
+        self.momentum.each(act);
+        self.rate.each(act);
     }
 }

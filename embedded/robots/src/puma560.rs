@@ -1,6 +1,6 @@
 //! All that the PUMA 560 can compute besides `inverse_dynamics`.
 
-use rne::{BaseMotion, Payload, Pose, Scalar, TorqueDerivatives, Wrench};
+use rne::{BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, Scalar, TorqueDerivatives, Wrench};
 
 use crate::numbers::Numbers;
 use crate::states::State;
@@ -38,6 +38,19 @@ impl Arguments {
     }
 }
 
+/// A tick of the momentum observer.
+type Update = fn(&mut ObserverState<6, f32>, &[f32; 6], &[f32; 6], &[f32; 6]) -> [f32; 6];
+
+impl Arguments {
+    /// What an observer of 20 Hz at 1 kHz sees in its third tick.
+    fn observed(&self, update: Update) -> [f32; 6] {
+        let Self { q, qd, tau, sin, cos, .. } = self;
+        let mut observer = ObserverState::new(20.0, 1e-3);
+        let _ = (update(&mut observer, q, qd, tau), update(&mut observer, sin, cos, tau));
+        update(&mut observer, cos, sin, qd)
+    }
+}
+
 /// A module per form with a function per method, and [`each`].
 macro_rules! methods {
     ($($capability:ident: $function:ident($($argument:ident: $type:ty),*) -> $returned:ty;)*) => {
@@ -50,6 +63,8 @@ macro_rules! methods {
                 visitor.visit("seven_steps", stringify!($function), |a| seven_steps::$function($(&a.$argument),*));
                 visitor.visit("reduced", stringify!($function), |a| reduced::$function($(&a.$argument),*));
             )*
+            visitor.visit("seven_steps", "observer_update", |a| a.observed(seven_steps::observer_update));
+            visitor.visit("reduced", "observer_update", |a| a.observed(reduced::observer_update));
         }
     };
     (
@@ -58,12 +73,12 @@ macro_rules! methods {
     ) => {
         #[doc = concat!("The form `", $name, "`.")]
         pub mod $form {
-            use super::{BaseMotion, Payload, Pose, TorqueDerivatives, Wrench};
+            use super::{BaseMotion, MomentumAndRate, ObserverState, Payload, Pose, TorqueDerivatives, Wrench};
 
             #[derive(
                 rne::InverseDynamics, rne::MassMatrix, rne::CoriolisMatrix, rne::ForwardDynamics, rne::Kinematics,
                 rne::Energy, rne::CentreOfMass, rne::Regressor, rne::InverseDynamicsDerivatives, rne::JointWrenches,
-                rne::MovingBase, rne::Actuation,
+                rne::MomentumObserver, rne::MovingBase, rne::Actuation,
             )]
             #[robot(path = "../../../robots/puma560.yaml", form = $name)]
             struct Robot;
@@ -76,6 +91,23 @@ macro_rules! methods {
                     rne::$capability::$function(&Robot, $($argument),*)
                 }
             )*
+
+            /// Its code is in the update alone, which can be read there.
+            #[derive(rne::MomentumObserver)]
+            #[robot(path = "../../../robots/puma560.yaml", form = $name)]
+            struct Observed;
+
+            /// A tick of the momentum observer.
+            #[inline(never)]
+            #[must_use]
+            pub fn observer_update(
+                observer: &mut ObserverState<6, f32>,
+                q: &[f32; 6],
+                qd: &[f32; 6],
+                tau: &[f32; 6],
+            ) -> [f32; 6] {
+                observer.update(&Observed, q, qd, tau)
+            }
         }
     };
 }
@@ -105,6 +137,7 @@ methods! {
     InverseDynamicsDerivatives: inverse_dynamics_derivatives(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6])
         -> TorqueDerivatives<6, f32>;
     JointWrenches: joint_wrenches(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6]) -> [Wrench<f32>; 6];
+    MomentumObserver: momentum_and_rate(q: [f32; 6], qd: [f32; 6], tau: [f32; 6]) -> MomentumAndRate<6, f32>;
     MovingBase: inverse_dynamics_on_moving_base(q: [f32; 6], qd: [f32; 6], qdd: [f32; 6], base: BaseMotion<f32>)
         -> [f32; 6];
     Actuation: actuator_torques(qd: [f32; 6], qdd: [f32; 6]) -> [f32; 6];

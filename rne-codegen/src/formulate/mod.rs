@@ -8,6 +8,7 @@ pub(crate) mod joint;
 pub(crate) mod kinematics;
 pub(crate) mod ldlt;
 pub(crate) mod mass_matrix;
+pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regressor;
 pub(crate) mod seven_steps;
@@ -51,6 +52,7 @@ pub(crate) fn outputs(builder: &Builder, robot: &Robot, function: Function) -> V
         Function::Regressor => derivation.regressor(),
         Function::InverseDynamicsDerivatives => derivation.derivatives(),
         Function::JointWrenches => derivation.joint_wrenches(),
+        Function::MomentumAndRate => derivation.momentum_and_rate(),
         Function::ActuatorTorques => derivation.actuator_torques(),
     };
     outputs.into_iter().map(|(name, symbol)| (name, symbol.at)).collect()
@@ -243,6 +245,11 @@ impl<'s, 'r> Derivation<'s, 'r> {
             parts.into_iter().flat_map(move |(part, vector)| components(Name::scalar(part, index + 1), vector))
         });
         named.collect()
+    }
+
+    fn momentum_and_rate(&self) -> Outputs<'s> {
+        let [momenta, rates] = momentum::momentum_and_rate(&self.arm, &self.states, &self.motions(), &self.base);
+        [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
     }
 
     fn actuator_torques(&self) -> Outputs<'s> {

@@ -53,6 +53,8 @@ pub enum Record {
     Wrench,
     /// By q and by q̇.
     TorqueDerivatives,
+    /// M q̇ and its rate.
+    MomentumAndRate,
 }
 
 impl Record {
@@ -63,6 +65,7 @@ impl Record {
             Self::Pose => "Pose",
             Self::Wrench => "Wrench",
             Self::TorqueDerivatives => "TorqueDerivatives",
+            Self::MomentumAndRate => "MomentumAndRate",
         }
     }
 
@@ -73,6 +76,7 @@ impl Record {
             Self::Pose => ["rotation", "translation"],
             Self::Wrench => ["force", "moment"],
             Self::TorqueDerivatives => ["dq", "dqd"],
+            Self::MomentumAndRate => ["momentum", "rate"],
         }
     }
 }

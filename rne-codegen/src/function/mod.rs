@@ -97,7 +97,11 @@ impl Function {
     #[must_use]
     pub fn feels_rotors(self) -> bool {
         match self {
-            Self::MassMatrix | Self::ForwardDynamics | Self::KineticEnergy | Self::ActuatorTorques => true,
+            Self::MassMatrix
+            | Self::ForwardDynamics
+            | Self::KineticEnergy
+            | Self::MomentumAndRate
+            | Self::ActuatorTorques => true,
             _ => self.returns_torques() && self.takes(Argument::Accelerations),
         }
     }

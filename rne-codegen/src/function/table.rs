@@ -52,6 +52,8 @@ named! {
         InverseDynamicsDerivatives = "inverse_dynamics_derivatives",
         /// f_{i-1,i} and n_{i-1,i} of every joint.
         JointWrenches = "joint_wrenches",
+        /// M(q) q̇, and how it would change without external torques.
+        MomentumAndRate = "momentum_and_rate",
         /// τ(q, q̇, q̈) on a base that moves.
         InverseDynamicsOnMovingBase = "inverse_dynamics_on_moving_base",
         /// What the motors add.
@@ -82,6 +84,8 @@ named! {
         InverseDynamicsDerivatives = "InverseDynamicsDerivatives",
         /// Bearing loads.
         JointWrenches = "JointWrenches",
+        /// External torques without accelerations.
+        MomentumObserver = "MomentumObserver",
         /// Torques on a base that moves.
         MovingBase = "MovingBase",
         /// Rotors, gears, friction.
@@ -368,6 +372,30 @@ pub(crate) const TABLE: &[Entry] = &[
         )]),
         is_irreducible: true,
         ..Entry::of(Function::JointWrenches, Capability::JointWrenches)
+    },
+    Entry {
+        summary: "The momentum of the joints, M(q) q̇, and the rate it would have without external torques.",
+        details: "momentum: row i of M(q) q̇ (N m s, or N s for a prismatic joint), rotors included in an arm with its \
+            rotors. rate: τ + C(q, q̇)ᵀ q̇ - g(q) (N m or N); what the momentum changes faster than that is the \
+            external torque, so an observer needs no accelerations. tau: of the actuators, without friction.",
+        arguments: &[Positions, Rates, Torques],
+        shape: Shape::Record(Record::MomentumAndRate, &[VECTOR, VECTOR]),
+        output: "momentum",
+        listed: "returned: the momenta of the joints, then their rates",
+        own: &[
+            Own::of(Quantity::Momentum, |joint| format!("momentum of joint {joint}: row {joint} of M q̇")),
+            Own::of(Quantity::MomentumRate, |joint| {
+                format!("its rate at joint {joint} without external torques: τ + ∂T/∂q - ∂V/∂q")
+            }),
+        ],
+        answer: Answer::Tables(&[AnswerTable::of(
+            "momentum of each joint, M q̇ (N m s, prismatic: N s), and its rate without external torques (N m, \
+            prismatic: N)",
+            Labels::Names(&["momentum", "rate"]),
+            Labels::Joints,
+        )]),
+        is_of_motion: true,
+        ..Entry::of(Function::MomentumAndRate, Capability::MomentumObserver)
     },
     Entry {
         summary: "Torques on a base that moves as told, under gravity as told, with a free tip.",

@@ -14,6 +14,7 @@ use crate::ir::fold_report::{Cause, Operation, Place};
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
 use crate::program::Operator;
+use crate::reduced::arguments::Moving;
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
 pub(crate) struct Builder {
@@ -23,9 +24,8 @@ pub(crate) struct Builder {
     pub(crate) function: Function,
     /// The variable of the derivatives that are being written.
     by: Cell<Option<WithRespectTo>>,
-    /// The one joint that accelerates, counted from 0, while a column of the mass matrix is written; nothing moves
-    /// then.
-    pub(crate) accelerating: Cell<Option<usize>>,
+    /// What moves in the formulas that are being written.
+    pub(crate) moving: Cell<Moving>,
 }
 
 impl Builder {
@@ -48,7 +48,7 @@ impl Builder {
             trace: None,
             function,
             by: Cell::new(None),
-            accelerating: Cell::new(None),
+            moving: Cell::default(),
         }
     }
 
@@ -166,6 +166,8 @@ impl Builder {
     /// Gives a symbol a name. A constant of the table takes its name as cause, so that a fold can say what was zero.
     pub(crate) fn name<'s>(&'s self, name: Name, symbol: Symbol<'s>) -> Symbol<'s> {
         let Some(trace) = &self.trace else { return symbol };
+        let Some(quantity) = self.meant(name.quantity) else { return symbol };
+        let name = Name { quantity, ..name };
         let trace = &mut *trace.borrow_mut();
         let is_entry = name.quantity.step().is_none() || name.quantity == Quantity::D;
         let name = if is_entry { name } else { Name { by: name.by.or(self.by.get()), ..name } };
@@ -300,7 +302,13 @@ impl Builder {
         }
     }
 
+    /// What a quantity is where rates stand for accelerations; `None` for what has no name then.
+    fn meant(&self, quantity: Quantity) -> Option<Quantity> {
+        if self.moving.get() == Moving::RatesForAccelerations { quantity.of_momentum() } else { Some(quantity) }
+    }
+
     fn place(&self, quantity: Quantity, joint: usize) -> Option<Place> {
+        let quantity = self.meant(quantity).unwrap_or(quantity);
         quantity.step().map(|step| Place { joint, step, quantity, by: self.by.get() })
     }
 

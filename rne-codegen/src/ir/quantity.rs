@@ -335,6 +335,24 @@ quantities! {
         "first moment of a link without mass";
     OmegaCrossMoment:           "wxh",       Vector,    6, false, "(ω×h)", "kg m/s", "ω × h";
     MasslessForce:              "uh",        Vector,    6, false, "(Uh)", "N", "ω̇ × h + ω × (ω × h)";
+
+    // Of the momentum, beyond the seven steps.
+    MomentBehind:               "mb",        Vector,    8, false, "", "",
+        "first moment of link i and all behind it, about joint i";
+    LinearMomentum:             "lin",       Vector,    8, true,  "", "",
+        "linear momentum of link i and all behind it";
+    AngularMomentumBehind:      "ang",       Vector,    8, true,  "", "",
+        "their angular momentum about joint i";
+    TurnedMomentBehind:         "mbc",       Vector,    8, false, "", "",
+        "first moment behind the next joint, turned into this frame";
+    TurnedLinearMomentum:       "linc",      Vector,    8, false, "", "", "linear momentum there";
+    TurnedAngularMomentum:      "angc",      Vector,    8, false, "", "", "angular momentum there";
+    OriginVelocity:             "v",         Vector,    8, true,  "", "", "velocity of the frame's origin";
+    OriginVelocityUnturned:     "vn",        Vector,    8, false, "", "", "the same in frame N";
+    Momentum:                   "mom",       Joint,     8, true,  "", "",
+        "momentum of joint i, row i of M q̇";
+    MomentumRate:               "rate",      Joint,     8, true,  "", "",
+        "its rate without external torques, τ + ∂T/∂q - ∂V/∂q";
 }
 
 impl Quantity {
@@ -352,6 +370,22 @@ impl Quantity {
     #[must_use]
     pub const fn is_of_the_lecture(self) -> bool {
         self.row().has_statements
+    }
+
+    /// What it is in a recursion that has rates in the place of accelerations; `None` for what has no name then.
+    pub(crate) const fn of_momentum(self) -> Option<Self> {
+        Some(match self {
+            Self::Omega | Self::OmegaUnturned | Self::Gradient | Self::GradientUnturned => return None,
+            Self::OmegaDot => Self::Omega,
+            Self::OriginAcceleration => Self::OriginVelocity,
+            Self::OriginAccelerationUnturned => Self::OriginVelocityUnturned,
+            Self::ReducedForce => Self::LinearMomentum,
+            Self::ReducedMoment => Self::AngularMomentumBehind,
+            Self::TurnedForce => Self::TurnedLinearMomentum,
+            Self::TurnedMoment => Self::TurnedAngularMomentum,
+            Self::Torque => Self::Momentum,
+            other => other,
+        })
     }
 
     /// Whether it is an angle, or a sum that becomes one.

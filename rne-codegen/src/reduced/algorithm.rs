@@ -5,6 +5,7 @@ use crate::reduced::backward::{torques, torques_with};
 use crate::reduced::crba::{self, BodiesPer};
 use crate::reduced::forward::{Arm, motions};
 use crate::reduced::joint_frames::JointFrames;
+use crate::reduced::momentum;
 use crate::reduced::payload::Load;
 use crate::reduced::rnea_derivatives::sensitivity;
 
@@ -63,6 +64,8 @@ impl Algorithm {
             Function::CoriolisMatrix | Function::InverseDynamicsDerivatives => &[BY_GROUPS, BY_JOINTS, Algorithm::Rnea],
             Function::GravityTorques => &[Algorithm::Rnea, BY_GROUPS, BY_JOINTS],
             Function::MassMatrix => &[BY_GROUPS, BY_JOINTS, Algorithm::UnitColumns],
+            // where the first moments behind the joints are gathered
+            Function::MomentumAndRate => &[BY_GROUPS, BY_JOINTS],
             Function::ForwardDynamics => &[
                 BY_GROUPS,
                 BY_JOINTS,
@@ -113,6 +116,11 @@ pub(crate) fn write<'s>(
     match (function, algorithm) {
         (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
             by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
+        }
+        (Function::MomentumAndRate, algorithm) => {
+            let bodies_per = if let Algorithm::Crba(bodies_per) = algorithm { bodies_per } else { BodiesPer::Group };
+            let [momenta, rates] = momentum::momentum_and_rate(builder, arm, bodies_per);
+            [by_joint(Quantity::Momentum, momenta), by_joint(Quantity::MomentumRate, rates)].concat()
         }
         (Function::MassMatrix, _) => {
             let upper = mass_matrix(builder, arm, algorithm);

@@ -9,6 +9,18 @@ use rne_model::QuarterTurns;
 
 use crate::reduced::link_parameters::Triple;
 
+/// What moves in the formulas that are being written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Moving {
+    /// What the function takes.
+    #[default]
+    AsGiven,
+    /// This joint, counted from 0, accelerates with 1, and nothing moves: a column of the mass matrix.
+    OneAccelerates(usize),
+    /// The joints are at rest and accelerate by their rates: torques are momenta then.
+    RatesForAccelerations,
+}
+
 /// The name of what belongs to a group of joints, or to a single one.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {
     if first == last { Name::scalar(single, last + 1) } else { Name::indexed(group, last + 1, first + 1) }
@@ -59,23 +71,31 @@ impl Builder {
 
     /// What `formulas` are when one joint accelerates with 1 and nothing moves.
     pub(crate) fn accelerating<R>(&self, joint: usize, formulas: impl FnOnce() -> R) -> R {
-        self.accelerating.set(Some(joint));
-        let value = self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas);
-        self.accelerating.set(None);
+        self.moving(Moving::OneAccelerates(joint), || self.by(Some(WithRespectTo::RateDot(joint + 1)), formulas))
+    }
+
+    /// What `formulas` are when the joints move so.
+    pub(crate) fn moving<R>(&self, moving: Moving, formulas: impl FnOnce() -> R) -> R {
+        let outer = self.moving.replace(moving);
+        let value = formulas();
+        self.moving.set(outer);
         value
     }
 
     pub(crate) fn rate(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        if !self.function.takes(Argument::Rates) || self.accelerating.get().is_some() {
+        if !self.function.takes(Argument::Rates) || self.moving.get() != Moving::AsGiven {
             return self.zero();
         }
         self.of_joint(Quantity::Rate, rows, joint)
     }
 
     pub(crate) fn rate_dot(&self, rows: &[JointFrame], joint: usize) -> Symbol<'_> {
-        match self.accelerating.get() {
-            Some(accelerating) if accelerating == joint => self.one().signed(rows[joint].reversed),
-            None if self.function.takes(Argument::Accelerations) => self.of_joint(Quantity::RateDot, rows, joint),
+        match self.moving.get() {
+            Moving::OneAccelerates(accelerating) if accelerating == joint => self.one().signed(rows[joint].reversed),
+            Moving::RatesForAccelerations => self.of_joint(Quantity::Rate, rows, joint),
+            Moving::AsGiven if self.function.takes(Argument::Accelerations) => {
+                self.of_joint(Quantity::RateDot, rows, joint)
+            }
             _ => self.zero(),
         }
     }

@@ -73,35 +73,57 @@ pub(crate) fn torques_with<'s>(
     moved: &[Moved<'s>],
     payload: Option<Load<'s>>,
 ) -> Vec<Symbol<'s>> {
+    inward(builder, arm, moved, payload).into_iter().map(|carried| carried.torque).collect()
+}
+
+/// A joint's torque, and the wrench that is behind it: of the link and all that it carries, about the origin of its
+/// frame. A part of it is in the link's frame, the other one in frame N; none is told of a spin.
+pub(crate) struct Carried<'s> {
+    pub(crate) torque: Symbol<'s>,
+    pub(crate) own: Wrench<'s>,
+    pub(crate) unturned: Wrench<'s>,
+}
+
+/// The way back, base to tip.
+pub(crate) fn inward<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    moved: &[Moved<'s>],
+    payload: Option<Load<'s>>,
+) -> Vec<Carried<'s>> {
     let rows = arm.rows();
     let tip = tip_wrench(builder, arm);
-    let mut torques = Vec::with_capacity(rows.len());
+    let mut found = Vec::with_capacity(rows.len());
     let mut child: Option<Child<'s>> = None;
     for index in (0..rows.len()).rev() {
         let link = &moved[index];
         builder.at(Quantity::ReducedForce, index + 1);
         let tip = tip.filter(|_| index + 1 == rows.len());
-        let (torque, next) = if arm.is_spin(index) {
-            spin(builder, arm, index, link, tip)
+        let nothing = Wrench::zero(builder);
+        let ((torque, next), own, unturned) = if arm.is_spin(index) {
+            (spin(builder, arm, index, link, tip), nothing, nothing)
         } else {
             let payload = payload.filter(|_| index + 1 == rows.len());
             let (own, unturned) = own_wrench(builder, arm, index, link, payload);
             let own = tip.map_or(own, |tip| own.plus(tip));
             let (own, unturned) = with_child(builder, arm, index, link, child, own, unturned);
             match rows[index].kind {
-                Prismatic => origin_shift(builder, arm, index, link, own.plus(unturned)),
-                Revolute => turn(builder, arm, index, link, own, unturned),
+                Prismatic => {
+                    let own = own.plus(unturned);
+                    (origin_shift(builder, arm, index, link, own), own, nothing)
+                }
+                Revolute => (turn(builder, arm, index, link, own, unturned), own, unturned),
             }
         };
         builder.at(Quantity::Torque, index + 1);
         let torque = torque + builder.rate_dot(rows, index).times(arm.joint_frames.rotors[index]);
         let torque = if rows[index].reversed { -torque } else { torque };
         builder.name(Name::scalar(Quantity::Torque, index + 1), torque);
-        torques.push(torque);
+        found.push(Carried { torque, own, unturned });
         child = next;
     }
-    torques.reverse();
-    torques
+    found.reverse();
+    found
 }
 
 /// What the last link exerts at the tip, about the origin of its frame and in its axes.

@@ -4,7 +4,7 @@
 //! of the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
 //! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write
-//! the recursion with them (RNEA), `crba`, `aba` and `rnea_derivatives` what else there is; `algorithm` names the ways
+//! the recursion with them (RNEA), `crba`, `aba`, `momentum` and `rnea_derivatives` what else there is; `algorithm` names the ways
 //! in which a function can be written.
 
 pub(crate) mod aba;
@@ -16,6 +16,7 @@ pub(crate) mod forward;
 pub(crate) mod inward;
 pub(crate) mod joint_frames;
 pub(crate) mod link_parameters;
+pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;

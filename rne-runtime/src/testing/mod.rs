@@ -29,6 +29,7 @@ pub use motion::{
     accelerations_are_those_of_the_runtime, accelerations_need_the_torques_that_cause_them,
     coriolis_matrix_is_that_of_the_runtime, energies_are_those_of_the_runtime,
     kinetic_energy_is_that_of_the_mass_matrix, mass_matrix_is_symmetric, mass_matrix_is_that_of_the_runtime,
+    momenta_are_those_of_the_runtime, momentum_is_that_of_the_mass_matrix,
 };
 #[cfg(all(feature = "arm", feature = "std"))]
 pub use robot_file::RobotFile;

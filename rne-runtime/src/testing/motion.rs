@@ -4,7 +4,7 @@ use super::RobotFile;
 use super::comparison::{Allowed, are_finite, compare, largest, product};
 use super::state::{State, states};
 use super::torques::scale;
-use crate::{CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, MassMatrix};
+use crate::{CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, MassMatrix, MomentumObserver};
 
 /// Masses times heights that cancel are measured by this part of them.
 const LEAST: f64 = 1e-2;
@@ -101,5 +101,36 @@ pub fn kinetic_energy_is_that_of_the_mass_matrix<const DOF: usize, R: Energy<DOF
         let scale = LEAST * largest(mass.as_flattened()) * largest(qd) * largest(qd);
         let found = robot.kinetic_energy(q, qd);
         compare("kinetic_energy and ½ q̇ᵀ M q̇", &state, Allowed::Rounding { scale }, &[found], &[expected]);
+    }
+}
+
+/// M q̇ and its rate.
+pub fn momenta_are_those_of_the_runtime<const DOF: usize, R: MomentumObserver<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        let (found, expected) = (robot.momentum_and_rate(q, qd, tau), arm.momentum_and_rate(q, qd, tau));
+        let of_mass = LEAST * largest(arm.mass_matrix(q).as_flattened()) * largest(qd);
+        compare("momentum", &state, file.same_operations(of_mass), &found.momentum, &expected.momentum);
+        let scale = scale(&arm, &state).max(LEAST * largest(tau));
+        compare("rate of the momentum", &state, file.same_operations(scale), &found.rate, &expected.rate);
+    }
+}
+
+/// p = M q̇ and rate = τ + Cᵀ q̇ - g, with the runtime's M, C and g.
+pub fn momentum_is_that_of_the_mass_matrix<const DOF: usize, R: MomentumObserver<DOF>>(robot: &R, file: &RobotFile) {
+    let arm = file.arm::<DOF>();
+    for state in states() {
+        let State { q, qd, tau, .. } = &state;
+        let (mass, coriolis) = (arm.mass_matrix(q), arm.coriolis_matrix(q, qd));
+        let found = robot.momentum_and_rate(q, qd, tau);
+        let size = largest(mass.as_flattened());
+        let scale = size * largest(qd);
+        compare("momentum and M q̇", &state, Allowed::Rounding { scale }, &found.momentum, &product(&mass, qd));
+        let transposed: [[f64; DOF]; DOF] = core::array::from_fn(|i| core::array::from_fn(|j| coriolis[j][i]));
+        let (turned, gravity) = (product(&transposed, qd), arm.gravity_torques(q));
+        let expected: [f64; DOF] = core::array::from_fn(|i| tau[i] + turned[i] - gravity[i]);
+        let scale = (scale * largest(qd)).max(largest(&gravity)).max(largest(tau));
+        compare("rate of the momentum", &state, Allowed::Rounding { scale }, &found.rate, &expected);
     }
 }

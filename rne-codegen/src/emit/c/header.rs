@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::signature::{fields, head, parameters_type, record_type, records};
-use super::{ConstantTooLarge, File, comment};
+use super::{ConstantTooLarge, File, comment, observer};
 use crate::emit::evidence::evidence;
 use crate::emit::heading::Heading;
 use crate::emit::parameters::{self, Parameter};
@@ -51,6 +51,7 @@ pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
         }
         let _ = writeln!(text, "{};", head(file, program));
     }
+    text.push_str(&observer::declarations(file));
     text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
     Ok(text)
 }
@@ -135,6 +136,7 @@ const fn about(record: Record) -> &'static str {
             "Rows of the rotation from the axes of a frame to those of the world, and the frame's origin there, m."
         }
         Record::Wrench => "Force, N, and moment, N m.",
+        Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
         Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
     }
 }

@@ -1,6 +1,7 @@
 //! Programs as C99 without a library: a header that says what the functions do, and the source.
 
 mod header;
+mod observer;
 mod prefix;
 mod signature;
 mod source;

@@ -73,6 +73,7 @@ pub(in crate::emit) fn record_name(prefix: &str, record: Record) -> String {
         Record::Pose => "pose",
         Record::Wrench => "wrench",
         Record::TorqueDerivatives => "torque_derivatives",
+        Record::MomentumAndRate => "momentum",
     };
     format!("{prefix}_{name}")
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::header::columns;
 use super::signature::{head, inputs, places};
-use super::{ConstantTooLarge, File};
+use super::{ConstantTooLarge, File, observer};
 use crate::emit::expression::{line, statement};
 use crate::emit::listing::{Line, Selection, listing};
 use crate::emit::parameters::{self, Parameter};
@@ -40,6 +40,7 @@ pub(super) fn body(file: &File) -> Result<String, ConstantTooLarge> {
     for program in file.programs {
         let _ = write!(text, "\n{}", function(file, program)?);
     }
+    text.push_str(&observer::definitions(file));
     Ok(text)
 }
 

@@ -4,7 +4,7 @@
 use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Model, Motor, QuarterTurns, Row, Transform};
 use rne_runtime::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Dual, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MovingBase, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, ObserverState, Regressor, Scalar, Wrench,
 };
 
 const QUARTER_TURN: Angle =
@@ -88,6 +88,10 @@ fn everything<T: Scalar>(q: &[T; 2], qd: &[T; 2], qdd: &[T; 2]) -> T {
     add(arm.regressor(q, qd, qdd).as_flattened().as_flattened());
     add(arm.inverse_dynamics_derivatives(q, qd, qdd).dq.as_flattened());
     add(&arm.joint_wrenches(q, qd, qdd)[0].moment);
+    add(&arm.momentum_and_rate(q, qd, qdd).rate);
+    let mut observer = ObserverState::new(20.0, 1e-3);
+    add(&observer.update(&arm, q, qd, qdd));
+    add(&observer.update(&arm, qd, q, qdd));
     add(&arm.inverse_dynamics_on_moving_base(q, qd, qdd, &BaseMotion::fixed([T::one(); 3])));
     add(&arm.actuator_torques(qd, qdd));
     add(&arm.actuator_torques_smooth(qd, qdd, T::one()));

@@ -11,7 +11,7 @@
 use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
 use ::dynamics::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MovingBase, Regressor,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumObserver, MovingBase, Regressor,
 };
 
 /// Seven joints, with limits.
@@ -44,6 +44,7 @@ where
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
+    MomentumObserver,
     MovingBase,
     Actuation,
     Clone,
@@ -80,6 +81,7 @@ pub struct Slides;
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
+    MomentumObserver,
     MovingBase,
     Clone,
     Copy,

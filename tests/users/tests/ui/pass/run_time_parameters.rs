@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use rne::{
     CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches,
-    Kinematics, MassMatrix, MovingBase, Regressor,
+    Kinematics, MassMatrix, MomentumObserver, MovingBase, Regressor,
 };
 
 /// In double precision.
@@ -20,6 +20,7 @@ use rne::{
     Regressor,
     InverseDynamicsDerivatives,
     JointWrenches,
+    MomentumObserver,
     MovingBase,
 )]
 #[robot(path = "../robots/loaded.yaml")]
@@ -72,6 +73,8 @@ fn main() {
     let (centre, jacobian) = (heavy.centre_of_mass(&q), heavy.centre_of_mass_jacobian(&q));
     assert!(centre.iter().chain(jacobian.as_flattened()).all(|x| x.is_finite()));
     assert!(heavy.regressor(&q, &qd, &qdd)[0][0][0].is_finite() && heavy.jacobian(&q)[0][0].is_finite());
+    let [loaded, bare] = [&heavy, &light].map(|arm| arm.momentum_and_rate(&q, &qd, &qdd).momentum[1]);
+    assert!(loaded.is_finite() && loaded != bare);
     let base = rne::BaseMotion::fixed([0.0, 0.0, -9.81]);
     let moving = heavy.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &base);
     assert_eq!(moving, heavy.inverse_dynamics(&q, &qd, &qdd));

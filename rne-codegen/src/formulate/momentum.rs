@@ -1,0 +1,132 @@
+//! The momentum of the joints, and its rate: what an observer of external torques asks for.
+//!
+//! ```text
+//! p = M(q) q̇                ṗ = τ + τ_ext + ∂T/∂q - ∂V/∂q           no acceleration in it; τ_ext is not known
+//! ```
+//!
+//! Of link i and all that it carries, as one body, in the axes of form P: mass M, first moment s and angular momentum L
+//! about J_i, linear momentum P. p is the parent of i, k runs over the joints that link i carries.
+//!
+//! ```text
+//! M_i = m_i + Σ M_k
+//! s_i = M_i d_i + Σ (M_k r_k + R_k s_k)
+//! P_i = m_i ċ_i + Σ R_k P_k
+//! L_i = I_i ω_i + Σ R_k L_k + d_i × P_i + Σ r_k × R_k P_k
+//!                       revolute                          prismatic
+//! p_i                   e · L_i                           e · P_i               with a rotor + G² Jm q̇_i
+//! ∂T/∂q_i               (ω_i × e) · L_i + (j̇_i × e) · P_i (ω_i × e) · P_i
+//! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
+//! ```
+//!
+//! ∂T/∂q_i is (V_i × S_i) · h_i: of all that T depends on, q_i turns the velocity that comes from the parent, and
+//! nothing else. j̇_i = R_iᵀ (ċ_p + ω_p × r_i) is the velocity of the joint's point. A first moment h beside the mass
+//! adds h_i to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::formulate::arm::Arm;
+use crate::formulate::joint::{Joint, JointState};
+use crate::formulate::seven_steps::Motion;
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+use crate::ir::{Symbol, Vector};
+
+/// A link and all that it carries: as one body, about its joint, in its axes or in those of its parent.
+#[derive(Clone, Copy)]
+struct Carried<'s> {
+    mass: Symbol<'s>,
+    first_moment: Vector<'s>,
+    linear: Vector<'s>,
+    angular: Vector<'s>,
+    /// From the parent's centre of mass to the joint, in the parent's axes.
+    r: Vector<'s>,
+}
+
+/// p and τ + ∂T/∂q - ∂V/∂q of every joint. `motions` are those of a base that stands still.
+pub(crate) fn momentum_and_rate<'s>(
+    arm: &Arm<'s>,
+    states: &[JointState<'s>],
+    motions: &[Motion<'s>],
+    base: &Motion<'s>,
+) -> [Vec<Symbol<'s>>; 2] {
+    let mut carried: Vec<Vec<Carried<'s>>> = vec![Vec::new(); motions.len()];
+    let (mut momenta, mut rates) = (Vec::with_capacity(motions.len()), Vec::with_capacity(motions.len()));
+    for (joint, motion) in arm.joints(states).zip(motions).rev() {
+        let Joint { lines: line, link, .. } = joint;
+        let body = body(&joint, motion, &carried[joint.index]);
+        let parent = link.parent.map_or(base, |parent| &motions[parent]);
+
+        let momentum = line.scalar(Quantity::Momentum, || {
+            let momentum = match link.kind {
+                Revolute => body.angular.z(),
+                Prismatic => body.linear.z(),
+            };
+            link.rotor.map_or(momentum, |rotor| momentum + rotor * joint.state.qd)
+        });
+        let rate = line.scalar(Quantity::MomentumRate, || {
+            let applied = line.builder.argument(Name::scalar(Quantity::AppliedTorque, joint.index + 1));
+            applied + of_motion(&joint, &body, motion, parent) + of_gravity(&joint, &body, motion)
+        });
+        momenta.push(momentum);
+        rates.push(rate);
+        if let Some(parent) = link.parent {
+            let (line, rotation) = (line.named(parent + 1), motion.turning.rotation);
+            let turned = |quantity, vector| line.vector(quantity, || rotation * vector);
+            carried[parent].push(Carried {
+                first_moment: turned(Quantity::TurnedMomentBehind, body.first_moment),
+                linear: turned(Quantity::TurnedLinearMomentum, body.linear),
+                angular: turned(Quantity::TurnedAngularMomentum, body.angular),
+                ..body
+            });
+        }
+    }
+    momenta.reverse();
+    rates.reverse();
+    [momenta, rates]
+}
+
+/// Link i with what it carries.
+fn body<'s>(joint: &Joint<'_, 's>, motion: &Motion<'s>, carries: &[Carried<'s>]) -> Carried<'s> {
+    let Joint { lines: line, link, .. } = *joint;
+    let Motion { d, c_dot, .. } = *motion;
+    let omega = motion.turning.omega;
+    let mass = line.within(Quantity::MomentBehind, || carries.iter().fold(link.mass, |sum, k| sum + k.mass));
+    let first_moment = line.vector(Quantity::MomentBehind, || {
+        let own = d * mass;
+        let own = link.first_moment.map_or(own, |h| own + h);
+        carries.iter().fold(own, |sum, k| (sum + k.r * k.mass) + k.first_moment)
+    });
+    let linear = line.vector(Quantity::LinearMomentum, || {
+        let own = c_dot * link.mass;
+        let own = link.first_moment.map_or(own, |h| own + omega.cross(h));
+        carries.iter().fold(own, |sum, k| sum + k.linear)
+    });
+    let angular = line.vector(Quantity::AngularMomentumBehind, || {
+        let own = link.inertia * omega;
+        let own = link.first_moment.map_or(own, |h| own + h.cross(c_dot));
+        let momenta = carries.iter().fold(own, |sum, k| sum + k.angular);
+        carries.iter().fold(momenta + d.cross(linear), |sum, k| sum + k.r.cross(k.linear))
+    });
+    Carried { mass, first_moment, linear, angular, r: link.mount.r }
+}
+
+/// ∂T/∂q_i
+fn of_motion<'s>(joint: &Joint<'_, 's>, body: &Carried<'s>, motion: &Motion<'s>, parent: &Motion<'s>) -> Symbol<'s> {
+    let turning = motion.turning.omega.cross(joint.e);
+    match joint.link.kind {
+        Revolute => {
+            let point = parent.c_dot + parent.turning.omega.cross(joint.link.mount.r);
+            let point = motion.turning.rotation.transpose() * point;
+            turning.dot(body.angular) + point.cross(joint.e).dot(body.linear)
+        }
+        Prismatic => turning.dot(body.linear),
+    }
+}
+
+/// -∂V/∂q_i
+fn of_gravity<'s>(joint: &Joint<'_, 's>, body: &Carried<'s>, motion: &Motion<'s>) -> Symbol<'s> {
+    match joint.link.kind {
+        Revolute => body.first_moment.cross(motion.gravity).z(),
+        Prismatic => motion.gravity.z() * body.mass,
+    }
+}

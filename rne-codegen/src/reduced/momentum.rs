@@ -1,0 +1,80 @@
+//! The momentum of the joints and its rate, of regrouped matter (the reduced form, section 14).
+//!
+//! ```text
+//! p = M(q) q̇ = τ(q, 0, q̇) without gravity                           the recursion, with velocities for accelerations
+//! ∂T/∂q_i = (ω × e) · n_i + (v × e) · f_i   (revolute),   (ω × e) · f_i   (prismatic)
+//! rate    = τ + ∂T/∂q - g(q)
+//! ```
+//!
+//! With q̇ in the place of q̈ the recursion finds ω for ω̇ and the velocity v of the frame's origin for its acceleration;
+//! f_i and n_i are momenta then, of the link and all behind it. Matter that is regrouped has the torques of the arm, so
+//! its mass matrix and its kinetic energy too.
+
+use rne_model::JointKind::{Prismatic, Revolute};
+
+use crate::reduced::arguments::Moving;
+use crate::reduced::backward::{Carried, inward};
+use crate::reduced::crba;
+use crate::reduced::forward::{Arm, Motion, Moved, motions};
+use crate::reduced::inward::BodiesPer;
+use crate::reduced::joint_frames::JointFrames;
+
+use crate::ir::name::Name;
+use crate::ir::quantity::Quantity;
+use crate::ir::{Builder, Number, Symbol, Vector};
+
+/// p and its rate without external torques, base to tip.
+pub(crate) fn momentum_and_rate<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    bodies_per: BodiesPer,
+) -> [Vec<Symbol<'s>>; 2] {
+    let gravity = crba::gravity_torques(builder, arm, bodies_per);
+    let joint_frames = JointFrames { gravity: [Number::ZERO; 3], ..arm.joint_frames.clone() };
+    let weightless = Arm { joint_frames: &joint_frames, plan: arm.plan, parameters: arm.parameters };
+    let (moved, carried) = builder.moving(Moving::RatesForAccelerations, || {
+        let moved = motions(builder, &weightless);
+        let carried = inward(builder, &weightless, &moved, None);
+        (moved, carried)
+    });
+    let rates = carried.iter().zip(&moved).zip(gravity).enumerate().map(|(index, ((carried, link), gravity))| {
+        builder.at(Quantity::MomentumRate, index + 1);
+        let rate = builder.torque(index) + of_motion(builder, arm, index, link, carried) - gravity;
+        builder.name(Name::scalar(Quantity::MomentumRate, index + 1), rate)
+    });
+    let rates = rates.collect();
+    [carried.iter().map(|carried| carried.torque).collect(), rates]
+}
+
+/// ∂T/∂q_i
+fn of_motion<'s>(
+    builder: &'s Builder,
+    arm: &Arm<'_>,
+    index: usize,
+    link: &Moved<'s>,
+    carried: &Carried<'s>,
+) -> Symbol<'s> {
+    let row = &arm.rows()[index];
+    // a spin is the same at every angle
+    if arm.is_spin(index) {
+        return builder.zero();
+    }
+    let (lambda, mu) = (arm.parameters.lambda, arm.parameters.mu);
+    let per_length = mu.inverse().unwrap_or(Number::ONE);
+    let per_both = (lambda * mu).inverse().unwrap_or(Number::ONE);
+    let found = match row.kind {
+        // both frames have the axis in common, and a point of it
+        Revolute => {
+            let about_z = |v: Vector<'s>, of: Vector<'s>| v.0[1] * of.0[0] - v.0[0] * of.0[1];
+            let of_frame = |motion: &Motion<'s>, wrench: &crate::reduced::backward::Wrench<'s>| {
+                about_z(motion.omega_dot, wrench.moment) + about_z(motion.acceleration, wrench.force).times(per_both)
+            };
+            of_frame(&link.own, &carried.own) + of_frame(&link.unturned, &carried.unturned)
+        }
+        Prismatic => {
+            let turning = link.own.omega_dot.cross(builder.vector(row.axis));
+            turning.dot(carried.own.force).times(per_length)
+        }
+    };
+    found.signed(row.reversed)
+}

@@ -1,0 +1,121 @@
+//! A picture of panels below each other's times: curves of a joint each, limits, and stretches that are marked.
+
+use crate::chart::{
+    COLOURS, Curve, HEAD, PANEL, Place, QUIET, SIDE, Svg, TEXT, WIDTH, axes, pixels, shortened, width_of,
+};
+
+/// A curve of a panel.
+#[derive(Clone, Copy, Debug)]
+pub struct PanelCurve<'a> {
+    /// What it is, for the legend: the same in every panel.
+    pub name: &'a str,
+    /// A value for each time.
+    pub values: &'a [f64],
+}
+
+/// A stretch of time that is marked.
+#[derive(Clone, Debug)]
+pub struct Band {
+    /// s
+    pub start: f64,
+    /// s
+    pub end: f64,
+    /// What it is, for who points at it.
+    pub words: String,
+}
+
+/// Axes with what is in them.
+#[derive(Clone, Debug)]
+pub struct Panel<'a> {
+    /// Above the axes, with the unit.
+    pub title: String,
+    /// Above them, on the right.
+    pub note: String,
+    /// What is drawn.
+    pub curves: Vec<PanelCurve<'a>>,
+    /// Dashed lines across.
+    pub limits: Vec<f64>,
+    /// Marked stretches.
+    pub bands: Vec<Band>,
+}
+
+/// Marks; light, so that curves are seen through them.
+const MARKED: &str = "#f7dfa5";
+
+/// Panels over the same times (s), two in a row, as an SVG of 1280 pixels width. `name` is for who cannot see it,
+/// `title` stands above it and `about` below that. Texts are shown and do nothing.
+#[must_use]
+pub fn panels(name: &str, title: &str, about: &str, time: &[f64], panels: &[Panel<'_>]) -> String {
+    let columns = if panels.len() == 1 { 1 } else { 2 };
+    #[allow(clippy::cast_precision_loss)] // at most some dozens
+    let rows = panels.len().div_ceil(columns) as f64;
+    let mut svg = Svg::with_root(name, HEAD + rows * PANEL + 12.0);
+    svg.text(SIDE, 46.0, &[("font-size", "26"), ("font-weight", "600")], &shortened(title, 72));
+    svg.text(SIDE, 74.0, &[("font-size", "16"), ("fill", QUIET)], &shortened(about, 130));
+    let mut x = SIDE;
+    for (index, curve) in panels.first().map_or(&[][..], |panel| &panel.curves).iter().enumerate() {
+        svg.stroke(x, 104.0, x + 38.0, 104.0, colour(index), dash(index), 2.2);
+        svg.text(x + 46.0, 109.0, &[("font-size", "16")], curve.name);
+        x += 46.0 + width_of(curve.name, 16.0) + 30.0;
+    }
+    if panels.iter().any(|panel| !panel.bands.is_empty()) {
+        let place = [("x", pixels(x)), ("y", pixels(94.0)), ("width", "38".to_owned()), ("height", "20".to_owned())];
+        let place = place.each_ref().map(|(name, value)| (*name, value.as_str()));
+        svg.empty("rect", &[&place[..], &[("fill", MARKED)]].concat());
+        svg.text(x + 46.0, 109.0, &[("font-size", "16")], "event");
+    }
+    let gap = 24.0;
+    #[allow(clippy::cast_precision_loss)] // 1 or 2
+    let wide = (WIDTH - 2.0 * SIDE - (columns as f64 - 1.0) * gap) / columns as f64;
+    for (index, panel) in panels.iter().enumerate() {
+        #[allow(clippy::cast_precision_loss)] // at most some dozens
+        let (column, row) = ((index % columns) as f64, (index / columns) as f64);
+        let place = Place { x: SIDE + column * (wide + gap), y: HEAD + row * PANEL, width: wide, height: PANEL };
+        one(&mut svg, place, panel, time);
+    }
+    svg.close("svg");
+    svg.finish()
+}
+
+fn one(svg: &mut Svg, place: Place, panel: &Panel<'_>, time: &[f64]) {
+    let curves: Vec<Curve<'_>> = panel
+        .curves
+        .iter()
+        .enumerate()
+        .map(|(index, curve)| Curve {
+            name: curve.name,
+            colour: colour(index),
+            dash: dash(index),
+            width: 2.0,
+            values: curve.values.to_vec(),
+        })
+        .collect();
+    let all = curves.iter().flat_map(|curve| curve.values.iter().copied()).chain(panel.limits.iter().copied());
+    let (across, up, [top, bottom]) = axes(svg, place, &shortened(&panel.title, 40), time, all);
+    for Band { start, end, words } in &panel.bands {
+        let (from, to) = (across.at(*start), across.at(*end));
+        let numbers = [("x", from), ("y", top), ("width", (to - from).max(2.0)), ("height", bottom - top)];
+        let numbers = numbers.map(|(name, value)| (name, pixels(value)));
+        let numbers = numbers.each_ref().map(|(name, value)| (*name, value.as_str()));
+        svg.open("rect", &[&numbers[..], &[("fill", MARKED), ("fill-opacity", "0.7")]].concat());
+        svg.words("title", &[], words);
+        svg.close("rect");
+    }
+    let right = place.x + place.width;
+    for limit in &panel.limits {
+        svg.stroke(place.x + 64.0, up.at(*limit), right, up.at(*limit), TEXT, "4 4", 1.2);
+    }
+    for curve in &curves {
+        svg.curve(curve, time, across, up);
+    }
+    svg.text(right, place.y + 26.0, &[("text-anchor", "end"), ("fill", QUIET)], &panel.note);
+}
+
+fn colour(index: usize) -> &'static str {
+    COLOURS[index % COLOURS.len()]
+}
+
+/// The first curve is whole.
+fn dash(index: usize) -> &'static str {
+    if index == 0 { "" } else { "9 3" }
+}

@@ -1,0 +1,156 @@
+//! The momentum of the joints, and its rate, by composite bodies: everything from link i on as one body.
+//!
+//! ```text
+//! p = M(q) q̇                ṗ = τ + τ_ext + ∂T/∂q - ∂V/∂q
+//!
+//! M_i = m_i + Σ M_k                                     mass of link i and of all that it carries
+//! s_i = M_i d_i + Σ (M_k r_k + R_k s_k)                 first moment about J_i
+//! P_i = m_i ċ_i + Σ R_k P_k                             linear momentum
+//! L_i = I_i ω_i + Σ R_k L_k + d_i × P_i + Σ r_k × R_k P_k      angular momentum about J_i
+//!
+//!                       revolute                          prismatic
+//! p_i                   e · L_i                           e · P_i               with a rotor + G² Jm q̇_i
+//! ∂T/∂q_i               (ω_i × e) · L_i + (j̇_i × e) · P_i (ω_i × e) · P_i
+//! -∂V/∂q_i              e · (s_i × g_i)                   M_i e · g_i
+//! ```
+//!
+//! k runs over the joints that link i carries; j̇_i = R_iᵀ (ċ_p + ω_p × r_i). A first moment h beside the mass adds h_i
+//! to s_i, ω_i × h_i to P_i and h_i × ċ_i to L_i. The order of the operations is part of the contract; generated code
+//! repeats it.
+
+use nalgebra::{Matrix3, Vector3};
+use rne_model::JointKind;
+
+use crate::link_frame::LinkFrame;
+use crate::link_state::{JointMotions, LinkMotion};
+use crate::mechanism::Mechanism;
+use crate::per_joint::PerJoint;
+use crate::{Arm, BaseMotion, Constant, MomentumAndRate, MomentumObserver, Scalar};
+#[cfg(feature = "std")]
+use crate::{DynArm, WrongLength};
+
+/// Link i and all that it carries, as one body.
+#[derive(Clone, Copy, Debug)]
+struct Body<T> {
+    mass: T,
+    first_moment: Vector3<T>,
+    linear: Vector3<T>,
+    angular: Vector3<T>,
+}
+
+/// What the joints mounted on a link bring to it, in its axes: their sums, the levers r_k apart.
+#[derive(Clone, Copy, Debug)]
+struct Carried<T> {
+    of_joints: Body<T>,
+    /// Σ M_k r_k and Σ r_k × P_k
+    of_levers: [Vector3<T>; 2],
+}
+
+impl<T: Scalar> Body<T> {
+    /// M_i, s_i, P_i and L_i.
+    fn of(link: &LinkFrame<T>, motion: &LinkMotion<T>, velocity: &Vector3<T>, carried: Option<&Carried<T>>) -> Self {
+        let (d, omega) = (&motion.d, &motion.omega);
+        let mass = carried.map_or(link.mass, |carried| link.mass + carried.of_joints.mass);
+        let (mut first_moment, mut linear) = (d * mass, velocity * link.mass);
+        let mut angular = link.inertia * omega;
+        if let Some(h) = &link.first_moment {
+            first_moment += h;
+            linear += omega.cross(h);
+            angular += h.cross(velocity);
+        }
+        match carried {
+            None => Self { mass, first_moment, linear, angular: angular + d.cross(&linear) },
+            Some(Carried { of_joints, of_levers: [of_masses, of_momenta] }) => {
+                linear += of_joints.linear;
+                let angular = ((angular + of_joints.angular) + d.cross(&linear)) + of_momenta;
+                Self { mass, first_moment: (first_moment + of_masses) + of_joints.first_moment, linear, angular }
+            }
+        }
+    }
+
+    /// The same in the axes of the parent.
+    fn turned(&self, rotation: &Matrix3<T>) -> Self {
+        Self {
+            mass: self.mass,
+            first_moment: rotation * self.first_moment,
+            linear: rotation * self.linear,
+            angular: rotation * self.angular,
+        }
+    }
+}
+
+/// One joint more that a link carries: `body` in the link's axes, about the joint at the end of `r`.
+fn carry<T: Scalar>(others: Option<Carried<T>>, body: Body<T>, r: &Vector3<T>) -> Carried<T> {
+    let of_levers = [r * body.mass, r.cross(&body.linear)];
+    let Some(Carried { of_joints, of_levers: [masses, momenta] }) = others else {
+        return Carried { of_joints: body, of_levers };
+    };
+    Carried {
+        of_joints: Body {
+            mass: of_joints.mass + body.mass,
+            first_moment: of_joints.first_moment + body.first_moment,
+            linear: of_joints.linear + body.linear,
+            angular: of_joints.angular + body.angular,
+        },
+        of_levers: [masses + of_levers[0], momenta + of_levers[1]],
+    }
+}
+
+impl<J: PerJoint, S: Constant> Mechanism<'_, J, S> {
+    /// p, and τ + ∂T/∂q - ∂V/∂q.
+    pub(crate) fn momentum_and_rate<T: Scalar>(self, q: &[T], qd: &[T], tau: &[T]) -> [J::Of<T>; 2] {
+        let zeros = self.zeros();
+        let joints = JointMotions::new(q, qd, zeros.as_ref());
+        let base: BaseMotion<T> = self.fixed_base();
+        let motions = self.motions(joints, &base);
+        let velocities = self.velocities(joints, &base, &motions);
+        let (motions, velocities) = (motions.as_ref(), velocities.as_ref());
+        let still = (LinkMotion::of_base(&base), Vector3::zeros());
+        let e = Vector3::new(T::zero(), T::zero(), T::one());
+        let mut carried = self.per_joint.all(&None);
+        let [mut momentum, mut rate] = [self.zeros::<T>(), self.zeros::<T>()];
+        for (i, link) in self.chain.links::<T>().enumerate().rev() {
+            let this = &motions[i];
+            let body = Body::of(&link, this, &velocities[i], carried.as_ref()[i].as_ref());
+            let turning = this.omega.cross(&e);
+            let (along, of_motion, of_gravity) = match link.kind {
+                JointKind::Revolute => {
+                    let (parent, velocity) = link.parent.map_or(still, |p| (motions[p], velocities[p]));
+                    let point = velocity + parent.omega.cross(&link.mount.r);
+                    let point = this.rotation.tr_mul(&point);
+                    let of_motion = turning.dot(&body.angular) + point.cross(&e).dot(&body.linear);
+                    (body.angular.z, of_motion, body.first_moment.cross(&this.gravity).z)
+                }
+                JointKind::Prismatic => (body.linear.z, turning.dot(&body.linear), this.gravity.z * body.mass),
+            };
+            momentum.as_mut()[i] = self.rotor(i).map_or(along, |rotor| along + rotor.to::<T>() * qd[i]);
+            rate.as_mut()[i] = (tau[i] + of_motion) + of_gravity;
+            if let Some(parent) = link.parent {
+                let place = &mut carried.as_mut()[parent];
+                *place = Some(carry(*place, body.turned(&this.rotation), &link.mount.r));
+            }
+        }
+        [momentum, rate]
+    }
+}
+
+impl<const DOF: usize, S: Constant> MomentumObserver<DOF> for Arm<DOF, S> {
+    fn momentum_and_rate<T: Scalar>(&self, q: &[T; DOF], qd: &[T; DOF], tau: &[T; DOF]) -> MomentumAndRate<DOF, T> {
+        let [momentum, rate] = self.mechanism().momentum_and_rate(q, qd, tau);
+        MomentumAndRate { momentum, rate }
+    }
+}
+
+#[cfg(feature = "std")]
+impl<S: Constant> DynArm<S> {
+    /// As [`MomentumObserver::momentum_and_rate`]: the momentum of every joint, and its rate without external torques.
+    ///
+    /// # Errors
+    /// When an argument does not have one element per joint.
+    pub fn momentum_and_rate<T: Scalar>(&self, q: &[T], qd: &[T], tau: &[T]) -> Result<[Vec<T>; 2], WrongLength> {
+        self.has_length("q", q)?;
+        self.has_length("qd", qd)?;
+        self.has_length("tau", tau)?;
+        Ok(self.mechanism().momentum_and_rate(q, qd, tau))
+    }
+}

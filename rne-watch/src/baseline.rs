@@ -1,0 +1,172 @@
+//! How large signals are while nothing happens.
+
+use std::ops::Range;
+
+use crate::{Signals, WatchError};
+
+/// Of a stretch that tells what noise is: so many blocks at least.
+const BLOCKS: usize = 20;
+
+/// An autocorrelation below this is none.
+const FORGOTTEN: f64 = 0.05;
+
+/// Products of an autocorrelation are counted up to here.
+const LONGEST: usize = 20_000;
+
+/// The parts of the model's torques that no deviation is below: what rounding and its relatives leave.
+const LEAST: f64 = 1e-6;
+
+/// A signal while nothing happens, N m or N.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Level {
+    /// Its median.
+    pub mean: f64,
+    /// The standard deviation of its means over blocks.
+    pub deviation: f64,
+    /// How long a block is, s; 0 for single samples. Means of blocks that follow each other know nothing of each other.
+    pub block: f64,
+}
+
+/// The levels of the signals of every joint, base to tip.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Baseline {
+    /// Of the residual.
+    pub residual: Vec<Level>,
+    /// Of the residual in the direction of motion.
+    pub friction: Vec<Level>,
+    /// Of the observer, sample by sample.
+    pub external: Vec<Level>,
+}
+
+impl Baseline {
+    /// From a quiet stretch of signals, in samples. It ought to be like what will be watched: an arm that stands still
+    /// tells nothing of what its model gets wrong in motion.
+    ///
+    /// Medians and median deviations are taken, which a knock does not change; a deviation is raised by two of its own
+    /// standard errors, so that a short stretch makes cautious thresholds.
+    ///
+    /// # Errors
+    /// When the stretch is too short.
+    pub fn of(signals: &Signals, quiet: Range<usize>) -> Result<Self, WatchError> {
+        let quiet = quiet.start.min(signals.time.len())..quiet.end.min(signals.time.len());
+        if quiet.len() < BLOCKS {
+            return Err(WatchError::TooFew { found: quiet.len(), needed: BLOCKS });
+        }
+        let (mut residual, mut friction, mut external) = (Vec::new(), Vec::new(), Vec::new());
+        for joint in 0..signals.dof() {
+            let least = LEAST * signals.measured[joint].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            let least = least.max(f64::MIN_POSITIVE);
+            let level = level(&signals.residual[joint][quiet.clone()], signals.period, least);
+            let moving = along_motion(signals, joint, level.mean, quiet.clone());
+            let moving: Vec<f64> = moving.into_iter().map(|(_, number)| number).collect();
+            // of an arm that stands still: the same noise
+            friction.push(if moving.len() < BLOCKS {
+                Level { mean: 0.0, ..level }
+            } else {
+                let found = self::level(&moving, signals.period, least);
+                Level { deviation: found.deviation.max(scaled(&level, &found)), ..found }
+            });
+            residual.push(level);
+            let seen: Vec<f64> =
+                quiet.clone().filter(|&at| signals.settled[at]).map(|at| signals.external[joint][at]).collect();
+            if seen.len() < BLOCKS {
+                return Err(WatchError::TooFew { found: seen.len(), needed: BLOCKS });
+            }
+            // neighbours know of each other: fewer tell of the deviation
+            let alone = seen.len() / remembered(&seen).max(1);
+            let (mean, deviation) = spread(&seen, alone, least);
+            external.push(Level { mean, deviation, block: 0.0 });
+        }
+        Ok(Self { residual, friction, external })
+    }
+
+    /// From standard deviations that are known: of white noise of the measured efforts, and of what the observer makes
+    /// of all noise. Lists run from base to tip.
+    #[must_use]
+    pub fn white(efforts: &[f64], external: &[f64]) -> Self {
+        let of = |deviations: &[f64]| -> Vec<Level> {
+            let level = |&deviation: &f64| Level { mean: 0.0, deviation, block: 0.0 };
+            deviations.iter().map(level).collect()
+        };
+        Self { residual: of(efforts), friction: of(efforts), external: of(external) }
+    }
+}
+
+/// The residual of a joint, less its level, in the direction of motion: where it moves, with the samples.
+pub(crate) fn along_motion(signals: &Signals, joint: usize, mean: f64, samples: Range<usize>) -> Vec<(usize, f64)> {
+    let (residual, direction) = (&signals.residual[joint], &signals.direction[joint]);
+    let moving = samples.filter(|&at| direction[at] != 0.0);
+    moving.map(|at| (at, (residual[at] - mean) * direction[at])).collect()
+}
+
+/// The deviation of a level for blocks of another one: of white noise, it falls with the root of their length.
+fn scaled(level: &Level, other: &Level) -> f64 {
+    if level.block == 0.0 || other.block == 0.0 {
+        return 0.0;
+    }
+    level.deviation * (level.block / other.block).sqrt()
+}
+
+fn level(numbers: &[f64], period: f64, least: f64) -> Level {
+    let length = block_length(numbers);
+    let means = means(numbers, length);
+    let (mean, deviation) = spread(&means, means.len(), least);
+    #[allow(clippy::cast_precision_loss)] // a length of a list
+    Level { mean, deviation, block: length as f64 * period }
+}
+
+/// Samples of a block: several times what the noise remembers, but so few that there are blocks enough.
+fn block_length(numbers: &[f64]) -> usize {
+    let memory = remembered(numbers);
+    let length = if memory <= 1 { 1 } else { 4 * memory };
+    length.min(numbers.len() / BLOCKS).max(1)
+}
+
+/// Means of blocks of so many; what is left at the end is no block.
+pub(crate) fn means(numbers: &[f64], length: usize) -> Vec<f64> {
+    #[allow(clippy::cast_precision_loss)] // a length of a list
+    numbers.chunks_exact(length.max(1)).map(|block| block.iter().sum::<f64>() / block.len() as f64).collect()
+}
+
+/// The median, and a standard deviation by the median deviation, of which `independent` numbers tell.
+fn spread(numbers: &[f64], independent: usize, least: f64) -> (f64, f64) {
+    let mean = median(numbers.to_vec());
+    let deviation = 1.4826 * median(numbers.iter().map(|x| (x - mean).abs()).collect());
+    #[allow(clippy::cast_precision_loss)] // a length of a list
+    let error = 1.167 / (independent.max(1) as f64).sqrt();
+    (mean, (deviation * (1.0 + 2.0 * error)).max(least))
+}
+
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_unstable_by(f64::total_cmp);
+    let middle = numbers.len() / 2;
+    match numbers.len() {
+        0 => 0.0,
+        length if length % 2 == 1 => numbers[middle],
+        _ => 0.5 * (numbers[middle - 1] + numbers[middle]),
+    }
+}
+
+/// For how many samples noise is correlated: 1 + 2 Σ ρ, over the lags until it is forgotten.
+fn remembered(numbers: &[f64]) -> usize {
+    let numbers = &numbers[..numbers.len().min(LONGEST)];
+    let mean = median(numbers.to_vec());
+    let centred: Vec<f64> = numbers.iter().map(|x| x - mean).collect();
+    let of_lag = |lag: usize| centred.iter().zip(&centred[lag..]).map(|(a, b)| a * b).sum::<f64>();
+    let all = of_lag(0);
+    if all <= 0.0 {
+        return 1;
+    }
+    let mut sum = 1.0;
+    for lag in 1..numbers.len() / 4 {
+        let correlation = of_lag(lag) / all;
+        if correlation < FORGOTTEN {
+            break;
+        }
+        sum += 2.0 * correlation;
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // above 1, below the length
+    let whole = sum.round() as usize;
+    whole
+}

@@ -1,0 +1,159 @@
+//! What an arm's efforts are beyond its model, along a motion.
+//!
+//! ```text
+//! residual = τ_measured - (τ(q, q̇, q̈) + friction(q̇))
+//! external = the momentum observer of τ_measured - friction(q̇), which needs no q̈
+//! ```
+//!
+//! The torques of the environment on the arm are the negative of what the actuators deliver for them: in free motion
+//! and in quasi-static contact `external` is about -`residual`, through a low-pass.
+
+use rne_logs::Motion;
+use rne_model::Robot;
+use rne_runtime::{DynArm, DynObserverState, WrongLength};
+
+use crate::WatchError;
+
+/// Fewer tell nothing.
+const FEWEST: usize = 16;
+
+/// A step that is so many times as long as the usual one is a gap: the observer begins anew behind it.
+const GAP: f64 = 2.5;
+
+/// Signals along a motion: a list per joint, base to tip, each as long as `time`. N m, or N of a joint that slides.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Signals {
+    /// Seconds.
+    pub time: Vec<f64>,
+    /// The usual time between two samples, s.
+    pub period: f64,
+    /// What was measured.
+    pub measured: Vec<Vec<f64>>,
+    /// Measured, less the model with rotors and friction of the robot file.
+    pub residual: Vec<Vec<f64>>,
+    /// The direction of motion, -1, 0 or 1: of joints that are as good as at rest it is 0.
+    pub direction: Vec<Vec<f64>>,
+    /// Torques of the environment on the arm by the momentum observer.
+    pub external: Vec<Vec<f64>>,
+    /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
+    pub settled: Vec<bool>,
+}
+
+impl Signals {
+    /// The signals of a robot along a motion, the observer with this gain in Hz.
+    ///
+    /// # Errors
+    /// When the motion is not one of the robot, too short, or has numbers that are not finite.
+    pub fn new(robot: &Robot, motion: &Motion, gain: f64) -> Result<Self, WatchError> {
+        check(robot.dof(), motion)?;
+        if !(gain.is_finite() && gain > 0.0) {
+            return Err(WatchError::Setting("the gain"));
+        }
+        let arm = DynArm::from_robot(&robot.clone().with_rotors());
+        let period = usual_step(&motion.time);
+        Self::along(&arm, motion, gain, period)
+            .map_err(|WrongLength { expected, found, .. }| WatchError::Joints { expected, found })
+    }
+
+    fn along(arm: &DynArm, motion: &Motion, gain: f64, period: f64) -> Result<Self, WrongLength> {
+        let (dof, samples) = (arm.dof(), motion.len());
+        let lists = || vec![Vec::with_capacity(samples); dof];
+        let (mut residual, mut direction, mut external) = (lists(), lists(), lists());
+        let mut settled = Vec::with_capacity(samples);
+        let mut observer = DynObserverState::new(dof, gain, period);
+        let still = still(&motion.qd);
+        let (zeros, wait) = (vec![0.0; dof], 3.0 / (std::f64::consts::TAU * gain));
+        let mut since = 0.0;
+        for sample in 0..samples {
+            let of = |lists: &[Vec<f64>]| -> Vec<f64> { lists.iter().map(|list| list[sample]).collect() };
+            let [q, qd, qdd, tau] = [&motion.q, &motion.qd, &motion.qdd, &motion.tau].map(|lists| of(lists));
+            let step = if sample == 0 { 0.0 } else { motion.time[sample] - motion.time[sample - 1] };
+            if step > GAP * period {
+                observer.reset();
+                since = 0.0;
+            } else {
+                since += step;
+            }
+            let friction = arm.actuator_torques(&qd, &zeros)?;
+            let model = arm.inverse_dynamics(&q, &qd, &qdd)?;
+            let net: Vec<f64> = tau.iter().zip(&friction).map(|(tau, friction)| tau - friction).collect();
+            let seen = observer.update(arm, &q, &qd, &net)?;
+            settled.push(since > wait);
+            for joint in 0..dof {
+                residual[joint].push(net[joint] - model[joint]);
+                external[joint].push(seen[joint]);
+                let moves = qd[joint].abs() > still[joint];
+                direction[joint].push(if moves { qd[joint].signum() } else { 0.0 });
+            }
+        }
+        let (time, measured) = (motion.time.clone(), motion.tau.clone());
+        Ok(Self { time, period, measured, residual, direction, external, settled })
+    }
+
+    /// The number of joints.
+    #[must_use]
+    pub fn dof(&self) -> usize {
+        self.residual.len()
+    }
+
+    /// The prediction error of a joint: the root mean square of measured less predicted, over the standard deviation of
+    /// the measured effort. 0 is a perfect model, 1 one that is no better than the mean. `None` where the effort does
+    /// not change.
+    #[must_use]
+    pub fn prediction_error(&self, joint: usize) -> Option<f64> {
+        let (measured, residual) = (self.measured.get(joint)?, self.residual.get(joint)?);
+        #[allow(clippy::cast_precision_loss)] // no log has 2⁵² samples
+        let count = measured.len() as f64;
+        let mean = measured.iter().sum::<f64>() / count;
+        let spread = (measured.iter().map(|tau| (tau - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let error = (residual.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
+        (spread > 0.0).then(|| error / spread)
+    }
+}
+
+/// The speed of each joint below which it is as good as at rest: a fiftieth of its usual largest, the 95th percentile.
+fn still(qd: &[Vec<f64>]) -> Vec<f64> {
+    let of_joint = |rates: &Vec<f64>| {
+        let mut speeds: Vec<f64> = rates.iter().map(|rate| rate.abs()).collect();
+        speeds.sort_unstable_by(f64::total_cmp);
+        speeds.get(speeds.len() * 95 / 100).map_or(0.0, |speed| 0.02 * speed)
+    };
+    qd.iter().map(of_joint).collect()
+}
+
+/// The median of the steps.
+fn usual_step(time: &[f64]) -> f64 {
+    let mut steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    steps.sort_unstable_by(f64::total_cmp);
+    steps.get(steps.len() / 2).copied().unwrap_or(1.0)
+}
+
+/// # Errors
+/// When the motion is not one of so many joints, too short, or has numbers that are not finite.
+fn check(dof: usize, motion: &Motion) -> Result<(), WatchError> {
+    let samples = motion.len();
+    for (name, lists) in [("q", &motion.q), ("qd", &motion.qd), ("qdd", &motion.qdd), ("tau", &motion.tau)] {
+        if lists.len() != dof {
+            return Err(WatchError::Joints { expected: dof, found: lists.len() });
+        }
+        for (joint, list) in lists.iter().enumerate() {
+            if list.len() != samples {
+                return Err(WatchError::Length(name, joint + 1));
+            }
+            if let Some(sample) = list.iter().position(|number| !number.is_finite()) {
+                return Err(WatchError::Sample(sample));
+            }
+        }
+    }
+    if let Some(sample) = motion.time.iter().position(|time| !time.is_finite()) {
+        return Err(WatchError::Sample(sample));
+    }
+    if let Some(before) = motion.time.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(WatchError::Sample(before + 1));
+    }
+    if samples < FEWEST {
+        return Err(WatchError::TooFew { found: samples, needed: FEWEST });
+    }
+    Ok(())
+}

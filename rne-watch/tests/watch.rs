@@ -1,0 +1,274 @@
+//! Synthetic motions of shipped arms: what is known to happen is found, where it happens, and nothing else.
+
+use fastrand::Rng;
+use rne_logs::Motion;
+use rne_model::{Reader, Robot};
+use rne_runtime::DynArm;
+use rne_watch::{Baseline, Event, Report, Settings, Signals, Test, WatchError, svg, watch};
+
+/// Samples per second.
+const RATE: f64 = 250.0;
+const SECONDS: f64 = 40.0;
+
+/// Standard deviation of the measured efforts, of the largest of each joint.
+const NOISE: f64 = 0.01;
+
+fn shipped(name: &str) -> Robot {
+    let file = rne_robots::find(name).expect("a shipped robot");
+    Reader::new(name).read(file.yaml).expect("it is valid").robot
+}
+
+/// A number of the standard normal distribution (Box and Muller).
+fn normal(rng: &mut Rng) -> f64 {
+    let (u, v) = (1.0 - rng.f64(), rng.f64());
+    (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
+}
+
+/// A motion in which every joint swings at rates of its own; `disturbed` changes the efforts that the model asks for,
+/// from time, velocities and the efforts.
+fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64])) -> Motion {
+    let arm = DynArm::from_robot(&robot.clone().with_rotors());
+    let (dof, mut rng) = (robot.dof(), Rng::with_seed(seed));
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let samples = (RATE * SECONDS) as usize;
+    let lists = || vec![Vec::with_capacity(samples); dof];
+    let mut motion = Motion { time: Vec::new(), q: lists(), qd: lists(), qdd: lists(), tau: lists() };
+    for sample in 0..samples {
+        #[allow(clippy::cast_precision_loss)]
+        let time = sample as f64 / RATE;
+        #[allow(clippy::cast_precision_loss)]
+        let omega = |joint: usize| 0.9 + 0.37 * joint as f64;
+        let of = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..dof).map(|joint| f(omega(joint))).collect() };
+        let q = of(&|w| 0.4 * (w * time).sin());
+        let qd = of(&|w| 0.4 * w * (w * time).cos());
+        let qdd = of(&|w| -0.4 * w * w * (w * time).sin());
+        let mut tau = arm.inverse_dynamics(&q, &qd, &qdd).expect("one per joint");
+        let friction = arm.actuator_torques(&qd, &qdd).expect("one per joint");
+        tau.iter_mut().zip(&friction).for_each(|(tau, friction)| *tau += friction);
+        disturbed(time, &qd, &mut tau);
+        motion.time.push(time);
+        for joint in 0..dof {
+            motion.q[joint].push(q[joint]);
+            motion.qd[joint].push(qd[joint]);
+            motion.qdd[joint].push(qdd[joint]);
+            motion.tau[joint].push(tau[joint]);
+        }
+    }
+    for tau in &mut motion.tau {
+        let deviation = NOISE * tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+        tau.iter_mut().for_each(|tau| *tau += deviation * normal(&mut rng));
+    }
+    motion
+}
+
+fn watched(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64])) -> (Signals, Baseline, Report) {
+    let settings = Settings::default();
+    let signals = Signals::new(robot, &motion(robot, seed, disturbed), settings.gain).expect("a motion of the robot");
+    // the first ten seconds are quiet
+    let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
+    let report = watch(&signals, &baseline, &settings).expect("of the same robot");
+    (signals, baseline, report)
+}
+
+fn of<'a>(report: &'a Report, joint: usize, test: Test) -> Vec<&'a Event> {
+    report.events.iter().filter(|event| event.joint == joint && event.test == test).collect()
+}
+
+#[test]
+fn free_motion_raises_no_alarm() {
+    for (name, seed) in [("puma560", 1), ("planar2", 2), ("planar2", 3), ("scara_cobra600", 4)] {
+        let (signals, _, report) = watched(&shipped(name), seed, |_, _, _| {});
+        assert_eq!(report.events, [], "{name}");
+        // noise is all that the model does not explain
+        for (error, tau) in report.errors.iter().flatten().zip(&signals.measured) {
+            #[allow(clippy::cast_precision_loss)]
+            let count = tau.len() as f64;
+            let mean = tau.iter().sum::<f64>() / count;
+            let spread = (tau.iter().map(|tau| (tau - mean).powi(2)).sum::<f64>() / count).sqrt();
+            let noise = NOISE * tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            assert!((error / (noise / spread) - 1.0).abs() < 0.08, "{name}: {error}, {}", noise / spread);
+        }
+    }
+}
+
+/// A tenth of a second of something in the way of the second joint.
+#[test]
+fn a_collision_is_seen_where_it_is() {
+    let robot = shipped("puma560");
+    let (size, start, length) = (12.0, 20.0, 0.1);
+    let (signals, baseline, report) = watched(&robot, 5, |time, _, tau| {
+        let phase = (time - start) / length;
+        // the environment pushes back: the actuator delivers more
+        if (0.0..1.0).contains(&phase) {
+            tau[1] += size * (std::f64::consts::PI * phase).sin();
+        }
+    });
+    let events = of(&report, 1, Test::External);
+    assert_eq!(events.len(), 1, "{:?}", report.events);
+    let event = events[0];
+    assert!((start - 0.01..start + 0.05).contains(&event.start), "{event:?}");
+    assert!((start + 0.05..start + length + 0.05).contains(&event.end), "{event:?}");
+    assert!((-1.2 * size..-0.6 * size).contains(&event.peak), "{event:?}");
+    assert!(report.events.iter().all(|event| event.joint == 1 && event.start > 19.0 && event.end < 22.0));
+
+    let picture = svg(&robot, &signals, &baseline, &report, "a collision after twenty seconds");
+    assert!(picture.starts_with("<svg") && picture.contains("external, peak"), "{picture}");
+    assert_eq!(picture.matches("<polyline").count(), 12);
+}
+
+/// Friction of the third joint grows, by a tenth of its largest effort within half a minute.
+#[test]
+fn a_joint_that_wears_is_found() {
+    let robot = shipped("puma560");
+    let (_, _, report) = watched(&robot, 6, |time, qd, tau| {
+        let worn = 0.06 * (time - 10.0).max(0.0);
+        tau[2] += worn * qd[2].signum();
+    });
+    let events = of(&report, 2, Test::Friction);
+    let first = events.first().unwrap_or_else(|| panic!("{:?}", report.events));
+    assert!((10.0..20.0).contains(&first.start), "{first:?}");
+    assert!(events.iter().all(|event| event.peak > 0.0), "{events:?}");
+    assert!(events.iter().any(|event| event.end > 39.0), "{events:?}");
+    assert!(report.events.iter().all(|event| event.joint == 2), "{:?}", report.events);
+}
+
+/// The payload that is taken up shows where it is heavy, from then on, with the sign of its weight.
+#[test]
+fn a_payload_that_is_taken_up_is_found() {
+    let robot = shipped("planar2");
+    let grasp = 25.0;
+    let mut loaded = robot.clone();
+    loaded.joints[1].row.link.mass *= 1.2;
+    let [bare, loaded] = [&robot, &loaded].map(|robot| motion(robot, 7, |_, _, _| {}));
+    let mut both = bare;
+    for (tau, other) in both.tau.iter_mut().zip(&loaded.tau) {
+        for ((tau, other), time) in tau.iter_mut().zip(other).zip(&both.time) {
+            *tau = if *time < grasp { *tau } else { *other };
+        }
+    }
+    let settings = Settings::default();
+    let signals = Signals::new(&robot, &both, settings.gain).expect("a motion of the robot");
+    let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
+    let report = watch(&signals, &baseline, &settings).expect("of the same robot");
+    for joint in 0..2 {
+        let events = of(&report, joint, Test::Offset);
+        let first = events.first().unwrap_or_else(|| panic!("{:?}", report.events));
+        assert!((grasp - 0.1..grasp + 0.5).contains(&first.start), "{first:?}");
+    }
+    assert!(report.events.iter().all(|event| event.start > grasp - 0.1), "{:?}", report.events);
+    assert!(of(&report, 0, Test::External).first().is_some_and(|event| event.start < grasp + 0.2));
+    assert!(report.events.iter().any(|event| event.end > 39.0));
+}
+
+/// Of noise that is white, and of one that a filter has smoothed: alarms are no more than asked for, and those of
+/// cumulative sums about as many.
+#[test]
+fn false_alarms_are_as_rare_as_asked_for() {
+    let robot = shipped("planar2");
+    let base = Signals::new(&robot, &motion(&robot, 8, |_, _, _| {}), 20.0).expect("a motion of the robot");
+    let samples = 200_000_u32;
+    // one in ten seconds, of three tests of two joints
+    let settings = Settings { false_alarms: 360.0, ..Settings::default() };
+    for memory in [0.0_f64, 0.9] {
+        let mut rng = Rng::with_seed(9);
+        let mut noise = || -> Vec<Vec<f64>> {
+            let list = |rng: &mut Rng| {
+                let mut before = 0.0;
+                (0..samples)
+                    .map(|_| {
+                        before = memory * before + (1.0 - memory * memory).sqrt() * normal(rng);
+                        before
+                    })
+                    .collect()
+            };
+            vec![list(&mut rng), list(&mut rng)]
+        };
+        let mut signals = base.clone();
+        signals.residual = noise();
+        signals.external = noise();
+        signals.measured = noise();
+        signals.time = (0..samples).map(|sample| f64::from(sample) / RATE).collect();
+        signals.settled = vec![true; signals.time.len()];
+        // to and fro, twice in a second
+        let direction = |sample: u32| if (sample / 63).is_multiple_of(2) { 1.0 } else { -1.0 };
+        signals.direction = vec![(0..samples).map(direction).collect(); 2];
+        let baseline = Baseline::of(&signals, 0..100_000).expect("long enough");
+        let report = watch(&signals, &baseline, &settings).expect("two joints");
+        let hours = f64::from(samples) / RATE / 3600.0;
+        for test in Test::ALL {
+            #[allow(clippy::cast_precision_loss)]
+            let found = report.events.iter().filter(|event| event.test == test).count() as f64 / hours;
+            println!("memory {memory}, {test}: {found:.0} an hour, at most 120 asked for");
+            assert!(found < 1.3 * 120.0, "memory {memory}, {test}: {found} an hour");
+            if test != Test::External && memory == 0.0 {
+                assert!(found > 0.3 * 120.0, "{test}: {found} an hour");
+            }
+        }
+    }
+}
+
+/// A gap in the times is a new beginning of the observer, and no event.
+#[test]
+fn a_gap_is_no_event() {
+    let robot = shipped("planar2");
+    let mut motion = motion(&robot, 10, |_, _, _| {});
+    for list in std::iter::once(&mut motion.time)
+        .chain(&mut motion.q)
+        .chain(&mut motion.qd)
+        .chain(&mut motion.qdd)
+        .chain(&mut motion.tau)
+    {
+        list.drain(5000..5400);
+    }
+    let settings = Settings::default();
+    let signals = Signals::new(&robot, &motion, settings.gain).expect("a motion of the robot");
+    assert!(signals.settled[4999] && !signals.settled[5000] && !signals.settled[5005] && signals.settled[5020]);
+    let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
+    assert_eq!(watch(&signals, &baseline, &settings).expect("of the same robot").events, []);
+}
+
+#[test]
+fn noise_that_is_known_needs_no_quiet_stretch() {
+    let robot = shipped("planar2");
+    let plain = motion(&robot, 11, |time, _, tau| tau[0] -= if time > 30.0 { 8.0 } else { 0.0 });
+    let settings = Settings::default();
+    let signals = Signals::new(&robot, &plain, settings.gain).expect("a motion of the robot");
+    let baseline = Baseline::white(&[0.5, 0.2], &[1.0, 0.5]);
+    let report = watch(&signals, &baseline, &settings).expect("of the same robot");
+    let first = report.events.first().expect("an event");
+    assert!(first.start > 29.9 && first.joint == 0, "{first:?}");
+}
+
+#[test]
+fn what_cannot_be_watched_is_said() {
+    let robot = shipped("planar2");
+    let whole = motion(&robot, 12, |_, _, _| {});
+    let refused = |change: &dyn Fn(&mut Motion)| {
+        let mut motion = whole.clone();
+        change(&mut motion);
+        Signals::new(&robot, &motion, 20.0).expect_err("no motion of the robot")
+    };
+    assert_eq!(refused(&|m| m.qdd.truncate(1)), WatchError::Joints { expected: 2, found: 1 });
+    assert_eq!(refused(&|m| m.tau[1].truncate(7)), WatchError::Length("tau", 2));
+    assert_eq!(refused(&|m| m.q[0][9] = f64::NAN), WatchError::Sample(9));
+    assert_eq!(refused(&|m| m.time[5] = m.time[4]), WatchError::Sample(5));
+    assert_eq!(
+        refused(&|m| *m = Motion {
+            q: vec![vec![]; 2],
+            qd: vec![vec![]; 2],
+            qdd: vec![vec![]; 2],
+            tau: vec![vec![]; 2],
+            time: vec![]
+        }),
+        WatchError::TooFew { found: 0, needed: 16 }
+    );
+    let signals = Signals::new(&robot, &whole, 20.0).expect("a motion of the robot");
+    assert_eq!(Signals::new(&robot, &whole, 0.0), Err(WatchError::Setting("the gain")));
+    assert!(matches!(Baseline::of(&signals, 0..5), Err(WatchError::TooFew { .. })));
+    let one = Baseline::white(&[1.0], &[1.0]);
+    assert_eq!(watch(&signals, &one, &Settings::default()), Err(WatchError::Joints { expected: 2, found: 1 }));
+    let two = Baseline::white(&[1.0; 2], &[1.0; 2]);
+    let settings = Settings { hold: f64::NAN, ..Settings::default() };
+    assert_eq!(watch(&signals, &two, &settings), Err(WatchError::Setting("the hold")));
+    assert!(WatchError::Sample(3).to_string().starts_with("sample 4 "));
+}
