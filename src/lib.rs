@@ -159,8 +159,8 @@ pub use rne_runtime::{RunTimeParameter, batch, testing};
 pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
-        ARGUMENTS, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Machine, Number,
+        ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
+        EvaluationError, Form, Function, Layout, Machine, Number, Record,
     };
 }
 

@@ -42,7 +42,7 @@ pub use compiled_arm::CompiledArm;
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use one_state::Derivatives;
-pub use rne_codegen::{Form, Function};
+pub use rne_codegen::{Argument, Form, Function, Layout, Record};
 
 use rne_codegen::{Name, Program};
 use rne_runtime::machine::Code;
