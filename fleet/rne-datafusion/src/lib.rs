@@ -26,7 +26,7 @@ mod function;
 mod result;
 mod robots;
 
-use datafusion::logical_expr::ScalarUDF;
+use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
 use datafusion::prelude::SessionContext;
 
 use crate::function::{Computation, DynamicsFunction};
@@ -44,4 +44,10 @@ pub fn register(context: &SessionContext, robots: &Robots) {
     for function in functions(robots) {
         context.register_udf(function);
     }
+}
+
+/// Every aggregate, for those robots.
+#[must_use]
+pub fn aggregates(_: &Robots) -> Vec<AggregateUDF> {
+    Vec::new()
 }
