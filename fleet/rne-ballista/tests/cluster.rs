@@ -1,11 +1,12 @@
 //! A scheduler and two executors on this machine: the results are those of one process, also when an executor dies.
 
-use std::net::TcpListener;
+use std::net::{TcpListener, TcpStream};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU16, Ordering};
 use std::time::{Duration, Instant};
 
-use datafusion::arrow::array::{Array, AsArray, RecordBatch};
+use datafusion::arrow::array::{AsArray, RecordBatch};
 use datafusion::arrow::compute::concat_batches;
 use datafusion::arrow::datatypes::{Float64Type, Int64Type};
 use datafusion::arrow::util::pretty::pretty_format_batches;
@@ -32,16 +33,24 @@ impl Drop for Process {
 
 struct Fleet {
     scheduler: String,
+    addresses: [String; 2],
     executors: Vec<Process>,
     _scheduler: Process,
     work: PathBuf,
 }
 
-/// Ports that are free now, one after the other.
+/// The first of so many ports that are free now, one after the other.
 fn ports(count: u16) -> u16 {
+    // tests of one process run beside each other
+    static NEXT: AtomicU16 = AtomicU16::new(0);
     let free = |port: u16| TcpListener::bind(("127.0.0.1", port)).is_ok();
-    let start = 30_000 + u16::try_from(std::process::id() % 20_000).unwrap_or_default();
-    (start..60_000).step_by(10).find(|port| (*port..port + count).all(free)).expect("free ports")
+    let of_process = 20_000 + u16::try_from(std::process::id() % 20_000).unwrap_or_default();
+    loop {
+        let port = of_process + NEXT.fetch_add(10, Ordering::Relaxed);
+        if (port..port + count).all(free) {
+            return port;
+        }
+    }
 }
 
 fn start(arguments: &[&str]) -> Process {
@@ -61,20 +70,20 @@ impl Fleet {
             let work = work.to_str().expect("a name");
             start(&["executor", "--listen", &address(offset), "--scheduler", &address(0), "--work", work])
         });
-        Self { scheduler: address(0), executors: executors.into(), _scheduler: scheduler, work: work.to_owned() }
+        let addresses = [address(1), address(3)];
+        Self { scheduler: address(0), addresses, executors: executors.into(), _scheduler: scheduler, work: work.to_owned() }
     }
 
-    /// A session, once the scheduler answers.
+    /// A session, once all processes answer.
     async fn session(&self, log: &Path) -> Result<Session> {
         let start = Instant::now();
-        loop {
-            match session(Some(&self.scheduler), log).await {
-                Err(_) if start.elapsed() < Duration::from_secs(60) => {
-                    tokio::time::sleep(Duration::from_millis(200)).await;
-                }
-                said => return said,
+        for address in [&self.scheduler].into_iter().chain(&self.addresses) {
+            while TcpStream::connect(address).is_err() {
+                assert!(start.elapsed() < Duration::from_secs(120), "nobody answers at {address}");
+                tokio::time::sleep(Duration::from_millis(50)).await;
             }
         }
+        session(Some(&self.scheduler), log).await
     }
 }
 
