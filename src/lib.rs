@@ -167,8 +167,8 @@ pub use rne_runtime::{RunTimeParameter, batch, processor, testing};
 pub mod compiled {
     #[doc(inline)]
     pub use rne_machine::{
-        ARGUMENTS, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
-        EvaluationError, Form, Function, Machine, Number, PlanFile, SearchOptions, SearchProgress,
+        ARGUMENTS, Argument, Arguments, ArmError, Array, CompiledArm, CompiledFunction, Derivatives, Destination,
+        EvaluationError, Form, Function, Layout, Machine, Number, PlanFile, Record, SearchOptions, SearchProgress,
     };
 }
 

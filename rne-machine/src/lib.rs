@@ -44,7 +44,7 @@ pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use one_state::Derivatives;
 pub use rne_codegen::plan::{PlanFile, SearchOptions};
-pub use rne_codegen::{Form, Function};
+pub use rne_codegen::{Argument, Form, Function, Layout, Record};
 pub use search::SearchProgress;
 
 use rne_codegen::{Name, Program};

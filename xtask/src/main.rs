@@ -8,6 +8,7 @@ mod capi;
 mod certificate;
 mod counts;
 mod features;
+mod fleet;
 mod fuzz;
 mod growth;
 mod instructions;
@@ -65,6 +66,7 @@ enum Task {
     Package(package::Package),
     Tool(tool::Tool),
     Features(features::Features),
+    Fleet(fleet::Fleet),
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
@@ -102,6 +104,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
+            Self::Fleet(task) => ("fleet", false, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),

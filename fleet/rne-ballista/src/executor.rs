@@ -1,0 +1,51 @@
+//! The process that computes.
+
+use std::net::SocketAddr;
+use std::path::Path;
+use std::sync::Arc;
+
+use ballista::prelude::SessionConfigExt as _;
+use ballista_core::registry::BallistaFunctionRegistry;
+use ballista_core::utils::default_session_builder;
+use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
+use datafusion::common::{Result, exec_datafusion_err};
+use datafusion::prelude::SessionConfig;
+use rne_datafusion::{Robots, aggregates, functions};
+
+/// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the stages
+/// of a query in a folder.
+///
+/// # Errors
+/// When it cannot listen there, or no scheduler answers.
+pub async fn executor(
+    listen: SocketAddr,
+    scheduler: SocketAddr,
+    cores: usize,
+    work: Option<&Path>,
+    robots: &Robots,
+) -> Result<()> {
+    // the registry replaces the engine's own functions, so it starts with them
+    let state = default_session_builder(SessionConfig::new_with_ballista())?;
+    let mut registry = BallistaFunctionRegistry::from(&state);
+    for function in functions(robots) {
+        registry.scalar_functions.insert(function.name().to_owned(), Arc::new(function));
+    }
+    for function in aggregates(robots) {
+        registry.aggregate_functions.insert(function.name().to_owned(), Arc::new(function));
+    }
+    let config = ExecutorProcessConfig {
+        bind_host: listen.ip().to_string(),
+        external_host: Some(listen.ip().to_string()),
+        port: listen.port(),
+        grpc_port: listen.port() + 1,
+        scheduler_host: scheduler.ip().to_string(),
+        scheduler_port: scheduler.port(),
+        vcores: cores,
+        work_dir: work.map(|work| work.display().to_string()),
+        executor_heartbeat_interval_seconds: 1,
+        override_function_registry: Some(Arc::new(registry)),
+        ..ExecutorProcessConfig::default()
+    };
+    let failed = |error| exec_datafusion_err!("executor at {}: {error}", listen);
+    start_executor_process(Arc::new(config)).await.map_err(failed)
+}

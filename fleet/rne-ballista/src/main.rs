@@ -1,0 +1,141 @@
+//! `rne-fleet`: arguments and printing; what is done is in the library.
+
+use std::io::Write as _;
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::process::ExitCode;
+use std::time::Duration;
+
+use clap::{Args, Parser, Subcommand};
+use datafusion::arrow::util::pretty::pretty_format_batches;
+use datafusion::common::{Result, plan_err};
+use futures::StreamExt as _;
+use rne_ballista::{Session, executor, scheduler};
+use rne_datafusion::Robots;
+
+/// Dynamics of robot arms in SQL, on one machine or on several.
+#[derive(Parser)]
+#[command(version, after_help = "Examples:\n  rne-fleet robots\n  rne-fleet sql \"SELECT gravity_torques({planar2}, [0.0, 0.5])\"")]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Runs a query here, or on a fleet with --scheduler
+    Sql(Query),
+    /// Gives work to executors and clients
+    Scheduler(Scheduler),
+    /// Does the work of a scheduler
+    Executor(Executor),
+    /// Lists the robots that this binary holds, as a query calls them
+    Robots(Files),
+}
+
+/// Robot files beside those that are built in.
+#[derive(Args, Clone)]
+struct Files {
+    /// A robot file beside the shipped ones; every process of a fleet needs it
+    #[arg(long = "robot", value_name = "FILE")]
+    files: Vec<PathBuf>,
+}
+
+impl Files {
+    fn read(&self) -> Result<Robots> {
+        self.files.iter().try_fold(Robots::shipped()?, Robots::with_file)
+    }
+}
+
+#[derive(Args)]
+struct Query {
+    /// The query; {puma560} stands for the shipped or given robot, with its hash
+    sql: String,
+    /// A Parquet file or folder as a table
+    #[arg(long = "table", value_name = "NAME=PATH")]
+    tables: Vec<String>,
+    /// The scheduler of a fleet; without it the query runs here
+    #[arg(long, value_name = "HOST:PORT")]
+    scheduler: Option<String>,
+    /// Parts that are computed beside each other
+    #[arg(long, value_name = "N")]
+    partitions: Option<usize>,
+    #[command(flatten)]
+    robots: Files,
+}
+
+impl Query {
+    async fn run(&self) -> Result<()> {
+        let robots = self.robots.read()?;
+        let session = Session::new(self.scheduler.as_deref(), self.partitions, robots).await?;
+        for table in &self.tables {
+            let Some((name, path)) = table.split_once('=') else {
+                return plan_err!("`--table {table}`: a table is NAME=PATH, `--table log=log.parquet`");
+            };
+            session.table(name, path).await?;
+        }
+        let mut batches = session.sql(&self.sql).await?.execute_stream().await?;
+        let mut out = std::io::stdout().lock();
+        while let Some(batch) = batches.next().await {
+            // a pipe that was closed wants no more
+            if writeln!(out, "{}", pretty_format_batches(&[batch?])?).is_err() {
+                break;
+            }
+        }
+        Ok(())
+    }
+}
+
+#[derive(Args)]
+struct Scheduler {
+    /// Where it listens
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50050")]
+    listen: SocketAddr,
+    /// Seconds without a sign of life after which an executor is lost
+    #[arg(long, value_name = "SECONDS", default_value_t = 30)]
+    lost_after: u64,
+    #[command(flatten)]
+    robots: Files,
+}
+
+#[derive(Args)]
+struct Executor {
+    /// Where it listens; the port after it is taken too
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50060")]
+    listen: SocketAddr,
+    /// Where the scheduler listens
+    #[arg(long, value_name = "ADDRESS", default_value = "127.0.0.1:50050")]
+    scheduler: SocketAddr,
+    /// Parts that are computed beside each other
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    cores: usize,
+    /// Folder of what passes between the stages of a query
+    #[arg(long, value_name = "DIR")]
+    work: Option<PathBuf>,
+    #[command(flatten)]
+    robots: Files,
+}
+
+#[tokio::main]
+async fn main() -> ExitCode {
+    env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("warn")).init();
+    let said = match Line::parse().command {
+        Command::Sql(query) => query.run().await,
+        Command::Scheduler(Scheduler { listen, lost_after, robots }) => match robots.read() {
+            Ok(robots) => scheduler(listen, Duration::from_secs(lost_after), robots).await,
+            Err(error) => Err(error),
+        },
+        Command::Executor(Executor { listen, scheduler, cores, work, robots }) => match robots.read() {
+            Ok(robots) => executor(listen, scheduler, cores, work.as_deref(), &robots).await,
+            Err(error) => Err(error),
+        },
+        Command::Robots(files) => files.read().map(|robots| robots.keys().for_each(|key| println!("{key}"))),
+    };
+    match said {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {}", error.strip_backtrace());
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,59 @@
+//! Queries, here or on a fleet.
+
+use ballista::prelude::{SessionConfigExt as _, SessionContextExt as _};
+use datafusion::common::{Result, exec_datafusion_err};
+use datafusion::execution::SessionStateBuilder;
+use datafusion::prelude::{DataFrame, ParquetReadOptions, SessionConfig, SessionContext};
+use rne_datafusion::{Robots, register};
+
+/// A session with the functions of some robots.
+pub struct Session {
+    context: SessionContext,
+    robots: Robots,
+}
+
+impl Session {
+    /// A session on the fleet of a scheduler (`127.0.0.1:50050`), or without one in this process; `partitions` are
+    /// computed beside each other.
+    ///
+    /// # Errors
+    /// When no scheduler answers there.
+    pub async fn new(scheduler: Option<&str>, partitions: Option<usize>, robots: Robots) -> Result<Self> {
+        let partitioned = |config: SessionConfig| match partitions {
+            Some(partitions) => config.with_target_partitions(partitions),
+            None => config,
+        };
+        let context = match scheduler {
+            None => SessionContext::new_with_config(partitioned(SessionConfig::new())),
+            Some(scheduler) => {
+                let config = partitioned(SessionConfig::new_with_ballista());
+                let state = SessionStateBuilder::new().with_config(config).with_default_features().build();
+                let unreached = |error| exec_datafusion_err!("no scheduler answers at {scheduler}: {error}");
+                SessionContext::remote_with_state(&format!("df://{scheduler}"), state).await.map_err(unreached)?
+            }
+        };
+        register(&context, &robots);
+        Ok(Self { context, robots })
+    }
+
+    /// Makes a Parquet file, or a folder of them, a table. A fleet reads it on every executor: it stands on storage that
+    /// they share.
+    ///
+    /// # Errors
+    /// When it cannot be read.
+    pub async fn table(&self, name: &str, path: &str) -> Result<()> {
+        self.context.register_parquet(name, path, ParquetReadOptions::default()).await
+    }
+
+    /// A query, in which `{puma560}` stands for the robot of that name with its hash.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub async fn sql(&self, sql: &str) -> Result<DataFrame> {
+        let with_keys = self.robots.keys().fold(sql.to_owned(), |sql, key| {
+            let name = key.split('@').next().unwrap_or_default();
+            sql.replace(&format!("{{{name}}}"), &format!("'{key}'"))
+        });
+        self.context.sql(&with_keys).await
+    }
+}

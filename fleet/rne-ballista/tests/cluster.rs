@@ -1,0 +1,220 @@
+//! A scheduler and two executors on this machine: the results are those of one process, also when an executor dies.
+
+use std::net::{TcpListener, TcpStream};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::sync::atomic::{AtomicU16, Ordering};
+use std::time::{Duration, Instant};
+
+use datafusion::arrow::array::{AsArray, RecordBatch};
+use datafusion::arrow::compute::concat_batches;
+use datafusion::arrow::datatypes::{Float64Type, Int64Type};
+use datafusion::arrow::util::pretty::pretty_format_batches;
+use datafusion::common::Result;
+use datafusion::dataframe::DataFrameWriteOptions;
+use datafusion::prelude::SessionContext;
+use rne_ballista::Session;
+use rne_datafusion::Robots;
+
+/// Files of the log, states in each, and in how many parts queries are computed.
+const FILES: usize = 8;
+const STATES: usize = 20_000;
+const PARTS: usize = 4;
+
+/// What is killed when the test ends, however it ends.
+struct Process(Child);
+
+impl Drop for Process {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+struct Fleet {
+    scheduler: String,
+    addresses: [String; 2],
+    executors: Vec<Process>,
+    _scheduler: Process,
+    work: PathBuf,
+}
+
+/// The first of so many ports that are free now, one after the other.
+fn ports(count: u16) -> u16 {
+    // tests of one process run beside each other
+    static NEXT: AtomicU16 = AtomicU16::new(0);
+    let free = |port: u16| TcpListener::bind(("127.0.0.1", port)).is_ok();
+    let of_process = 20_000 + u16::try_from(std::process::id() % 20_000).unwrap_or_default();
+    loop {
+        let port = of_process + NEXT.fetch_add(10, Ordering::Relaxed);
+        if (port..port + count).all(free) {
+            return port;
+        }
+    }
+}
+
+fn start(arguments: &[&str]) -> Process {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rne-fleet"));
+    let command = command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null());
+    Process(command.spawn().expect("it is built"))
+}
+
+impl Fleet {
+    fn new(work: &Path) -> Self {
+        let port = ports(5);
+        let address = |offset: u16| format!("127.0.0.1:{}", port + offset);
+        let scheduler = start(&["scheduler", "--listen", &address(0), "--lost-after", "5"]);
+        let executors = [1, 3].map(|offset| {
+            let work = work.join(offset.to_string());
+            std::fs::create_dir_all(&work).expect("a folder");
+            let work = work.to_str().expect("a name");
+            start(&["executor", "--listen", &address(offset), "--scheduler", &address(0), "--work", work])
+        });
+        let addresses = [address(1), address(3)];
+        Self { scheduler: address(0), addresses, executors: executors.into(), _scheduler: scheduler, work: work.to_owned() }
+    }
+
+    /// A session, once all processes answer.
+    async fn session(&self, log: &Path) -> Result<Session> {
+        let start = Instant::now();
+        for address in [&self.scheduler].into_iter().chain(&self.addresses) {
+            while TcpStream::connect(address).is_err() {
+                assert!(start.elapsed() < Duration::from_secs(120), "nobody answers at {address}");
+                tokio::time::sleep(Duration::from_millis(50)).await;
+            }
+        }
+        session(Some(&self.scheduler), log).await
+    }
+}
+
+async fn session(scheduler: Option<&str>, log: &Path) -> Result<Session> {
+    let session = Session::new(scheduler, Some(PARTS), Robots::shipped()?).await?;
+    session.table("log", log.to_str().expect("a name")).await?;
+    Ok(session)
+}
+
+/// Sines as trajectories of a PUMA, in several files.
+async fn write_log(folder: &Path) -> Result<()> {
+    let context = SessionContext::new();
+    let columns = |name: &str| {
+        let column = |joint: usize| format!("sin(0.001 * i * {joint} + length('{name}')) AS {name}{joint}");
+        (1..=6).map(column).collect::<Vec<_>>().join(", ")
+    };
+    for file in 0..FILES {
+        let (first, last) = (file * STATES + 1, (file + 1) * STATES);
+        let [q, qd, qdd] = ["q", "qd", "qdd"].map(columns);
+        let sql = format!("SELECT value AS i, {q}, {qd}, {qdd} FROM (SELECT value, value AS i FROM generate_series({first}, {last}))");
+        let path = folder.join(format!("{file}.parquet"));
+        let path = path.to_str().expect("a name");
+        context.sql(&sql).await?.write_parquet(path, DataFrameWriteOptions::new(), None).await?;
+    }
+    Ok(())
+}
+
+fn call() -> String {
+    let of = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>().join(", ");
+    format!("inverse_dynamics({{puma560}}, {}, {}, {})", of("q"), of("qd"), of("qdd"))
+}
+
+async fn all(session: &Session, sql: &str) -> Result<RecordBatch> {
+    let batches = session.sql(sql).await?.collect().await?;
+    Ok(concat_batches(&batches.first().expect("a batch").schema(), &batches)?)
+}
+
+/// Rows, and sums with how many they are of: what a loss would make fewer, and a repetition more.
+fn rows() -> String {
+    format!("SELECT i, tau[2] AS tau FROM (SELECT i, {} AS tau FROM log) WHERE i % 40 = 0 ORDER BY i", call())
+}
+
+fn sums() -> String {
+    format!(
+        "SELECT i % 7 AS part, count(*) AS states, count(DISTINCT i) AS different, sum(tau[2]) AS sum \
+         FROM (SELECT i, {} AS tau FROM log) GROUP BY i % 7 ORDER BY part",
+        call()
+    )
+}
+
+/// Rows exactly; sums to the order of summing, and their counts exactly.
+fn same_sums(found: &RecordBatch, expected: &RecordBatch) {
+    let show = |batch: &RecordBatch| pretty_format_batches(std::slice::from_ref(batch)).expect("a table").to_string();
+    for column in 0..3 {
+        let numbers = |batch: &RecordBatch| batch.column(column).as_primitive::<Int64Type>().values().to_vec();
+        assert_eq!(numbers(found), numbers(expected), "{}\n{}", show(found), show(expected));
+    }
+    let sums = |batch: &RecordBatch| batch.column(3).as_primitive::<Float64Type>().values().to_vec();
+    for (found, expected) in sums(found).into_iter().zip(sums(expected)) {
+        assert!((found - expected).abs() <= 1e-10 * expected.abs().max(1.0), "{found}, {expected}");
+    }
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn two_executors_give_what_one_process_gives() -> Result<()> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log");
+    write_log(&log).await?;
+    let here = session(None, &log).await?;
+    let fleet = Fleet::new(&folder.path().join("work"));
+    let there = fleet.session(&log).await?;
+    let (found, expected) = (all(&there, &rows()).await?, all(&here, &rows()).await?);
+    assert_eq!(expected.num_rows(), FILES * STATES / 40);
+    assert_eq!(found, expected);
+    same_sums(&all(&there, &sums()).await?, &all(&here, &sums()).await?);
+    // a robot that the executors do not hold is refused, and said to the client
+    let said = all(&there, "SELECT gravity_torques('puma560@0000000000000000', q1, q2, q3, q4, q5, q6) FROM log").await;
+    assert!(said.expect_err("it is refused").to_string().contains("is not the puma560"));
+    Ok(())
+}
+
+/// When an executor is killed.
+#[derive(Clone, Copy, Debug)]
+enum Loss {
+    /// While the log is read.
+    FirstStage,
+    /// When what it has computed is asked for.
+    AfterAShuffle,
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_executor_that_dies_costs_time_and_no_rows() -> Result<()> {
+    for loss in [Loss::FirstStage, Loss::AfterAShuffle] {
+        let folder = tempfile::tempdir().expect("a folder");
+        let log = folder.path().join("log");
+        write_log(&log).await?;
+        let expected = all(&session(None, &log).await?, &sums()).await?;
+        let mut fleet = Fleet::new(&folder.path().join("work"));
+        let there = fleet.session(&log).await?;
+        let query = tokio::spawn(async move { all(&there, &sums()).await });
+        let killed = wait_for(&fleet.work, loss, &query).await;
+        drop(fleet.executors.remove(0));
+        let found = query.await.expect("no panic")?;
+        assert!(killed, "{loss:?}: the query ended before");
+        same_sums(&found, &expected);
+    }
+    Ok(())
+}
+
+/// Waits until the query is that far; false when it ended before.
+async fn wait_for<T>(work: &Path, loss: Loss, query: &tokio::task::JoinHandle<T>) -> bool {
+    while !query.is_finished() {
+        let stages = stages(&work.join("1"));
+        let is_there = match loss {
+            Loss::FirstStage => !stages.is_empty(),
+            Loss::AfterAShuffle => stages.iter().any(|stage| *stage >= 2),
+        };
+        if is_there {
+            return true;
+        }
+        tokio::time::sleep(Duration::from_millis(2)).await;
+    }
+    false
+}
+
+/// The stages that an executor has written results of: its work folder has a folder per job, and in it one per stage.
+fn stages(work: &Path) -> Vec<u32> {
+    let folders = |folder: &Path| -> Vec<PathBuf> {
+        std::fs::read_dir(folder).map(|found| found.flatten().map(|entry| entry.path()).collect()).unwrap_or_default()
+    };
+    let jobs = folders(work);
+    let stages = jobs.iter().flat_map(|job| folders(job));
+    stages.filter_map(|stage| stage.file_name()?.to_str()?.parse().ok()).collect()
+}

@@ -1,0 +1,252 @@
+//! Joint numbers out of a batch's columns: a list per state, or a column per joint.
+
+use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array};
+use datafusion::arrow::buffer::NullBuffer;
+use datafusion::arrow::datatypes::{DataType, Field, Float64Type};
+use datafusion::common::{Result, exec_err, plan_err};
+use rne::compiled;
+
+/// An argument of a function, of all states of a batch.
+#[derive(Debug)]
+pub(crate) enum Argument<'a> {
+    /// Numbers of a state beside each other, as a list column without gaps has them.
+    Rows(&'a [f64]),
+    /// The same, copied, for the column has gaps.
+    Gathered(Vec<f64>),
+    /// A column per joint.
+    Columns(Vec<&'a [f64]>),
+}
+
+impl Argument<'_> {
+    /// As the machine reads it.
+    pub(crate) fn array(&self) -> compiled::Array<'_, f64> {
+        match self {
+            Self::Rows(numbers) => compiled::Array::Rows(numbers),
+            Self::Gathered(numbers) => compiled::Array::Rows(numbers),
+            Self::Columns(columns) => compiled::Array::Columns(columns),
+        }
+    }
+
+    /// The number of a joint in a state.
+    pub(crate) fn at(&self, state: usize, joint: usize, joints: usize) -> f64 {
+        match self {
+            Self::Rows(numbers) => numbers[state * joints + joint],
+            Self::Gathered(numbers) => numbers[state * joints + joint],
+            Self::Columns(columns) => columns[joint][state],
+        }
+    }
+}
+
+/// The types that columns are brought to: lists of `Float64`, or `Float64`.
+pub(crate) fn coerced(function: &str, position: usize, given: &DataType) -> Result<DataType> {
+    let item = |field: &Field| field.clone().with_data_type(DataType::Float64).into();
+    let refused = || {
+        plan_err!(
+            "{function}: argument {} is {given}; lists of numbers are wanted, or a column of numbers per joint",
+            position + 1
+        )
+    };
+    let is_number = |of: &DataType| of.is_numeric() || *of == DataType::Null;
+    match given {
+        of if is_number(of) => Ok(DataType::Float64),
+        DataType::List(field) if is_number(field.data_type()) => Ok(DataType::List(item(field))),
+        DataType::LargeList(field) if is_number(field.data_type()) => Ok(DataType::LargeList(item(field))),
+        DataType::FixedSizeList(field, length) if is_number(field.data_type()) => {
+            Ok(DataType::FixedSizeList(item(field), *length))
+        }
+        _ => refused(),
+    }
+}
+
+/// How many of the columns from `first` on are one argument of a robot with so many joints: one list, or a column per
+/// joint.
+pub(crate) fn width(
+    function: &str,
+    argument: &str,
+    types: &[&DataType],
+    first: usize,
+    robot: &str,
+    joints: usize,
+) -> Result<usize> {
+    let Some(of) = types.get(first) else {
+        return plan_err!("{function}: `{argument}` is missing: a list of {joints} numbers, or {joints} columns");
+    };
+    match of {
+        DataType::FixedSizeList(_, length) if usize::try_from(*length) != Ok(joints) => {
+            plan_err!("{function}: `{argument}` is a list of {length} numbers, and {robot} has {joints} joints")
+        }
+        DataType::List(_) | DataType::LargeList(_) | DataType::FixedSizeList(..) => Ok(1),
+        _ => {
+            let columns = types[first..].iter().take(joints).take_while(|of| **of == &DataType::Float64).count();
+            if columns == joints {
+                Ok(joints)
+            } else {
+                plan_err!("{function}: `{argument}` has {columns} columns, and {robot} has {joints} joints")
+            }
+        }
+    }
+}
+
+/// Where a column is, for messages.
+pub(crate) struct Place<'a> {
+    pub(crate) function: &'a str,
+    pub(crate) column: &'a str,
+    pub(crate) robot: &'a str,
+}
+
+/// The numbers of a list column, and the states of which some are null.
+pub(crate) fn of_list<'a>(
+    array: &'a ArrayRef,
+    joints: usize,
+    place: &Place<'_>,
+) -> Result<(Argument<'a>, Option<NullBuffer>)> {
+    match array.data_type() {
+        DataType::FixedSizeList(..) => {
+            let list = array.as_fixed_size_list();
+            let wanted = (0..list.len()).map(|state| (state * joints, joints));
+            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+        }
+        DataType::List(_) => {
+            let list = array.as_list::<i32>();
+            let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
+            let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
+            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+        }
+        DataType::LargeList(_) => {
+            let list = array.as_list::<i64>();
+            let at = |state: usize| usize::try_from(list.value_offsets()[state]).unwrap_or_default();
+            let wanted = (0..list.len()).map(|state| (at(state), at(state + 1) - at(state)));
+            gather(list.values(), list.nulls(), wanted, list.len(), joints, place)
+        }
+        other => {
+            let Place { function, column, .. } = place;
+            exec_err!("{function}: column `{column}` is {other}; lists of Float64 are wanted")
+        }
+    }
+}
+
+/// `lists`: where the list of each state starts, and how long it is.
+fn gather<'a>(
+    values: &'a ArrayRef,
+    nulls: Option<&NullBuffer>,
+    lists: impl Iterator<Item = (usize, usize)> + Clone,
+    states: usize,
+    joints: usize,
+    place: &Place<'_>,
+) -> Result<(Argument<'a>, Option<NullBuffer>)> {
+    let Place { function, column, robot } = place;
+    let Some(numbers) = values.as_primitive_opt::<Float64Type>() else {
+        return exec_err!("{function}: column `{column}` has lists of {}; of Float64 are wanted", values.data_type());
+    };
+    let is_null = |state: usize| nulls.is_some_and(|nulls| nulls.is_null(state));
+    let mut whole = true;
+    let mut next = lists.clone().next().map_or(0, |(start, _)| start);
+    let first = next;
+    for (state, (start, length)) in lists.clone().enumerate() {
+        if is_null(state) {
+            whole &= length == joints && start == next;
+        } else if length != joints {
+            return exec_err!(
+                "{function}: column `{column}`, row {} of a batch of {states}: {length} numbers, and {robot} has {joints} \
+                 joints",
+                state + 1
+            );
+        } else {
+            whole &= start == next;
+        }
+        next = start + length;
+    }
+    // a state of which one number is null is null
+    let inner = numbers.nulls().filter(|inner| inner.null_count() > 0);
+    let of_numbers = inner.map(|inner| {
+        let lists = lists.clone().enumerate();
+        lists.map(|(state, (start, length))| is_null(state) || (start..start + length).all(|at| inner.is_valid(at))).collect()
+    });
+    let nulls = NullBuffer::union(nulls, of_numbers.as_ref());
+    let argument = if whole {
+        Argument::Rows(&numbers.values()[first..first + states * joints])
+    } else {
+        let mut gathered = Vec::with_capacity(states * joints);
+        for (state, (start, _)) in lists.enumerate() {
+            if is_null(state) {
+                gathered.resize(gathered.len() + joints, 0.0);
+            } else {
+                gathered.extend_from_slice(&numbers.values()[start..start + joints]);
+            }
+        }
+        Argument::Gathered(gathered)
+    };
+    Ok((argument, nulls))
+}
+
+/// A column of numbers.
+pub(crate) fn of_column<'a>(array: &'a ArrayRef, place: &Place<'_>) -> Result<&'a Float64Array> {
+    match array.as_primitive_opt::<Float64Type>() {
+        Some(numbers) => Ok(numbers),
+        None => {
+            let Place { function, column, .. } = place;
+            exec_err!("{function}: column `{column}` is {}; Float64 is wanted", array.data_type())
+        }
+    }
+}
+
+/// The arguments of a function out of the columns of a batch, and the states of which some number is null.
+///
+/// `names` are the arguments', `columns` the names of the columns.
+pub(crate) fn all<'a>(
+    function: &str,
+    names: &[&str],
+    columns: &[&str],
+    arrays: &'a [ArrayRef],
+    robot: &str,
+    joints: usize,
+) -> Result<(Vec<Argument<'a>>, Option<NullBuffer>)> {
+    let types: Vec<&DataType> = arrays.iter().map(|array| array.data_type()).collect();
+    let (mut first, mut nulls) = (0, None);
+    let mut arguments = Vec::with_capacity(names.len());
+    for name in names {
+        let width = width(function, name, &types, first, robot, joints)?;
+        let (these, called) = (&arrays[first..first + width], &columns[first..first + width]);
+        let place = |column| Place { function, column, robot };
+        let is_list = !matches!(these[0].data_type(), DataType::Float64);
+        if is_list {
+            let (argument, of_argument) = of_list(&these[0], joints, &place(called[0]))?;
+            nulls = NullBuffer::union(nulls.as_ref(), of_argument.as_ref());
+            arguments.push(argument);
+        } else {
+            let mut numbers = Vec::with_capacity(joints);
+            for (array, column) in these.iter().zip(called) {
+                let column = of_column(array, &place(column))?;
+                nulls = NullBuffer::union(nulls.as_ref(), column.nulls());
+                numbers.push(&column.values()[..]);
+            }
+            arguments.push(Argument::Columns(numbers));
+        }
+        first += width;
+    }
+    if first < arrays.len() {
+        return plan_err!(
+            "{function}: {} columns too many after `{}`: each of {} is a list, or {joints} columns",
+            arrays.len() - first,
+            columns[first - 1],
+            names.join(", ")
+        );
+    }
+    Ok((arguments, nulls))
+}
+
+/// Whether columns of such types are the arguments of a function: what [`all`] says of a batch, before there is one.
+pub(crate) fn check(function: &str, names: &[&str], types: &[&DataType], robot: &str, joints: usize) -> Result<()> {
+    let mut first = 0;
+    for name in names {
+        first += width(function, name, types, first, robot, joints)?;
+    }
+    if first < types.len() {
+        return plan_err!(
+            "{function}: {} columns too many: each of {} is a list, or {joints} columns",
+            types.len() - first,
+            names.join(", ")
+        );
+    }
+    Ok(())
+}

@@ -1,0 +1,222 @@
+//! Dynamics as scalar functions: `inverse_dynamics('puma560@…', q, qd, qdd)`.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::ArrayRef;
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
+use datafusion::common::{Result, ScalarValue, exec_err, internal_err, plan_err};
+use datafusion::logical_expr::{
+    ColumnarValue, Documentation, ReturnFieldArgs, ScalarFunctionArgs, ScalarUDFImpl, Signature, Volatility,
+};
+use rne::compiled::{Argument as Input, Arguments, Destination, Function, Layout};
+
+use crate::argument::{self, Argument};
+use crate::result;
+use crate::robots::{Held, Robots, external};
+
+/// What a function of the engine computes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Computation {
+    /// A function of the arm.
+    Of(Function),
+    /// Measured torques minus those of the model, its motors included.
+    Residual,
+}
+
+impl Computation {
+    /// All that take joint numbers and nothing else.
+    pub(crate) fn all() -> impl Iterator<Item = Self> {
+        let of_joints = |function: &Function| {
+            let is_of_joints =
+                |input: &Input| matches!(input, Input::Positions | Input::Rates | Input::Accelerations | Input::Torques);
+            function.arguments().iter().all(is_of_joints)
+        };
+        Function::ALL.iter().copied().filter(of_joints).map(Self::Of).chain([Self::Residual])
+    }
+
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Of(function) => function.name(),
+            Self::Residual => "residual",
+        }
+    }
+
+    /// The names of its arguments, after the robot.
+    fn arguments(self) -> Vec<&'static str> {
+        match self {
+            Self::Of(function) => function
+                .arguments()
+                .iter()
+                .map(|input| match input {
+                    Input::Rates => "qd",
+                    Input::Accelerations => "qdd",
+                    Input::Torques => "tau",
+                    _ => "q",
+                })
+                .collect(),
+            Self::Residual => vec!["q", "qd", "qdd", "tau"],
+        }
+    }
+
+    fn layout(self, dof: usize) -> Layout {
+        match self {
+            Self::Of(function) => function.layout(dof),
+            Self::Residual => Function::InverseDynamics.layout(dof),
+        }
+    }
+
+    fn summary(self) -> &'static str {
+        match self {
+            Self::Of(function) => function.summary(),
+            Self::Residual => "Measured torques minus those of the model, friction and rotors of its motors included.",
+        }
+    }
+
+    /// The numbers of so many states, one state after the other.
+    fn run(self, held: &Held, states: usize, arguments: &[Argument<'_>]) -> Result<Vec<f64>> {
+        let arm = &held.arm;
+        let mut given = Arguments::new();
+        for (name, argument) in self.arguments().into_iter().zip(arguments) {
+            given = match given.with(name, argument.array()) {
+                Some(given) => given,
+                None => return internal_err!("{}: `{name}` is no argument", self.name()),
+            };
+        }
+        let run = |function: Function| {
+            let mut numbers = vec![0.0; states * function.layout(arm.dof()).len()];
+            arm.run(function, states, &given, Destination::Rows(&mut numbers)).map_err(external)?;
+            Ok(numbers)
+        };
+        match self {
+            Self::Of(function) => run(function),
+            Self::Residual => {
+                let mut torques = run(Function::InverseDynamics)?;
+                if arm.robot().joints.iter().any(|joint| joint.motor.is_some()) {
+                    let motors = run(Function::ActuatorTorques)?;
+                    torques.iter_mut().zip(motors).for_each(|(torque, motor)| *torque += motor);
+                }
+                let Some(measured) = arguments.last() else { return internal_err!("residual: no torques") };
+                let joints = arm.dof();
+                for (at, torque) in torques.iter_mut().enumerate() {
+                    *torque = measured.at(at / joints, at % joints, joints) - *torque;
+                }
+                Ok(torques)
+            }
+        }
+    }
+}
+
+/// A [`Computation`] with the robots that it may be asked for.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(crate) struct DynamicsFunction {
+    computation: Computation,
+    robots: Robots,
+    signature: Signature,
+    documentation: About,
+}
+
+/// What the engine tells of a function; not part of what it is.
+#[derive(Debug)]
+struct About(Documentation);
+
+impl PartialEq for About {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+impl Eq for About {}
+impl std::hash::Hash for About {
+    fn hash<H: std::hash::Hasher>(&self, _: &mut H) {}
+}
+
+impl DynamicsFunction {
+    pub(crate) fn new(computation: Computation, robots: Robots) -> Self {
+        let section = datafusion::logical_expr::DocSection { include: true, label: "Robot dynamics", description: None };
+        let syntax = format!("{}(robot, {})", computation.name(), computation.arguments().join(", "));
+        let documentation = Documentation::builder(section, computation.summary(), syntax).build();
+        Self {
+            computation,
+            robots,
+            signature: Signature::user_defined(Volatility::Immutable),
+            documentation: About(documentation),
+        }
+    }
+
+    /// The robot of the first argument, which is a literal.
+    fn held(&self, robot: Option<&ScalarValue>) -> Result<&Held> {
+        self.robots.get(key(self.computation.name(), robot)?)
+    }
+}
+
+/// The key of a robot out of the first argument.
+pub(crate) fn key<'a>(function: &str, robot: Option<&'a ScalarValue>) -> Result<&'a str> {
+    match robot.and_then(|robot| robot.try_as_str().flatten()) {
+        Some(key) => Ok(key),
+        None => plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'"),
+    }
+}
+
+/// The types of all arguments: a robot's name, and numbers.
+pub(crate) fn coerced(function: &str, given: &[DataType]) -> Result<Vec<DataType>> {
+    let Some((robot, columns)) = given.split_first() else {
+        return plan_err!("{function}: the robot is missing, the first argument");
+    };
+    if !matches!(robot, DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View) {
+        return plan_err!("{function}: the first argument is the robot, a literal of text, not {robot}");
+    }
+    let columns = columns.iter().enumerate().map(|(at, of)| argument::coerced(function, at + 1, of));
+    [Ok(robot.clone())].into_iter().chain(columns).collect()
+}
+
+impl ScalarUDFImpl for DynamicsFunction {
+    fn name(&self) -> &str {
+        self.computation.name()
+    }
+
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
+        internal_err!("{}: the type depends on the robot", self.name())
+    }
+
+    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
+        coerced(self.name(), given)
+    }
+
+    fn return_field_from_args(&self, given: ReturnFieldArgs<'_>) -> Result<FieldRef> {
+        let held = self.held(given.scalar_arguments.first().copied().flatten())?;
+        let types: Vec<&DataType> = given.arg_fields.iter().skip(1).map(|field| field.data_type()).collect();
+        let robot = held.arm.robot();
+        argument::check(self.name(), &self.computation.arguments(), &types, &robot.name, robot.dof())?;
+        let of = result::data_type(&self.computation.layout(robot.dof()));
+        Ok(Arc::new(Field::new(self.name(), of, true)))
+    }
+
+    fn invoke_with_args(&self, given: ScalarFunctionArgs) -> Result<ColumnarValue> {
+        let ScalarFunctionArgs { args, arg_fields, number_rows: states, .. } = given;
+        let Some((ColumnarValue::Scalar(robot), columns)) = args.split_first() else {
+            return exec_err!("{}: the first argument is the robot, a literal", self.name());
+        };
+        let held = self.held(Some(robot))?;
+        // numbers that are the same for all states count once
+        let is_constant = columns.iter().all(|column| matches!(column, ColumnarValue::Scalar(_)));
+        let states = if is_constant { 1 } else { states };
+        let arrays = columns.iter().map(|column| column.to_array(states)).collect::<Result<Vec<ArrayRef>>>()?;
+        let names: Vec<&str> = arg_fields.iter().skip(1).map(|field| field.name().as_str()).collect();
+        let robot = held.arm.robot();
+        let (arguments, nulls) =
+            argument::all(self.name(), &self.computation.arguments(), &names, &arrays, &robot.name, robot.dof())?;
+        let numbers = self.computation.run(held, states, &arguments)?;
+        let column = result::column(&self.computation.layout(robot.dof()), numbers, states, nulls)?;
+        if is_constant {
+            return Ok(ColumnarValue::Scalar(ScalarValue::try_from_array(&column, 0)?));
+        }
+        Ok(ColumnarValue::Array(column))
+    }
+
+    fn documentation(&self) -> Option<&Documentation> {
+        Some(&self.documentation.0)
+    }
+}

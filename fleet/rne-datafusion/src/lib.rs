@@ -1,0 +1,53 @@
+//! Dynamics of robot arms as functions of DataFusion: in SQL and on DataFrames, over columns or lists.
+//!
+//! ```
+//! use datafusion::prelude::SessionContext;
+//! use rne_datafusion::{Robots, register};
+//!
+//! # #[tokio::main(flavor = "current_thread")]
+//! # async fn main() -> datafusion::error::Result<()> {
+//! let robots = Robots::shipped()?;
+//! let context = SessionContext::new();
+//! register(&context, &robots);
+//!
+//! let robot = robots.key("planar2").expect("it is shipped");
+//! let torques = context.sql(&format!("SELECT gravity_torques('{robot}', [0.0, 0.0]) AS tau")).await?;
+//! assert_eq!(torques.collect().await?[0].num_rows(), 1);
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! Each argument is a list per state, or a column per joint: columns are read as they are, and fastest. What is null in
+//! an argument makes the result of that state null. Units, signs and frames are those of
+//! [`rne`](https://docs.rs/rne).
+
+mod argument;
+mod function;
+mod result;
+mod robots;
+
+use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
+use datafusion::prelude::SessionContext;
+
+use crate::function::{Computation, DynamicsFunction};
+pub use crate::robots::Robots;
+
+/// Every scalar function, for those robots.
+#[must_use]
+pub fn functions(robots: &Robots) -> Vec<ScalarUDF> {
+    let function = |computation| ScalarUDF::new_from_impl(DynamicsFunction::new(computation, robots.clone()));
+    Computation::all().map(function).collect()
+}
+
+/// Gives a session all functions of those robots.
+pub fn register(context: &SessionContext, robots: &Robots) {
+    for function in functions(robots) {
+        context.register_udf(function);
+    }
+}
+
+/// Every aggregate, for those robots.
+#[must_use]
+pub fn aggregates(_: &Robots) -> Vec<AggregateUDF> {
+    Vec::new()
+}

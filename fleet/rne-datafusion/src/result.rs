@@ -1,0 +1,94 @@
+//! Results as columns: the shape of a function as nested lists and structs.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::{ArrayRef, FixedSizeListArray, Float64Array, StructArray};
+use datafusion::arrow::buffer::NullBuffer;
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
+use datafusion::common::{Result, exec_err};
+use rne::compiled::Layout;
+
+/// The type of a column of results.
+pub(crate) fn data_type(layout: &Layout) -> DataType {
+    match layout {
+        Layout::Number => DataType::Float64,
+        Layout::Array(length, of) => DataType::FixedSizeList(item(data_type(of)), size(*length)),
+        Layout::Record(record, parts) => {
+            let parts = record.fields().into_iter().zip(parts);
+            DataType::Struct(parts.map(|(name, part)| Field::new(name, data_type(part), false)).collect())
+        }
+    }
+}
+
+/// Numbers of states, one state after the other, as a column in that shape.
+pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: Option<NullBuffer>) -> Result<ArrayRef> {
+    let outputs = layout.len();
+    if numbers.len() != states * outputs {
+        return exec_err!("{} numbers are no {states} results of {outputs}", numbers.len());
+    }
+    let numbers = Numbers { numbers, outputs, states };
+    match layout {
+        Layout::Number => Ok(Arc::new(Float64Array::new(numbers.numbers.into(), nulls))),
+        Layout::Array(length, of) => {
+            let inner = numbers.elements(of, &each(&[0], *length, of))?;
+            Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*length), inner, nulls)?))
+        }
+        Layout::Record(record, parts) => {
+            let (mut start, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
+            for (name, part) in record.fields().into_iter().zip(parts) {
+                fields.push(Field::new(name, data_type(part), false));
+                arrays.push(numbers.elements(part, &[start])?);
+                start += part.len();
+            }
+            Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, nulls, states)?))
+        }
+    }
+}
+
+struct Numbers {
+    numbers: Vec<f64>,
+    outputs: usize,
+    states: usize,
+}
+
+impl Numbers {
+    /// The elements that start at those outputs, of every state, state by state.
+    fn elements(&self, layout: &Layout, starts: &[usize]) -> Result<ArrayRef> {
+        let Self { numbers, outputs, states } = self;
+        let length = states * starts.len();
+        match layout {
+            Layout::Number if starts.iter().copied().eq(0..*outputs) => Ok(Arc::new(Float64Array::from(numbers.clone()))),
+            Layout::Number => {
+                let of_state = |state: usize| starts.iter().map(move |start| numbers[state * outputs + start]);
+                Ok(Arc::new(Float64Array::from((0..*states).flat_map(of_state).collect::<Vec<f64>>())))
+            }
+            Layout::Array(count, of) => {
+                let inner = self.elements(of, &each(starts, *count, of))?;
+                Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*count), inner, None)?))
+            }
+            Layout::Record(record, parts) => {
+                let (mut before, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
+                for (name, part) in record.fields().into_iter().zip(parts) {
+                    fields.push(Field::new(name, data_type(part), false));
+                    let starts: Vec<usize> = starts.iter().map(|start| start + before).collect();
+                    arrays.push(self.elements(part, &starts)?);
+                    before += part.len();
+                }
+                Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, None, length)?))
+            }
+        }
+    }
+}
+
+/// Where the elements of arrays start that themselves start there.
+fn each(starts: &[usize], length: usize, of: &Layout) -> Vec<usize> {
+    starts.iter().flat_map(|start| (0..length).map(move |index| start + index * of.len())).collect()
+}
+
+fn item(of: DataType) -> FieldRef {
+    Arc::new(Field::new("item", of, false))
+}
+
+fn size(length: usize) -> i32 {
+    i32::try_from(length).unwrap_or(i32::MAX)
+}

@@ -1,0 +1,138 @@
+//! The robots that a process holds, by name and content.
+
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::sync::Arc;
+
+use datafusion::common::{DataFusionError, Result, plan_err};
+use rne::compiled::CompiledArm;
+use sha2::{Digest, Sha256};
+
+/// Hexadecimal digits of a content hash in a key.
+const DIGITS: usize = 16;
+
+/// The robots that the functions of a process compute.
+///
+/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file, as
+/// `sha256sum` prints it. Functions travel to other machines by name alone, so a process that holds another file under
+/// the same name would compute other torques, and nobody would notice: by the key it refuses.
+#[derive(Clone, Debug)]
+pub struct Robots(Arc<BTreeMap<String, Held>>);
+
+/// A robot that is held.
+#[derive(Clone, Debug)]
+pub(crate) struct Held {
+    pub(crate) arm: CompiledArm,
+    hash: String,
+}
+
+impl Robots {
+    /// None.
+    #[must_use]
+    pub fn none() -> Self {
+        Self(Arc::default())
+    }
+
+    /// Those that rne ships: `puma560`, `panda`, ….
+    ///
+    /// # Errors
+    /// Never for the shipped ones, which tests read.
+    pub fn shipped() -> Result<Self> {
+        rne_robots::ROBOTS.iter().try_fold(Self::none(), |robots, file| {
+            let arm = match file.plan {
+                Some(plan) => CompiledArm::with_plan(file.yaml, plan),
+                None => CompiledArm::from_yaml(file.yaml),
+            };
+            Ok(robots.with(file.name, file.yaml.as_bytes(), arm.map_err(external)?))
+        })
+    }
+
+    /// These and that of a robot file, under the name that it gives itself.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or everything that is wrong with it.
+    pub fn with_file(self, path: impl AsRef<Path>) -> Result<Self> {
+        let path = path.as_ref();
+        // what is hashed is what is read: a file that changes in between is read again
+        let arm = CompiledArm::from_file(path).map_err(external)?;
+        let bytes = std::fs::read(path)?;
+        let name = arm.robot().name.clone();
+        Ok(self.with(&name, &bytes, arm))
+    }
+
+    /// These and that of the text of a robot file, under the name that it gives itself.
+    ///
+    /// # Errors
+    /// Everything that is wrong with it.
+    pub fn with_yaml(self, text: &str) -> Result<Self> {
+        let arm = CompiledArm::from_yaml(text).map_err(external)?;
+        let name = arm.robot().name.clone();
+        Ok(self.with(&name, text.as_bytes(), arm))
+    }
+
+    fn with(mut self, name: &str, bytes: &[u8], arm: CompiledArm) -> Self {
+        let mut hash = Sha256::digest(bytes).iter().fold(String::new(), |mut hash, byte| {
+            let _ = write!(hash, "{byte:02x}");
+            hash
+        });
+        hash.truncate(DIGITS);
+        Arc::make_mut(&mut self.0).insert(name.to_owned(), Held { arm, hash });
+        self
+    }
+
+    /// What a query calls the robot of a name; `None` when there is none.
+    #[must_use]
+    pub fn key(&self, name: &str) -> Option<String> {
+        self.0.get(name).map(|held| format!("{name}@{}", held.hash))
+    }
+
+    /// The keys of all.
+    pub fn keys(&self) -> impl Iterator<Item = String> {
+        self.0.iter().map(|(name, held)| format!("{name}@{}", held.hash))
+    }
+
+    /// The robot of a key.
+    pub(crate) fn get(&self, key: &str) -> Result<&Held> {
+        let (name, hash) = key.split_once('@').map_or((key, None), |(name, hash)| (name, Some(hash)));
+        let Some(held) = self.0.get(name) else {
+            let names: Vec<&str> = self.0.keys().map(String::as_str).collect();
+            return plan_err!("this process holds no robot `{name}`; it holds {}", names.join(", "));
+        };
+        match hash {
+            Some(hash) if hash == held.hash => Ok(held),
+            Some(_) => plan_err!(
+                "`{key}` is not the {name} that this process holds: its robot file is `{name}@{}`. Give every process the \
+                 same file",
+                held.hash
+            ),
+            None => plan_err!(
+                "which {name}? This process holds `{name}@{}`: write the name with the hash of the file, so that a \
+                 process that holds another file refuses",
+                held.hash
+            ),
+        }
+    }
+}
+
+/// Two registries are the same when they hold the same files.
+impl PartialEq for Robots {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.keys().eq(other.keys())
+    }
+}
+
+impl Eq for Robots {}
+
+impl std::hash::Hash for Robots {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        for key in self.keys() {
+            key.hash(state);
+        }
+    }
+}
+
+/// An error of rne as one of the engine.
+pub(crate) fn external(error: impl std::error::Error + Send + Sync + 'static) -> DataFusionError {
+    DataFusionError::External(Box::new(error))
+}

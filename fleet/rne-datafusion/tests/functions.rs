@@ -1,0 +1,263 @@
+//! Dynamics in SQL: the numbers of the arm itself, over columns, lists, slices and nulls; and what is refused.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::{
+    Array, ArrayRef, AsArray, FixedSizeListArray, Float32Array, Float64Array, Int64Array, LargeListArray, ListArray,
+    RecordBatch, StringArray,
+};
+use datafusion::arrow::datatypes::{DataType, Field, Float64Type};
+use datafusion::common::Result;
+use datafusion::datasource::MemTable;
+use datafusion::prelude::SessionContext;
+use rne::compiled::{Arguments, CompiledArm, Destination, Function};
+use rne_datafusion::{Robots, register};
+
+/// A rod on one hinge: its torque at rest is known in closed form.
+const ROD: &str = "
+format: 1
+name: rod
+source: own
+convention: standard
+gravity: [0, -9.81, 0]
+joints:
+  - type: revolute
+    dh: {theta: 0, d: 0, a: 0.8, alpha: 0}
+    link: {mass: 2.5, com: [-0.4, 0, 0]}
+    motor: {inertia: 0.001, gear_ratio: 10, viscous: 0.02, coulomb: [0.0, 0.0]}
+";
+
+fn robots() -> Robots {
+    Robots::shipped().and_then(|robots| robots.with_yaml(ROD)).expect("they are shipped")
+}
+
+fn context() -> SessionContext {
+    let context = SessionContext::new();
+    register(&context, &robots());
+    context
+}
+
+fn key(name: &str) -> String {
+    robots().key(name).expect("it is held")
+}
+
+async fn one(context: &SessionContext, sql: &str) -> Result<RecordBatch> {
+    let batches = context.sql(sql).await?.collect().await?;
+    let schema = batches.first().map(RecordBatch::schema).expect("a batch");
+    Ok(datafusion::arrow::compute::concat_batches(&schema, &batches)?)
+}
+
+/// What a query is refused with.
+async fn refused(context: &SessionContext, sql: &str) -> String {
+    one(context, sql).await.expect_err("it is refused").to_string()
+}
+
+fn random(count: usize) -> Vec<f64> {
+    let mut random = fastrand::Rng::with_seed(7);
+    (0..count).map(|_| 4.0 * random.f64() - 2.0).collect()
+}
+
+/// States of an arm as a table of columns `q1`, …, `qdd6` and of lists `q`, `qd`, `qdd`, in batches of some rows.
+fn table(joints: usize, states: usize, batch: usize) -> (MemTable, [Vec<f64>; 3]) {
+    let names = ["q", "qd", "qdd"];
+    let numbers = random(3 * states * joints);
+    let rows: Vec<Vec<f64>> = numbers.chunks(states * joints).map(<[f64]>::to_vec).collect();
+    let mut columns: Vec<(String, ArrayRef)> = Vec::new();
+    for (name, rows) in names.iter().zip(&rows) {
+        for joint in 0..joints {
+            let column: Vec<f64> = rows.iter().copied().skip(joint).step_by(joints).collect();
+            columns.push((format!("{name}{}", joint + 1), Arc::new(Float64Array::from(column))));
+        }
+        let lists = rows.chunks(joints).map(|row| Some(row.iter().copied().map(Some)));
+        columns.push(((*name).to_owned(), Arc::new(ListArray::from_iter_primitive::<Float64Type, _, _>(lists))));
+    }
+    let number: Vec<i64> = (0..).take(states).collect();
+    columns.push(("number".to_owned(), Arc::new(Int64Array::from(number))));
+    let all = RecordBatch::try_from_iter(columns).expect("columns of one length");
+    // slices of one batch, not copies: their offsets are not zero
+    let slices = (0..states).step_by(batch).map(|start| all.slice(start, batch.min(states - start))).collect();
+    let table = MemTable::try_new(all.schema(), vec![slices]).expect("batches of one schema");
+    (table, rows.try_into().expect("three arguments"))
+}
+
+/// The innermost numbers of a column.
+fn numbers(column: &ArrayRef) -> Vec<f64> {
+    match column.data_type() {
+        DataType::FixedSizeList(..) => numbers(column.as_fixed_size_list().values()),
+        _ => column.as_primitive::<Float64Type>().values().to_vec(),
+    }
+}
+
+#[tokio::test]
+async fn columns_lists_and_slices_give_the_numbers_of_the_arm() -> Result<()> {
+    let (context, joints, states) = (context(), 6, 1000);
+    let (table, [q, qd, qdd]) = table(joints, states, 37);
+    context.register_table("log", Arc::new(table))?;
+    let file = rne_robots::find("puma560").expect("it is shipped");
+    let arm = CompiledArm::with_plan(file.yaml, file.plan.expect("it has one")).expect("it is right");
+    let of = |name: &str| (1..=joints).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>().join(", ");
+    for (function, arguments) in [
+        (Function::InverseDynamics, vec!["q", "qd", "qdd"]),
+        (Function::GravityTorques, vec!["q"]),
+        (Function::BiasTorques, vec!["q", "qd"]),
+        (Function::MassMatrix, vec!["q"]),
+        (Function::Jacobian, vec!["q"]),
+        (Function::KineticEnergy, vec!["q", "qd"]),
+    ] {
+        let array = rne::compiled::Array::Rows;
+        let given = Arguments::new().q(array(&q)).qd(array(&qd)).qdd(array(&qdd));
+        let mut expected = vec![0.0; states * function.layout(joints).len()];
+        arm.run(function, states, &given, Destination::Rows(&mut expected)).expect("it computes");
+        let columns: Vec<String> = arguments.iter().map(|name| of(name)).collect();
+        for arguments in [arguments.join(", "), columns.join(", ")] {
+            let call = format!("{function}('{}', {arguments})", key("puma560"));
+            let found = one(&context, &format!("SELECT {call} AS it FROM log ORDER BY number")).await?;
+            assert_eq!(numbers(found.column(0)), expected, "{call}");
+        }
+    }
+    // one argument as a list, others as columns
+    let call = format!("inverse_dynamics('{}', q, {}, qdd)", key("puma560"), of("qd"));
+    let mixed = one(&context, &format!("SELECT {call} FROM log ORDER BY number")).await?;
+    let lists = format!("inverse_dynamics('{}', q, qd, qdd)", key("puma560"));
+    let lists = one(&context, &format!("SELECT {lists} FROM log ORDER BY number")).await?;
+    assert_eq!(numbers(mixed.column(0)), numbers(lists.column(0)));
+    Ok(())
+}
+
+#[tokio::test]
+async fn a_rod_weighs_what_it_weighs() -> Result<()> {
+    let (context, rod) = (context(), key("rod"));
+    for angle in [0.0, 0.5, -2.0] {
+        let found = one(&context, &format!("SELECT gravity_torques('{rod}', [{angle}]) AS tau")).await?;
+        let expected = 2.5 * 9.81 * 0.4 * f64::cos(angle);
+        assert!((numbers(found.column(0))[0] - expected).abs() < 1e-14, "{angle}");
+    }
+    // integers are numbers; a constant call is a literal
+    let found = one(&context, &format!("SELECT gravity_torques('{rod}', [0])[1] AS tau FROM (VALUES (1), (2))")).await?;
+    assert_eq!(found.num_rows(), 2);
+    assert!((numbers(found.column(0))[1] - 9.81).abs() < 1e-14);
+    Ok(())
+}
+
+#[tokio::test]
+async fn a_residual_is_what_the_model_and_its_motors_do_not_explain() -> Result<()> {
+    let (context, rod) = (context(), key("rod"));
+    // gravity, inertia of link and rotor, viscous friction: each by hand
+    let (angle, speed, acceleration, measured) = (0.4_f64, 1.5, -2.0, 20.0);
+    let model = 2.5 * 9.81 * 0.4 * angle.cos()
+        + (2.5 * 0.4 * 0.4 + 100.0 * 0.001) * acceleration
+        + 100.0 * 0.02 * speed;
+    let call = format!("residual('{rod}', [{angle}], [{speed}], [{acceleration}], [{measured}])");
+    let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
+    assert!((found - (measured - model)).abs() < 1e-13, "{found}, by hand {}", measured - model);
+    Ok(())
+}
+
+#[tokio::test]
+async fn a_pose_has_its_parts() -> Result<()> {
+    let context = context();
+    let sql = format!("SELECT forward_kinematics('{}', [0.0, 0.0]) AS pose", key("planar2"));
+    let sql = format!("SELECT pose['translation'] AS p, pose['rotation'][1][1] AS r FROM ({sql})");
+    let found = one(&context, &sql).await?;
+    assert_eq!(numbers(found.column(0)).len(), 3);
+    assert_eq!(numbers(found.column(1)), [1.0]);
+    Ok(())
+}
+
+#[tokio::test]
+async fn what_is_null_makes_a_state_null_and_no_other() -> Result<()> {
+    let (context, planar) = (context(), key("planar2"));
+    let lists = |rows: [Option<[Option<f64>; 2]>; 4]| rows.map(|row| row.map(Vec::from));
+    let q = lists([Some([Some(0.1), Some(0.2)]), None, Some([Some(0.3), None]), Some([Some(0.4), Some(0.5)])]);
+    let whole = [Some(vec![Some(0.1), Some(0.2)]), Some(vec![Some(0.4), Some(0.5)])];
+    let list = |rows: &[Option<Vec<Option<f64>>>]| -> ArrayRef {
+        Arc::new(ListArray::from_iter_primitive::<Float64Type, _, _>(rows.iter().cloned()))
+    };
+    let large: ArrayRef = Arc::new(LargeListArray::from_iter_primitive::<Float64Type, _, _>(q.iter().cloned()));
+    let fixed: ArrayRef =
+        Arc::new(FixedSizeListArray::from_iter_primitive::<Float64Type, _, _>(q.iter().cloned(), 2));
+    let first: ArrayRef = Arc::new(Float64Array::from(vec![Some(0.1), None, Some(0.3), Some(0.4)]));
+    let second: ArrayRef = Arc::new(Float64Array::from(vec![Some(0.2), Some(9.0), None, Some(0.5)]));
+    let batch = RecordBatch::try_from_iter([
+        ("list", list(&q)),
+        ("large", large),
+        ("fixed", fixed),
+        ("q1", first),
+        ("q2", second),
+    ])?;
+    context.register_batch("log", batch)?;
+    context.register_batch("whole", RecordBatch::try_from_iter([("q", list(&whole))])?)?;
+    let expected = numbers(one(&context, &format!("SELECT gravity_torques('{planar}', q) FROM whole")).await?.column(0));
+    for arguments in ["list", "large", "fixed", "q1, q2"] {
+        let found = one(&context, &format!("SELECT gravity_torques('{planar}', {arguments}) FROM log")).await?;
+        let column = found.column(0);
+        let nulls: Vec<bool> = (0..4).map(|state| column.is_null(state)).collect();
+        assert_eq!(nulls, [false, true, true, false], "{arguments}");
+        let column = numbers(column);
+        assert_eq!([&column[..2], &column[6..]].concat(), expected, "{arguments}");
+    }
+    Ok(())
+}
+
+#[tokio::test]
+async fn no_states_give_no_results_and_single_precision_is_read() -> Result<()> {
+    let (context, planar) = (context(), key("planar2"));
+    let columns: [(&str, ArrayRef); 2] = [
+        ("q1", Arc::new(Float32Array::from(vec![0.5_f32]))),
+        ("q2", Arc::new(Float32Array::from(vec![0.25_f32]))),
+    ];
+    context.register_batch("log", RecordBatch::try_from_iter(columns)?)?;
+    let call = format!("gravity_torques('{planar}', q1, q2)");
+    let single = numbers(one(&context, &format!("SELECT {call} FROM log")).await?.column(0));
+    let double = numbers(one(&context, &format!("SELECT gravity_torques('{planar}', [0.5, 0.25])")).await?.column(0));
+    assert_eq!(single, double);
+    let none = context.sql(&format!("SELECT {call} FROM log WHERE q1 > 9")).await?.collect().await?;
+    assert_eq!(none.iter().map(RecordBatch::num_rows).sum::<usize>(), 0);
+    let empty = MemTable::try_new(
+        Arc::new(datafusion::arrow::datatypes::Schema::new(vec![
+            Field::new("q1", DataType::Float64, true),
+            Field::new("q2", DataType::Float64, true),
+        ])),
+        vec![vec![]],
+    )?;
+    context.register_table("empty", Arc::new(empty))?;
+    assert_eq!(context.sql(&format!("SELECT {call} FROM empty")).await?.count().await?, 0);
+    Ok(())
+}
+
+#[tokio::test]
+async fn what_is_wrong_is_said_with_the_columns_name() -> Result<()> {
+    let (context, puma) = (context(), key("puma560"));
+    let ragged = ListArray::from_iter_primitive::<Float64Type, _, _>([
+        Some(vec![Some(0.0); 6]),
+        Some(vec![Some(0.0); 5]),
+    ]);
+    let columns: [(&str, ArrayRef); 4] = [
+        ("ragged", Arc::new(ragged)),
+        ("word", Arc::new(StringArray::from(vec!["a", "b"]))),
+        ("q1", Arc::new(Float64Array::from(vec![0.0, 0.0]))),
+        ("fixed", Arc::new(FixedSizeListArray::from_iter_primitive::<Float64Type, _, _>([Some([Some(0.0); 5]); 2], 5))),
+    ];
+    context.register_batch("log", RecordBatch::try_from_iter(columns)?)?;
+    for (call, words) in [
+        ("gravity_torques('puma560', ragged)".to_owned(), vec!["which puma560", puma.as_str()]),
+        ("gravity_torques('puma560@0000000000000000', ragged)".to_owned(), vec!["is not the puma560", puma.as_str()]),
+        ("gravity_torques('puma', ragged)".to_owned(), vec!["no robot `puma`", "puma560"]),
+        (format!("gravity_torques('{puma}', ragged)"), vec!["`ragged`", "row 2", "5 numbers", "6 joints"]),
+        (format!("gravity_torques('{puma}', word)"), vec!["argument 2", "Utf8"]),
+        (format!("gravity_torques('{puma}', fixed)"), vec!["`q`", "5 numbers", "6 joints"]),
+        (format!("gravity_torques('{puma}', q1, q1, q1)"), vec!["`q`", "3 columns", "6 joints"]),
+        (format!("gravity_torques('{puma}', q1, q1, q1, q1, q1, q1, q1)"), vec!["1 columns too many"]),
+        (format!("inverse_dynamics('{puma}', ragged, ragged)"), vec!["`qdd` is missing"]),
+        (format!("inverse_dynamics('{puma}')"), vec!["`q` is missing"]),
+        ("inverse_dynamics()".to_owned(), vec!["inverse_dynamics"]),
+        ("gravity_torques(word, ragged)".to_owned(), vec!["first argument is the robot", "literal"]),
+        ("gravity_torques(1, ragged)".to_owned(), vec!["first argument is the robot"]),
+    ] {
+        let said = refused(&context, &format!("SELECT {call} FROM log")).await;
+        for word in words {
+            assert!(said.contains(word), "{call}: {said}");
+        }
+    }
+    Ok(())
+}
