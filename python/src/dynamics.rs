@@ -340,13 +340,8 @@ impl Arm {
         parameters: Option<&Bound<'py, PyAny>>,
         out: Option<&Bound<'py, PyAny>>,
     ) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyAny>)> {
-        let both = self.compute(
-            py,
-            Function::MomentumAndRate,
-            vec![("q", q), ("qd", qd), ("tau", tau)],
-            parameters,
-            out,
-        )?;
+        let both =
+            self.compute(py, Function::MomentumAndRate, vec![("q", q), ("qd", qd), ("tau", tau)], parameters, out)?;
         let all = pyo3::types::PySlice::full(py);
         let of = |index: usize| both.get_item((pyo3::types::PyEllipsis::get(py), index, &all));
         Ok((of(0)?, of(1)?))

@@ -15,7 +15,10 @@ use rne_datafusion::Robots;
 
 /// Dynamics of robot arms in SQL, on one machine or on several.
 #[derive(Parser)]
-#[command(version, after_help = "Examples:\n  rne-fleet robots\n  rne-fleet sql \"SELECT gravity_torques({planar2}, [0.0, 0.5])\"")]
+#[command(
+    version,
+    after_help = "Examples:\n  rne-fleet robots\n  rne-fleet sql \"SELECT gravity_torques({planar2}, [0.0, 0.5])\""
+)]
 struct Line {
     #[command(subcommand)]
     command: Command,

@@ -71,7 +71,13 @@ impl Fleet {
             start(&["executor", "--listen", &address(offset), "--scheduler", &address(0), "--work", work])
         });
         let addresses = [address(1), address(3)];
-        Self { scheduler: address(0), addresses, executors: executors.into(), _scheduler: scheduler, work: work.to_owned() }
+        Self {
+            scheduler: address(0),
+            addresses,
+            executors: executors.into(),
+            _scheduler: scheduler,
+            work: work.to_owned(),
+        }
     }
 
     /// A session, once all processes answer.
@@ -103,7 +109,9 @@ async fn write_log(folder: &Path) -> Result<()> {
     for file in 0..FILES {
         let (first, last) = (file * STATES + 1, (file + 1) * STATES);
         let [q, qd, qdd] = ["q", "qd", "qdd"].map(columns);
-        let sql = format!("SELECT value AS i, {q}, {qd}, {qdd} FROM (SELECT value, value AS i FROM generate_series({first}, {last}))");
+        let sql = format!(
+            "SELECT value AS i, {q}, {qd}, {qdd} FROM (SELECT value, value AS i FROM generate_series({first}, {last}))"
+        );
         let path = folder.join(format!("{file}.parquet"));
         let path = path.to_str().expect("a name");
         context.sql(&sql).await?.write_parquet(path, DataFrameWriteOptions::new(), None).await?;

@@ -160,7 +160,9 @@ fn gather<'a>(
     let inner = numbers.nulls().filter(|inner| inner.null_count() > 0);
     let of_numbers = inner.map(|inner| {
         let lists = lists.clone().enumerate();
-        lists.map(|(state, (start, length))| is_null(state) || (start..start + length).all(|at| inner.is_valid(at))).collect()
+        lists
+            .map(|(state, (start, length))| is_null(state) || (start..start + length).all(|at| inner.is_valid(at)))
+            .collect()
     });
     let nulls = NullBuffer::union(nulls, of_numbers.as_ref());
     let argument = if whole {

@@ -27,8 +27,9 @@ impl Computation {
     /// All that take joint numbers and nothing else.
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let of_joints = |function: &Function| {
-            let is_of_joints =
-                |input: &Input| matches!(input, Input::Positions | Input::Rates | Input::Accelerations | Input::Torques);
+            let is_of_joints = |input: &Input| {
+                matches!(input, Input::Positions | Input::Rates | Input::Accelerations | Input::Torques)
+            };
             function.arguments().iter().all(is_of_joints)
         };
         Function::ALL.iter().copied().filter(of_joints).map(Self::Of).chain([Self::Residual])
@@ -131,7 +132,8 @@ impl std::hash::Hash for About {
 
 impl DynamicsFunction {
     pub(crate) fn new(computation: Computation, robots: Robots) -> Self {
-        let section = datafusion::logical_expr::DocSection { include: true, label: "Robot dynamics", description: None };
+        let section =
+            datafusion::logical_expr::DocSection { include: true, label: "Robot dynamics", description: None };
         let syntax = format!("{}(robot, {})", computation.name(), computation.arguments().join(", "));
         let documentation = Documentation::builder(section, computation.summary(), syntax).build();
         Self {

@@ -57,7 +57,9 @@ impl Numbers {
         let Self { numbers, outputs, states } = self;
         let length = states * starts.len();
         match layout {
-            Layout::Number if starts.iter().copied().eq(0..*outputs) => Ok(Arc::new(Float64Array::from(numbers.clone()))),
+            Layout::Number if starts.iter().copied().eq(0..*outputs) => {
+                Ok(Arc::new(Float64Array::from(numbers.clone())))
+            }
             Layout::Number => {
                 let of_state = |state: usize| starts.iter().map(move |start| numbers[state * outputs + start]);
                 Ok(Arc::new(Float64Array::from((0..*states).flat_map(of_state).collect::<Vec<f64>>())))

@@ -133,7 +133,8 @@ async fn a_rod_weighs_what_it_weighs() -> Result<()> {
         assert!((numbers(found.column(0))[0] - expected).abs() < 1e-14, "{angle}");
     }
     // integers are numbers; a constant call is a literal
-    let found = one(&context, &format!("SELECT gravity_torques('{rod}', [0])[1] AS tau FROM (VALUES (1), (2))")).await?;
+    let found =
+        one(&context, &format!("SELECT gravity_torques('{rod}', [0])[1] AS tau FROM (VALUES (1), (2))")).await?;
     assert_eq!(found.num_rows(), 2);
     assert!((numbers(found.column(0))[1] - 9.81).abs() < 1e-14);
     Ok(())
@@ -144,9 +145,8 @@ async fn a_residual_is_what_the_model_and_its_motors_do_not_explain() -> Result<
     let (context, rod) = (context(), key("rod"));
     // gravity, inertia of link and rotor, viscous friction: each by hand
     let (angle, speed, acceleration, measured) = (0.4_f64, 1.5, -2.0, 20.0);
-    let model = 2.5 * 9.81 * 0.4 * angle.cos()
-        + (2.5 * 0.4 * 0.4 + 100.0 * 0.001) * acceleration
-        + 100.0 * 0.02 * speed;
+    let model =
+        2.5 * 9.81 * 0.4 * angle.cos() + (2.5 * 0.4 * 0.4 + 100.0 * 0.001) * acceleration + 100.0 * 0.02 * speed;
     let call = format!("residual('{rod}', [{angle}], [{speed}], [{acceleration}], [{measured}])");
     let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
     assert!((found - (measured - model)).abs() < 1e-13, "{found}, by hand {}", measured - model);
@@ -174,8 +174,7 @@ async fn what_is_null_makes_a_state_null_and_no_other() -> Result<()> {
         Arc::new(ListArray::from_iter_primitive::<Float64Type, _, _>(rows.iter().cloned()))
     };
     let large: ArrayRef = Arc::new(LargeListArray::from_iter_primitive::<Float64Type, _, _>(q.iter().cloned()));
-    let fixed: ArrayRef =
-        Arc::new(FixedSizeListArray::from_iter_primitive::<Float64Type, _, _>(q.iter().cloned(), 2));
+    let fixed: ArrayRef = Arc::new(FixedSizeListArray::from_iter_primitive::<Float64Type, _, _>(q.iter().cloned(), 2));
     let first: ArrayRef = Arc::new(Float64Array::from(vec![Some(0.1), None, Some(0.3), Some(0.4)]));
     let second: ArrayRef = Arc::new(Float64Array::from(vec![Some(0.2), Some(9.0), None, Some(0.5)]));
     let batch = RecordBatch::try_from_iter([
@@ -187,7 +186,8 @@ async fn what_is_null_makes_a_state_null_and_no_other() -> Result<()> {
     ])?;
     context.register_batch("log", batch)?;
     context.register_batch("whole", RecordBatch::try_from_iter([("q", list(&whole))])?)?;
-    let expected = numbers(one(&context, &format!("SELECT gravity_torques('{planar}', q) FROM whole")).await?.column(0));
+    let expected =
+        numbers(one(&context, &format!("SELECT gravity_torques('{planar}', q) FROM whole")).await?.column(0));
     for arguments in ["list", "large", "fixed", "q1, q2"] {
         let found = one(&context, &format!("SELECT gravity_torques('{planar}', {arguments}) FROM log")).await?;
         let column = found.column(0);
@@ -202,10 +202,8 @@ async fn what_is_null_makes_a_state_null_and_no_other() -> Result<()> {
 #[tokio::test]
 async fn no_states_give_no_results_and_single_precision_is_read() -> Result<()> {
     let (context, planar) = (context(), key("planar2"));
-    let columns: [(&str, ArrayRef); 2] = [
-        ("q1", Arc::new(Float32Array::from(vec![0.5_f32]))),
-        ("q2", Arc::new(Float32Array::from(vec![0.25_f32]))),
-    ];
+    let columns: [(&str, ArrayRef); 2] =
+        [("q1", Arc::new(Float32Array::from(vec![0.5_f32]))), ("q2", Arc::new(Float32Array::from(vec![0.25_f32])))];
     context.register_batch("log", RecordBatch::try_from_iter(columns)?)?;
     let call = format!("gravity_torques('{planar}', q1, q2)");
     let single = numbers(one(&context, &format!("SELECT {call} FROM log")).await?.column(0));
@@ -228,10 +226,8 @@ async fn no_states_give_no_results_and_single_precision_is_read() -> Result<()> 
 #[tokio::test]
 async fn what_is_wrong_is_said_with_the_columns_name() -> Result<()> {
     let (context, puma) = (context(), key("puma560"));
-    let ragged = ListArray::from_iter_primitive::<Float64Type, _, _>([
-        Some(vec![Some(0.0); 6]),
-        Some(vec![Some(0.0); 5]),
-    ]);
+    let ragged =
+        ListArray::from_iter_primitive::<Float64Type, _, _>([Some(vec![Some(0.0); 6]), Some(vec![Some(0.0); 5])]);
     let columns: [(&str, ArrayRef); 4] = [
         ("ragged", Arc::new(ragged)),
         ("word", Arc::new(StringArray::from(vec!["a", "b"]))),
