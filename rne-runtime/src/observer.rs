@@ -218,8 +218,8 @@ mod tests {
     #[test]
     #[cfg(feature = "std")]
     fn the_weight_is_one_minus_an_exponential() {
-        for x in [0.0, 1e-12, 1e-3, 0.3, 0.5, 0.51, 1.0, 2.5, 7.0, 20.0, 39.9, 40.0, 1e9, f64::INFINITY] {
-            let expected = -(-x as f64).exp_m1();
+        for x in [0.0_f64, 1e-12, 1e-3, 0.3, 0.5, 0.51, 1.0, 2.5, 7.0, 20.0, 39.9, 40.0, 1e9, f64::INFINITY] {
+            let expected = -(-x).exp_m1();
             assert!((weight(x) - expected).abs() <= 4e-15 * expected, "{x}: {} is not {expected}", weight(x));
         }
     }

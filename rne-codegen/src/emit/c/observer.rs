@@ -127,5 +127,5 @@ fn update_head(file: &File, program: &Program) -> String {
         return line;
     }
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
-    start + "\n" + &fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end().to_owned()
+    start + "\n" + fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end()
 }
