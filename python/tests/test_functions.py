@@ -49,7 +49,8 @@ def test_a_state_alone_is_the_same_among_many(name):
     assert [part.shape for part in derivatives] == [(N, arm.dof, arm.dof)] * 2
     momenta = arm.momentum_and_rate(given["q"], given["qd"], given["tau"])
     assert [part.shape for part in momenta] == [(N, arm.dof)] * 2
-    assert [part.shape for part in arm.momentum_and_rate(*(given[name][0] for name in ("q", "qd", "tau")))] == [(arm.dof,)] * 2
+    one = arm.momentum_and_rate(given["q"][0], given["qd"][0], given["tau"][0])
+    assert [part.shape for part in one] == [(arm.dof,)] * 2
 
 
 @pytest.mark.parametrize("name", list(rne.robots))
@@ -61,7 +62,8 @@ def test_laws(name):
     scale = np.abs(tau).max()
     mass = arm.mass_matrix(q)
     momentum, rate = arm.momentum_and_rate(q, qd, tau)
-    assert np.allclose(momentum, np.einsum("nij,nj->ni", mass, qd), rtol=0, atol=1e-12 * np.abs(mass).max() * np.abs(qd).max())
+    size = np.abs(mass).max() * np.abs(qd).max()
+    assert np.allclose(momentum, np.einsum("nij,nj->ni", mass, qd), rtol=0, atol=1e-12 * size)
     turned = np.einsum("nji,nj->ni", arm.coriolis_matrix(q, qd), qd)
     assert np.allclose(rate, tau + turned - arm.gravity_torques(q), rtol=0, atol=1e-11 * scale)
 

@@ -160,6 +160,7 @@ fn argument(
             let others: Vec<Function> = Function::ALL.into_iter().filter(|other| other.takes(kind)).collect();
             let hint = match others.as_slice() {
                 [only] => format!("; {only} does"),
+                [one, other] => format!("; {one} and {other} do"),
                 _ => String::new(),
             };
             Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))

@@ -1,6 +1,6 @@
 //! Torques along a trajectory, and what they are made of: the split of a torque into inertia, velocity and gravity
-//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]). [`panels`] draws
-//! other signals of joints in the same manner.
+//! parts ([`TorqueParts`]), a [`Trajectory`], the [`TorqueHistory`] of an arm along it, and its picture ([`svg`]).
+//! [`panels`] draws other signals of joints in the same manner.
 //!
 //! Numbers in, data and text out: nothing here opens a file or prints.
 //!

@@ -56,9 +56,8 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     /// An observer with a low-pass of `gain` Hz (its time constant is 1/(2π gain) s), updated every `period` s.
     ///
     /// It is stable and does not overshoot for every `gain` and `period` above zero: the larger the product of both,
-    /// the nearer is what an update returns to the mean external torque of its tick. One that is not above zero observes
-    /// nothing. In single precision noise of
-    /// rounding asks for a gain below a tenth of the rate of the ticks.
+    /// the nearer is what an update returns to the mean external torque of its tick. One that is not above zero
+    /// observes nothing. In single precision noise of rounding asks for a gain below a tenth of the rate of the ticks.
     #[must_use]
     pub fn new(gain: f64, period: f64) -> Self {
         let zeros = [T::zero(); DOF];
@@ -219,8 +218,8 @@ mod tests {
     #[test]
     #[cfg(feature = "std")]
     fn the_weight_is_one_minus_an_exponential() {
-        for x in [0.0, 1e-12, 1e-3, 0.3, 0.5, 0.51, 1.0, 2.5, 7.0, 20.0, 39.9, 40.0, 1e9, f64::INFINITY] {
-            let expected = -(-x as f64).exp_m1();
+        for x in [0.0_f64, 1e-12, 1e-3, 0.3, 0.5, 0.51, 1.0, 2.5, 7.0, 20.0, 39.9, 40.0, 1e9, f64::INFINITY] {
+            let expected = -(-x).exp_m1();
             assert!((weight(x) - expected).abs() <= 4e-15 * expected, "{x}: {} is not {expected}", weight(x));
         }
     }

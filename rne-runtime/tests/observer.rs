@@ -1,6 +1,7 @@
 //! The momentum observer in simulations of its own: the sign of what it sees, its time constant, and how soon it sees a
 //! payload.
 #![cfg(feature = "std")]
+#![allow(clippy::cast_precision_loss)] // numbers of joints
 
 mod common;
 
@@ -213,7 +214,9 @@ fn a_tenth_of_the_payload_is_seen_within_20_milliseconds() {
             let mut tau = of.inverse_dynamics(&q, &qd, &qdd);
             // of encoders that are differentiated, and of currents: uniform
             let qd: [f64; 6] = std::array::from_fn(|i| qd[i] + 1e-4 * noise.next());
-            tau.iter_mut().for_each(|tau| *tau += 0.1 * noise.next());
+            for tau in &mut tau {
+                *tau += 0.1 * noise.next();
+            }
             let seen = observer.update(&arm, &q, &qd, &tau);
             if tick < grasp {
                 quiet = quiet.max(largest(&seen));

@@ -10,8 +10,8 @@
 //! ```
 //!
 //! The first is a bound whatever the spectrum of the noise: who stays above for a time of hold is above at one of any
-//! instants that are a hold apart. The second is D. Siegmund's approximation (1985) for independent numbers of deviation
-//! 1, halved for both signs; the numbers are means of blocks that are longer than the noise remembers.
+//! instants that are a hold apart. The second is D. Siegmund's approximation (1985) for independent numbers of
+//! deviation 1, halved for both signs; the numbers are means of blocks that are longer than the noise remembers.
 
 use crate::Settings;
 

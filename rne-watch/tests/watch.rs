@@ -56,7 +56,9 @@ fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64]))
     }
     for tau in &mut motion.tau {
         let deviation = NOISE * tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
-        tau.iter_mut().for_each(|tau| *tau += deviation * normal(&mut rng));
+        for tau in tau {
+            *tau += deviation * normal(&mut rng);
+        }
     }
     motion
 }
@@ -70,7 +72,7 @@ fn watched(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64])
     (signals, baseline, report)
 }
 
-fn of<'a>(report: &'a Report, joint: usize, test: Test) -> Vec<&'a Event> {
+fn of(report: &Report, joint: usize, test: Test) -> Vec<&Event> {
     report.events.iter().filter(|event| event.joint == joint && event.test == test).collect()
 }
 

@@ -191,7 +191,7 @@ fn all_functions_compile_and_compute_the_same() {
         let call = [&["eval", PUMA, "--json", "--function", function], &arguments.concat()[..]].concat();
         evaluated(&call)
     };
-    let calls: [(&str, &[&[&str]], &str); 22] = [
+    let calls: [(&str, &[&[&str]], &str); 23] = [
         ("inverse_dynamics", &[full], "q, qd, qdd"),
         (
             "inverse_dynamics_with_wrench",
@@ -220,6 +220,7 @@ fn all_functions_compile_and_compute_the_same() {
         ("regressor", &[full], "q, qd, qdd"),
         ("inverse_dynamics_derivatives", &[full], "q, qd, qdd"),
         ("joint_wrenches", &[full], "q, qd, qdd"),
+        ("momentum_and_rate", &[rates, &["--tau", tau]], "q, qd, &[1., 30., 5., 0.1, -0.2, 0.3]"),
         (
             "inverse_dynamics_on_moving_base",
             &[full, base],
@@ -349,7 +350,7 @@ fn functions_are_chosen() {
     assert_eq!(twice.matches("pub fn ").count(), 1);
     let others = fine(&["emit", ROBOT, "--function", "mass_matrix,jacobian"]);
     assert!(others.contains("pub fn mass_matrix") && others.contains("pub fn jacobian"), "{others}");
-    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 21, "no motors");
+    assert_eq!(fine(&["emit", ROBOT, "--function", "all"]).matches("pub fn ").count(), 22, "no motors");
     for lang in ["rust", "c"] {
         let zeros = fine(&["emit", ROBOT, "--function", "actuator_torques", "--lang", lang]);
         assert!(zeros.contains("actuator_torques"), "{zeros}");

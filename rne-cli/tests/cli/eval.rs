@@ -309,7 +309,12 @@ fn functions_take_their_arguments_and_no_others() {
     call(2, "mass_matrix", &[q, qd].concat(), &["mass_matrix takes no --qd"]);
     call(2, "forward_dynamics", &[q, qd].concat(), &["forward_dynamics needs --tau"]);
     call(2, "forward_dynamics", &[q, qd, ["--tau", "1"]].concat(), &["--tau needs 2 numbers, not 1"]);
-    call(2, "bias_torques", &[q, qd, ["--tau", "1,2"]].concat(), &["takes no --tau; forward_dynamics does"]);
+    call(
+        2,
+        "bias_torques",
+        &[q, qd, ["--tau", "1,2"]].concat(),
+        &["takes no --tau; forward_dynamics and momentum_and_rate do"],
+    );
     call(2, "jacobian", &[&q[..], &["--trace"]].concat(), &["--trace", "jacobian has none", "gravity_torques"]);
     call(1, "kinetic_energy", &[q, ["--qd", "1e200,1"]].concat(), &["kinetic_energy overflows"]);
     fails(2, &["eval", PUMA, "--function", "actuator_torques", "--q", "1"], &["actuator_torques takes no --q"]);

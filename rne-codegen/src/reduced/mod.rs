@@ -4,8 +4,8 @@
 //! of the base, and choices per joint that a search makes. Only the torques keep a physical meaning.
 //!
 //! `joint_frames`, `link_parameters` and `regrouping` prepare the numbers under a plan; `forward` and `backward` write
-//! the recursion with them (RNEA), `crba`, `aba`, `momentum` and `rnea_derivatives` what else there is; `algorithm` names the ways
-//! in which a function can be written.
+//! the recursion with them (RNEA), `crba`, `aba`, `momentum` and `rnea_derivatives` what else there is; `algorithm`
+//! names the ways in which a function can be written.
 
 pub(crate) mod aba;
 pub(crate) mod algorithm;

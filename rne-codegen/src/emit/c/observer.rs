@@ -1,7 +1,7 @@
 //! The momentum observer between two ticks: a struct with what it knows, its beginning and its update.
 //!
-//! As `ObserverState` of the runtime, with the same operations in the same order, joint by joint; only the weight of the
-//! low-pass is computed in the number type of the file.
+//! As `ObserverState` of the runtime, with the same operations in the same order, joint by joint; only the weight of
+//! the low-pass is computed in the number type of the file.
 
 use std::fmt::Write;
 
@@ -127,5 +127,5 @@ fn update_head(file: &File, program: &Program) -> String {
         return line;
     }
     let arguments: Vec<String> = arguments.iter().map(|argument| argument.replace(' ', TIED)).collect();
-    start + "\n" + &fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end().to_owned()
+    start + "\n" + fill(&(arguments.join(", ") + ")"), WIDTH, "    ", "    ").trim_end()
 }

@@ -4,7 +4,8 @@
 use rne_model::{Angle, Convention, Dh, Inertia, JointKind, Link, Model, Motor, QuarterTurns, Row, Transform};
 use rne_runtime::{
     Actuation, Arm, BaseMotion, CentreOfMass, CoriolisMatrix, Dual, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, ObserverState, Regressor, Scalar, Wrench,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, MassMatrix, MomentumObserver, MovingBase, ObserverState,
+    Regressor, Scalar, Wrench,
 };
 
 const QUARTER_TURN: Angle =

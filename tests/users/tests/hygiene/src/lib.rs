@@ -11,7 +11,8 @@
 use ::core::{clone::Clone, cmp::PartialEq, fmt::Debug, marker::Copy, option::Option, result::Result};
 use ::dynamics::{
     Actuation, BatchInverseDynamics, CentreOfMass, CoriolisMatrix, Energy, ForwardDynamics, InverseDynamics,
-    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumObserver, MovingBase, Regressor,
+    InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch, MassMatrix, MomentumObserver, MovingBase,
+    Regressor,
 };
 
 /// Seven joints, with limits.
