@@ -1,2 +1,21 @@
 //! Inertial parameters and friction of a robot arm from its logs.
 #![forbid(unsafe_code)]
+#![warn(missing_debug_implementations)]
+
+mod feasible;
+mod fit;
+mod information;
+mod parameters;
+pub mod prior;
+pub mod pseudo_inertia;
+mod r_factor;
+mod smoothing;
+mod structure;
+
+pub use feasible::{Certificate, Feasible};
+pub use fit::Fit;
+pub use information::{Information, MotionError, Weighting};
+pub use parameters::{Base, Parameters, name, unit};
+pub use r_factor::{RFactor, WrongColumns};
+pub use rne_codegen::Parameter;
+pub use structure::{Options, Structure};
