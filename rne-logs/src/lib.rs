@@ -1,6 +1,53 @@
 //! Logs of robot arms as runs of joint states.
+//!
+//! A [`Log`] is one or more files: bags of ROS 2 in SQLite and MCAP, tables in Parquet and CSV, arrays of numpy.
+//! [`Log::survey`] says what is in them, [`Log::motions`] hands out runs, filtered, with accelerations. Both read in
+//! memory that does not grow with the files.
+//!
+//! ```no_run
+//! use rne_logs::{Log, Options};
+//!
+//! # fn main() -> Result<(), rne_logs::LogError> {
+//! let log = Log::open(&["motion.db3".into()], Options::default())?;
+//! let survey = log.survey(|_| ())?;
+//! for piece in log.motions(&survey)? {
+//!     let piece = piece?;
+//!     println!("run {}: {} states from {} s", piece.run, piece.motion.len(), piece.motion.time[0]);
+//! }
+//! # Ok(())
+//! # }
+//! ```
 #![forbid(unsafe_code)]
 
+mod columns;
+mod csv_table;
+mod error;
+mod format;
+mod grid;
+#[cfg(feature = "rosbag")]
+mod joint_state;
+mod joints;
+mod kernel;
+mod log;
 mod motion;
+mod motions;
+mod options;
+mod pass;
+mod sample;
+mod spectrum;
+mod spelling;
+#[cfg(feature = "rosbag")]
+mod sqlite_bag;
+mod survey;
+mod time_unit;
+#[cfg(feature = "rosbag")]
+mod topic;
 
+pub use crate::error::LogError;
+pub use crate::format::Format;
+pub use crate::log::{Layout, Log};
 pub use crate::motion::Motion;
+pub use crate::motions::{Motions, Piece};
+pub use crate::options::{Angles, Options};
+pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
+pub use crate::time_unit::TimeUnit;

@@ -14,7 +14,7 @@ pub struct Motion {
     pub qd: Vec<Vec<f64>>,
     /// Accelerations, rad/s² or m/s².
     pub qdd: Vec<Vec<f64>>,
-    /// Torques or forces of the actuators, N m or N.
+    /// Torques or forces of the actuators, N m or N. Without any list where the log has no efforts.
     pub tau: Vec<Vec<f64>>,
 }
 

@@ -1,0 +1,185 @@
+//! Tables of text: CSV.
+
+use std::fs::File;
+use std::io::{self, BufRead as _, BufReader, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use crate::Options;
+use crate::columns::Columns;
+use crate::sample::{Sample, Source};
+use crate::{LogError, TimeUnit};
+
+/// The longest line, bytes.
+const LONGEST_LINE: usize = 1 << 20;
+
+/// A table of text, a sample a line.
+pub(crate) struct CsvTable {
+    path: PathBuf,
+    reader: csv::Reader<Lines>,
+    record: csv::ByteRecord,
+    columns: Columns,
+    clock: Clock,
+    size: u64,
+    row: i64,
+}
+
+/// When a row was measured.
+enum Clock {
+    Column(usize, TimeUnit),
+    /// Seconds from row to row, of a table without times.
+    Step(f64),
+}
+
+/// A reader that gives up on lines without end.
+struct Lines {
+    file: BufReader<File>,
+    length: usize,
+}
+
+impl Read for Lines {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.file.read(buffer)?;
+        match buffer[..count].iter().rposition(|byte| *byte == b'\n') {
+            Some(end) => self.length = count - end,
+            None => self.length += count,
+        }
+        if self.length > LONGEST_LINE {
+            return Err(io::Error::new(ErrorKind::InvalidData, "a line has more than a million bytes"));
+        }
+        Ok(count)
+    }
+}
+
+impl CsvTable {
+    pub(crate) fn open(path: &Path, options: &Options) -> Result<Self, LogError> {
+        let wrong = |error: &io::Error| LogError::file(path, format_args!("the file cannot be read: {error}"));
+        let file = File::open(path).map_err(|error| wrong(&error))?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        let mut file = BufReader::with_capacity(1 << 16, file);
+        let first = file.fill_buf().map_err(|error| wrong(&error))?;
+        if first.starts_with(&[0xFF, 0xFE]) || first.starts_with(&[0xFE, 0xFF]) {
+            return Err(LogError::file(path, "this looks like UTF-16; save the file as UTF-8"));
+        }
+        if first.iter().take(4096).any(|byte| *byte == 0) {
+            return Err(LogError::file(
+                path,
+                "neither a bag of SQLite, nor MCAP, Parquet, an array of numpy or text: it has zero bytes",
+            ));
+        }
+        let header = first.split(|byte| *byte == b'\n').find(|line| !matches!(line.trim_ascii(), [] | [b'#', ..]));
+        let header = header.unwrap_or_default();
+        let delimiter = [b',', b';', b'\t'].into_iter().find(|byte| header.contains(byte)).unwrap_or(b',');
+        // lines are records: a quote that is not closed would hold the file
+        let mut reader = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .delimiter(delimiter)
+            .quoting(false)
+            .from_reader(Lines { file, length: 0 });
+        let header = reader.byte_headers().map_err(|error| LogError::file(path, reason(error)))?;
+        let header: Vec<String> = header
+            .iter()
+            .map(|cell| String::from_utf8_lossy(inner(cell)).trim_start_matches('\u{feff}').into())
+            .collect();
+        if header.is_empty() {
+            return Err(LogError::file(
+                path,
+                "the file is empty; its first line has the columns' names, as in time,q1,tau1",
+            ));
+        }
+        if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
+            let what = "the first line has numbers; it must have the columns' names, as in time,q1,qd1,tau1";
+            return Err(LogError::file(path, what));
+        }
+        let columns = Columns::of(path, &header, options.topic.as_deref())?;
+        let clock = match (columns.time, options.rate) {
+            (Some(place), _) => Clock::Column(place, options.time_unit),
+            (None, Some(rate)) => Clock::Step(1.0 / rate),
+            (None, None) => return Err(no_time(path)),
+        };
+        Ok(Self { path: path.to_owned(), reader, record: csv::ByteRecord::new(), columns, clock, size, row: 0 })
+    }
+
+    fn wrong(&self, what: impl std::fmt::Display) -> LogError {
+        // lines without cells are passed over: the line is that of the reader, which stands behind the record
+        let line = self.reader.position().line().saturating_sub(1).max(1);
+        LogError::file(&self.path, format_args!("line {line}: {what}"))
+    }
+
+    fn number(&self, place: usize) -> Result<f64, LogError> {
+        let cell = inner(self.record.get(place).unwrap_or_default());
+        if cell.is_empty() {
+            return Ok(f64::NAN);
+        }
+        let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
+        number.ok_or_else(|| self.wrong(format_args!("{:?} is no number", String::from_utf8_lossy(cell))))
+    }
+
+    fn numbers(&self, places: &[Option<usize>], numbers: &mut Vec<f64>) -> Result<(), LogError> {
+        numbers.clear();
+        for place in places {
+            numbers.push(place.map_or(Ok(f64::NAN), |place| self.number(place))?);
+        }
+        Ok(())
+    }
+}
+
+impl Source for CsvTable {
+    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+        match self.reader.read_byte_record(&mut self.record) {
+            Ok(true) => {}
+            Ok(false) => return Ok(false),
+            Err(error) => return Err(self.wrong(reason(error))),
+        }
+        sample.measured = match self.clock {
+            Clock::Column(place, unit) => {
+                let cell = inner(self.record.get(place).unwrap_or_default());
+                let cell = std::str::from_utf8(cell).unwrap_or_default();
+                unit.parse(cell).ok_or_else(|| self.wrong(unit.refusal(cell)))?
+            }
+            Clock::Step(step) => TimeUnit::step(self.row, step),
+        };
+        self.row += 1;
+        sample.recorded = sample.measured;
+        if sample.names != self.columns.names {
+            sample.names.clone_from(&self.columns.names);
+        }
+        sample.position.clear();
+        for place in &self.columns.position {
+            sample.position.push(self.number(*place)?);
+        }
+        self.numbers(&self.columns.velocity, &mut sample.velocity)?;
+        self.numbers(&self.columns.effort, &mut sample.effort)?;
+        Ok(true)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a bar of some hundred steps")]
+    fn progress(&self) -> f64 {
+        (self.reader.position().byte() as f64 / self.size.max(1) as f64).min(1.0)
+    }
+
+    fn notes(&self) -> Vec<String> {
+        self.columns.notes.clone()
+    }
+}
+
+/// What is said of a table that has no times.
+pub(crate) fn no_time(path: &Path) -> LogError {
+    let what = "no column has times: its name is time, t, stamp or timestamp; --rate HZ says how fast rows follow";
+    LogError::request(path, what)
+}
+
+/// A cell without blanks and quotes.
+fn inner(cell: &[u8]) -> &[u8] {
+    let cell = cell.trim_ascii();
+    cell.strip_prefix(b"\"").and_then(|cell| cell.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii()
+}
+
+fn reason(error: csv::Error) -> String {
+    match error.into_kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("the line has {len} cells, the header {expected_len}")
+        }
+        csv::ErrorKind::Io(error) => error.to_string(),
+        kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),
+    }
+}

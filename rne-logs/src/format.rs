@@ -1,0 +1,155 @@
+//! The format of a file, by its first bytes.
+
+use std::fmt;
+use std::fs::{self, File};
+use std::io::Read as _;
+use std::path::{Path, PathBuf};
+
+use crate::csv_table::CsvTable;
+use crate::sample::Source;
+#[cfg(feature = "rosbag")]
+use crate::sqlite_bag::SqliteBag;
+use crate::{LogError, Options};
+
+/// What a log is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// A bag of ROS 2 in SQLite.
+    Sqlite,
+    /// A bag of ROS 2 in MCAP.
+    Mcap,
+    /// A table in Parquet.
+    Parquet,
+    /// An array of numpy.
+    Npy,
+    /// A table of text.
+    Csv,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Sqlite => "rosbag2, SQLite",
+            Self::Mcap => "rosbag2, MCAP",
+            Self::Parquet => "Parquet",
+            Self::Npy => "array of numpy",
+            Self::Csv => "CSV",
+        })
+    }
+}
+
+/// How files of a format begin.
+const BEGINNINGS: [(&[u8], Format); 4] = [
+    (b"SQLite format 3\0", Format::Sqlite),
+    (b"\x89MCAP0\r\n", Format::Mcap),
+    (b"PAR1", Format::Parquet),
+    (b"\x93NUMPY", Format::Npy),
+];
+
+/// Formats that are told by their first bytes and not read.
+const OTHERS: [(&[u8], &str); 6] = [
+    (b"#ROSBAG V", "a bag of ROS 1; `rosbags-convert` makes one of ROS 2"),
+    (b"\x28\xb5\x2f\xfd", "compressed with zstd; unpack it with `zstd -d`"),
+    (b"\x1f\x8b", "compressed with gzip; unpack it with `gzip -d`"),
+    (b"PK\x03\x04", "a zip archive, as of numpy.savez; save one array with numpy.save"),
+    (b"\x89HDF", "HDF5; save it as CSV or Parquet"),
+    (b"ARROW1", "Arrow's IPC format; save it as Parquet"),
+];
+
+impl Format {
+    /// The format of a file.
+    pub(crate) fn of(path: &Path) -> Result<Self, LogError> {
+        let wrong = |error: std::io::Error| LogError::file(path, format_args!("the file cannot be read: {error}"));
+        if !fs::metadata(path).map_err(wrong)?.is_file() {
+            return Err(LogError::file(
+                path,
+                "it is a pipe, a socket or a device; logs are read twice, from regular files",
+            ));
+        }
+        let mut first = Vec::new();
+        File::open(path).and_then(|file| file.take(16).read_to_end(&mut first)).map_err(wrong)?;
+        if let Some((_, format)) = BEGINNINGS.iter().find(|(magic, _)| first.starts_with(magic)) {
+            return Ok(*format);
+        }
+        if let Some((_, other)) = OTHERS.iter().find(|(magic, _)| first.starts_with(magic)) {
+            return Err(LogError::file(path, format_args!("this is {other}")));
+        }
+        let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default().to_lowercase();
+        let promised = match extension.as_str() {
+            "db3" => Some(Self::Sqlite),
+            "mcap" => Some(Self::Mcap),
+            "parquet" => Some(Self::Parquet),
+            "npy" => Some(Self::Npy),
+            _ => None,
+        };
+        match promised {
+            Some(format) if first.is_empty() => {
+                Err(LogError::file(path, format_args!("the file is empty, no {format}")))
+            }
+            Some(format) => Err(LogError::file(
+                path,
+                format_args!("the file does not begin as one of {format} does: it is corrupt or another format"),
+            )),
+            None => Ok(Self::Csv),
+        }
+    }
+
+    /// Opens a file of this format.
+    pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
+        Ok(match self {
+            #[cfg(feature = "rosbag")]
+            Self::Sqlite => Box::new(SqliteBag::open(path, options.topic.as_deref())?),
+            Self::Csv => Box::new(CsvTable::open(path, options)?),
+            other => return Err(LogError::file(path, format_args!("this build does not read {other}"))),
+        })
+    }
+}
+
+/// The files that are meant by names: of a folder, as rosbag2 writes it, the bags inside.
+pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
+    let mut files = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            files.push(path.clone());
+            continue;
+        }
+        let wrong = |error: std::io::Error| LogError::file(path, format_args!("the folder cannot be read: {error}"));
+        let mut inside = Vec::new();
+        for entry in fs::read_dir(path).map_err(wrong)? {
+            let file = entry.map_err(wrong)?.path();
+            let is_bag = |extension: &std::ffi::OsStr| extension == "db3" || extension == "mcap";
+            if file.extension().is_some_and(is_bag) {
+                inside.push(file);
+            }
+        }
+        if inside.is_empty() {
+            return Err(LogError::file(path, "the folder has no bags, *.db3 or *.mcap"));
+        }
+        inside.sort_by_key(|file| part(file));
+        files.append(&mut inside);
+    }
+    Ok(files)
+}
+
+/// The number of a part, so that `bag_10` comes behind `bag_9`; then its name.
+fn part(file: &Path) -> (u64, PathBuf) {
+    let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    let digits = stem.len() - stem.trim_end_matches(|c: char| c.is_ascii_digit()).len();
+    (stem[stem.len() - digits..].parse().unwrap_or(0), file.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_of_a_bag_are_in_their_order() {
+        let folder = tempfile::tempdir().unwrap();
+        for name in ["run_10.db3", "run_9.db3", "run_0.db3", "metadata.yaml"] {
+            fs::write(folder.path().join(name), "").unwrap();
+        }
+        let found = files(&[folder.path().to_owned()]).unwrap();
+        let names: Vec<_> = found.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
+        assert_eq!(names, ["run_0.db3", "run_9.db3", "run_10.db3"]);
+    }
+}

@@ -1,0 +1,254 @@
+//! A log: its files, what is read of them and by which names.
+
+use std::collections::VecDeque;
+use std::path::{Path, PathBuf};
+
+use crate::LogError;
+use crate::format::{self, Format};
+use crate::joints::Joints;
+use crate::motions::Motions;
+use crate::options::{Angles, Options};
+use crate::pass::Pass;
+use crate::sample::{Sample, Source};
+use crate::survey::Survey;
+
+/// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
+const HEAD: usize = 1024;
+
+/// Stamps this far from zero, ns, are since 1970 or the machine's start, and are shown since the log's first.
+const FAR: i64 = 10_000_000_000_000_000;
+
+/// A log of one or more files, opened; reading it costs memory that does not grow with it.
+///
+/// [`Log::survey`] reads it once and says what is there. [`Log::motions`] reads it again and filters.
+pub struct Log {
+    pub(crate) files: Vec<PathBuf>,
+    pub(crate) options: Options,
+    pub(crate) joints: Joints,
+    pub(crate) layout: Layout,
+}
+
+/// What a log has, by its first thousand messages.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Layout {
+    /// Of the first file.
+    pub format: Format,
+    /// The topic of a bag.
+    pub topic: Option<String>,
+    /// The joints that are read, by the log's names.
+    pub joints: Vec<String>,
+    /// The joints of the log that are not read.
+    pub ignored: Vec<String>,
+    /// Times are those of recording: the messages' own are all equal, or the options say so.
+    pub recorded: bool,
+    /// Whether the log has velocities; states without them are left out then.
+    pub has_velocities: bool,
+    /// Whether the log has efforts; states without them are left out then.
+    pub has_efforts: bool,
+    /// The median interval, s.
+    pub step: f64,
+    /// The time of the log's first state, ns, which times are since; 0 where the log's own times begin near zero.
+    pub origin: i64,
+    /// Remarks on what the file is.
+    pub notes: Vec<String>,
+}
+
+impl Log {
+    /// Opens files, one log behind another, and reads the first messages; of a folder the bags inside.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read, is of no known format, or does not have the topic or the joints.
+    pub fn open(paths: &[PathBuf], options: Options) -> Result<Self, LogError> {
+        let files = format::files(paths)?;
+        let Some(path) = files.first() else {
+            return Err(LogError::request(Path::new("log"), "no file is named"));
+        };
+        check(path, &options)?;
+        let mut chain = Chain::open(&files, &options)?;
+        let mut head: Vec<Sample> = Vec::new();
+        let mut sample = Sample::default();
+        while head.len() < HEAD && chain.read(&mut sample)? {
+            head.push(sample.clone());
+        }
+        if head.is_empty() {
+            let of_topic = chain.source.topic().map_or(String::new(), |topic| format!(" on {topic}"));
+            return Err(LogError::file(path, format_args!("there are no joint states{of_topic}")));
+        }
+        let mut joints = Joints::of(path, &head, options.joints.as_deref())?;
+        if joints.names.is_empty() {
+            return Err(LogError::file(path, "the messages name no joints"));
+        }
+        let constants = options.torque_constants.len();
+        if constants > 1 && constants != joints.names.len() {
+            let what =
+                format!("{constants} torque constants for {} joints; give one, or one per joint", joints.names.len());
+            return Err(LogError::request(path, what));
+        }
+        let states: Vec<&Sample> =
+            head.iter().filter(|sample| joints.find(sample) == crate::joints::Presence::All).collect();
+        let positions = states.iter().filter(|sample| is_whole(&sample.position, sample)).count();
+        if positions == 0 {
+            let what =
+                format!("none of the first {} messages has positions of {}", head.len(), joints.names.join(", "));
+            return Err(LogError::file(path, what));
+        }
+        let has = |numbers: fn(&Sample) -> &Vec<f64>| {
+            2 * states.iter().filter(|sample| is_whole(numbers(sample), sample)).count() > states.len()
+        };
+        let same = states.windows(2).all(|pair| pair[0].measured == pair[1].measured);
+        let recorded = options.recorded || same && states.len() > 1;
+        let time = |sample: &&Sample| if recorded { sample.recorded } else { sample.measured };
+        let times: Vec<i64> = states.iter().map(time).collect();
+        let step = median_step(&times).ok_or_else(|| no_step(path, &times))?;
+        if step > 1.0 {
+            let what = format!(
+                "samples are {step} s apart, if times are seconds; --time-unit ms, us or ns says what they are"
+            );
+            return Err(LogError::request(path, what));
+        }
+        let layout = Layout {
+            format: chain.format,
+            topic: chain.source.topic().map(str::to_owned),
+            ignored: joints.others(&head),
+            joints: joints.names.clone(),
+            recorded,
+            has_velocities: has(|sample| &sample.velocity) && !options.derive_velocities,
+            has_efforts: has(|sample| &sample.effort),
+            step,
+            origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
+            notes: chain.source.notes(),
+        };
+        Ok(Self { files, options, joints, layout })
+    }
+
+    /// What the log has.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// The files, in the order in which they are read.
+    #[must_use]
+    pub fn files(&self) -> &[PathBuf] {
+        &self.files
+    }
+
+    /// Reads the log once: runs, ranges, what is missing, and the cut-off that its spectrum chooses. `progress` is told
+    /// the share that was read, 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read to its end.
+    pub fn survey(&self, progress: impl FnMut(f64)) -> Result<Survey, LogError> {
+        Survey::of(self, progress)
+    }
+
+    /// Reads the log again and hands out its runs, filtered, in pieces of some thousand states.
+    ///
+    /// # Errors
+    ///
+    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow.
+    pub fn motions(&self, survey: &Survey) -> Result<Motions<'_>, LogError> {
+        Motions::of(self, survey)
+    }
+
+    pub(crate) fn pass(&self) -> Result<Pass<'_>, LogError> {
+        Pass::of(self)
+    }
+
+    /// What is wrong, said of the first file.
+    pub(crate) fn request(&self, what: impl std::fmt::Display) -> LogError {
+        LogError::request(&self.files[0], what)
+    }
+
+    /// What positions and velocities are multiplied by.
+    pub(crate) fn of_angle(&self) -> f64 {
+        if self.options.angles == Angles::Degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
+    }
+
+    /// What the effort of a joint is multiplied by.
+    pub(crate) fn torque_constant(&self, joint: usize) -> f64 {
+        match self.options.torque_constants[..] {
+            [] => 1.0,
+            [one] => one,
+            ref each => each[joint],
+        }
+    }
+}
+
+/// Files that are read one behind another.
+pub(crate) struct Chain<'a> {
+    others: VecDeque<&'a PathBuf>,
+    count: usize,
+    options: &'a Options,
+    source: Box<dyn Source>,
+    format: Format,
+}
+
+impl<'a> Chain<'a> {
+    pub(crate) fn open(files: &'a [PathBuf], options: &'a Options) -> Result<Self, LogError> {
+        let mut others: VecDeque<&PathBuf> = files.iter().collect();
+        let Some(first) = others.pop_front() else {
+            return Err(LogError::request(Path::new("log"), "no file is named"));
+        };
+        let format = Format::of(first)?;
+        Ok(Self { others, count: files.len(), options, source: format.open(first, options)?, format })
+    }
+
+    pub(crate) fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+        while !self.source.read(sample)? {
+            let Some(next) = self.others.pop_front() else { return Ok(false) };
+            self.source = Format::of(next)?.open(next, self.options)?;
+        }
+        Ok(true)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "files are few")]
+    pub(crate) fn progress(&self) -> f64 {
+        let done = self.count - self.others.len() - 1;
+        (done as f64 + self.source.progress()) / self.count as f64
+    }
+}
+
+/// Whether there is a number for each joint.
+fn is_whole(numbers: &[f64], sample: &Sample) -> bool {
+    numbers.len() == sample.names.len() && numbers.iter().all(|number| number.is_finite())
+}
+
+/// The median of the intervals between times that grow, s.
+#[expect(clippy::cast_precision_loss, reason = "ns of a step")]
+fn median_step(times: &[i64]) -> Option<f64> {
+    let mut steps: Vec<i64> = times.windows(2).filter_map(|pair| pair[1].checked_sub(pair[0])).collect();
+    steps.retain(|step| *step > 0);
+    let middle = steps.len() / 2;
+    if steps.is_empty() {
+        return None;
+    }
+    Some(*steps.select_nth_unstable(middle).1 as f64 * 1e-9)
+}
+
+fn no_step(path: &Path, times: &[i64]) -> LogError {
+    match times.len() {
+        1 => LogError::file(path, "the log has one joint state; a motion needs many"),
+        count => LogError::file(path, format_args!("the times of the first {count} joint states do not grow")),
+    }
+}
+
+/// Numbers that make no sense in any log.
+fn check(path: &Path, options: &Options) -> Result<(), LogError> {
+    let positive = [("rate", options.rate), ("cut-off", options.cutoff)];
+    for (name, number) in positive {
+        if number.is_some_and(|number| !(number > 0.0 && number.is_finite())) {
+            return Err(LogError::request(path, format_args!("the {name} must be a positive number of Hz")));
+        }
+    }
+    if !(options.gap >= 1.5 && options.gap.is_finite()) {
+        return Err(LogError::request(path, "a gap is at least 1.5 steps, or intervals that jitter are gaps"));
+    }
+    if options.torque_constants.iter().any(|constant| !constant.is_finite() || *constant == 0.0) {
+        return Err(LogError::request(path, "a torque constant is zero or no number"));
+    }
+    Ok(())
+}

@@ -1,0 +1,212 @@
+//! The runs of a log, filtered, in pieces.
+
+use crate::grid::Grid;
+use crate::kernel::Kernel;
+use crate::pass::Pass;
+use crate::survey::Survey;
+use crate::{Log, LogError, Motion};
+
+/// States of a piece, of whatever length its run is: some megabytes.
+const PIECE: usize = 16_384;
+
+/// A part of a run, or all of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Piece {
+    /// The run's number, from 0, as [`Survey::runs`] has it.
+    pub run: u64,
+    /// Its states: those that follow on the last of the piece before, if that is of the same run.
+    pub motion: Motion,
+}
+
+/// The runs of a log, filtered, in pieces that follow each other without a gap: joined they are the same numbers, bit
+/// for bit, as a run filtered at once. The ends of a run, where the filter would reach beyond it, are dropped.
+///
+/// Torques are filtered as positions and velocities are, so that both sides of the equations of motion see the same
+/// filter. Velocities are those of the log, filtered, where it has them: a controller measures them at a higher rate
+/// and with less noise than differences of what it logs. Else they are differences of filtered positions. Accelerations
+/// are differences of the filtered velocities.
+pub struct Motions<'a> {
+    log: &'a Log,
+    pass: Pass<'a>,
+    kernel: Kernel,
+    dropped: usize,
+    length: usize,
+    /// How many runs have begun.
+    begun: u64,
+    grid: Option<Grid>,
+    /// Rows of the run by column, from the row `first` on.
+    rows: Vec<Vec<f64>>,
+    first: u64,
+    /// ns, of the run's first row.
+    begin: i64,
+    /// A state that begins the next run.
+    next: Option<(i64, Vec<f64>)>,
+    ended: bool,
+}
+
+impl<'a> Motions<'a> {
+    pub(crate) fn of(log: &'a Log, survey: &Survey) -> Result<Self, LogError> {
+        if let Some((joint, range)) = survey.may_be_degrees(log) {
+            let what = format!(
+                "positions of {} range over {range:.1}, more than 4π: if they are degrees, say --degrees; if they are \
+                 radians or metres, --radians",
+                log.layout.joints[joint]
+            );
+            return Err(log.request(what));
+        }
+        let Some(hertz) = survey.cutoff.hertz() else {
+            let what =
+                "no run is long enough for a spectrum, a second and 64 states, to choose the filter: say --cutoff HZ";
+            return Err(log.request(what));
+        };
+        let kernel = Kernel::low_pass(hertz, log.layout.step);
+        let layout = &log.layout;
+        let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
+        let mut motions = Self {
+            pass: log.pass()?,
+            dropped: log.dropped(&kernel),
+            length: PIECE,
+            kernel,
+            log,
+            begun: 0,
+            grid: None,
+            rows: vec![Vec::new(); columns],
+            first: 0,
+            begin: 0,
+            next: None,
+            ended: false,
+        };
+        match motions.pass.next()? {
+            Some((state, _)) => motions.next = Some((state.time, state.numbers.clone())),
+            None => motions.ended = true,
+        }
+        Ok(motions)
+    }
+
+    /// States of a piece at most, at least one: memory is this by the number of joints.
+    #[must_use]
+    pub fn with_length(mut self, states: usize) -> Self {
+        self.length = states.max(1);
+        self
+    }
+
+    /// How much of the log was read, 0 to 1.
+    #[must_use]
+    pub fn progress(&self) -> f64 {
+        self.pass.progress()
+    }
+
+    /// Reads until a piece is there or its run ends; whether it ended.
+    fn fill(&mut self) -> Result<bool, LogError> {
+        if let Some((time, numbers)) = self.next.take() {
+            (self.begin, self.first) = (time, 0);
+            self.begun += 1;
+            let mut grid = Grid::new(self.log.layout.step * 1e9, time);
+            grid.push(time, &numbers, &mut |row| append(&mut self.rows, row));
+            self.grid = Some(grid);
+        }
+        let needed = self.length + 2 * self.dropped;
+        while self.rows.first().is_some_and(|rows| rows.len() < needed) {
+            let mut emit = |row: &[f64]| append(&mut self.rows, row);
+            match self.pass.next()? {
+                Some((state, None)) => {
+                    if let Some(grid) = &mut self.grid {
+                        grid.push(state.time, &state.numbers, &mut emit);
+                    }
+                }
+                other => {
+                    if let Some(grid) = self.grid.take() {
+                        grid.finish(&mut emit);
+                    }
+                    self.next = other.map(|(state, _)| (state.time, state.numbers.clone()));
+                    self.ended = self.next.is_none();
+                    return Ok(true);
+                }
+            }
+        }
+        Ok(false)
+    }
+
+    /// The states whose neighbours are all there, at most a piece of them.
+    #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
+    fn filtered(&mut self) -> Motion {
+        let there = self.rows.first().map_or(0, Vec::len);
+        let count = there.saturating_sub(2 * self.dropped).min(self.length);
+        if count == 0 {
+            return Motion::default();
+        }
+        let layout = &self.log.layout;
+        let joints = layout.joints.len();
+        let needed = count + 2 * self.dropped;
+        let smooth = |rows: &Vec<f64>| self.kernel.smooth(&rows[..needed]);
+        // the numbers of the states themselves, of lists that reach further
+        let inner = |numbers: &Vec<f64>| {
+            let beyond = (numbers.len() - count) / 2;
+            numbers[beyond..beyond + count].to_vec()
+        };
+        let each = |of: fn(&Kernel, &[f64]) -> Vec<f64>, lists: &[Vec<f64>]| -> Vec<Vec<f64>> {
+            lists.iter().map(|list| of(&self.kernel, list)).collect()
+        };
+        let q: Vec<Vec<f64>> = self.rows[..joints].iter().map(smooth).collect();
+        let qd = if layout.has_velocities {
+            self.rows[joints..2 * joints].iter().map(smooth).collect()
+        } else {
+            each(Kernel::differentiate, &q)
+        };
+        let qdd = each(Kernel::differentiate, &qd);
+        let efforts = if layout.has_efforts { self.rows.len() - joints } else { self.rows.len() };
+        let tau: Vec<Vec<f64>> = self.rows[efforts..].iter().map(smooth).collect();
+        let begin = self.log.seconds(self.begin);
+        let time = |i: u64| begin + (self.first + self.dropped as u64 + i) as f64 * layout.step;
+        let motion = Motion {
+            time: (0..count as u64).map(time).collect(),
+            q: q.iter().map(inner).collect(),
+            qd: qd.iter().map(inner).collect(),
+            qdd: qdd.iter().map(inner).collect(),
+            tau: tau.iter().map(inner).collect(),
+        };
+        self.rows.iter_mut().for_each(|rows| drop(rows.drain(..count)));
+        self.first += count as u64;
+        motion
+    }
+}
+
+fn append(columns: &mut [Vec<f64>], row: &[f64]) {
+    for (column, number) in columns.iter_mut().zip(row) {
+        column.push(*number);
+    }
+}
+
+impl Iterator for Motions<'_> {
+    type Item = Result<Piece, LogError>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            // a run that ended is emptied first
+            if self.grid.is_none() {
+                let motion = self.filtered();
+                if !motion.is_empty() {
+                    return Some(Ok(Piece { run: self.begun - 1, motion }));
+                }
+                self.rows.iter_mut().for_each(Vec::clear);
+                if self.ended {
+                    return None;
+                }
+            }
+            match self.fill() {
+                Ok(true) => {}
+                Ok(false) => {
+                    let motion = self.filtered();
+                    return Some(Ok(Piece { run: self.begun - 1, motion }));
+                }
+                Err(error) => {
+                    self.ended = true;
+                    self.grid = None;
+                    self.next = None;
+                    self.rows.iter_mut().for_each(Vec::clear);
+                    return Some(Err(error));
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,63 @@
+//! What is said of a log that it does not say itself.
+
+use crate::TimeUnit;
+
+/// What is said of a log that it does not say itself. `Options::default()` says nothing: radians, torques, the only
+/// topic, a cut-off from the spectrum.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Options {
+    /// The joints to read, base to tip; without them all of the log in its order. Joints of the log that are not among
+    /// them are ignored and listed.
+    pub joints: Option<Vec<String>>,
+    /// The topic of a bag, or how the columns' names of a table begin.
+    pub topic: Option<String>,
+    /// What efforts are multiplied by, N m/A or N/A where they are currents: one number for all joints or one per joint.
+    /// Empty: efforts are torques.
+    pub torque_constants: Vec<f64>,
+    /// The unit of positions and velocities.
+    pub angles: Angles,
+    /// An interval of more than so many steps is a gap; 3.5 where nobody says: three samples that were lost are none.
+    pub gap: f64,
+    /// The cut-off of the filter, Hz; without it the spectrum chooses.
+    pub cutoff: Option<f64>,
+    /// Velocities are the derivative of positions, also where the log has measured ones.
+    pub derive_velocities: bool,
+    /// Times are those of recording, also where messages have their own.
+    pub recorded: bool,
+    /// The unit of a column of times.
+    pub time_unit: TimeUnit,
+    /// Rows per second of a table without times.
+    pub rate: Option<f64>,
+    /// What the columns of an array are, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    pub columns: Vec<String>,
+}
+
+/// The unit of positions and velocities.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Angles {
+    /// Nobody said: rad, and positions that range over more than 4π are refused.
+    #[default]
+    Unsaid,
+    /// rad and rad/s, whatever the range
+    Radians,
+    /// ° and °/s, of every joint
+    Degrees,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            joints: None,
+            topic: None,
+            torque_constants: Vec::new(),
+            angles: Angles::Unsaid,
+            gap: 3.5,
+            cutoff: None,
+            derive_velocities: false,
+            recorded: false,
+            time_unit: TimeUnit::Seconds,
+            rate: None,
+            columns: ["time", "q", "qd", "tau"].map(str::to_owned).to_vec(),
+        }
+    }
+}

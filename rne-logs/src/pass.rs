@@ -1,0 +1,142 @@
+//! One reading of a log: its states, and where a run begins.
+
+use crate::joints::{Joints, Presence};
+use crate::log::Chain;
+use crate::sample::Sample;
+use crate::survey::{Counts, Interruption};
+use crate::{Log, LogError};
+
+/// A position that moves faster than this, rad/s or m/s, was set and not reached.
+const FASTEST: f64 = 30.0;
+
+/// A state as the log has it, in SI units.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct State {
+    /// ns
+    pub(crate) time: i64,
+    /// Positions of the joints, then velocities and efforts where the log has them.
+    pub(crate) numbers: Vec<f64>,
+}
+
+/// One reading of a log.
+pub(crate) struct Pass<'a> {
+    log: &'a Log,
+    chain: Chain<'a>,
+    joints: Joints,
+    sample: Sample,
+    state: State,
+    previous: Option<State>,
+    pub(crate) counts: Counts,
+}
+
+impl<'a> Pass<'a> {
+    pub(crate) fn of(log: &'a Log) -> Result<Self, LogError> {
+        Ok(Self {
+            log,
+            chain: Chain::open(&log.files, &log.options)?,
+            joints: log.joints.clone(),
+            sample: Sample::default(),
+            state: State::default(),
+            previous: None,
+            counts: Counts::default(),
+        })
+    }
+
+    /// How much of the log was read, 0 to 1.
+    pub(crate) fn progress(&self) -> f64 {
+        self.chain.progress()
+    }
+
+    /// The next state, and why a run begins with it, if one does.
+    pub(crate) fn next(&mut self) -> Result<Option<(&State, Option<Interruption>)>, LogError> {
+        loop {
+            if !self.chain.read(&mut self.sample)? {
+                return Ok(None);
+            }
+            self.counts.messages += 1;
+            if !self.take() {
+                continue;
+            }
+            let begins = match &self.previous {
+                None => Some(Interruption::Beginning),
+                Some(previous) if previous.time == self.state.time && previous.numbers == self.state.numbers => {
+                    self.counts.repeats += 1;
+                    continue;
+                }
+                Some(previous) => self.interruption(previous),
+            };
+            self.counts.states += 1;
+            let previous = self.previous.get_or_insert_default();
+            previous.time = self.state.time;
+            previous.numbers.clone_from(&self.state.numbers);
+            return Ok(Some((&self.state, begins)));
+        }
+    }
+
+    /// Makes a state of the sample, if it is one; else counts why not.
+    fn take(&mut self) -> bool {
+        let Self { log, sample, state, counts, .. } = self;
+        match self.joints.find(sample) {
+            Presence::All => {}
+            Presence::Some => {
+                counts.without_joints += 1;
+                return false;
+            }
+            Presence::None => {
+                counts.of_others += 1;
+                return false;
+            }
+        }
+        let width = sample.names.len();
+        let layout = &log.layout;
+        if sample.position.len() != width {
+            counts.without_positions += 1;
+            return false;
+        }
+        if layout.has_velocities && sample.velocity.len() != width {
+            counts.without_velocities += 1;
+            return false;
+        }
+        if layout.has_efforts && sample.effort.len() != width {
+            counts.without_efforts += 1;
+            return false;
+        }
+        state.time = if layout.recorded { sample.recorded } else { sample.measured };
+        state.numbers.clear();
+        let of_angle = log.of_angle();
+        self.joints.take(&sample.position, |_| of_angle, &mut state.numbers);
+        if layout.has_velocities {
+            self.joints.take(&sample.velocity, |_| of_angle, &mut state.numbers);
+        }
+        if layout.has_efforts {
+            self.joints.take(&sample.effort, |joint| log.torque_constant(joint), &mut state.numbers);
+        }
+        if state.numbers.iter().any(|number| !number.is_finite()) {
+            counts.not_finite += 1;
+            return false;
+        }
+        true
+    }
+
+    /// Why the state does not continue the run of the previous one.
+    #[expect(clippy::cast_precision_loss, reason = "ns between samples")]
+    fn interruption(&self, previous: &State) -> Option<Interruption> {
+        let step = self.log.layout.step;
+        let interval = self.state.time.saturating_sub(previous.time) as f64 * 1e-9;
+        if interval == 0.0 {
+            return Some(Interruption::Duplicate);
+        }
+        if interval < 0.0 {
+            return Some(Interruption::Reset { seconds: -interval });
+        }
+        if interval > self.log.options.gap * step {
+            return Some(Interruption::Gap { seconds: interval });
+        }
+        let joints = self.joints.names.len();
+        let moved = |joint: &usize| (self.state.numbers[*joint] - previous.numbers[*joint]).abs();
+        // stamps of a burst are closer than the samples were
+        let most = FASTEST * interval.max(step);
+        let joint = (0..joints).find(|joint| moved(joint) > most)?;
+        Some(Interruption::Jump { joint, by: moved(&joint) })
+    }
+}

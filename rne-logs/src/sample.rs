@@ -1,0 +1,39 @@
+//! What every format is read into: one message, or one row.
+
+use crate::LogError;
+
+/// What a log says of one instant: the joints that a message or a row names, in its order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Sample {
+    /// When it was measured, by the header of the message or the column of times, ns.
+    pub(crate) measured: i64,
+    /// When it was recorded, ns; formats that do not say have `measured` here.
+    pub(crate) recorded: i64,
+    /// The joints' names.
+    pub(crate) names: Vec<String>,
+    /// Positions by joint; empty where the message has none. Units are the file's.
+    pub(crate) position: Vec<f64>,
+    /// Velocities by joint; empty where the message has none.
+    pub(crate) velocity: Vec<f64>,
+    /// Efforts by joint; empty where the message has none.
+    pub(crate) effort: Vec<f64>,
+}
+
+/// A file that is read from its beginning to its end, in memory that does not grow with it.
+pub(crate) trait Source {
+    /// Reads the next sample in the place of the last; false at the end.
+    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError>;
+
+    /// How much of the file was read, 0 to 1.
+    fn progress(&self) -> f64;
+
+    /// Remarks on what was found.
+    fn notes(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// The topic that is read, where the format has topics.
+    fn topic(&self) -> Option<&str> {
+        None
+    }
+}

@@ -1,0 +1,136 @@
+//! Where the motion of a log ends and its noise begins: the spectrum of positions.
+//!
+//! The method of P. D. Welch (1967): segments of a power of two of rows, at least `seconds` long, half overlapping,
+//! their mean subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side lobes at −92 dB).
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+
+/// Power above this many times the noise floor is motion.
+const ABOVE_FLOOR: f64 = 10.0;
+
+/// The floor is at least this share of the greatest power: less is not seen beside it through the window.
+const LEAST_FLOOR: f64 = 1e-10;
+
+/// Frequencies over which power is averaged before it is compared, on each side.
+const SMOOTHED: usize = 2;
+
+/// The spectra of some columns, summed over the segments so far.
+pub(crate) struct Spectrum {
+    fft: Arc<dyn Fft<f64>>,
+    window: Vec<f64>,
+    /// By column: the rows of the segment that grows.
+    rows: Vec<Vec<f64>>,
+    /// By column and frequency.
+    power: Vec<Vec<f64>>,
+    segments: u64,
+    rate: f64,
+}
+
+impl Spectrum {
+    /// Spectra of columns at a rate, Hz, by segments of at least so many seconds.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bounded")]
+    pub(crate) fn new(columns: usize, rate: f64, seconds: f64) -> Self {
+        let length = ((seconds * rate).clamp(64.0, 65_536.0).ceil() as usize).next_power_of_two();
+        let window = |i: usize| {
+            let angle = 2.0 * PI * i as f64 / length as f64;
+            0.358_75 - 0.488_29 * angle.cos() + 0.141_28 * (2.0 * angle).cos() - 0.011_68 * (3.0 * angle).cos()
+        };
+        Self {
+            fft: FftPlanner::new().plan_fft_forward(length),
+            window: (0..length).map(window).collect(),
+            rows: vec![Vec::with_capacity(length); columns],
+            power: vec![vec![0.0; length / 2 + 1]; columns],
+            segments: 0,
+            rate,
+        }
+    }
+
+    /// Takes a row of a run.
+    pub(crate) fn push(&mut self, row: &[f64]) {
+        for (rows, number) in self.rows.iter_mut().zip(row) {
+            rows.push(*number);
+        }
+        let length = self.window.len();
+        if self.rows.first().is_none_or(|rows| rows.len() < length) {
+            return;
+        }
+        self.segments += 1;
+        let mut values = vec![Complex::default(); length];
+        for (rows, power) in self.rows.iter_mut().zip(&mut self.power) {
+            #[expect(clippy::cast_precision_loss, reason = "a power of two below 2^17")]
+            let mean = rows.iter().sum::<f64>() / length as f64;
+            for ((value, row), weight) in values.iter_mut().zip(&*rows).zip(&self.window) {
+                *value = Complex::new((row - mean) * weight, 0.0);
+            }
+            self.fft.process(&mut values);
+            for (power, value) in power.iter_mut().zip(&values) {
+                *power += value.norm_sqr();
+            }
+            rows.drain(..length / 2);
+        }
+    }
+
+    /// Ends a run: what is left of it is no segment.
+    pub(crate) fn end_run(&mut self) {
+        self.rows.iter_mut().for_each(Vec::clear);
+    }
+
+    /// By column the frequency, Hz, above which there is no motion: no power, averaged over five neighbours, of ten
+    /// times the floor, which is the median of the upper half of the spectrum. None if no run had a segment.
+    #[expect(clippy::cast_precision_loss, reason = "frequencies are few")]
+    pub(crate) fn ends(&self) -> Option<Vec<f64>> {
+        if self.segments == 0 {
+            return None;
+        }
+        let of = |power: &Vec<f64>| {
+            let mut upper = power[power.len() / 2..].to_vec();
+            let middle = upper.len() / 2;
+            let median = *upper.select_nth_unstable_by(middle, f64::total_cmp).1;
+            let greatest = power.iter().copied().fold(0.0, f64::max);
+            let floor = median.max(LEAST_FLOOR * greatest);
+            let averaged = |i: usize| {
+                let near = &power[i.saturating_sub(SMOOTHED)..(i + SMOOTHED + 1).min(power.len())];
+                near.iter().sum::<f64>() / near.len() as f64
+            };
+            let end = (1..power.len()).rev().find(|i| averaged(*i) > ABOVE_FLOOR * floor).unwrap_or(0);
+            end as f64 * self.rate / self.window.len() as f64
+        };
+        Some(self.power.iter().map(of).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn motion_ends_where_its_fastest_sine_is() {
+        // a sine of 3 Hz in noise of a thousandth of it
+        let mut random = fastrand::Rng::with_seed(5);
+        let mut spectrum = Spectrum::new(2, 200.0, 4.0);
+        for i in 0..8000 {
+            let time = f64::from(i) / 200.0;
+            let noise = (random.f64() - 0.5) * 2e-3;
+            spectrum.push(&[(2.0 * PI * 3.0 * time).sin() + noise, noise]);
+        }
+        let ends = spectrum.ends().unwrap();
+        assert!(ends[0] > 3.0 && ends[0] < 5.0, "{ends:?}");
+        assert_eq!(ends[1], 0.0, "noise alone is no motion");
+    }
+
+    #[test]
+    fn runs_that_are_too_short_have_no_spectrum() {
+        let mut spectrum = Spectrum::new(1, 100.0, 4.0);
+        for i in 0..1000 {
+            spectrum.push(&[f64::from(i)]);
+            if i % 100 == 0 {
+                spectrum.end_run();
+            }
+        }
+        assert_eq!(spectrum.ends(), None);
+    }
+}

@@ -1,0 +1,175 @@
+//! Bags of ROS 2 in SQLite: `*.db3`.
+
+use std::path::{Path, PathBuf};
+
+use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
+
+use crate::LogError;
+use crate::joint_state;
+use crate::sample::{Sample, Source};
+use crate::topic;
+
+/// Messages that are read at once. Their place is kept between: a statement cannot be kept beside its connection.
+const BATCH: u32 = 1024;
+
+const BY_TIME: &str = "SELECT timestamp, id, data FROM messages \
+                       WHERE topic_id = ?1 AND (timestamp, id) > (?2, ?3) ORDER BY timestamp, id LIMIT ?4";
+
+/// Of a bag whose index of times was left out: sorting all of it for each batch would take for ever.
+const BY_NUMBER: &str = "SELECT timestamp, id, data FROM messages \
+                         WHERE topic_id = ?1 AND id > ?3 AND ?2 IS NOT NULL ORDER BY id LIMIT ?4";
+
+/// The longest message that is taken for joint states, bytes.
+const LONGEST_MESSAGE: usize = 1 << 20;
+
+/// A bag, read by the time of recording, or as it was written where nothing tells their order.
+pub(crate) struct SqliteBag {
+    path: PathBuf,
+    connection: Connection,
+    topic: String,
+    topic_id: i64,
+    query: &'static str,
+    /// Time and number of the last message that was read.
+    last: (i64, i64),
+    /// The first and the last time of all topics.
+    span: (i64, i64),
+    batch: Vec<Sample>,
+    next: usize,
+    at_end: bool,
+    count: u64,
+}
+
+impl SqliteBag {
+    pub(crate) fn open(path: &Path, wanted: Option<&str>) -> Result<Self, LogError> {
+        let connection = connect(path).map_err(|error| unreadable(path, &error))?;
+        let topics = topics(path, &connection)?;
+        let pairs: Vec<(String, String)> = topics.iter().map(|topic| (topic.1.clone(), topic.2.clone())).collect();
+        let place = topic::choose(path, &pairs, wanted)?;
+        let (topic_id, name, _, encoding) = topics[place].clone();
+        if encoding != "cdr" {
+            return Err(LogError::file(path, format_args!("the topic {name} is encoded as {encoding:?}, not as cdr")));
+        }
+        let edge = |order: &str| {
+            let query = format!("SELECT timestamp FROM messages ORDER BY timestamp {order} LIMIT 1");
+            connection.query_row(&query, [], |row| row.get::<_, i64>(0)).optional()
+        };
+        let span = match (edge("ASC"), edge("DESC")) {
+            (Ok(first), Ok(last)) => (first.unwrap_or(0), last.unwrap_or(0)),
+            (Err(error), _) | (_, Err(error)) => return Err(unreadable(path, &error)),
+        };
+        let is_indexed = "SELECT count(*) FROM pragma_index_list('messages') AS list, pragma_index_info(list.name) AS info \
+                          WHERE info.seqno = 0 AND info.name = 'timestamp'";
+        let indices: i64 =
+            connection.query_row(is_indexed, [], |row| row.get(0)).map_err(|error| unreadable(path, &error))?;
+        Ok(Self {
+            query: if indices > 0 { BY_TIME } else { BY_NUMBER },
+            path: path.to_owned(),
+            connection,
+            topic: name,
+            topic_id,
+            last: (i64::MIN, i64::MIN),
+            span,
+            batch: Vec::new(),
+            next: 0,
+            at_end: false,
+            count: 0,
+        })
+    }
+
+    fn fill(&mut self) -> Result<(), LogError> {
+        self.next = 0;
+        self.batch.clear();
+        let before = self.count;
+        let wrong = |error: rusqlite::Error| {
+            LogError::file(&self.path, format_args!("{}, behind {before} messages or more", reason(&error)))
+        };
+        let mut statement = self.connection.prepare(self.query).map_err(wrong)?;
+        let mut rows = statement.query((self.topic_id, self.last.0, self.last.1, BATCH)).map_err(wrong)?;
+        while let Some(row) = rows.next().map_err(wrong)? {
+            self.last = (row.get(0).map_err(wrong)?, row.get(1).map_err(wrong)?);
+            let data = row.get_ref(2).map_err(wrong)?;
+            let what = match data.as_blob() {
+                Ok(bytes) if bytes.len() > LONGEST_MESSAGE => Err(format!("it has {} bytes", bytes.len())),
+                Ok(bytes) => {
+                    let mut sample = Sample::default();
+                    joint_state::decode(bytes, self.last.0, &mut sample).map(|()| self.batch.push(sample))
+                }
+                Err(_) => Err(format!("its data is {}, not bytes", data.data_type())),
+            };
+            self.count += 1;
+            what.map_err(|what| {
+                let (count, topic) = (self.count, &self.topic);
+                LogError::file(&self.path, format_args!("message {count} of {topic} cannot be read: {what}"))
+            })?;
+        }
+        self.at_end = self.batch.len() < BATCH as usize;
+        Ok(())
+    }
+}
+
+impl Source for SqliteBag {
+    fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
+        if self.next == self.batch.len() {
+            if self.at_end {
+                return Ok(false);
+            }
+            self.fill()?;
+        }
+        let Some(next) = self.batch.get_mut(self.next) else { return Ok(false) };
+        std::mem::swap(next, sample);
+        self.next += 1;
+        Ok(true)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "a bar of some hundred steps")]
+    fn progress(&self) -> f64 {
+        let (first, last) = self.span;
+        let all = last.saturating_sub(first).max(1) as f64;
+        (self.last.0.saturating_sub(first) as f64 / all).clamp(0.0, 1.0)
+    }
+
+    fn topic(&self) -> Option<&str> {
+        Some(&self.topic)
+    }
+}
+
+fn connect(path: &Path) -> rusqlite::Result<Connection> {
+    let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
+    let connection = Connection::open_with_flags(path, flags)?;
+    // nothing that a file defines is run, and every page is looked at before it is believed
+    connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA query_only = ON;")?;
+    Ok(connection)
+}
+
+/// The topics of a bag: number, name, type and encoding.
+fn topics(path: &Path, connection: &Connection) -> Result<Vec<(i64, String, String, String)>, LogError> {
+    let wrong = |error: rusqlite::Error| unreadable(path, &error);
+    let mut tables = connection
+        .prepare("SELECT name FROM sqlite_schema WHERE type = 'table' AND name IN ('topics', 'messages')")
+        .map_err(wrong)?;
+    let count = tables.query_map([], |_| Ok(())).map_err(wrong)?.filter(Result::is_ok).count();
+    drop(tables);
+    if count < 2 {
+        let what = "the SQLite file has no tables `topics` and `messages`: it is no bag of ROS 2";
+        return Err(LogError::file(path, what));
+    }
+    let mut statement =
+        connection.prepare("SELECT id, name, type, serialization_format FROM topics ORDER BY id").map_err(wrong)?;
+    let rows =
+        statement.query_map([], |row| Ok((row.get(0)?, row.get(1)?, row.get(2)?, row.get(3)?))).map_err(wrong)?;
+    rows.collect::<Result<_, _>>().map_err(wrong)
+}
+
+fn unreadable(path: &Path, error: &rusqlite::Error) -> LogError {
+    LogError::file(path, reason(error))
+}
+
+/// What SQLite says, in a sentence.
+fn reason(error: &rusqlite::Error) -> String {
+    use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase};
+    match error.sqlite_error_code() {
+        Some(DatabaseCorrupt) => "the bag is corrupt or cut off (SQLite: database disk image is malformed)".to_owned(),
+        Some(NotADatabase) => "the bag is corrupt: its head is that of SQLite, the rest is not".to_owned(),
+        _ => format!("the bag cannot be read: {error}"),
+    }
+}

@@ -1,0 +1,339 @@
+//! What a log has, by one reading of it.
+
+use std::fmt;
+
+use crate::grid::Grid;
+use crate::kernel::{HIGHEST, Kernel, PASSED};
+use crate::options::Angles;
+use crate::spectrum::Spectrum;
+use crate::{Log, LogError};
+
+/// Runs that are listed; of others only the number is kept.
+const LISTED: usize = 1000;
+
+/// Seconds of a segment of the spectrum, and those that are tried where no run is as long.
+const SEGMENTS: [f64; 2] = [4.0, 1.0];
+
+/// The lowest cut-off that a spectrum chooses, Hz: a lower one costs seconds at both ends of a run.
+const LOWEST: f64 = 2.0;
+
+/// The highest cut-off that a spectrum chooses, of the rate: beyond it differences are no derivatives.
+const HIGHEST_CHOSEN: f64 = 0.2;
+
+/// Positions over more than this, rad, may be degrees.
+const WIDEST: f64 = 4.0 * std::f64::consts::PI;
+
+/// What a log has.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Survey {
+    /// What was read, and what of it was left out.
+    pub counts: Counts,
+    /// The runs, the first thousand of them.
+    pub runs: Vec<Run>,
+    /// How many runs there are.
+    pub run_count: u64,
+    /// By joint: the least and the greatest position, rad or m.
+    pub positions: Vec<(f64, f64)>,
+    /// By joint: the least and the greatest velocity, rad/s or m/s; empty where the log has none.
+    pub velocities: Vec<(f64, f64)>,
+    /// By joint: the least and the greatest torque, N m, or force, N; empty where the log has none.
+    pub efforts: Vec<(f64, f64)>,
+    /// By joint: how far velocities are from the differences of positions, root mean square, of those differences;
+    /// empty where the log has no velocities.
+    pub disagreement: Vec<f64>,
+    /// The cut-off of the filter.
+    pub cutoff: Cutoff,
+    /// States at each end of a run that the filter drops; a run with no more than twice as many gives none.
+    pub dropped: usize,
+}
+
+/// How many messages there were, and why they are no states.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Messages or rows, all of them.
+    pub messages: u64,
+    /// Messages that are states of the arm.
+    pub states: u64,
+    /// Messages that have none of the joints.
+    pub of_others: u64,
+    /// Messages that have some of the joints.
+    pub without_joints: u64,
+    /// Messages without positions, or with another number of them.
+    pub without_positions: u64,
+    /// Messages without velocities, or with another number of them, where the log has velocities.
+    pub without_velocities: u64,
+    /// Messages without efforts, or with another number of them, where the log has efforts.
+    pub without_efforts: u64,
+    /// Messages with a number that is none, or infinite.
+    pub not_finite: u64,
+    /// Messages that say the same as the one before, at the same time.
+    pub repeats: u64,
+}
+
+/// Why a run begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Interruption {
+    /// It is the first.
+    Beginning,
+    /// Nothing was measured for so many seconds.
+    Gap {
+        /// s
+        seconds: f64,
+    },
+    /// Time went back.
+    Reset {
+        /// By so much, s.
+        seconds: f64,
+    },
+    /// Two states have the same time and differ.
+    Duplicate,
+    /// A joint is elsewhere, faster than a joint moves.
+    Jump {
+        /// Its place among those that are read, from 0.
+        joint: usize,
+        /// rad or m
+        by: f64,
+    },
+}
+
+impl fmt::Display for Interruption {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Beginning => f.write_str("begins the log"),
+            Self::Gap { seconds } => write!(f, "after a gap of {seconds:.3} s"),
+            Self::Reset { seconds } => write!(f, "time went back by {seconds:.3} s"),
+            Self::Duplicate => f.write_str("two states have one time"),
+            Self::Jump { joint, by } => write!(f, "joint {} jumped by {by:.3}", joint + 1),
+        }
+    }
+}
+
+/// A run: states without an interruption.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Run {
+    /// Why it begins.
+    pub begins: Interruption,
+    /// Its first time, s.
+    pub start: f64,
+    /// s
+    pub duration: f64,
+    /// How many states it has.
+    pub states: u64,
+    /// The root mean square deviation of intervals from the log's step, s.
+    pub jitter: f64,
+    /// The longest interval, s.
+    pub longest: f64,
+}
+
+/// The cut-off of the filter, and where it is from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cutoff {
+    /// The options say it.
+    Given {
+        /// Hz
+        hertz: f64,
+    },
+    /// The spectrum of positions chose it: what moves is in the pass band, which ends at two thirds of the cut-off.
+    Spectrum {
+        /// Hz
+        hertz: f64,
+        /// By joint the frequency at which its motion goes under in noise, Hz.
+        ends: Vec<f64>,
+        /// Whether it is the lowest or the highest that is chosen, 2 Hz or a fifth of the rate.
+        bounded: bool,
+    },
+    /// No run is as long as a segment of the spectrum, a second or 64 states.
+    Unknown,
+}
+
+impl Cutoff {
+    /// Hz; none if it is not known.
+    #[must_use]
+    pub fn hertz(&self) -> Option<f64> {
+        match self {
+            Self::Given { hertz } | Self::Spectrum { hertz, .. } => Some(*hertz),
+            Self::Unknown => None,
+        }
+    }
+}
+
+impl Survey {
+    pub(crate) fn of(log: &Log, mut progress: impl FnMut(f64)) -> Result<Self, LogError> {
+        let layout = &log.layout;
+        let joints = layout.joints.len();
+        let rate = 1.0 / layout.step;
+        let columns = joints * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
+        let mut spectra = SEGMENTS.map(|seconds| Spectrum::new(joints, rate, seconds));
+        let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); columns];
+        let mut agreement = Agreement::new(if layout.has_velocities { joints } else { 0 });
+        let mut runs = Runs::default();
+        let mut grid: Option<Grid> = None;
+        let mut pass = log.pass()?;
+        let mut count = 0_u64;
+        loop {
+            count += 1;
+            if count.is_multiple_of(4096) {
+                progress(pass.progress());
+            }
+            let Some((state, begins)) = pass.next()? else { break };
+            for (range, number) in ranges.iter_mut().zip(&state.numbers) {
+                *range = (range.0.min(*number), range.1.max(*number));
+            }
+            if let Some(begins) = begins {
+                if let Some(grid) = grid.take() {
+                    grid.finish(&mut |row| spectra.iter_mut().for_each(|spectrum| spectrum.push(row)));
+                }
+                spectra.iter_mut().for_each(Spectrum::end_run);
+                runs.begin(log.seconds(state.time), begins);
+                agreement.previous = None;
+            } else {
+                runs.push(log.seconds(state.time), layout.step);
+            }
+            agreement.push(state.time, &state.numbers);
+            let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
+            grid.push(state.time, &state.numbers, &mut |row| {
+                spectra.iter_mut().for_each(|spectrum| spectrum.push(row));
+            });
+        }
+        if let Some(grid) = grid {
+            grid.finish(&mut |row| spectra.iter_mut().for_each(|spectrum| spectrum.push(row)));
+        }
+        let counts = pass.counts;
+        let cutoff = match log.options.cutoff {
+            Some(hertz) if hertz <= HIGHEST * rate => Cutoff::Given { hertz },
+            Some(hertz) => {
+                let what = format!(
+                    "a cut-off of {hertz} Hz is too high for samples at {rate:.4} Hz: at most {:.4} Hz",
+                    HIGHEST * rate
+                );
+                return Err(log.request(what));
+            }
+            None => spectra.iter().find_map(Spectrum::ends).map_or(Cutoff::Unknown, |ends| chosen(ends, rate)),
+        };
+        let dropped = cutoff.hertz().map_or(0, |hertz| log.dropped(&Kernel::low_pass(hertz, layout.step)));
+        let (run_count, runs) = runs.end();
+        let efforts = ranges.split_off(columns - if layout.has_efforts { joints } else { 0 });
+        let velocities = ranges.split_off(joints);
+        let disagreement = agreement.end();
+        Ok(Self { counts, runs, run_count, positions: ranges, velocities, efforts, disagreement, cutoff, dropped })
+    }
+
+    /// The joint whose positions may be degrees, and their range: nobody said that they are radians, and they range
+    /// over more than 4π.
+    #[must_use]
+    pub fn may_be_degrees(&self, log: &Log) -> Option<(usize, f64)> {
+        if log.options.angles != Angles::Unsaid {
+            return None;
+        }
+        let ranges = self.positions.iter().map(|(least, most)| most - least).enumerate();
+        ranges.filter(|(_, range)| *range > WIDEST).max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+}
+
+impl Log {
+    /// Seconds of a stamp, ns, since the origin.
+    #[expect(clippy::cast_precision_loss, reason = "a quarter of a ns after a month")]
+    pub(crate) fn seconds(&self, time: i64) -> f64 {
+        time.saturating_sub(self.layout.origin) as f64 * 1e-9
+    }
+
+    /// States at each end of a run that a filter drops.
+    pub(crate) fn dropped(&self, kernel: &Kernel) -> usize {
+        let differences = if self.layout.has_velocities { 1 } else { 2 };
+        kernel.half() + differences * Kernel::of_difference()
+    }
+}
+
+fn chosen(ends: Vec<f64>, rate: f64) -> Cutoff {
+    let highest = ends.iter().copied().fold(0.0, f64::max);
+    let wanted = highest / PASSED;
+    let hertz = wanted.max(LOWEST).min(HIGHEST_CHOSEN * rate);
+    Cutoff::Spectrum { hertz, ends, bounded: hertz != wanted }
+}
+
+/// Velocities against differences of positions: trapezia over each interval.
+struct Agreement {
+    joints: usize,
+    previous: Option<(i64, Vec<f64>)>,
+    of_difference: Vec<f64>,
+    of_position: Vec<f64>,
+}
+
+impl Agreement {
+    fn new(joints: usize) -> Self {
+        Self { joints, previous: None, of_difference: vec![0.0; joints], of_position: vec![0.0; joints] }
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "ns between samples")]
+    fn push(&mut self, time: i64, numbers: &[f64]) {
+        let n = self.joints;
+        if n == 0 {
+            return;
+        }
+        if let Some((before, old)) = &self.previous {
+            let step = time.saturating_sub(*before) as f64 * 1e-9;
+            for joint in 0..n {
+                let moved = numbers[joint] - old[joint];
+                let said = step * (numbers[n + joint] + old[n + joint]) / 2.0;
+                self.of_difference[joint] += (moved - said).powi(2);
+                self.of_position[joint] += moved.powi(2);
+            }
+        }
+        let previous = self.previous.get_or_insert_default();
+        previous.0 = time;
+        previous.1.clear();
+        previous.1.extend_from_slice(numbers);
+    }
+
+    fn end(self) -> Vec<f64> {
+        let pairs = self.of_difference.iter().zip(&self.of_position);
+        pairs
+            .map(|(difference, position)| if *difference == 0.0 { 0.0 } else { (difference / position).sqrt() })
+            .collect()
+    }
+}
+
+/// The runs so far.
+#[derive(Default)]
+struct Runs {
+    ended: Vec<Run>,
+    count: u64,
+    last: Option<Run>,
+    time: f64,
+    squares: f64,
+}
+
+impl Runs {
+    fn begin(&mut self, start: f64, begins: Interruption) {
+        self.end_run();
+        self.count += 1;
+        self.last = Some(Run { begins, start, duration: 0.0, states: 1, jitter: 0.0, longest: 0.0 });
+        (self.time, self.squares) = (start, 0.0);
+    }
+
+    fn push(&mut self, time: f64, step: f64) {
+        let Some(run) = &mut self.last else { return };
+        let interval = time - self.time;
+        run.duration = time - run.start;
+        run.states += 1;
+        run.longest = run.longest.max(interval);
+        self.squares += (interval - step).powi(2);
+        self.time = time;
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "intervals are fewer than 2^53")]
+    fn end_run(&mut self) {
+        let Some(mut run) = self.last.take() else { return };
+        run.jitter = (self.squares / (run.states - 1).max(1) as f64).sqrt();
+        if self.ended.len() < LISTED {
+            self.ended.push(run);
+        }
+    }
+
+    fn end(mut self) -> (u64, Vec<Run>) {
+        self.end_run();
+        (self.count, self.ended)
+    }
+}

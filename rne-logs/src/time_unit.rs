@@ -1,0 +1,110 @@
+//! Units of stamps in tables. Inside, stamps are whole nanoseconds: seconds since 1970 as a number of 53 bits are good to
+//! a quarter of a microsecond only, which is seen in velocities.
+
+/// The unit of a column of times.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeUnit {
+    /// s
+    #[default]
+    Seconds,
+    /// ms
+    Milliseconds,
+    /// µs
+    Microseconds,
+    /// ns
+    Nanoseconds,
+}
+
+impl TimeUnit {
+    /// Nanoseconds of one.
+    pub(crate) fn nanoseconds(self) -> i64 {
+        match self {
+            Self::Seconds => 1_000_000_000,
+            Self::Milliseconds => 1_000_000,
+            Self::Microseconds => 1_000,
+            Self::Nanoseconds => 1,
+        }
+    }
+
+    /// A number of this unit, ns; none where it is no time between the years 1678 and 2262.
+    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "the range is looked at")]
+    pub(crate) fn number(self, number: f64) -> Option<i64> {
+        let time = (number * self.nanoseconds() as f64).round();
+        (time.abs() < 9e18).then_some(time as i64)
+    }
+
+    /// A text of this unit, ns: exact where it is decimal.
+    pub(crate) fn parse(self, text: &str) -> Option<i64> {
+        let (negative, digits) = text.strip_prefix('-').map_or((false, text), |digits| (true, digits));
+        let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+        let is_decimal = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+        if !is_decimal(whole) || !is_decimal(fraction) || whole.is_empty() {
+            return self.number(text.parse().ok()?);
+        }
+        let mut time = whole.parse::<i64>().ok()?.checked_mul(self.nanoseconds())?;
+        let mut of_digit = self.nanoseconds();
+        for digit in fraction.bytes().take(10) {
+            let value = i64::from(digit - b'0');
+            // the last digit that counts is rounded
+            time = time.checked_add(if of_digit >= 10 { value * (of_digit / 10) } else { i64::from(value >= 5) })?;
+            of_digit /= 10;
+            if of_digit == 0 {
+                break;
+            }
+        }
+        Some(if negative { -time } else { time })
+    }
+
+    /// Why a text is no time.
+    pub(crate) fn refusal(self, text: &str) -> String {
+        match text.parse::<f64>() {
+            Ok(number) if number.is_finite() => {
+                let name = self.name();
+                format!("{text} {name} are beyond the year 2262; --time-unit s, ms, us or ns says what times are")
+            }
+            _ => format!("{text:?} is no time"),
+        }
+    }
+
+    /// The unit's symbol.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Seconds => "s",
+            Self::Milliseconds => "ms",
+            Self::Microseconds => "us",
+            Self::Nanoseconds => "ns",
+        }
+    }
+
+    /// When a row is, of a table whose rows follow each other by a number of seconds.
+    #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
+    pub(crate) fn step(row: i64, step: f64) -> i64 {
+        Self::Seconds.number(row as f64 * step).unwrap_or(i64::MAX)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decimal_stamps_are_exact() {
+        for (unit, text, time) in [
+            (TimeUnit::Seconds, "1700000000.123456789", 1_700_000_000_123_456_789),
+            (TimeUnit::Seconds, "0.0080000004", 8_000_000),
+            (TimeUnit::Seconds, "0.0080000005", 8_000_001),
+            (TimeUnit::Seconds, "-1.5", -1_500_000_000),
+            (TimeUnit::Seconds, "8e-3", 8_000_000),
+            (TimeUnit::Milliseconds, "8.000001", 8_000_001),
+            (TimeUnit::Milliseconds, "8.0000019", 8_000_002),
+            (TimeUnit::Microseconds, "17", 17_000),
+            (TimeUnit::Nanoseconds, "17.9", 18),
+        ] {
+            assert_eq!(unit.parse(text), Some(time), "{text}");
+        }
+        for text in ["", "nan", "inf", "1e30", "99999999999999999999", "12:30"] {
+            assert_eq!(TimeUnit::Seconds.parse(text), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! The topic of a bag that is read.
+
+use std::path::Path;
+
+use crate::LogError;
+use crate::joint_state::TYPE;
+use crate::spelling::{instead, listed};
+
+/// The place of the topic that is read: the one asked for, or the only one with joint states. `topics` are names and
+/// types.
+pub(crate) fn choose(path: &Path, topics: &[(String, String)], wanted: Option<&str>) -> Result<usize, LogError> {
+    let is_state = |place: &usize| is_joint_state(&topics[*place].1);
+    let states: Vec<usize> = (0..topics.len()).filter(is_state).collect();
+    let names = || listed(states.iter().map(|place| topics[*place].0.as_str()));
+    if let Some(wanted) = wanted {
+        let Some(place) = topics.iter().position(|(name, _)| name == wanted) else {
+            let near = instead(wanted, topics.iter().map(|(name, _)| name.as_str()));
+            let there = if states.is_empty() {
+                "none has joint states".to_owned()
+            } else {
+                format!("joint states are in {}", names())
+            };
+            return Err(LogError::request(path, format_args!("there is no topic {wanted}{near}; {there}")));
+        };
+        let kind = &topics[place].1;
+        if !is_joint_state(kind) {
+            let there = if states.is_empty() { String::new() } else { format!("; joint states are in {}", names()) };
+            return Err(LogError::request(path, format_args!("the topic {wanted} has {kind}, not {TYPE}{there}")));
+        }
+        return Ok(place);
+    }
+    match states[..] {
+        [place] => Ok(place),
+        [] => {
+            let all = topics.iter().map(|(name, kind)| format!("{name} ({kind})")).collect::<Vec<_>>();
+            let all = if all.is_empty() {
+                "it has no topics".to_owned()
+            } else {
+                format!("it has {}", listed(all.iter().map(String::as_str)))
+            };
+            Err(LogError::file(path, format_args!("no topic has {TYPE}; {all}")))
+        }
+        _ => Err(LogError::request(
+            path,
+            format_args!("several topics have joint states: {}; name one with --topic", names()),
+        )),
+    }
+}
+
+/// Whether a type is that of joint states; ROS 1 and some writers leave out `msg`.
+fn is_joint_state(kind: &str) -> bool {
+    kind == TYPE || kind == "sensor_msgs/JointState" || kind == "sensor_msgs::msg::dds_::JointState_"
+}

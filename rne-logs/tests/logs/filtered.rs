@@ -1,0 +1,126 @@
+//! Filtered motions against the closed form of sines.
+
+use std::f64::consts::PI;
+
+use rne_logs::{Cutoff, Options};
+
+use crate::written::{SINES, csv, file, runs, survey};
+
+fn times(count: u32, rate: f64) -> Vec<f64> {
+    (0..count).map(|i| f64::from(i) / rate).collect()
+}
+
+/// The pass band is flat to a thousandth, differences are derivatives to (ωT)⁸/630.
+#[test]
+fn sines_in_the_pass_band_come_out_with_their_derivatives() {
+    for (rate, cutoff) in [(125.0, 8.0), (1000.0, 10.0), (30.0, 5.0)] {
+        let (_folder, path) = file("sines.csv", csv(&times((rate * 12.0) as u32, rate)));
+        for derive_velocities in [false, true] {
+            let options = Options { cutoff: Some(cutoff), derive_velocities, ..Options::default() };
+            let motions = runs(&[path.clone()], options, 100_000).unwrap();
+            assert_eq!(motions.len(), 1);
+            let (_, motion) = &motions[0];
+            assert!(motion.len() as f64 > rate * 9.0, "{}", motion.len());
+            for (joint, sine) in SINES.iter().enumerate() {
+                let w = 2.0 * PI * sine.frequency;
+                // the ripple, and the differences', of one derivative and of two
+                let ripple = 1e-3;
+                let of_difference = (w / rate).powi(8) / 630.0;
+                // stamps are whole nanoseconds
+                let of_stamps = 1e-6;
+                for (i, time) in motion.time.iter().enumerate() {
+                    let [q, qd, qdd] = sine.at(*time);
+                    let scale = sine.amplitude.abs();
+                    let near = |found: f64, wanted: f64, scale: f64, relative: f64| {
+                        let most = scale * (relative + of_stamps);
+                        assert!((found - wanted).abs() < most, "{rate} {joint} {time}: {found} {wanted}");
+                    };
+                    near(motion.q[joint][i], q, scale, ripple);
+                    near(motion.qd[joint][i], qd, scale * w, ripple + of_difference);
+                    near(motion.qdd[joint][i], qdd, scale * w * w, ripple + 2.0 * of_difference);
+                    near(motion.tau[joint][i], 3.0 * q + 2.0, 3.0 * scale, ripple);
+                }
+            }
+        }
+    }
+}
+
+/// What is far above the cut-off is gone, to a thousandth; where stamps jitter, too.
+#[test]
+fn noise_above_the_cutoff_is_stopped() {
+    let mut text = "time,q1,tau1\n".to_owned();
+    for i in 0..4000 {
+        let time = f64::from(i) / 200.0;
+        let fast = (2.0 * PI * 60.0 * time).sin();
+        text += &format!("{time},{},{}\n", 1.0 + 0.05 * fast, 5.0 * fast);
+    }
+    let (_folder, path) = file("noise.csv", text);
+    let options = Options { cutoff: Some(10.0), ..Options::default() };
+    let motions = runs(&[path], options, 100_000).unwrap();
+    let (_, motion) = &motions[0];
+    for (q, tau) in motion.q[0].iter().zip(&motion.tau[0]) {
+        assert!((q - 1.0).abs() < 0.05 * 1e-3 && tau.abs() < 5.0 * 1.1e-3, "{q} {tau}");
+    }
+}
+
+#[test]
+fn jittering_stamps_are_resampled() {
+    // a fifth of a step either way: the cubic of four neighbours is off by less than (ωT)⁴/16 or so
+    let rate = 200.0;
+    let mut random = fastrand::Rng::with_seed(3);
+    let times: Vec<f64> = times(4000, rate)
+        .iter()
+        .map(|time| time + if *time > 0.0 { 0.4 * (random.f64() - 0.5) / rate } else { 0.0 })
+        .collect();
+    let (_folder, path) = file("jitter.csv", csv(&times));
+    for derive_velocities in [false, true] {
+        let options = Options { cutoff: Some(8.0), derive_velocities, ..Options::default() };
+        let motions = runs(&[path.clone()], options, 100_000).unwrap();
+        let (_, motion) = &motions[0];
+        for (joint, sine) in SINES.iter().enumerate() {
+            let w = 2.0 * PI * sine.frequency;
+            for (i, time) in motion.time.iter().enumerate() {
+                let [q, qd, qdd] = sine.at(*time);
+                let scale = sine.amplitude.abs() * 1.2e-3;
+                assert!((motion.q[joint][i] - q).abs() < scale);
+                assert!((motion.qd[joint][i] - qd).abs() < scale * w);
+                assert!((motion.qdd[joint][i] - qdd).abs() < scale * w * w, "{} {qdd}", motion.qdd[joint][i]);
+            }
+        }
+    }
+}
+
+/// Pieces, however long, are the whole, bit for bit.
+#[test]
+fn pieces_joined_are_the_whole() {
+    let mut random = fastrand::Rng::with_seed(8);
+    let mut time = 0.0;
+    let times: Vec<f64> = (0..3000)
+        .map(|i| {
+            time += if i % 700 == 699 { 0.5 } else { 0.008 + 0.001 * random.f64() };
+            time
+        })
+        .collect();
+    let (_folder, path) = file("pieces.csv", csv(&times));
+    let options = Options { cutoff: Some(9.0), ..Options::default() };
+    let whole = runs(&[path.clone()], options.clone(), usize::MAX / 2).unwrap();
+    assert_eq!(whole.len(), 5);
+    for length in [1, 7, 64, 500, 651] {
+        assert_eq!(runs(&[path.clone()], options.clone(), length).unwrap(), whole, "{length}");
+    }
+}
+
+#[test]
+fn the_spectrum_chooses_a_cutoff_above_the_motion() {
+    let mut random = fastrand::Rng::with_seed(1);
+    let mut text = "time,q1,q2\n".to_owned();
+    for time in times(5000, 250.0) {
+        let [a, b] = SINES.map(|sine| sine.at(time)[0] + 1e-4 * (random.f64() - 0.5));
+        text += &format!("{time},{a},{b}\n");
+    }
+    let (_folder, path) = file("spectrum.csv", text);
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    let Cutoff::Spectrum { hertz, ends, bounded } = survey.cutoff else { panic!() };
+    assert!(ends[0] > 0.7 && ends[0] < 2.5 && ends[1] > 1.9 && ends[1] < 3.8, "{ends:?}");
+    assert!(!bounded && (hertz - 1.5 * ends[1]).abs() < 1e-12);
+}

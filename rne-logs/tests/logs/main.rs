@@ -1,0 +1,6 @@
+//! Logs, read and filtered.
+
+mod bags;
+mod filtered;
+mod runs;
+mod written;

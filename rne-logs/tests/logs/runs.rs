@@ -1,0 +1,175 @@
+//! Where runs begin, and what is left out.
+
+use rne_logs::{Interruption, LogError, Options, TimeUnit};
+
+use crate::written::{csv, file, runs, survey};
+
+fn even(begin: f64, count: u32) -> Vec<f64> {
+    (0..count).map(|i| begin + f64::from(i) * 0.01).collect()
+}
+
+#[test]
+fn gaps_resets_and_duplicates_split_runs() {
+    let mut times = even(0.0, 300);
+    times.extend(even(5.0, 200)); // a gap
+    times.extend(even(2.0, 200)); // the clock was set back
+    let mut text = csv(&times);
+    // the time of the last state, and another torque
+    let last = csv(&even(3.99, 200));
+    let (first, others) = last.split_once('\n').unwrap().1.split_once('\n').unwrap();
+    text += &format!("{},9.5\n{others}", first.rsplit_once(',').unwrap().0);
+    let (_folder, path) = file("runs.csv", text);
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    let kinds: Vec<_> = survey.runs.iter().map(|run| (run.begins, run.states)).collect();
+    assert_eq!(survey.run_count, 4, "{kinds:?}");
+    assert!(matches!(kinds[0], (Interruption::Beginning, 300)));
+    assert!(matches!(kinds[1], (Interruption::Gap { seconds }, 200) if (seconds - 2.01).abs() < 1e-9));
+    assert!(matches!(kinds[2], (Interruption::Reset { seconds }, 200) if (seconds - 4.99).abs() < 1e-9));
+    assert!(matches!(kinds[3], (Interruption::Duplicate, 200)), "{kinds:?}");
+}
+
+#[test]
+fn a_message_that_is_said_twice_counts_once() {
+    let text = csv(&even(0.0, 300));
+    let doubled: String = text
+        .lines()
+        .enumerate()
+        .flat_map(|(i, line)| [line; 2].into_iter().take(1 + i.min(1)))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    let (_folder, path) = file("doubled.csv", doubled);
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    assert_eq!((survey.run_count, survey.counts.states, survey.counts.repeats), (1, 300, 300));
+}
+
+#[test]
+fn a_jump_splits_a_run() {
+    let mut text = csv(&even(0.0, 200));
+    text += &csv(&even(2.0, 200))
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let mut cells: Vec<String> = line.split(',').map(str::to_owned).collect();
+            cells[2] = (cells[2].parse::<f64>().unwrap() + 6.283).to_string();
+            cells.join(",") + "\n"
+        })
+        .collect::<String>();
+    let (_folder, path) = file("jump.csv", text);
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    assert!(
+        matches!(survey.runs[1].begins, Interruption::Jump { joint: 1, by } if (by - 6.2).abs() < 0.2),
+        "{:?}",
+        survey.runs
+    );
+}
+
+#[test]
+fn numbers_that_are_none_are_counted_and_left_out() {
+    let text = csv(&even(0.0, 500));
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for (line, cell) in [(50, "NaN"), (51, ""), (90, "inf")] {
+        let mut cells: Vec<&str> = lines[line].split(',').collect();
+        cells[1] = cell;
+        lines[line] = cells.join(",");
+    }
+    let (_folder, path) = file("nan.csv", lines.join("\n"));
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    assert_eq!((survey.counts.not_finite, survey.counts.states, survey.counts.messages), (3, 497, 500));
+    // two steps are missing: not yet a gap
+    assert_eq!(survey.run_count, 1);
+    assert!((survey.runs[0].longest - 0.03).abs() < 1e-9);
+}
+
+#[test]
+fn degrees_are_not_guessed() {
+    let text = csv(&even(0.0, 800));
+    let header = text.lines().next().unwrap().to_owned() + "\n";
+    let degrees: String = text
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let cells = line.split(',').enumerate().map(|(i, cell)| {
+                let number: f64 = cell.parse().unwrap();
+                if (1..5).contains(&i) { number.to_degrees().to_string() } else { cell.to_owned() }
+            });
+            cells.collect::<Vec<_>>().join(",") + "\n"
+        })
+        .collect();
+    let (_folder, path) = file("degrees.csv", header + &degrees);
+    let options = Options { cutoff: Some(8.0), ..Options::default() };
+    let error = runs(&[path.clone()], options.clone(), 1000).unwrap_err();
+    assert!(error.is_of_request() && error.to_string().contains("--degrees"), "{error}");
+    let options = Options { angles: rne_logs::Angles::Degrees, ..options };
+    let motions = runs(&[path], options.clone(), 1000).unwrap();
+    let (_folder, path) = file("radians.csv", text);
+    let radians = runs(&[path], Options { angles: rne_logs::Angles::Radians, ..options }, 1000).unwrap();
+    for joint in 0..2 {
+        for (a, b) in motions[0].1.qdd[joint].iter().zip(&radians[0].1.qdd[joint]) {
+            assert!((a - b).abs() < 1e-9);
+        }
+    }
+}
+
+#[test]
+fn currents_become_torques_by_their_constants() {
+    let (_folder, path) = file("currents.csv", csv(&even(0.0, 400)));
+    let options = Options { cutoff: Some(8.0), ..Options::default() };
+    let plain = runs(&[path.clone()], options.clone(), 1000).unwrap();
+    let with = |torque_constants| runs(&[path.clone()], Options { torque_constants, ..options.clone() }, 1000);
+    let scaled = with(vec![2.0, -4.0]).unwrap();
+    for i in 0..plain[0].1.len() {
+        assert_eq!(scaled[0].1.tau[0][i], 2.0 * plain[0].1.tau[0][i]);
+        assert_eq!(scaled[0].1.tau[1][i], -4.0 * plain[0].1.tau[1][i]);
+    }
+    assert_eq!(with(vec![2.0]).unwrap()[0].1.tau[0], scaled[0].1.tau[0]);
+    for wrong in [vec![1.0; 3], vec![0.0], vec![f64::NAN, 1.0]] {
+        assert!(with(wrong).unwrap_err().is_of_request());
+    }
+}
+
+#[test]
+fn joints_are_found_by_name_and_in_the_order_asked_for() {
+    let text = csv(&even(0.0, 400)).replace("q1,q2,qd1,qd2,tau1,tau2", "a/pos,b/pos,a/vel,b/vel,a/torque,b/torque");
+    let (_folder, path) = file("names.csv", text);
+    let open = |names: &[&str]| {
+        let joints = Some(names.iter().map(|name| (*name).to_owned()).collect());
+        survey(&[path.clone()], Options { joints, ..Options::default() })
+    };
+    let (log, turned) = open(&["b", "a"]).unwrap();
+    let (_, plain) = open(&["a", "b"]).unwrap();
+    assert_eq!(log.layout().joints, ["b", "a"]);
+    assert_eq!(turned.positions, [plain.positions[1], plain.positions[0]]);
+    assert_eq!(turned.efforts, [plain.efforts[1], plain.efforts[0]]);
+    let (log, one) = open(&["b"]).unwrap();
+    assert_eq!((log.layout().ignored.as_slice(), one.positions[0]), (["a".to_owned()].as_slice(), plain.positions[1]));
+    let wrong = |names: &[&str]| match open(names) {
+        Err(error) => error,
+        Ok(_) => panic!("{names:?}"),
+    };
+    let error: LogError = wrong(&["a", "bb"]);
+    assert!(
+        error.is_of_request() && error.to_string().contains("no joint bb (did you mean b?); it has a, b"),
+        "{error}"
+    );
+    assert!(wrong(&["a", "a"]).to_string().contains("twice"));
+}
+
+#[test]
+fn times_in_other_units_are_asked_for() {
+    let seconds = csv(&even(1_700_000_000.0, 400));
+    let nanoseconds: String = seconds
+        .lines()
+        .map(|line| match line.split_once(',') {
+            Some((time, rest)) if line.starts_with('1') => format!("{},{rest}\n", time.replace('.', "")),
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    let (_folder, path) = file("ns.csv", nanoseconds);
+    let error = survey(&[path.clone()], Options::default()).err().unwrap();
+    assert!(error.to_string().contains("--time-unit"), "{error}");
+    let (log, found) = survey(&[path], Options { time_unit: TimeUnit::Nanoseconds, ..Options::default() }).unwrap();
+    assert!((log.layout().step - 0.01).abs() < 1e-6);
+    // times are since the first
+    assert_eq!(found.runs[0].start, 0.0);
+    assert_eq!(log.layout().origin, 1_700_000_000_000_000_000);
+}
