@@ -10,7 +10,7 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, identify, import, list, new, ops, plot, report,
     search, shell, show,
 };
 
@@ -45,6 +45,7 @@ pub(crate) enum Command {
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
     Plot(plot::Arguments),
+    Identify(identify::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

@@ -22,6 +22,7 @@ mod functions;
 mod golden;
 mod heading;
 mod highlight;
+mod identify;
 mod import;
 mod input_file;
 mod layout;
@@ -29,6 +30,7 @@ mod letters;
 mod limits;
 mod list;
 mod mistyped;
+mod motion_log;
 mod new;
 mod numbers;
 mod ops;
@@ -89,6 +91,7 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
         Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
+        Some(Command::Identify(arguments)) => ("rne identify", identify::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

@@ -23,6 +23,8 @@ pub struct Fit {
     pub covariance: DMatrix<f64>,
     /// Deviation of each joint's noise, N m or N.
     pub noise: Vec<f64>,
+    /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
+    pub delay: f64,
     /// Which width of friction each joint has, of those that were offered.
     pub widths: Vec<usize>,
     /// Largest over smallest singular value of the weighted columns, each of length one.
@@ -58,7 +60,9 @@ impl Fit {
         let covariance = state.covariance(&information.stretches, &triangle, &solution);
         let condition = condition(&triangle, state.count(), &state.ridge());
         let State { noise, widths, .. } = state;
-        Self { solution, covariance, noise, widths, condition, stretches: information.stretches.len(), triangle }
+        let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
+        let delay = information.shift + left;
+        Self { solution, covariance, noise, delay, widths, condition, stretches: information.stretches.len(), triangle }
     }
 
     /// What rows are weighted by in the next pass.
@@ -66,7 +70,7 @@ impl Fit {
     pub fn weighting(&self, structure: &Structure) -> Weighting {
         let unknowns = |joint| structure.unknowns(joint);
         let dof = structure.dof();
-        let delay = if structure.options.delay { self.solution[self.solution.len() - 1] } else { 0.0 };
+        let delay = self.delay;
         let solution = |joint| {
             let mut values: Vec<f64> = unknowns(joint).iter().map(|&at| self.solution[at]).collect();
             if structure.options.delay
@@ -209,9 +213,7 @@ impl State<'_> {
         if number < 2.0 {
             return DMatrix::from_element(count, count, f64::NAN);
         }
-        let covariance = &inverse * (sum * ((number - 1.0) / number)) * inverse.transpose();
-        // no less than the noise alone has
-        covariance
+        &inverse * (sum * ((number - 1.0) / number)) * inverse.transpose()
     }
 }
 

@@ -51,6 +51,8 @@ pub struct Information {
     /// States read, and those that became rows.
     pub(crate) states: u64,
     pub(crate) duration: f64,
+    /// s: how much later torques were taken.
+    pub(crate) shift: f64,
 }
 
 /// Why a motion says nothing of a robot.
@@ -119,7 +121,7 @@ impl Information {
             Some(_) => LENGTH as u64,
             None => STATES_UNFILTERED,
         };
-        Self { stretches: Vec::new(), length, states: 0, duration: 0.0 }
+        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0 }
     }
 
     /// How many states it has read.
@@ -161,6 +163,7 @@ impl Information {
         self.states += motion.len() as u64;
         self.duration += last - first;
         let delay = weighting.map_or(0.0, |weighting| weighting.delay);
+        self.shift = delay;
         let instants = instants(structure, &motion.time, delay);
         for instants in instants.chunks(WINDOW) {
             for (rows, weights) in rows(structure, motion, instants, weighting, delay)? {
@@ -174,6 +177,7 @@ impl Information {
     pub fn merge(&mut self, other: Self) {
         self.length = self.length.max(other.length);
         self.states += other.states;
+        self.shift = other.shift;
         self.duration += other.duration;
         self.stretches.extend(other.stretches);
         self.compress();

@@ -21,6 +21,21 @@ pub struct Base {
     pub regrouped: Vec<(f64, Parameter)>,
 }
 
+impl Base {
+    /// In words: `Jzz2 + 0.3745 m3 - mcx4`.
+    #[must_use]
+    pub fn combination(&self) -> String {
+        let mut text = name(self.kept);
+        for (factor, parameter) in &self.regrouped {
+            let sign = if *factor < 0.0 { '-' } else { '+' };
+            let size = factor.abs();
+            let size = if size == 1.0 { String::new() } else { format!("{} ", (size * 1e4).round() / 1e4) };
+            text.push_str(&format!(" {sign} {size}{}", name(*parameter)));
+        }
+        text
+    }
+}
+
 /// The base parameters of a robot's geometry, and the map to them from the parameters of its links and rotors.
 #[derive(Clone, Debug)]
 pub struct Parameters {

@@ -76,13 +76,6 @@ fn weighted(weights: &[f64], values: &[f64]) -> f64 {
     weights.iter().zip(values).map(|(weight, value)| weight * value).sum()
 }
 
-/// Values smoothed at every instant; as they are without a cut-off.
-pub(crate) fn smoothed(time: &[f64], values: &[f64], cutoff: Option<f64>) -> Vec<f64> {
-    let Some(cutoff) = cutoff else { return values.to_vec() };
-    let kernel = Kernel::of_cutoff(cutoff);
-    time.iter().map(|instant| kernel.about(time, *instant).of(values)).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

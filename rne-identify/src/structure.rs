@@ -24,7 +24,7 @@ pub struct Options {
 impl Default for Options {
     fn default() -> Self {
         let widths = vec![0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2];
-        Self { friction: true, rotors: true, delay: true, cutoff: Some(2.0), widths }
+        Self { friction: true, rotors: false, delay: true, cutoff: Some(2.0), widths }
     }
 }
 
@@ -128,23 +128,7 @@ impl Structure {
     }
 }
 
-/// The odd part of a smooth sign, v / √(v² + width²); its square is the even part.
+/// The odd part of a smooth sign, v / √(v² + width²); its square is the even part. Of width 0 the sign itself.
 pub(crate) fn smooth_sign(speed: f64, width: f64) -> f64 {
-    speed / (speed * speed + width * width).sqrt()
-}
-impl Structure {
-    pub fn errors(&self, x: &nalgebra::DVector<f64>, widths: &[usize], m: &rne_logs::Motion) -> Vec<f64> {
-        let mut inf = crate::Information::new(self);
-        let _ = inf.absorb(self, m, None);
-        let t = inf.total(self);
-        (0..self.dof()).map(|j| {
-            let s = t[j].selected(&self.used(j, widths[j]));
-            let u = self.unknowns(j);
-            let mut r = s.triangle().column(u.len()).clone_owned();
-            for (k, at) in u.iter().enumerate() { r -= s.triangle().column(k) * x[*at]; }
-            let tau = &m.tau[j]; let n = tau.len() as f64; let mu = tau.iter().sum::<f64>() / n;
-            let sd = (tau.iter().map(|v| (v - mu).powi(2)).sum::<f64>() / n).sqrt();
-            100.0 * r.norm() / (s.rows() as f64).sqrt() / sd
-        }).collect()
-    }
+    if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() }
 }

@@ -16,24 +16,24 @@ use crate::scale::{Scale, label, range, significant};
 use crate::trajectory::Trajectory;
 
 /// Pixels.
-const WIDTH: f64 = 1280.0;
-const SIDE: f64 = 40.0;
-const HEAD: f64 = 132.0;
-const PANEL: f64 = 262.0;
+pub(crate) const WIDTH: f64 = 1280.0;
+pub(crate) const SIDE: f64 = 40.0;
+pub(crate) const HEAD: f64 = 132.0;
+pub(crate) const PANEL: f64 = 262.0;
 const POWERS: f64 = 330.0;
 /// Left of a panel's axes for numbers, above them for its title, below them for times.
 const LEFT: f64 = 64.0;
 const ABOVE: f64 = 40.0;
 const BELOW: f64 = 44.0;
-const GAP: f64 = 24.0;
+pub(crate) const GAP: f64 = 24.0;
 
-const TEXT: &str = "#222222";
-const QUIET: &str = "#595959";
+pub(crate) const TEXT: &str = "#222222";
+pub(crate) const QUIET: &str = "#595959";
 const GRID: &str = "#e4e4e4";
 const ZERO: &str = "#9a9a9a";
 
 /// Okabe and Ito, without yellow, which light backgrounds swallow; black is the total.
-const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a5195"];
+pub(crate) const COLOURS: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7a5195"];
 /// Dashes of the lines that have a colour again.
 const DASHES: [&str; 4] = ["", "9 4", "2 4", "11 4 2 4"];
 
@@ -41,12 +41,12 @@ const DASHES: [&str; 4] = ["", "9 4", "2 4", "11 4 2 4"];
 const BUCKETS: usize = 640;
 
 /// A line of a panel.
-struct Curve<'a> {
-    name: &'a str,
-    colour: &'a str,
-    dash: &'a str,
-    width: f64,
-    values: Vec<f64>,
+pub(crate) struct Curve<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) colour: &'a str,
+    pub(crate) dash: &'a str,
+    pub(crate) width: f64,
+    pub(crate) values: Vec<f64>,
 }
 
 /// The torques and powers of a robot along a trajectory as an SVG of 1280 pixels width: for each joint its torque in
@@ -110,11 +110,11 @@ fn legend(svg: &mut Svg) {
 
 /// Where a panel stands, axes, numbers and all.
 #[derive(Clone, Copy)]
-struct Place {
-    x: f64,
-    y: f64,
-    width: f64,
-    height: f64,
+pub(crate) struct Place {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
 }
 
 fn torque_panel(
@@ -138,7 +138,7 @@ fn torque_panel(
         JointKind::Prismatic => "N",
     };
     let name = shortened(&robot.joints[joint].name, 18);
-    let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), trajectory, &curves);
+    let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), &trajectory.time, &curves);
     if let Some(peak) = history.peaks.get(joint) {
         mark(svg, place, axes, *peak, unit);
     }
@@ -220,16 +220,16 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
         "power τ q̇, W: positive drives, negative brakes",
     );
     let inner = Place { y: place.y + below, height: place.height - below, ..place };
-    panel(svg, inner, "", trajectory, &curves);
+    panel(svg, inner, "", &trajectory.time, &curves);
 }
 
 /// Axes with their grid, and the curves; returns the scales.
-fn panel(svg: &mut Svg, place: Place, title: &str, trajectory: &Trajectory, curves: &[Curve<'_>]) -> (Scale, Scale) {
+pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     const ABOUT_UP: f64 = 5.0;
     let (left, right) = (place.x + LEFT, place.x + place.width);
     let (top, bottom) = (place.y + ABOVE, place.y + place.height - BELOW);
     let (start, end) =
-        (trajectory.time.first().copied().unwrap_or(0.0), trajectory.time.last().copied().unwrap_or(1.0));
+        (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
     let across = Scale::new(start, end, left, right);
     let (low, high) = range(curves.iter().flat_map(|curve| curve.values.iter().copied()), ABOUT_UP);
     let up = Scale::new(low, high, bottom, top);
@@ -249,7 +249,7 @@ fn panel(svg: &mut Svg, place: Place, title: &str, trajectory: &Trajectory, curv
     }
     svg.text(left - 20.0, bottom + 19.0, &[("text-anchor", "end"), ("fill", QUIET)], "t, s");
     for curve in curves {
-        svg.curve(curve, &trajectory.time, across, up);
+        svg.curve(curve, time, across, up);
     }
     (across, up)
 }
@@ -276,41 +276,41 @@ fn kept(values: &[f64]) -> Vec<usize> {
 }
 
 /// Elements, written one after the other.
-struct Svg {
+pub(crate) struct Svg {
     writer: Writer<Vec<u8>>,
     /// Writing to memory does not fail; if it does, the picture is empty.
     failed: bool,
 }
 
 impl Svg {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { writer: Writer::new_with_indent(Vec::new(), b' ', 1), failed: false }
     }
 
-    fn event(&mut self, event: Event<'_>) {
+    pub(crate) fn event(&mut self, event: Event<'_>) {
         let written: io::Result<()> = self.writer.write_event(event);
         self.failed |= written.is_err();
     }
 
-    fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
+    pub(crate) fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
         self.event(Event::Start(BytesStart::new(name).with_attributes(attributes.iter().copied())));
     }
 
-    fn close(&mut self, name: &str) {
+    pub(crate) fn close(&mut self, name: &str) {
         self.event(Event::End(BytesEnd::new(name)));
     }
 
-    fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
+    pub(crate) fn empty(&mut self, name: &str, attributes: &[(&str, &str)]) {
         self.event(Event::Empty(BytesStart::new(name).with_attributes(attributes.iter().copied())));
     }
 
-    fn words(&mut self, name: &str, attributes: &[(&str, &str)], words: &str) {
+    pub(crate) fn words(&mut self, name: &str, attributes: &[(&str, &str)], words: &str) {
         self.open(name, attributes);
         self.event(Event::Text(BytesText::new(&plain(words))));
         self.close(name);
     }
 
-    fn text(&mut self, x: f64, y: f64, attributes: &[(&str, &str)], words: &str) {
+    pub(crate) fn text(&mut self, x: f64, y: f64, attributes: &[(&str, &str)], words: &str) {
         let (x, y) = (pixels(x), pixels(y));
         let place = [("x", x.as_str()), ("y", y.as_str())];
         let all: Vec<(&str, &str)> = place.into_iter().chain(attributes.iter().copied()).collect();
@@ -318,7 +318,7 @@ impl Svg {
     }
 
     #[allow(clippy::too_many_arguments)] // two points and how they are joined
-    fn stroke(&mut self, x1: f64, y1: f64, x2: f64, y2: f64, colour: &str, dash: &str, width: f64) {
+    pub(crate) fn stroke(&mut self, x1: f64, y1: f64, x2: f64, y2: f64, colour: &str, dash: &str, width: f64) {
         let [x1, y1, x2, y2, width] = [x1, y1, x2, y2, width].map(pixels);
         let mut attributes = vec![
             ("x1", x1.as_str()),
@@ -334,7 +334,7 @@ impl Svg {
         self.empty("line", &attributes);
     }
 
-    fn curve(&mut self, curve: &Curve<'_>, time: &[f64], across: Scale, up: Scale) {
+    pub(crate) fn curve(&mut self, curve: &Curve<'_>, time: &[f64], across: Scale, up: Scale) {
         let mut points = String::new();
         for at in kept(&curve.values) {
             let gap = if points.is_empty() { "" } else { " " };
@@ -356,7 +356,7 @@ impl Svg {
         self.close("polyline");
     }
 
-    fn finish(self) -> String {
+    pub(crate) fn finish(self) -> String {
         let text = String::from_utf8(self.writer.into_inner()).unwrap_or_default();
         if self.failed { String::new() } else { text + "\n" }
     }
@@ -368,19 +368,19 @@ fn plain(text: &str) -> String {
 }
 
 /// A text of at most so many characters.
-fn shortened(text: &str, most: usize) -> String {
+pub(crate) fn shortened(text: &str, most: usize) -> String {
     let text = plain(text);
     if text.chars().count() <= most { text } else { text.chars().take(most - 1).chain(['…']).collect() }
 }
 
 /// Pixels in hundredths.
-fn pixels(value: f64) -> String {
+pub(crate) fn pixels(value: f64) -> String {
     let rounded = (value * 100.0).round() / 100.0;
     format!("{}", rounded + 0.0)
 }
 
 /// About how wide a text is: fonts differ, and a legend has gaps for that.
-fn width_of(text: &str, size: f64) -> f64 {
+pub(crate) fn width_of(text: &str, size: f64) -> f64 {
     let of = |c: char| match c {
         '\u{300}'..='\u{36F}' => 0.0,
         'i' | 'j' | 'l' | 't' | 'f' | 'r' | ' ' | ',' | '(' | ')' | '.' => 0.34,
@@ -392,7 +392,7 @@ fn width_of(text: &str, size: f64) -> f64 {
 }
 
 /// ₁₂
-fn subscript(number: usize) -> String {
+pub(crate) fn subscript(number: usize) -> String {
     let digit = |c: char| c.to_digit(10).and_then(|digit| char::from_u32(0x2080 + digit)).unwrap_or(c);
     number.to_string().chars().map(digit).collect()
 }

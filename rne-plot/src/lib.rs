@@ -18,12 +18,14 @@
 #![forbid(unsafe_code)]
 
 mod chart;
+mod comparison;
 mod history;
 mod parts;
 mod scale;
 mod trajectory;
 
 pub use crate::chart::svg;
+pub use crate::comparison::comparison_svg;
 pub use crate::history::{Peak, TorqueHistory};
 pub use crate::parts::TorqueParts;
 pub use crate::trajectory::{Trajectory, TrajectoryError};
