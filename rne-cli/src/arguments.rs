@@ -10,8 +10,8 @@ use rne_model::Convention;
 
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, identify, import, list, new, ops, plot, report,
-    search, shell, show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, identify, import, list, new, ops, plot,
+    report, search, shell, show,
 };
 
 /// The dynamics compiler for robot arms.

@@ -175,8 +175,7 @@ fn account(found: &Identification) -> String {
 }
 
 fn friction(text: &mut String, found: &Identification) {
-    let mut cells =
-        vec![["  joint", "viscous", "Coulomb +", "Coulomb -", "about", "rotor, kg m²"].map(str::to_owned)];
+    let mut cells = vec![["  joint", "viscous", "Coulomb +", "Coulomb -", "about", "rotor, kg m²"].map(str::to_owned)];
     for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
         let Some(friction) = report.friction else { return };
         let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 3));

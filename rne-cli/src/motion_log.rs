@@ -16,6 +16,9 @@ const PIECE: usize = 65_536;
 /// The log's own filter passes so much more than the one behind it, so that it shapes no torque.
 const WIDER: f64 = 4.0;
 
+/// The low-pass of both sides, of the filter that the spectrum chooses: what moves passes, and most noise does not.
+const PART: f64 = 0.5;
+
 /// Of the rate: no filter of the log may be wider.
 const HIGHEST: f64 = 0.3;
 
@@ -79,7 +82,8 @@ impl MotionLog {
             return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
         }
         let survey = log.survey(|_| ()).map_err(failure)?;
-        let cutoff = arguments.cutoff.or_else(|| survey.cutoff.hertz()).ok_or_else(|| {
+        let of_motion = || survey.cutoff.hertz().map(|hertz| PART * hertz);
+        let cutoff = arguments.cutoff.or_else(of_motion).ok_or_else(|| {
             Failure::input(format_args!("no run is long enough to choose a low-pass; say {TYPED}--cutoff HZ{TYPED:#}"))
         })?;
         let rate = 1.0 / log.layout().step;

@@ -269,14 +269,7 @@ impl Problem {
         decrement / pull.min(1.0)
     }
 
-    fn result(
-        &self,
-        structure: &Structure,
-        fit: &Fit,
-        at: &DVector<f64>,
-        pull: f64,
-        decrement: f64,
-    ) -> Feasible {
+    fn result(&self, structure: &Structure, fit: &Fit, at: &DVector<f64>, pull: f64, decrement: f64) -> Feasible {
         let unknowns = &self.map * at;
         let links: Vec<Matrix4<f64>> = (0..self.links).map(|link| self.pseudo_inertia(at, link)).collect();
         let misfit = |unknowns: &DVector<f64>| 0.5 * (&self.design * unknowns - &self.target).norm_squared();

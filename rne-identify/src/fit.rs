@@ -89,11 +89,46 @@ impl Fit {
         }
     }
 
+    /// The slope of half the weighted sum of squares by the unknowns.
+    #[must_use]
+    pub fn gradient(&self, unknowns: &DVector<f64>) -> DVector<f64> {
+        let count = self.solution.len();
+        let design = self.triangle.triangle().view((0, 0), (count, count));
+        let target = self.triangle.triangle().view((0, count), (count, 1));
+        design.tr_mul(&(design * unknowns - target.column(0)))
+    }
+
+    /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
+    /// of freedom less than there are stretches of time.
+    #[must_use]
+    pub fn half_interval(&self, unknown: usize) -> f64 {
+        student(self.stretches.saturating_sub(1)) * self.deviation(unknown)
+    }
+
     /// The deviation of an unknown.
     #[must_use]
     pub fn deviation(&self, unknown: usize) -> f64 {
-        self.covariance.get((unknown, unknown)).map_or(f64::NAN, |variance| variance.max(0.0).sqrt())
+        // what is not known stays so
+        self.covariance.get((unknown, unknown)).map_or(f64::NAN, |variance| variance.sqrt())
     }
+}
+
+/// Errors behind the filter depend on each other across the ends of stretches, too: white noise behind a Gaussian kernel
+/// of width σ has the correlation exp(-t²/4σ²), of which stretches of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ times
+/// ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
+const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
+
+/// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.
+///
+/// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 26.7.5.
+fn student(freedom: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss)] // at most 64 stretches
+    let n = freedom.max(1) as f64;
+    let z: f64 = 1.959_964;
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    z + (z3 + z) / (4.0 * n)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n)
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n)
 }
 
 struct State<'a> {
@@ -213,7 +248,11 @@ impl State<'_> {
         if number < 2.0 {
             return DMatrix::from_element(count, count, f64::NAN);
         }
-        &inverse * (sum * ((number - 1.0) / number)) * inverse.transpose()
+        let rows: u64 = stretches.iter().filter_map(|stretch| Some(stretch.first()?.rows())).sum();
+        #[allow(clippy::cast_precision_loss)]
+        let length = rows as f64 / number;
+        let across = if self.structure.options.cutoff.is_some() { ACROSS / length.max(2.0 * ACROSS) } else { 0.0 };
+        &inverse * (sum * ((number - 1.0) / number / (1.0 - across))) * inverse.transpose()
     }
 }
 
@@ -221,10 +260,9 @@ impl State<'_> {
 pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
     let square = triangle.triangle().view((0, 0), (count, count));
     let target = triangle.triangle().view((0, count), (count, 1));
-    square.solve_upper_triangular(&target.clone_owned()).map_or_else(
-        || DVector::zeros(count),
-        |solution| solution.column(0).clone_owned(),
-    )
+    square
+        .solve_upper_triangular(&target.clone_owned())
+        .map_or_else(|| DVector::zeros(count), |solution| solution.column(0).clone_owned())
 }
 
 fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
@@ -235,6 +273,9 @@ fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
 fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
     let square = triangle.triangle().view((0, 0), (count, count));
     let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
+    if kept.is_empty() {
+        return 1.0;
+    }
     let mut columns = square.clone_owned().select_columns(&kept);
     for mut column in columns.column_iter_mut() {
         column.normalize_mut();

@@ -65,6 +65,8 @@ pub struct BaseReport {
     pub deviation: f64,
     /// What the links of the file make of it.
     pub written: f64,
+    /// Half the width of its interval of 95 %, by Student's t of the stretches of time.
+    pub half_interval: f64,
     /// Its deviation over what plausible links would give it: below 0.5 it counts as excited.
     pub uncertainty: f64,
 }
@@ -172,6 +174,7 @@ fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Ve
         combination: base.combination(),
         value: fit.solution[at],
         deviation: fit.deviation(at),
+        half_interval: fit.half_interval(at),
         written: written[at],
         uncertainty: fit.deviation(at) / scales.bases[at],
     });
@@ -184,7 +187,8 @@ fn joints(structure: &Structure, fit: &Fit, feasible: &Feasible, errors: &[Joint
         let friction = structure.options.friction.then(|| {
             let at = rank + FRICTION * joint;
             let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
-            let both = |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
+            let both =
+                |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
             let [viscous, forward, backward] = feasible.friction[joint];
             [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
         });

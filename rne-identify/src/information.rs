@@ -18,7 +18,7 @@ const WINDOW: usize = 2048;
 const STRETCHES: usize = 64;
 
 /// A stretch lasts so many widths of the filter at least; without filter it has so many states.
-const LENGTH: f64 = 15.0;
+const LENGTH: f64 = 20.0;
 const STATES_UNFILTERED: u64 = 64;
 
 /// A row that is off by more deviations than that counts less: Huber's function.
@@ -325,7 +325,8 @@ fn plain_columns(
 ) -> Result<Vec<DMatrix<f64>>, MotionError> {
     let dof = structure.dof();
     let states = range.len();
-    let of = |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|column| column[range.clone()].to_vec()).collect() };
+    let of =
+        |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|column| column[range.clone()].to_vec()).collect() };
     let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
     let [q_columns, qd_columns, qdd_columns] =
         [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());

@@ -106,9 +106,12 @@ impl Parameters {
         let arm = DynArm::from_robot(robot);
         let mut values: Vec<f64> = arm.inertial_parameters().into_iter().flatten().collect();
         if self.rotors {
-            values.extend(robot.joints.iter().map(|joint| {
-                joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia)
-            }));
+            values.extend(
+                robot
+                    .joints
+                    .iter()
+                    .map(|joint| joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia)),
+            );
         }
         DVector::from_vec(values)
     }

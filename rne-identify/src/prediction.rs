@@ -28,7 +28,7 @@ pub struct Prediction {
 #[non_exhaustive]
 pub struct JointError {
     /// Root mean square of measured minus predicted, both behind the same low-pass, over the deviation of the measured
-    /// effort.
+    /// effort: of the states about which the log has the whole kernel of the low-pass, unless it is shorter than that.
     pub error: f64,
     /// The same at every instant, without the low-pass.
     pub unfiltered: f64,
@@ -47,8 +47,9 @@ struct Sums {
     states: u64,
     mean: f64,
     squares: f64,
-    filtered: f64,
     unfiltered: f64,
+    inner: u64,
+    filtered: f64,
     by_speed: [(u64, f64); 4],
 }
 
@@ -72,11 +73,11 @@ impl Prediction {
         let mut torques = vec![vec![0.0; motion.len()]; self.robot.dof()];
         for start in (0..motion.len()).step_by(WINDOW) {
             let range = start..motion.len().min(start + WINDOW);
-            let of = |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|x| x[range.clone()].to_vec()).collect() };
+            let of =
+                |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|x| x[range.clone()].to_vec()).collect() };
             let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
             let [q, qd, qdd] = [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());
-            let arguments =
-                Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
+            let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
             let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
             self.arm.run(Function::InverseDynamics, range.len(), &arguments, Destination::Columns(columns))?;
         }
@@ -119,13 +120,26 @@ impl Prediction {
     pub fn absorb(&mut self, motion: &Motion) -> Result<(), MotionError> {
         let predicted = self.torques(motion)?;
         let pairs = self.smoothed(motion, &predicted);
+        let inner = self.inner(&motion.time);
         for (joint, sums) in self.sums.iter_mut().enumerate() {
             for (at, (measured, of)) in pairs[joint].iter().enumerate() {
-                let (tau, speed) = (motion.tau[joint][at], motion.qd[joint][at].abs());
-                sums.take(tau, tau - predicted[joint][at], measured - of, speed);
+                let tau = motion.tau[joint][at];
+                sums.take(tau, tau - predicted[joint][at]);
+                if inner.contains(&at) {
+                    sums.take_filtered(measured - of, motion.qd[joint][at].abs());
+                }
             }
         }
         Ok(())
+    }
+
+    /// The states about which the whole kernel finds samples; all, where there are none.
+    fn inner(&self, time: &[f64]) -> std::ops::Range<usize> {
+        let reach = self.cutoff.map_or(0.0, |cutoff| Kernel::of_cutoff(cutoff).reach());
+        let (Some(first), Some(last)) = (time.first(), time.last()) else { return 0..0 };
+        let start = time.partition_point(|time| *time < first + reach);
+        let end = time.partition_point(|time| *time <= last - reach);
+        if start < end { start..end } else { 0..time.len() }
     }
 
     /// The errors over all motions.
@@ -165,12 +179,16 @@ pub fn prediction_errors<'a>(
 
 impl Sums {
     #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ states
-    fn take(&mut self, tau: f64, unfiltered: f64, filtered: f64, speed: f64) {
+    fn take(&mut self, tau: f64, unfiltered: f64) {
         self.states += 1;
         let from = tau - self.mean;
         self.mean += from / self.states as f64;
         self.squares += from * (tau - self.mean);
         self.unfiltered += unfiltered * unfiltered;
+    }
+
+    fn take_filtered(&mut self, filtered: f64, speed: f64) {
+        self.inner += 1;
         self.filtered += filtered * filtered;
         let (states, squares) = &mut self.by_speed[SPEEDS.partition_point(|most| *most < speed)];
         *states += 1;
@@ -181,7 +199,7 @@ impl Sums {
     fn error(&self) -> JointError {
         let root = |sum: f64, states: u64| (sum / states as f64).sqrt();
         let deviation = root(self.squares, self.states);
-        let residual = root(self.filtered, self.states);
+        let residual = root(self.filtered, self.inner);
         JointError {
             error: residual / deviation,
             unfiltered: root(self.unfiltered, self.states) / deviation,

@@ -140,7 +140,11 @@ pub struct WrongColumns {
 
 impl std::fmt::Display for WrongColumns {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "rows of {} columns, not {}: they are of another robot or another choice of friction", self.found, self.expected)
+        write!(
+            f,
+            "rows of {} columns, not {}: they are of another robot or another choice of friction",
+            self.found, self.expected
+        )
     }
 }
 

@@ -228,8 +228,7 @@ pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curv
     const ABOUT_UP: f64 = 5.0;
     let (left, right) = (place.x + LEFT, place.x + place.width);
     let (top, bottom) = (place.y + ABOVE, place.y + place.height - BELOW);
-    let (start, end) =
-        (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
+    let (start, end) = (time.first().copied().unwrap_or(0.0), time.last().copied().unwrap_or(1.0));
     let across = Scale::new(start, end, left, right);
     let (low, high) = range(curves.iter().flat_map(|curve| curve.values.iter().copied()), ABOUT_UP);
     let up = Scale::new(low, high, bottom, top);
