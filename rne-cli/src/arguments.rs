@@ -25,7 +25,6 @@ Without a command, a tour: the PUMA 560 from its table to its torques.
 Examples:
   rne check robots/*.yaml                   are the files in order?
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
-  rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
   rne new my_arm --dof 6 -o -               a robot file of your own, to fill in
 

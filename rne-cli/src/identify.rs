@@ -27,11 +27,9 @@ const DRAWN: u64 = 4000;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne explain not-excited             what a log does not tell
-
-  rne identify ur10.yaml motion.db3 -o identified.yaml
-  rne identify ur10.yaml motion.db3 --hold-out 0.3 --plot fit.svg
-  rne identify identified.yaml other.mcap --judge
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge
 
 FILE gives the geometry; its links count where the logs say nothing. Logs are
 bags of ROS 2, MCAP, Parquet, CSV, npy. Every link that is written is a body.
@@ -180,7 +178,7 @@ fn friction(text: &mut String, found: &Identification) {
         let Some(friction) = report.friction else { return };
         let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 3));
         cells.push([
-            format!("  {}", shortened(&one_line(&joint.name), 18)),
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
             with(friction[0]),
             with(friction[1]),
             with(friction[2]),
@@ -224,7 +222,7 @@ fn errors_table(robot: &Robot, errors: &[JointError], found: Option<&Identificat
     for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
         let unit = if joint.row.kind == JointKind::Revolute { "N m" } else { "N" };
         let mut line = vec![
-            format!("  {}", shortened(&one_line(&joint.name), 20)),
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
             percent(error.error),
             percent(error.unfiltered),
             rounded(error.residual, 3),
@@ -241,7 +239,7 @@ fn errors_table(robot: &Robot, errors: &[JointError], found: Option<&Identificat
     align.extend([Align::Right; 4]);
     align.push(Align::Left);
     let lines = columns(&align, &cells);
-    let about = "measured minus predicted over the deviation of the effort, root mean square; by speed";
+    let about = "root mean square of measured - predicted, over the effort's deviation; by speed";
     let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);
     for line in &lines[1..] {
         let marked = line.replace("not excited", &format!("{WARNING}not excited{WARNING:#}"));

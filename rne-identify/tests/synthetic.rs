@@ -257,8 +257,9 @@ fn five_million_states_need_no_more_memory() {
         sizes.push(information.size());
     }
     assert_eq!(information.states(), 5_000_000);
-    let most = sizes[..10].iter().max().unwrap();
-    assert!(sizes.iter().all(|size| size <= most), "{sizes:?}");
+    // between half of the stretches that are kept at most, and all
+    let (least, most) = (sizes.iter().min().unwrap(), sizes.iter().max().unwrap());
+    assert!(most <= &(2 * least), "{sizes:?}");
     let fit = Fit::of(&structure, &information, &scales(&structure, &information));
     let truth = truth(&structure, &robot);
     for (at, value) in truth.iter().enumerate().take(structure.parameters().rank()) {

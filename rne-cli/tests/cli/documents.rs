@@ -16,6 +16,7 @@ const DOCUMENTS: [&str; 18] = [
     "CONTRIBUTING.md",
     "docs/command-line.md",
     "docs/firmware.md",
+    "docs/identify.md",
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",
