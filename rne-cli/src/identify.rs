@@ -29,17 +29,13 @@ const DRAWN: u64 = 4000;
 Examples:
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
   rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
-  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge
-
-FILE gives the geometry; its links count where the logs say nothing. Logs are
-bags of ROS 2, MCAP, Parquet, CSV, npy. Every link that is written is a body.
-docs/identify.md has the method.")]
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge")]
 #[allow(clippy::struct_excessive_bools)] // each is a flag of its own
 pub(crate) struct Arguments {
     /// Robot file: the geometry
     #[arg(value_name = "FILE")]
     file: PathBuf,
-    /// Logs of the arm with positions and efforts
+    /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
     #[command(flatten)]
@@ -50,13 +46,13 @@ pub(crate) struct Arguments {
     /// No friction
     #[arg(long)]
     no_friction: bool,
-    /// How strongly links are pulled to those of FILE, or to plausible ones
+    /// Pull to the links of FILE, or to plausible ones
     #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = pull)]
     pull: f64,
-    /// Keep this last part of the logs back, and judge on it: 0.3
+    /// Judge on this last part of the logs: 0.3
     #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "judge")]
     hold_out: Option<f64>,
-    /// Identify nothing: how well does FILE predict the logs?
+    /// Identify nothing; judge FILE on the logs
     #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
     judge: bool,
     /// Draw measured and predicted torques, as SVG

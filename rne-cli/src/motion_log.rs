@@ -25,16 +25,16 @@ const HIGHEST: f64 = 0.3;
 /// How a log is read.
 #[derive(Args)]
 pub(crate) struct LogArguments {
-    /// The joints in the log, base to tip; those of FILE, unless given
+    /// Joints of the log, base to tip
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     joints: Vec<String>,
-    /// The topic of a bag; needed where several have joint states
+    /// The topic of a bag
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
-    /// N m/A (or N/A) of each joint, or of all: efforts are currents
+    /// N m/A of each joint or of all: efforts are currents
     #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
     torque_constants: Vec<f64>,
-    /// Hz: the low-pass of both sides; of the motion's spectrum, unless given
+    /// The low-pass; by the spectrum, unless given
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     cutoff: Option<f64>,
 }
