@@ -9,11 +9,11 @@ use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
 #[cfg(feature = "logs")]
-use crate::log;
+use crate::{identify, log};
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
-    search, shell, show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot,
+    report, search, shell, show,
 };
 
 /// The dynamics compiler for robot arms.
@@ -27,7 +27,6 @@ Without a command, a tour: the PUMA 560 from its table to its torques.
 Examples:
   rne check robots/*.yaml                   are the files in order?
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
-  rne eval robots/planar1.yaml --q 0.3 --qd 0 --qdd 1 --trace
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
 
 FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.")]
@@ -48,6 +47,8 @@ pub(crate) enum Command {
     Plot(plot::Arguments),
     #[cfg(feature = "logs")]
     Log(log::Arguments),
+    #[cfg(feature = "logs")]
+    Identify(identify::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

@@ -22,6 +22,8 @@ mod functions;
 mod golden;
 mod heading;
 mod highlight;
+#[cfg(feature = "logs")]
+mod identify;
 mod import;
 mod input_file;
 mod layout;
@@ -33,6 +35,7 @@ mod log;
 #[cfg(feature = "logs")]
 mod log_report;
 mod mistyped;
+mod motion_log;
 mod new;
 mod numbers;
 mod ops;
@@ -93,6 +96,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
         Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
+        #[cfg(feature = "logs")]
+        Some(Command::Identify(arguments)) => ("rne identify", identify::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

@@ -22,6 +22,7 @@ mod error;
 pub mod fma;
 mod formulate;
 mod function;
+mod identifiability;
 mod interpret;
 mod ir;
 mod latency;
@@ -42,6 +43,7 @@ pub use error::{CompileError, Extreme, Suspect};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
 };
+pub use identifiability::{Identifiability, Parameter, Visibility};
 pub use interpret::{Arguments, Interpreter, Real};
 pub use ir::fold_report::{Cause, Causes, Fold, FoldReport, Line, Operation, Place};
 pub use ir::name::{Name, WithRespectTo};
@@ -166,6 +168,13 @@ impl<'r> Compiler<'r> {
             }
             Err(error) => Err(error.suspecting(robot, true)),
         }
+    }
+
+    /// Which parameters of the links the torques can see, and of the rotors where `rotors` asks for them: found without
+    /// rounding and without a tolerance. The numbers of the links do not matter.
+    #[must_use]
+    pub fn identifiability(&self, rotors: bool) -> Identifiability {
+        Identifiability::of(self.robot, rotors)
     }
 
     /// By the plan, with the algorithm that takes the fewest operations.

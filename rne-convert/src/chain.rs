@@ -55,6 +55,7 @@ pub(crate) struct ChainJoint {
     pub(crate) body: Body,
     pub(crate) limits: Limits,
     pub(crate) motor: Option<Motor>,
+    pub(crate) coulomb_width: Option<f64>,
 }
 
 /// What became of a tree on its way to a chain.
@@ -357,6 +358,7 @@ impl Walk<'_> {
                     body: Body::NONE,
                     limits: joint.limits,
                     motor,
+                    coulomb_width: None,
                 });
                 self.told.spans.push(joint.span.clone());
                 self.told.lumped.push(Vec::new());

@@ -70,6 +70,7 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
             body: Body::of_link(&row.link).seen_from(after),
             limits: joint.limits,
             motor: joint.motor,
+            coulomb_width: joint.coulomb_width,
         });
         end = after;
     }

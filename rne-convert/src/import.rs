@@ -187,6 +187,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
             ),
             limits: joint.limits,
             motor: joint.motor,
+            coulomb_width: joint.coulomb_width,
         }
     });
     Robot {

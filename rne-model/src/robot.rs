@@ -45,6 +45,9 @@ pub struct Joint {
     pub limits: Limits,
     /// The motor, if the file has one.
     pub motor: Option<Motor>,
+    /// The speed about which Coulomb friction changes its sign, rad/s or m/s, where somebody found it: the `width` that
+    /// smooth friction takes. Information, as limits are.
+    pub coulomb_width: Option<f64>,
 }
 
 /// The point a written inertia tensor refers to; its axes are the link's in both cases.

@@ -261,7 +261,8 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         lint::position_limits(cx, position, kind, &limits);
     }
     let (link, written_inertia) = link;
-    Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor })
+    let (motor, coulomb_width) = motor.map_or((None, None), |(motor, width)| (Some(motor), width));
+    Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor, coulomb_width })
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
@@ -421,14 +422,16 @@ fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("exchange the two"))
 }
 
-fn motor(cx: &Context, node: &Node, joint: usize) -> Option<Motor> {
+/// The motor, and the speed about which its friction changes its sign.
+fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, Option<f64>)> {
     read_mapping!(cx, node, "`motor`", {
         inertia: or(0.0) "inertia" not_negative("rotor inertia", entry(Entry::MotorInertia(joint))),
         gear_ratio: or(1.0) "gear_ratio" |cx, node| gear_ratio(cx, node, joint),
         viscous: or(0.0) "viscous" not_negative("viscous friction", entry(Entry::Viscous(joint))),
         coulomb: or([0.0; 2]) "coulomb" |cx, node| coulomb(cx, node, joint),
+        width: optional "coulomb_width" not_negative("width", fixed("the width")),
     });
-    Some(Motor { inertia, gear_ratio, viscous, coulomb })
+    Some((Motor { inertia, gear_ratio, viscous, coulomb }, width))
 }
 
 fn gear_ratio(cx: &Context, node: &Node, joint: usize) -> Option<f64> {

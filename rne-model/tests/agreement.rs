@@ -24,7 +24,7 @@ joints:
         - 2.5
       velocity: 2
       effort: 50.125
-    motor: {inertia: 2.0e-4, gear_ratio: -62.6111, viscous: 1.48e-3, coulomb: [0.395, -0.435]}
+    motor: {inertia: 2.0e-4, gear_ratio: -62.6111, viscous: 1.48e-3, coulomb: [0.395, -0.435], coulomb_width: 0.02}
   - {name: 'it''s', type: prismatic, dh: *row, link: {mass: 0.1234567890123456789}}
 "#;
 
@@ -87,5 +87,6 @@ fn assert_joint(joint: &Joint, value: &Value) {
             ["inertia", "gear_ratio", "viscous"].map(|key| number(&motor[key]))
         );
         assert_eq!(ours.coulomb[..], numbers(&motor["coulomb"])[..]);
+        assert_eq!(joint.coulomb_width, motor.get("coulomb_width").and_then(|width| width.as_f64()));
     }
 }

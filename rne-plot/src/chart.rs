@@ -25,7 +25,7 @@ const POWERS: f64 = 330.0;
 const LEFT: f64 = 64.0;
 const ABOVE: f64 = 40.0;
 const BELOW: f64 = 44.0;
-const GAP: f64 = 24.0;
+pub(crate) const GAP: f64 = 24.0;
 
 pub(crate) const TEXT: &str = "#222222";
 pub(crate) const QUIET: &str = "#595959";
@@ -124,7 +124,7 @@ fn torque_panel(
         JointKind::Prismatic => "N",
     };
     let name = shortened(&robot.joints[joint].name, 18);
-    let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), trajectory, &curves);
+    let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), &trajectory.time, &curves);
     if let Some(peak) = history.peaks.get(joint) {
         mark(svg, place, axes, *peak, unit);
     }
@@ -206,15 +206,15 @@ fn power_panel(svg: &mut Svg, place: Place, robot: &Robot, trajectory: &Trajecto
         "power τ q̇, W: positive drives, negative brakes",
     );
     let inner = Place { y: place.y + below, height: place.height - below, ..place };
-    panel(svg, inner, "", trajectory, &curves);
+    panel(svg, inner, "", &trajectory.time, &curves);
 }
 
 /// Axes with their grid, and the curves; returns the scales.
-fn panel(svg: &mut Svg, place: Place, title: &str, trajectory: &Trajectory, curves: &[Curve<'_>]) -> (Scale, Scale) {
+pub(crate) fn panel(svg: &mut Svg, place: Place, title: &str, time: &[f64], curves: &[Curve<'_>]) -> (Scale, Scale) {
     let values = curves.iter().flat_map(|curve| curve.values.iter().copied());
-    let (across, up, _) = axes(svg, place, title, &trajectory.time, values);
+    let (across, up, _) = axes(svg, place, title, time, values);
     for curve in curves {
-        svg.curve(curve, &trajectory.time, across, up);
+        svg.curve(curve, time, across, up);
     }
     (across, up)
 }
@@ -281,7 +281,7 @@ pub(crate) struct Svg {
 }
 
 impl Svg {
-    fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self { writer: Writer::new_with_indent(Vec::new(), b' ', 1), failed: false }
     }
 
@@ -305,7 +305,7 @@ impl Svg {
         svg
     }
 
-    fn event(&mut self, event: Event<'_>) {
+    pub(crate) fn event(&mut self, event: Event<'_>) {
         let written: io::Result<()> = self.writer.write_event(event);
         self.failed |= written.is_err();
     }
@@ -410,7 +410,7 @@ pub(crate) fn width_of(text: &str, size: f64) -> f64 {
 }
 
 /// ₁₂
-fn subscript(number: usize) -> String {
+pub(crate) fn subscript(number: usize) -> String {
     let digit = |c: char| c.to_digit(10).and_then(|digit| char::from_u32(0x2080 + digit)).unwrap_or(c);
     number.to_string().chars().map(digit).collect()
 }

@@ -19,6 +19,7 @@
 #![forbid(unsafe_code)]
 
 mod chart;
+mod comparison;
 mod history;
 mod panels;
 mod parts;
@@ -26,6 +27,7 @@ mod scale;
 mod trajectory;
 
 pub use crate::chart::svg;
+pub use crate::comparison::comparison_svg;
 pub use crate::history::{Peak, TorqueHistory};
 pub use crate::panels::{Band, Panel, PanelCurve, panels};
 pub use crate::parts::TorqueParts;

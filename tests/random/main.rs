@@ -2,6 +2,7 @@
 
 mod cad;
 mod compiled;
+mod identifiability;
 mod interpreted;
 mod reduced;
 mod robots;

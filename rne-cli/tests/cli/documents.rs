@@ -11,12 +11,13 @@ use std::process::{Command, Output, Stdio};
 use crate::call::{ROOT, folder};
 
 /// The documents whose commands a reader types.
-const DOCUMENTS: [&str; 21] = [
+const DOCUMENTS: [&str; 22] = [
     "README.md",
     "CONTRIBUTING.md",
     "docs/c-library.md",
     "docs/command-line.md",
     "docs/firmware.md",
+    "docs/identify.md",
     "docs/inspection.md",
     "docs/lecture/README.md",
     "docs/lecture/errata.md",

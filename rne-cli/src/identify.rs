@@ -1,0 +1,283 @@
+//! `rne identify`: links, rotors and friction from logs.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_identify::{Identification, JointError, Options, Prediction, SPEEDS, identify, written};
+use rne_logs::Motion;
+use rne_model::{JointKind, Robot, one_line};
+use rne_plot::comparison_svg;
+
+use crate::layout::{Align, columns, shortened, wrap};
+use crate::motion_log::{LogArguments, MotionLog, Part};
+use crate::numbers::rounded;
+use crate::outcome::{Failure, Outcome};
+use crate::output_file;
+use crate::robot_file;
+use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
+
+/// Columns of the account.
+const WIDTH: usize = 80;
+
+/// States of a picture.
+const DRAWN: u64 = 4000;
+
+/// Identify links and friction of an arm from its logs
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv -o identified.yaml
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --hold-out 0.3
+  rne identify docs/desk_arm.yaml docs/desk_arm_log.csv --judge")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag of its own
+pub(crate) struct Arguments {
+    /// Robot file: the geometry
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
+    #[arg(value_name = "LOG", required = true)]
+    logs: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: LogArguments,
+    /// Inertia of the motors' rotors, too
+    #[arg(long)]
+    rotors: bool,
+    /// No friction
+    #[arg(long)]
+    no_friction: bool,
+    /// Pull to the links of FILE, or to plausible ones
+    #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = pull)]
+    pull: f64,
+    /// Judge on this last part of the logs: 0.3
+    #[arg(long, value_name = "PART", value_parser = part, conflicts_with = "judge")]
+    hold_out: Option<f64>,
+    /// Identify nothing; judge FILE on the logs
+    #[arg(long, conflicts_with_all = ["output", "rotors", "no_friction"])]
+    judge: bool,
+    /// Draw measured and predicted torques, as SVG
+    #[arg(long, value_name = "SVG")]
+    plot: Option<PathBuf>,
+    /// The robot file that is written
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Overwrite files that are there
+    #[arg(long)]
+    force: bool,
+}
+
+fn pull(text: &str) -> Result<f64, String> {
+    let pull = text.parse().ok().filter(|pull: &f64| pull.is_finite() && *pull >= 1e-6);
+    pull.ok_or_else(|| "a pull is a number of 1e-6 or more; 1 is as strong as one row of noise".to_owned())
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let part = text.parse().ok().filter(|part: &f64| *part > 0.0 && *part < 1.0);
+    part.ok_or_else(|| "a part lies between 0 and 1, such as 0.3".to_owned())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = robot_file::robot(&arguments.file)?;
+    let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading)?;
+    let mut remark = String::new();
+    for line in &log.remarks {
+        let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {}", wrap(line, WIDTH - 6, "      "));
+    }
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
+    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
+    let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
+    if arguments.judge {
+        text += &judged(&robot, &log, Part::All, None, "prediction of the log")?;
+        draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
+        return Ok(Outcome { text, remark, ..Outcome::default() });
+    }
+    let options = options(arguments, log.cutoff);
+    let (training, held) = match arguments.hold_out {
+        Some(part) => (Part::Before(1.0 - part), Some(Part::From(1.0 - part))),
+        None => (Part::All, None),
+    };
+    let found = identify(&robot, options, arguments.pull, |take| log.pass(training, take))?;
+    text += &account(&found);
+    if let Some(part) = held {
+        text += &judged(&found.robot, &log, part, Some(&found), "held-out part of the log")?;
+    }
+    draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
+    if let Some(path) = &arguments.output {
+        let file = written(&found, &log.words());
+        remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
+    }
+    Ok(Outcome { text, remark, ..Outcome::default() })
+}
+
+fn options(arguments: &Arguments, cutoff: f64) -> Options {
+    let mut options = Options::default();
+    options.friction = !arguments.no_friction;
+    options.rotors = arguments.rotors;
+    options.cutoff = Some(cutoff);
+    options
+}
+
+/// What was found, in tables.
+fn account(found: &Identification) -> String {
+    let of_links =
+        found.structure.parameters().bases.iter().filter(|base| matches!(base.kept, rne_identify::Parameter::Link(..)));
+    let of_links = of_links.count();
+    let excited = found.bases.iter().filter(|base| base.is_excited()).count();
+    let mut text = String::new();
+    let rotors = match found.bases.len() - of_links {
+        0 => String::new(),
+        count => format!(" and {count} of rotors"),
+    };
+    let _ = writeln!(
+        text,
+        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition {:.0}",
+        found.fit.condition
+    );
+    let certificate = &found.feasible.certificate;
+    let _ = writeln!(
+        text,
+        "{QUIET}{} rows a joint of {:.1} s, {} stretches; every link is a body, margin {:.1e}{QUIET:#}",
+        found.rows, found.duration, found.fit.stretches, certificate.margin
+    );
+    if let Some((delay, deviation)) = found.delay {
+        let _ = writeln!(
+            text,
+            "{QUIET}torques lag by {:.1} ± {:.1} ms behind the positions{QUIET:#}",
+            1e3 * delay,
+            1e3 * deviation
+        );
+    }
+    let mut cells = vec![["  parameter", "value", "", "deviation", "", "in the file", "unit"].map(str::to_owned)];
+    for (base, report) in found.structure.parameters().bases.iter().zip(&found.bases) {
+        let unit = rne_identify::unit(base.kept).to_owned();
+        let (value, deviation, percent) = if report.is_excited() {
+            let percent = 100.0 * report.deviation / report.value.abs();
+            let percent = if percent < 1000.0 { format!("{percent:.1} %") } else { "> 999 %".to_owned() };
+            (rounded(report.value, 4), rounded(report.deviation, 4), percent)
+        } else {
+            ("not excited".to_owned(), rounded(report.deviation, 4), String::new())
+        };
+        let name = format!("  {}", report.name);
+        cells.push([name, value, "±".to_owned(), deviation, percent, rounded(report.written, 4), unit]);
+    }
+    let align = [Align::Left, Align::Right, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
+    push_table(&mut text, "base parameters, by least squares and as the links are written", &align, &cells);
+    friction(&mut text, found);
+    let errors: Vec<JointError> = found.joints.iter().map(|joint| joint.error).collect();
+    text += &errors_table(&found.robot, &errors, Some(found), "what is left of the log");
+    text
+}
+
+fn friction(text: &mut String, found: &Identification) {
+    let mut cells = vec![["  joint", "viscous", "Coulomb +", "Coulomb -", "about", "rotor, kg m²"].map(str::to_owned)];
+    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+        let Some(friction) = report.friction else { return };
+        let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 3));
+        cells.push([
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
+            with(friction[0]),
+            with(friction[1]),
+            with(friction[2]),
+            report.width.map_or_else(String::new, |width| format!("{width}")),
+            report.rotor.map_or_else(|| "-".to_owned(), |rotor| rounded(rotor, 4)),
+        ]);
+    }
+    let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right, Align::Right];
+    push_table(text, "friction at the joint, N m s/rad, N m; about a speed, rad/s", &align, &cells);
+}
+
+fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], cells: &[[String; N]]) {
+    let lines = columns(align, cells);
+    let _ = writeln!(text, "\n{TITLE}{title}{TITLE:#}\n{QUIET}{}{QUIET:#}", lines[0]);
+    for line in &lines[1..] {
+        let _ = writeln!(text, "{line}");
+    }
+}
+
+/// How well a robot predicts a part of a log.
+fn judged(
+    robot: &Robot,
+    log: &MotionLog,
+    part: Part,
+    found: Option<&Identification>,
+    title: &str,
+) -> Result<String, Failure> {
+    let mut prediction = Prediction::new(robot, Some(log.cutoff));
+    log.pass(part, &mut |motion| prediction.absorb(motion))?;
+    Ok(errors_table(robot, &prediction.errors(), found, title))
+}
+
+/// Errors by joint and by speed.
+fn errors_table(robot: &Robot, errors: &[JointError], found: Option<&Identification>, title: &str) -> String {
+    let mut heading = ["  joint", "error", "unfiltered", "left", ""].map(str::to_owned).to_vec();
+    heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
+    heading.push("faster".to_owned());
+    let mut cells = vec![heading];
+    let percent = |part: f64| format!("{:.1} %", 100.0 * part);
+    let mut all = Vec::new();
+    for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
+        let unit = if joint.row.kind == JointKind::Revolute { "N m" } else { "N" };
+        let mut line = vec![
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
+            percent(error.error),
+            percent(error.unfiltered),
+            rounded(error.residual, 3),
+            unit.to_owned(),
+        ];
+        line.extend(error.by_speed.map(|left| if left.is_nan() { "-".to_owned() } else { rounded(left, 3) }));
+        if found.is_some_and(|found| !found.joints[at].is_excited()) {
+            line.push("not excited".to_owned());
+        }
+        all.push(error.error);
+        cells.push(line);
+    }
+    let mut align = vec![Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
+    align.extend([Align::Right; 4]);
+    align.push(Align::Left);
+    let lines = columns(&align, &cells);
+    let about = "root mean square of measured - predicted, over the effort's deviation; by speed";
+    let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);
+    for line in &lines[1..] {
+        let marked = line.replace("not excited", &format!("{WARNING}not excited{WARNING:#}"));
+        let _ = writeln!(text, "{marked}");
+    }
+    all.sort_by(f64::total_cmp);
+    let middle = all.len() / 2;
+    let median = if all.len().is_multiple_of(2) { 0.5 * (all[middle - 1] + all[middle]) } else { all[middle] };
+    let _ = writeln!(text, "  {GOOD}median{GOOD:#} {}", percent(median));
+    text
+}
+
+/// Draws a part of the log.
+fn draw(
+    arguments: &Arguments,
+    robot: &Robot,
+    log: &MotionLog,
+    part: Part,
+    sources: &[&Path],
+    remark: &mut String,
+) -> Result<(), Failure> {
+    let Some(path) = &arguments.plot else { return Ok(()) };
+    let mut states = 0;
+    log.pass(part, &mut |motion| {
+        states += motion.len() as u64;
+        Ok(())
+    })?;
+    let stride = usize::try_from(states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
+    let prediction = Prediction::new(robot, Some(log.cutoff));
+    let (mut time, mut pairs) = (Vec::new(), vec![Vec::new(); robot.dof()]);
+    log.pass(part, &mut |motion: &Motion| {
+        time.extend(motion.time.iter().step_by(stride));
+        for (all, of) in pairs.iter_mut().zip(prediction.pairs(motion)?) {
+            all.extend(of.into_iter().step_by(stride));
+        }
+        Ok(())
+    })?;
+    let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
+        pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()
+    };
+    let about = format!("{}, both sides behind a low-pass of {:.1} Hz", log.words(), log.cutoff);
+    let svg = comparison_svg(robot, &time, &side(|pair| pair.0), &side(|pair| pair.1), &about);
+    *remark += &output_file::write_new(path, &svg, sources, arguments.force)?;
+    Ok(())
+}

@@ -1,0 +1,299 @@
+//! The links and friction that explain the logs best among those that bodies and motors can have.
+//!
+//! The problem is convex: least squares on the triangle of the rows, the pseudo-inertia of every link positive
+//! definite, frictions and rotors positive, and a weak pull to what is known before,
+//!
+//! ```text
+//! min ½ |R u(y) - z|² + γ Σ (tr(P₀⁻¹ P) - log det P) + γ Σ (y / y₀ - log y)
+//! ```
+//!
+//! The pull is Bregman's divergence of the log determinant (T. Lee, F. C. Park, A geometric algorithm for robust
+//! multibody inertial parameter identification, IEEE RA-L 3(3), 2018): it does not depend on the frames, is least at
+//! the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do not. Newton's
+//! method follows the minima from large γ to the one that was asked for.
+//!
+//! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: the gradient is theirs,
+//! they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the [`Certificate`]'s gap of
+//! the exact one.
+
+use nalgebra::{DMatrix, DVector, Matrix4};
+
+use crate::fit::Fit;
+use crate::parameters::PER_LINK;
+use crate::prior::{self, Scales};
+use crate::pseudo_inertia;
+use crate::structure::{FRICTION, Structure};
+
+/// How γ decreases, and from where.
+const START: f64 = 1e6;
+const STEP: f64 = 0.2;
+/// Newton's steps at each γ, at most.
+const STEPS: usize = 60;
+/// Half the square of Newton's decrement at which a minimum is one.
+const CLOSE: f64 = 1e-11;
+/// Part of the plausible that friction and rotors are expected to be.
+const PART: f64 = 0.1;
+
+/// Links, rotors and friction that bodies and motors can have.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Feasible {
+    /// Of each link, its pseudo-inertia.
+    pub links: Vec<Matrix4<f64>>,
+    /// Of each joint, G² Jm in kg m² (or kg); zeros when rotors were not asked for.
+    pub rotors: Vec<f64>,
+    /// Of each joint: viscous friction, Coulomb friction forward and backward, both positive; zeros when friction was
+    /// not asked for.
+    pub friction: Vec<[f64; FRICTION]>,
+    /// The unknowns that they make, as [`Fit::solution`] has them.
+    pub unknowns: DVector<f64>,
+    /// How near the minimum it is.
+    pub certificate: Certificate,
+}
+
+/// What proves that a point is the minimum of the convex problem.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Certificate {
+    /// The pull γ.
+    pub pull: f64,
+    /// Half the sum of squares, weighted, at the point.
+    pub misfit: f64,
+    /// The same at the unconstrained minimum.
+    pub least_misfit: f64,
+    /// Newton's decrement: what another step would gain, relative to one.
+    pub decrement: f64,
+    /// Σ tr(G P) + Σ g y: how far the objective without logarithms can be from its minimum.
+    pub gap: f64,
+    /// The smallest eigenvalue of a link's pseudo-inertia over its largest, of all links.
+    pub margin: f64,
+}
+
+/// What is minimised, in coordinates of order one.
+struct Problem {
+    /// Unknowns of coordinates.
+    map: DMatrix<f64>,
+    /// R and z of the unknowns.
+    design: DMatrix<f64>,
+    target: DVector<f64>,
+    links: usize,
+    /// Of each coordinate, its value for 1.
+    scale: DVector<f64>,
+    /// The priors' inverses.
+    inverses: Vec<Matrix4<f64>>,
+    units: [Matrix4<f64>; PER_LINK],
+    /// Coordinates that are positive, from the first behind the links on.
+    positive: usize,
+    /// Their priors.
+    expected: Vec<f64>,
+}
+
+impl Feasible {
+    /// Of a fit, pulled to what is known before by γ: one is as strong as one row of the deviation of the noise.
+    #[must_use]
+    pub fn of(structure: &Structure, fit: &Fit, scales: &Scales, pull: f64) -> Self {
+        let problem = Problem::new(structure, fit, scales);
+        let mut at = problem.start(structure);
+        let mut weight = START.max(pull);
+        let mut decrement = f64::INFINITY;
+        loop {
+            for _ in 0..STEPS {
+                decrement = problem.step(&mut at, weight);
+                if decrement < CLOSE {
+                    break;
+                }
+            }
+            if weight <= pull {
+                break;
+            }
+            weight = (weight * STEP).max(pull);
+        }
+        problem.result(structure, fit, &at, pull, decrement)
+    }
+}
+
+impl Problem {
+    fn new(structure: &Structure, fit: &Fit, scales: &Scales) -> Self {
+        let dof = structure.dof();
+        let count = structure.count();
+        let rank = structure.parameters.rank();
+        let of_rotors = if structure.options.rotors { dof } else { 0 };
+        let of_friction = if structure.options.friction { FRICTION * dof } else { 0 };
+        let inertial = dof * PER_LINK;
+        let positive = of_rotors + of_friction;
+        let delay = usize::from(structure.options.delay);
+        let mut map = DMatrix::zeros(count, inertial + positive + delay);
+        map.view_mut((0, 0), (rank, inertial + of_rotors)).copy_from(&structure.parameters.regrouping);
+        for joint in 0..of_friction / FRICTION {
+            let (row, column) = (rank + FRICTION * joint, inertial + of_rotors + FRICTION * joint);
+            map[(row, column)] = 1.0;
+            // forward p and backward n: ½ (p + n) s + ½ (p - n) s²
+            for (row, signs) in [(row + 1, [0.5, 0.5]), (row + 2, [0.5, -0.5])] {
+                map[(row, column + 1)] = signs[0];
+                map[(row, column + 2)] = signs[1];
+            }
+        }
+        if delay == 1 {
+            map[(count - 1, inertial + positive)] = 1.0;
+        }
+        let priors = prior::links(&structure.robot);
+        let mut scale = DVector::from_element(map.ncols(), 1.0);
+        for (link, prior) in priors.iter().enumerate() {
+            let mass = prior.pseudo_inertia[(3, 3)];
+            let size = (prior.pseudo_inertia.fixed_view::<3, 3>(0, 0).trace() / mass).sqrt();
+            for index in 0..PER_LINK {
+                let power = match index {
+                    0 => 0,
+                    1..=3 => 1,
+                    _ => 2,
+                };
+                scale[link * PER_LINK + index] = mass * size.powi(power);
+            }
+        }
+        let mut expected = Vec::with_capacity(positive);
+        for joint in 0..of_rotors {
+            let behind: f64 = (joint..dof).map(|link| scale[link * PER_LINK + 9]).sum();
+            let known = structure.robot.joints[joint].motor.map(|motor| motor.gear_ratio.powi(2) * motor.inertia);
+            expected.push(known.filter(|known| *known > 0.0).unwrap_or(PART * behind));
+        }
+        for joint in 0..of_friction / FRICTION {
+            let motor = structure.robot.joints[joint].motor;
+            let ratio = motor.map_or(1.0, |motor| motor.gear_ratio.abs());
+            let known = |value: Option<f64>| value.filter(|value| *value > 0.0);
+            let guess = PART * scales.friction[joint];
+            expected.push(known(motor.map(|motor| ratio * ratio * motor.viscous)).unwrap_or(guess));
+            expected.push(known(motor.map(|motor| ratio * motor.coulomb[0])).unwrap_or(guess));
+            expected.push(known(motor.map(|motor| -ratio * motor.coulomb[1])).unwrap_or(guess));
+        }
+        for (at, expected) in expected.iter().enumerate() {
+            scale[inertial + at] = *expected;
+        }
+        if delay == 1 {
+            scale[inertial + positive] = 1e-3;
+        }
+        let triangle = fit.triangle.triangle();
+        let inverses = priors.iter().map(|prior| {
+            // all of them are positive definite
+            prior.pseudo_inertia.try_inverse().unwrap_or_else(Matrix4::identity)
+        });
+        Self {
+            design: triangle.view((0, 0), (count, count)).clone_owned(),
+            target: triangle.view((0, count), (count, 1)).column(0).clone_owned(),
+            links: dof,
+            inverses: inverses.collect(),
+            units: pseudo_inertia::units(),
+            positive,
+            expected,
+            map: DMatrix::from_fn(count, scale.len(), |row, column| map[(row, column)] * scale[column]),
+            scale,
+        }
+    }
+
+    fn start(&self, structure: &Structure) -> DVector<f64> {
+        let mut at = DVector::zeros(self.scale.len());
+        for (link, prior) in prior::links(&structure.robot).iter().enumerate() {
+            for (index, value) in pseudo_inertia::parameters(&prior.pseudo_inertia).iter().enumerate() {
+                at[link * PER_LINK + index] = value / self.scale[link * PER_LINK + index];
+            }
+        }
+        let inertial = self.links * PER_LINK;
+        for index in 0..self.positive {
+            at[inertial + index] = self.expected[index] / self.scale[inertial + index];
+        }
+        at
+    }
+
+    fn pseudo_inertia(&self, at: &DVector<f64>, link: usize) -> Matrix4<f64> {
+        let parameter = |index: usize| at[link * PER_LINK + index] * self.scale[link * PER_LINK + index];
+        pseudo_inertia::of(&std::array::from_fn(parameter))
+    }
+
+    /// What is minimised; infinite where a link is no body.
+    fn value(&self, at: &DVector<f64>, pull: f64) -> f64 {
+        let mut value = 0.5 * (&self.design * (&self.map * at) - &self.target).norm_squared();
+        for link in 0..self.links {
+            let pseudo = self.pseudo_inertia(at, link);
+            let Some(cholesky) = pseudo.cholesky() else { return f64::INFINITY };
+            let log: f64 = 2.0 * cholesky.l().diagonal().iter().map(|x| x.ln()).sum::<f64>();
+            value += pull * ((self.inverses[link] * pseudo).trace() - log);
+        }
+        let inertial = self.links * PER_LINK;
+        for index in 0..self.positive {
+            let y = at[inertial + index];
+            if y <= 0.0 {
+                return f64::INFINITY;
+            }
+            value += pull * (y * self.scale[inertial + index] / self.expected[index] - y.ln());
+        }
+        value
+    }
+
+    /// One of Newton's steps; returns half the square of the decrement, relative to the pull.
+    fn step(&self, at: &mut DVector<f64>, pull: f64) -> f64 {
+        let design = &self.design * &self.map;
+        let residual = &design * &*at - &self.target;
+        let mut gradient = design.tr_mul(&residual);
+        let mut hessian = design.tr_mul(&design);
+        for link in 0..self.links {
+            let Some(inverse) = self.pseudo_inertia(at, link).try_inverse() else { return 0.0 };
+            let first = link * PER_LINK;
+            let turned: Vec<Matrix4<f64>> =
+                self.units.iter().enumerate().map(|(k, unit)| inverse * unit * self.scale[first + k]).collect();
+            for k in 0..PER_LINK {
+                gradient[first + k] +=
+                    pull * ((self.inverses[link] * self.units[k]).trace() * self.scale[first + k] - turned[k].trace());
+                for l in 0..PER_LINK {
+                    hessian[(first + k, first + l)] += pull * (turned[k] * turned[l]).trace();
+                }
+            }
+        }
+        let inertial = self.links * PER_LINK;
+        for index in 0..self.positive {
+            let (place, y) = (inertial + index, at[inertial + index]);
+            gradient[place] += pull * (self.scale[place] / self.expected[index] - 1.0 / y);
+            hessian[(place, place)] += pull / (y * y);
+        }
+        let Some(cholesky) = hessian.cholesky() else { return 0.0 };
+        let direction = cholesky.solve(&gradient);
+        let decrement = 0.5 * gradient.dot(&direction);
+        let before = self.value(at, pull);
+        let mut length = 1.0;
+        while length > 1e-12 {
+            let next = &*at - &direction * length;
+            if self.value(&next, pull) <= before - 0.25 * length * decrement {
+                *at = next;
+                break;
+            }
+            length *= 0.5;
+        }
+        decrement / pull.min(1.0)
+    }
+
+    fn result(&self, structure: &Structure, fit: &Fit, at: &DVector<f64>, pull: f64, decrement: f64) -> Feasible {
+        let unknowns = &self.map * at;
+        let links: Vec<Matrix4<f64>> = (0..self.links).map(|link| self.pseudo_inertia(at, link)).collect();
+        let misfit = |unknowns: &DVector<f64>| 0.5 * (&self.design * unknowns - &self.target).norm_squared();
+        let margin = links.iter().map(pseudo_inertia::margin).fold(f64::INFINITY, f64::min);
+        #[allow(clippy::cast_precision_loss)]
+        let gap = pull * (4 * self.links + self.positive) as f64;
+        let certificate = Certificate {
+            pull,
+            misfit: misfit(&unknowns),
+            least_misfit: misfit(&fit.solution),
+            decrement,
+            gap,
+            margin,
+        };
+        let inertial = self.links * PER_LINK;
+        let of = |index: usize| at[inertial + index] * self.scale[inertial + index];
+        let of_rotors = if structure.options.rotors { self.links } else { 0 };
+        let rotors = (0..self.links).map(|joint| if joint < of_rotors { of(joint) } else { 0.0 }).collect();
+        let friction = (0..self.links).map(|joint| {
+            if !structure.options.friction {
+                return [0.0; FRICTION];
+            }
+            std::array::from_fn(|k| of(of_rotors + FRICTION * joint + k))
+        });
+        Feasible { links, rotors, friction: friction.collect(), unknowns, certificate }
+    }
+}

@@ -1,0 +1,285 @@
+//! Weighted least squares on the triangles: unknowns, noise, widths of friction, and deviations.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::information::{Information, Stretch, Weighting};
+use crate::prior::Scales;
+use crate::r_factor::RFactor;
+use crate::structure::Structure;
+
+/// Rounds in which noise and unknowns settle.
+const ROUNDS: usize = 12;
+/// Rounds before the widths of friction are chosen, and in which they are.
+const FIRST: usize = 3;
+const CHOOSING: usize = 2;
+
+/// What least squares say of the unknowns.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Fit {
+    /// Base parameters; viscous, odd and even friction of each joint; the delay. Of what logs do not excite at all, 0.
+    pub solution: DVector<f64>,
+    /// Covariance of the unknowns: of errors that depend on each other over time, too.
+    pub covariance: DMatrix<f64>,
+    /// Deviation of each joint's noise, N m or N.
+    pub noise: Vec<f64>,
+    /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
+    pub delay: f64,
+    /// Which width of friction each joint has, of those that were offered.
+    pub widths: Vec<usize>,
+    /// Largest over smallest singular value of the weighted columns, each of length one.
+    pub condition: f64,
+    /// Stretches of time that the deviations are from.
+    pub stretches: usize,
+    /// The triangle of all weighted rows, torque last.
+    pub(crate) triangle: RFactor,
+}
+
+impl Fit {
+    /// Of what logs say.
+    #[must_use]
+    pub fn of(structure: &Structure, information: &Information, scales: &Scales) -> Self {
+        let total = information.total(structure);
+        let dof = structure.dof();
+        let middle = structure.options.widths.len() / 2;
+        let mut state = State { structure, scales, noise: vec![1.0; dof], widths: vec![middle; dof] };
+        for (noise, factor) in state.noise.iter_mut().zip(&total) {
+            // the torque itself, to begin with
+            let target = factor.columns() - 1;
+            let power = factor.triangle().column(target).norm_squared() / factor.weight().max(1.0);
+            *noise = if power > 0.0 { power.sqrt() } else { 1.0 };
+        }
+        for round in 0..ROUNDS {
+            if (FIRST..FIRST + CHOOSING).contains(&round) && structure.options.friction {
+                state.choose_widths(&total);
+            }
+            state.settle_noise(&total);
+        }
+        let triangle = state.stacked(&total);
+        let solution = solved(&triangle, state.count());
+        let covariance = state.covariance(&information.stretches, &triangle, &solution);
+        let condition = condition(&triangle, state.count(), &state.ridge());
+        let State { noise, widths, .. } = state;
+        let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
+        let delay = information.shift + left;
+        Self { solution, covariance, noise, delay, widths, condition, stretches: information.stretches.len(), triangle }
+    }
+
+    /// What rows are weighted by in the next pass.
+    #[must_use]
+    pub fn weighting(&self, structure: &Structure) -> Weighting {
+        let unknowns = |joint| structure.unknowns(joint);
+        let dof = structure.dof();
+        let delay = self.delay;
+        let solution = |joint| {
+            let mut values: Vec<f64> = unknowns(joint).iter().map(|&at| self.solution[at]).collect();
+            if structure.options.delay
+                && let Some(last) = values.last_mut()
+            {
+                // the torques are taken later then
+                *last = 0.0;
+            }
+            DVector::from_vec(values)
+        };
+        Weighting {
+            solutions: (0..dof).map(solution).collect(),
+            used: (0..dof).map(|joint| structure.used(joint, self.widths[joint])).collect(),
+            noise: self.noise.clone(),
+            delay,
+        }
+    }
+
+    /// The slope of half the weighted sum of squares by the unknowns.
+    #[must_use]
+    pub fn gradient(&self, unknowns: &DVector<f64>) -> DVector<f64> {
+        let count = self.solution.len();
+        let design = self.triangle.triangle().view((0, 0), (count, count));
+        let target = self.triangle.triangle().view((0, count), (count, 1));
+        design.tr_mul(&(design * unknowns - target.column(0)))
+    }
+
+    /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
+    /// of freedom less than there are stretches of time.
+    #[must_use]
+    pub fn half_interval(&self, unknown: usize) -> f64 {
+        student(self.stretches.saturating_sub(1)) * self.deviation(unknown)
+    }
+
+    /// The deviation of an unknown.
+    #[must_use]
+    pub fn deviation(&self, unknown: usize) -> f64 {
+        // what is not known stays so
+        self.covariance.get((unknown, unknown)).map_or(f64::NAN, |variance| variance.sqrt())
+    }
+}
+
+/// Errors behind the filter depend on each other across the ends of stretches, too: white noise behind a Gaussian kernel
+/// of width σ has the correlation exp(-t²/4σ²), of which stretches of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ times
+/// ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
+const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
+
+/// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.
+///
+/// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 26.7.5.
+fn student(freedom: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss)] // at most 64 stretches
+    let n = freedom.max(1) as f64;
+    let z: f64 = 1.959_964;
+    let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
+    z + (z3 + z) / (4.0 * n)
+        + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * n * n)
+        + (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * n * n * n)
+}
+
+struct State<'a> {
+    structure: &'a Structure,
+    scales: &'a Scales,
+    noise: Vec<f64>,
+    widths: Vec<usize>,
+}
+
+impl State<'_> {
+    fn count(&self) -> usize {
+        self.structure.count()
+    }
+
+    /// A joint's triangle as rows of all unknowns and the torque, in units of its noise.
+    fn rows(&self, joint: usize, width: usize, factor: &RFactor) -> DMatrix<f64> {
+        let selected = factor.selected(&self.structure.used(joint, width));
+        let mut columns = self.structure.unknowns(joint);
+        columns.push(self.count());
+        let mut rows = DMatrix::zeros(columns.len(), self.count() + 1);
+        for (from, &to) in columns.iter().enumerate() {
+            rows.set_column(to, &(selected.triangle().column(from) / self.noise[joint]));
+        }
+        rows
+    }
+
+    /// What keeps unknowns finite that no log excites: a row for each, far weaker than anything that was measured.
+    fn ridge(&self) -> DVector<f64> {
+        self.scales.ridge(self.structure)
+    }
+
+    fn stacked(&self, stretch: &Stretch) -> RFactor {
+        let mut all = RFactor::new(self.count() + 1);
+        let mut ridge = DMatrix::zeros(self.count(), self.count() + 1);
+        ridge.view_mut((0, 0), (self.count(), self.count())).set_diagonal(&self.ridge());
+        let mut add = |rows| {
+            // of as many columns
+            let _ = all.absorb_weighted(rows, 0.0);
+        };
+        add(ridge);
+        for (joint, factor) in stretch.iter().enumerate() {
+            add(self.rows(joint, self.widths[joint], factor));
+        }
+        all
+    }
+
+    /// The noise is what is left, with as many degrees of freedom as the unknowns leave to the joint.
+    fn settle_noise(&mut self, total: &Stretch) {
+        let triangle = self.stacked(total);
+        let solution = solved(&triangle, self.count());
+        let Some(inverse) = inverse(&triangle, self.count()) else { return };
+        for (joint, factor) in total.iter().enumerate() {
+            let rows = self.rows(joint, self.widths[joint], factor);
+            let (design, target) = (rows.columns(0, self.count()), rows.column(self.count()));
+            let residual = (target - design * &solution).norm_squared() * self.noise[joint].powi(2);
+            let taken = (design * &inverse).norm_squared();
+            let left = (factor.weight() - taken).max(1.0);
+            let power = factor.triangle().column(factor.columns() - 1).norm_squared() / factor.weight().max(1.0);
+            self.noise[joint] = (residual / left).sqrt().max(1e-9 * power.sqrt()).max(f64::MIN_POSITIVE);
+        }
+    }
+
+    /// Joint by joint the width that leaves the least.
+    fn choose_widths(&mut self, total: &Stretch) {
+        for joint in 0..self.structure.dof() {
+            let before = self.widths[joint];
+            let left = |state: &Self| {
+                let triangle = state.stacked(total);
+                triangle.triangle()[(state.count(), state.count())].abs()
+            };
+            let mut best = (before, left(self));
+            for width in 0..self.structure.options.widths.len() {
+                self.widths[joint] = width;
+                let left = left(self);
+                if left < best.1 {
+                    best = (width, left);
+                }
+            }
+            self.widths[joint] = best.0;
+        }
+    }
+
+    /// The covariance of the unknowns by leaving out one stretch of time after the other: errors within a stretch may
+    /// depend on each other as they like.
+    ///
+    /// B. Efron, C. Stein, The jackknife estimate of variance, Annals of Statistics 9 (1981), 586-596.
+    fn covariance(&self, stretches: &[Stretch], triangle: &RFactor, solution: &DVector<f64>) -> DMatrix<f64> {
+        let count = self.count();
+        let Some(inverse) = inverse(triangle, count) else { return DMatrix::from_element(count, count, f64::NAN) };
+        let mut sum = DMatrix::zeros(count, count);
+        let mut shifts: Vec<DVector<f64>> = Vec::with_capacity(stretches.len());
+        for stretch in stretches {
+            // in the coordinates in which all rows together are the unit matrix
+            let mut share = DMatrix::identity(count, count);
+            let mut pull = DVector::zeros(count);
+            for (joint, factor) in stretch.iter().enumerate() {
+                let rows = self.rows(joint, self.widths[joint], factor);
+                let design = rows.columns(0, count) * &inverse;
+                let residual = rows.column(count) - rows.columns(0, count) * solution;
+                pull += design.tr_mul(&residual);
+                share -= design.tr_mul(&design);
+            }
+            // what only this stretch tells has no finite deviation
+            for at in 0..count {
+                share[(at, at)] += 1e-9;
+            }
+            let shift = share.cholesky().map_or_else(|| pull.clone(), |cholesky| cholesky.solve(&pull));
+            shifts.push(shift);
+        }
+        #[allow(clippy::cast_precision_loss)]
+        let number = shifts.len() as f64;
+        let mean: DVector<f64> = shifts.iter().fold(DVector::zeros(count), |sum, shift| sum + shift) / number.max(1.0);
+        for shift in &shifts {
+            let shift = shift - &mean;
+            sum += &shift * shift.transpose();
+        }
+        if number < 2.0 {
+            return DMatrix::from_element(count, count, f64::NAN);
+        }
+        let rows: u64 = stretches.iter().filter_map(|stretch| Some(stretch.first()?.rows())).sum();
+        #[allow(clippy::cast_precision_loss)]
+        let length = rows as f64 / number;
+        let across = if self.structure.options.cutoff.is_some() { ACROSS / length.max(2.0 * ACROSS) } else { 0.0 };
+        &inverse * (sum * ((number - 1.0) / number / (1.0 - across))) * inverse.transpose()
+    }
+}
+
+/// The unknowns of a triangle whose last column is the torque.
+pub(crate) fn solved(triangle: &RFactor, count: usize) -> DVector<f64> {
+    let square = triangle.triangle().view((0, 0), (count, count));
+    let target = triangle.triangle().view((0, count), (count, 1));
+    square
+        .solve_upper_triangular(&target.clone_owned())
+        .map_or_else(|| DVector::zeros(count), |solution| solution.column(0).clone_owned())
+}
+
+fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
+    triangle.triangle().view((0, 0), (count, count)).solve_upper_triangular(&DMatrix::identity(count, count))
+}
+
+/// Of the columns, each of length one; those that the ridge alone holds are left out.
+fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
+    let square = triangle.triangle().view((0, 0), (count, count));
+    let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
+    if kept.is_empty() {
+        return 1.0;
+    }
+    let mut columns = square.clone_owned().select_columns(&kept);
+    for mut column in columns.column_iter_mut() {
+        column.normalize_mut();
+    }
+    let values = columns.singular_values();
+    if values.is_empty() { 1.0 } else { values.max() / values.min() }
+}

@@ -1,0 +1,256 @@
+//! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and what is said of them.
+
+use nalgebra::Matrix4;
+use rne_logs::Motion;
+use rne_model::{Inertia, InertiaReference, Link, Motor, Robot};
+
+use crate::feasible::Feasible;
+use crate::fit::Fit;
+use crate::information::{Information, MotionError, Weighting};
+use crate::parameters::{PER_LINK, name};
+use crate::prediction::{JointError, Prediction};
+use crate::prior::Scales;
+use crate::pseudo_inertia;
+use crate::structure::{FRICTION, Options, Structure};
+
+/// Passes over the logs: one to begin with, and two in which rows that are far off count less.
+const PASSES: usize = 3;
+
+/// A base parameter is not excited where its deviation is larger than this part of what plausible links would give it.
+const UNKNOWN: f64 = 0.5;
+
+/// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
+const NOISE: f64 = 0.5;
+
+/// Digits of what is written.
+const DIGITS: i32 = 8;
+
+/// A robot that was identified, with everything that is said of it.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Identification {
+    /// The robot: the geometry that was given, links and motors that were identified.
+    pub robot: Robot,
+    /// The columns.
+    pub structure: Structure,
+    /// What least squares say, without asking whether bodies can be so.
+    pub fit: Fit,
+    /// What bodies can be.
+    pub feasible: Feasible,
+    /// Every base parameter, base to tip.
+    pub bases: Vec<BaseReport>,
+    /// Every joint.
+    pub joints: Vec<JointReport>,
+    /// How much the torques lag behind the positions, s, with its deviation.
+    pub delay: Option<(f64, f64)>,
+    /// States that were read, and rows of each joint that were made of them.
+    pub states: u64,
+    /// Rows of each joint.
+    pub rows: u64,
+    /// s
+    pub duration: f64,
+}
+
+/// What is known of a base parameter.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct BaseReport {
+    /// `Jzz2`
+    pub name: String,
+    /// `Jzz2 + 0.3745 m3`
+    pub combination: String,
+    /// kg m², kg m or kg: by least squares alone.
+    pub value: f64,
+    /// Its standard deviation.
+    pub deviation: f64,
+    /// What the links of the file make of it.
+    pub written: f64,
+    /// Half the width of its interval of 95 %, by Student's t of the stretches of time.
+    pub half_interval: f64,
+    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited.
+    pub uncertainty: f64,
+}
+
+impl BaseReport {
+    /// Whether the logs tell it; else the file's value is what was supposed before.
+    #[must_use]
+    pub fn is_excited(&self) -> bool {
+        self.uncertainty < UNKNOWN
+    }
+}
+
+/// What is known of a joint.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct JointReport {
+    /// Noise behind the filter, N m or N.
+    pub noise: f64,
+    /// Over the logs that it was identified from.
+    pub error: JointError,
+    /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
+    pub friction: Option<[(f64, f64); FRICTION]>,
+    /// rad/s: about which Coulomb friction changes its sign.
+    pub width: Option<f64>,
+    /// kg m² at the joint.
+    pub rotor: Option<f64>,
+}
+
+impl JointReport {
+    /// Whether the logs tell its torque from noise.
+    #[must_use]
+    pub fn is_excited(&self) -> bool {
+        self.error.unfiltered < NOISE
+    }
+}
+
+/// Identifies a robot. `pass` hands every motion of the logs to what it is given, each time it is called; the motions
+/// may be parts of logs. `pull` is γ of [`Feasible`].
+///
+/// # Errors
+/// When a motion is of another robot, or what `pass` fails with.
+pub fn identify<E>(
+    robot: &Robot,
+    options: Options,
+    pull: f64,
+    mut pass: impl FnMut(&mut dyn FnMut(&Motion) -> Result<(), MotionError>) -> Result<(), E>,
+) -> Result<Identification, E> {
+    let structure = Structure::new(robot, options);
+    let mut one = |weighting: Option<&Weighting>| -> Result<(Information, Scales, Fit), E> {
+        let mut information = Information::new(&structure);
+        pass(&mut |motion| information.absorb(&structure, motion, weighting))?;
+        let scales = scales(&structure, &information);
+        let fit = Fit::of(&structure, &information, &scales);
+        Ok((information, scales, fit))
+    };
+    let mut found = one(None)?;
+    for _ in 1..PASSES {
+        found = one(Some(&found.2.weighting(&structure)))?;
+    }
+    let (information, scales, fit) = found;
+    let feasible = Feasible::of(&structure, &fit, &scales, pull);
+    let identified = robot_of(&structure, &fit, &feasible);
+    let mut prediction = Prediction::new(&identified, structure.options.cutoff);
+    pass(&mut |motion| prediction.absorb(motion))?;
+    let bases = bases(&structure, &fit, &scales, &identified);
+    let joints = joints(&structure, &fit, &feasible, &prediction.errors());
+    // what the last pass found beyond what its rows were shifted by
+    let delay = structure.options.delay.then(|| {
+        let at = fit.solution.len() - 1;
+        (fit.delay, fit.deviation(at))
+    });
+    Ok(Identification {
+        robot: identified,
+        states: information.states(),
+        rows: information.rows(),
+        duration: information.duration(),
+        structure,
+        fit,
+        feasible,
+        bases,
+        joints,
+        delay,
+    })
+}
+
+/// How large unknowns are, where efforts are as large as in the logs.
+#[must_use]
+pub fn scales(structure: &Structure, information: &Information) -> Scales {
+    let efforts: Vec<f64> = information
+        .total(structure)
+        .iter()
+        .map(|factor| {
+            let power = factor.triangle().column(factor.columns() - 1).norm_squared();
+            (power / factor.weight().max(1.0)).sqrt()
+        })
+        .collect();
+    Scales::of(&structure.robot, &structure.parameters, &efforts)
+}
+
+fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
+    let parameters = structure.parameters();
+    let written = &parameters.regrouping * parameters.of_robot(robot);
+    let each = parameters.bases.iter().enumerate().map(|(at, base)| BaseReport {
+        name: name(base.kept),
+        combination: base.combination(),
+        value: fit.solution[at],
+        deviation: fit.deviation(at),
+        half_interval: fit.half_interval(at),
+        written: written[at],
+        uncertainty: fit.deviation(at) / scales.bases[at],
+    });
+    each.collect()
+}
+
+fn joints(structure: &Structure, fit: &Fit, feasible: &Feasible, errors: &[JointError]) -> Vec<JointReport> {
+    let rank = structure.parameters.rank();
+    let each = errors.iter().enumerate().map(|(joint, error)| {
+        let friction = structure.options.friction.then(|| {
+            let at = rank + FRICTION * joint;
+            let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
+            let both =
+                |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
+            let [viscous, forward, backward] = feasible.friction[joint];
+            [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
+        });
+        JointReport {
+            noise: fit.noise[joint],
+            error: *error,
+            friction,
+            width: structure.options.friction.then(|| structure.options.widths[fit.widths[joint]]),
+            rotor: structure.options.rotors.then(|| feasible.rotors[joint]),
+        }
+    });
+    each.collect()
+}
+
+/// The robot with these links and motors.
+fn robot_of(structure: &Structure, fit: &Fit, feasible: &Feasible) -> Robot {
+    let mut robot = structure.robot.clone();
+    for (at, joint) in robot.joints.iter_mut().enumerate() {
+        joint.row.link = link(&feasible.links[at]);
+        joint.written_inertia = (joint.row.link.inertia, InertiaReference::Com);
+        let before = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
+        let ratio = before.gear_ratio.abs();
+        let mut motor = before;
+        if structure.options.rotors {
+            motor.inertia = rounded(feasible.rotors[at] / (ratio * ratio));
+        }
+        if structure.options.friction {
+            let [viscous, forward, backward] = feasible.friction[at];
+            motor.viscous = rounded(viscous / (ratio * ratio));
+            motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];
+            joint.coulomb_width = Some(structure.options.widths[fit.widths[at]]);
+        }
+        if structure.options.rotors || structure.options.friction {
+            joint.motor = Some(motor);
+        }
+    }
+    robot
+}
+
+/// A link of a pseudo-inertia: mass, centre of mass, inertia about it.
+fn link(pseudo: &Matrix4<f64>) -> Link {
+    let [mass, hx, hy, hz, ..]: [f64; PER_LINK] = pseudo_inertia::parameters(pseudo);
+    let com = [hx / mass, hy / mass, hz / mass];
+    let second = pseudo.fixed_view::<3, 3>(0, 0);
+    let centred = |row: usize, column: usize| second[(row, column)] - mass * com[row] * com[column];
+    let trace = centred(0, 0) + centred(1, 1) + centred(2, 2);
+    Link {
+        mass: rounded(mass),
+        com: com.map(rounded),
+        inertia: Inertia {
+            xx: rounded(trace - centred(0, 0)),
+            yy: rounded(trace - centred(1, 1)),
+            zz: rounded(trace - centred(2, 2)),
+            xy: rounded(-centred(0, 1)),
+            xz: rounded(-centred(0, 2)),
+            yz: rounded(-centred(1, 2)),
+        },
+        first_moment: [0.0; 3],
+    }
+}
+
+/// A number with as many digits as are written.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.*e}", usize::try_from(DIGITS - 1).unwrap_or_default()).parse().unwrap_or(value)
+}

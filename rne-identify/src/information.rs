@@ -1,0 +1,383 @@
+//! What logs say of the unknowns: triangles of the weighted rows, in memory that does not grow with the logs.
+
+use std::fmt;
+
+use nalgebra::{DMatrix, DVector};
+use rne_logs::Motion;
+use rne_machine::{Arguments, Array, Destination, EvaluationError, Function};
+
+use crate::parameters::PER_LINK;
+use crate::r_factor::RFactor;
+use crate::smoothing::{Kernel, Weights};
+use crate::structure::{Structure, smooth_sign};
+
+/// States that are computed at once.
+const WINDOW: usize = 2048;
+
+/// Stretches of time that are kept apart, at most; beyond that neighbours merge.
+const STRETCHES: usize = 64;
+
+/// A stretch lasts so many widths of the filter at least; without filter it has so many states.
+const LENGTH: f64 = 20.0;
+const STATES_UNFILTERED: u64 = 64;
+
+/// A row that is off by more deviations than that counts less: Huber's function.
+const HUBER: f64 = 2.5;
+
+/// What the fit before says of each row: by it rows are weighted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Weighting {
+    /// Unknowns of each joint's columns.
+    pub(crate) solutions: Vec<DVector<f64>>,
+    /// Columns of each joint that they belong to.
+    pub(crate) used: Vec<Vec<usize>>,
+    /// Deviation of each joint's noise, N m or N.
+    pub(crate) noise: Vec<f64>,
+    /// s
+    pub(crate) delay: f64,
+}
+
+/// The triangles of every joint's rows over a stretch of time.
+pub(crate) type Stretch = Vec<RFactor>;
+
+/// What logs say of the unknowns: for each joint the triangle of its rows, in up to 64 stretches of time, from which
+/// deviations are computed that know of dependent errors. Parts of logs may be taken in by several of these, that merge
+/// into one.
+#[derive(Clone, Debug)]
+pub struct Information {
+    pub(crate) stretches: Vec<Stretch>,
+    /// Rows of a joint in each.
+    length: u64,
+    /// States read, and those that became rows.
+    pub(crate) states: u64,
+    pub(crate) duration: f64,
+    /// s: how much later torques were taken.
+    pub(crate) shift: f64,
+}
+
+/// Why a motion says nothing of a robot.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// It is of another number of joints.
+    Joints {
+        /// Of the robot.
+        expected: usize,
+        /// Of the motion.
+        found: usize,
+    },
+    /// A list has another length than the times.
+    Lengths,
+    /// A number is not finite: the index of the state.
+    NotFinite(usize),
+    /// The regressor cannot be computed.
+    Evaluation(EvaluationError),
+}
+
+impl fmt::Display for MotionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Joints { expected, found } => {
+                write!(f, "the log has {found} joints and the robot {expected}; name those that belong to the robot")
+            }
+            Self::Lengths => f.write_str("positions, rates, accelerations and torques are not as many as times"),
+            Self::NotFinite(state) => write!(f, "state {state} has a number that is not finite"),
+            Self::Evaluation(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for MotionError {}
+
+impl From<EvaluationError> for MotionError {
+    fn from(error: EvaluationError) -> Self {
+        Self::Evaluation(error)
+    }
+}
+
+pub(crate) fn checked(dof: usize, motion: &Motion) -> Result<(), MotionError> {
+    let lists = [&motion.q, &motion.qd, &motion.qdd, &motion.tau];
+    if let Some(list) = lists.iter().find(|list| list.len() != dof) {
+        return Err(MotionError::Joints { expected: dof, found: list.len() });
+    }
+    let mut columns = lists.iter().flat_map(|list| list.iter());
+    if columns.any(|column| column.len() != motion.len()) {
+        return Err(MotionError::Lengths);
+    }
+    let columns = lists.iter().flat_map(|list| list.iter()).chain([&motion.time]);
+    match columns.filter_map(|column| column.iter().position(|x| !x.is_finite())).min() {
+        Some(state) => Err(MotionError::NotFinite(state)),
+        None => Ok(()),
+    }
+}
+
+impl Information {
+    /// Of no log.
+    #[must_use]
+    pub fn new(structure: &Structure) -> Self {
+        let length = match structure.options.cutoff {
+            // one row per width of the filter
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            Some(_) => LENGTH as u64,
+            None => STATES_UNFILTERED,
+        };
+        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0 }
+    }
+
+    /// How many states it has read.
+    #[must_use]
+    pub fn states(&self) -> u64 {
+        self.states
+    }
+
+    /// How many rows it has of each joint.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.stretches.iter().filter_map(|stretch| Some(stretch.first()?.rows())).sum()
+    }
+
+    /// How long the motions were, s.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration
+    }
+
+    /// How many numbers it keeps, whatever the logs were: what its memory is proportional to.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.stretches.iter().flatten().map(|factor| factor.columns() * factor.columns()).sum()
+    }
+
+    /// Takes in a motion; its rows are weighted by what a fit before says of them.
+    ///
+    /// # Errors
+    /// When the motion is of another robot, or has numbers that are not finite; nothing has been taken in then.
+    pub fn absorb(
+        &mut self,
+        structure: &Structure,
+        motion: &Motion,
+        weighting: Option<&Weighting>,
+    ) -> Result<(), MotionError> {
+        checked(structure.dof(), motion)?;
+        let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else { return Ok(()) };
+        self.states += motion.len() as u64;
+        self.duration += last - first;
+        let delay = weighting.map_or(0.0, |weighting| weighting.delay);
+        self.shift = delay;
+        let instants = instants(structure, &motion.time, delay);
+        for instants in instants.chunks(WINDOW) {
+            for (rows, weights) in rows(structure, motion, instants, weighting, delay)? {
+                self.take(rows, weights);
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes in everything that another has, of the same structure.
+    pub fn merge(&mut self, other: Self) {
+        self.length = self.length.max(other.length);
+        self.states += other.states;
+        self.shift = other.shift;
+        self.duration += other.duration;
+        self.stretches.extend(other.stretches);
+        self.compress();
+    }
+
+    /// Of each joint the triangle of all its rows.
+    pub(crate) fn total(&self, structure: &Structure) -> Stretch {
+        let mut total: Stretch = (0..structure.dof()).map(|joint| RFactor::new(structure.columns(joint))).collect();
+        for stretch in &self.stretches {
+            add(&mut total, stretch);
+        }
+        total
+    }
+
+    fn take(&mut self, rows: Vec<DMatrix<f64>>, weights: Vec<f64>) {
+        let is_full = |stretch: &Stretch| stretch.first().is_none_or(|factor| factor.rows() >= self.length);
+        if self.stretches.last().is_none_or(is_full) {
+            self.stretches.push(rows.iter().map(|rows| RFactor::new(rows.ncols())).collect());
+        }
+        if let Some(stretch) = self.stretches.last_mut() {
+            for ((factor, rows), weight) in stretch.iter_mut().zip(rows).zip(weights) {
+                // of as many columns as the factor was made with
+                let _ = factor.absorb_weighted(rows, weight);
+            }
+        }
+        self.compress();
+    }
+
+    fn compress(&mut self) {
+        while self.stretches.len() > STRETCHES {
+            self.length *= 2;
+            let mut merged: Vec<Stretch> = Vec::with_capacity(self.stretches.len().div_ceil(2));
+            for stretch in self.stretches.drain(..) {
+                match merged.last_mut().filter(|last| rows_of(last) + rows_of(&stretch) <= self.length + 2) {
+                    Some(last) => add(last, &stretch),
+                    None => merged.push(stretch),
+                }
+            }
+            self.stretches = merged;
+        }
+    }
+}
+
+fn rows_of(stretch: &Stretch) -> u64 {
+    stretch.first().map_or(0, RFactor::rows)
+}
+
+fn add(total: &mut Stretch, stretch: &Stretch) {
+    for (total, factor) in total.iter_mut().zip(stretch) {
+        // of the same structure
+        let _ = total.merge(factor);
+    }
+}
+
+/// Where rows are made: at every state without filter, else as densely as what has passed it can tell apart, and where
+/// the whole kernel finds samples.
+fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
+    let Some(cutoff) = structure.options.cutoff else { return time.to_vec() };
+    let kernel = Kernel::of_cutoff(cutoff);
+    let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
+    let (first, last) = (first + kernel.reach() + delay.abs(), last - kernel.reach() - delay.abs());
+    if first > last {
+        return Vec::new();
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // as many as a log has states, or fewer
+    let count = ((last - first) / kernel.width()) as u64;
+    #[allow(clippy::cast_precision_loss)]
+    (0..=count).map(|k| first + k as f64 * kernel.width()).collect()
+}
+
+type Rows = (Vec<DMatrix<f64>>, Vec<f64>);
+
+/// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a stretch's length.
+fn rows(
+    structure: &Structure,
+    motion: &Motion,
+    instants: &[f64],
+    weighting: Option<&Weighting>,
+    delay: f64,
+) -> Result<Vec<Rows>, MotionError> {
+    let (Some(start), Some(end)) = (instants.first(), instants.last()) else { return Ok(Vec::new()) };
+    let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
+    let reach = kernel.map_or(0.0, Kernel::reach) + delay.abs();
+    let from = motion.time.partition_point(|time| *time < start - reach);
+    let to = motion.time.partition_point(|time| *time <= end + reach);
+    let time = &motion.time[from..to];
+    let plain = plain_columns(structure, motion, from..to)?;
+    let weights: Vec<Weights> = match kernel {
+        Some(kernel) => instants.iter().map(|instant| kernel.about(time, *instant)).collect(),
+        None => Vec::new(),
+    };
+    // the torques answer later by the delay
+    let late: Vec<Weights> = match kernel {
+        Some(kernel) if delay != 0.0 => instants.iter().map(|at| kernel.about(time, at + delay)).collect(),
+        _ => Vec::new(),
+    };
+    let late = if late.is_empty() { &weights } else { &late };
+    let has_delay = structure.options.delay;
+    let of_joint = |joint: usize| -> DMatrix<f64> {
+        let columns = structure.columns(joint);
+        let inner = columns - 1 - usize::from(has_delay);
+        let tau = &motion.tau[joint][from..to];
+        DMatrix::from_fn(instants.len(), columns, |row, column| match (kernel.is_some(), column) {
+            (true, column) if column < inner => weights[row].of(plain[joint].column(column).as_slice()),
+            (true, column) if column + 1 < columns => -late[row].slope_of(tau),
+            (true, _) => late[row].of(tau),
+            (false, column) if column < inner => plain[joint][(row, column)],
+            (false, column) if column + 1 < columns => -slope(time, tau, row),
+            (false, _) => tau[row],
+        })
+    };
+    let mut all: Vec<DMatrix<f64>> = (0..structure.dof()).map(of_joint).collect();
+    let mut row_weights: Vec<Vec<f64>> = Vec::with_capacity(all.len());
+    for (joint, rows) in all.iter_mut().enumerate() {
+        let weights = weighting.map_or_else(|| vec![1.0; rows.nrows()], |weighting| weighting.of(joint, rows));
+        for (mut row, weight) in rows.row_iter_mut().zip(&weights) {
+            row *= weight.sqrt();
+        }
+        row_weights.push(weights);
+    }
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let piece = if kernel.is_some() { LENGTH as usize } else { 64 };
+    let mut pieces = Vec::with_capacity(instants.len().div_ceil(piece));
+    for start in (0..instants.len()).step_by(piece) {
+        let count = piece.min(instants.len() - start);
+        let rows = all.iter().map(|rows| rows.rows(start, count).clone_owned()).collect();
+        let weights = row_weights.iter().map(|weights| weights[start..start + count].iter().sum()).collect();
+        pieces.push((rows, weights));
+    }
+    Ok(pieces)
+}
+
+/// The slope of samples about one of them.
+fn slope(time: &[f64], values: &[f64], at: usize) -> f64 {
+    let (before, after) = (at.saturating_sub(1), (at + 1).min(values.len() - 1));
+    let elapsed = time[after] - time[before];
+    if elapsed > 0.0 { (values[after] - values[before]) / elapsed } else { 0.0 }
+}
+
+/// The columns of every joint's rows at every state, but for those of the torque.
+fn plain_columns(
+    structure: &Structure,
+    motion: &Motion,
+    range: std::ops::Range<usize>,
+) -> Result<Vec<DMatrix<f64>>, MotionError> {
+    let dof = structure.dof();
+    let states = range.len();
+    let of =
+        |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|column| column[range.clone()].to_vec()).collect() };
+    let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
+    let [q_columns, qd_columns, qdd_columns] =
+        [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    let arguments = Arguments::new()
+        .q(Array::Columns(&q_columns))
+        .qd(Array::Columns(&qd_columns))
+        .qdd(Array::Columns(&qdd_columns));
+    let mut regressor = DMatrix::zeros(states, dof * dof * PER_LINK);
+    let columns = regressor.as_mut_slice().chunks_mut(states.max(1)).collect();
+    if states > 0 {
+        structure.arm.run(Function::Regressor, states, &arguments, Destination::Columns(columns))?;
+    }
+    let friction = structure.options.friction;
+    let of_joint = |joint: usize| {
+        let mut columns: Vec<DVector<f64>> = Vec::with_capacity(structure.columns(joint));
+        for &base in &structure.felt[joint] {
+            columns.push(match structure.parameters.bases[base].kept {
+                crate::Parameter::Link(link, index) => {
+                    regressor.column((joint * dof + link) * PER_LINK + index).clone_owned()
+                }
+                crate::Parameter::Rotor(_) => DVector::from_column_slice(&qdd[joint]),
+            });
+        }
+        if friction {
+            columns.push(DVector::from_column_slice(&qd[joint]));
+            for &width in &structure.options.widths {
+                let odd = DVector::from_iterator(states, qd[joint].iter().map(|speed| smooth_sign(*speed, width)));
+                let even = odd.map(|sign| sign * sign);
+                columns.extend([odd, even]);
+            }
+        }
+        DMatrix::from_columns(&columns)
+    };
+    Ok((0..dof).map(of_joint).collect())
+}
+
+impl Weighting {
+    /// Huber's weights of a joint's rows.
+    fn of(&self, joint: usize, rows: &DMatrix<f64>) -> Vec<f64> {
+        let (used, solution) = (&self.used[joint], &self.solutions[joint]);
+        let noise = self.noise[joint];
+        rows.row_iter()
+            .map(|row| {
+                let mut residual = used.last().map_or(0.0, |&target| row[target]);
+                for (&column, value) in used.iter().zip(solution.iter()) {
+                    residual -= row[column] * value;
+                }
+                let off = residual.abs() / noise;
+                // what is no number counts as it is
+                if off > HUBER { HUBER / off } else { 1.0 }
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,197 @@
+//! The unknowns: base parameters of links and rotors, and how they are made of the links' own.
+
+use nalgebra::{DMatrix, DVector};
+use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
+use rne_model::{Link, Robot};
+use rne_runtime::{DynArm, LinkParameter};
+
+/// Inertial parameters of a link.
+pub(crate) const PER_LINK: usize = 10;
+
+/// Random states from which factors are computed that are no small whole numbers.
+const STATES: usize = 60;
+
+/// A combination of parameters of links and rotors that the torques can see.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Base {
+    /// The parameter that stands for it.
+    pub kept: Parameter,
+    /// What is regrouped into it, with factors.
+    pub regrouped: Vec<(f64, Parameter)>,
+}
+
+impl Base {
+    /// In words: `Jzz2 + 0.3745 m3 - mcx4`.
+    #[must_use]
+    pub fn combination(&self) -> String {
+        let mut text = name(self.kept);
+        for (factor, parameter) in &self.regrouped {
+            let sign = if *factor < 0.0 { '-' } else { '+' };
+            let size = factor.abs();
+            let size = if size == 1.0 { String::new() } else { format!("{} ", (size * 1e4).round() / 1e4) };
+            text.push_str(&format!(" {sign} {size}{}", name(*parameter)));
+        }
+        text
+    }
+}
+
+/// The base parameters of a robot's geometry, and the map to them from the parameters of its links and rotors.
+#[derive(Clone, Debug)]
+pub struct Parameters {
+    /// One per independent column of the regressor, base to tip, then rotors.
+    pub bases: Vec<Base>,
+    /// Rank × (10 · links + rotors): base parameters of link parameters, link by link as (m, m cx, m cy, m cz, Jxx,
+    /// Jxy, Jxz, Jyy, Jyz, Jzz), then the rotors'.
+    pub regrouping: DMatrix<f64>,
+    pub(crate) rotors: bool,
+}
+
+impl Parameters {
+    /// Of the geometry of a robot; what its links weigh does not matter. With rotors where they are asked for.
+    #[must_use]
+    pub fn of(robot: &Robot, rotors: bool) -> Self {
+        let Identifiability { parameters, .. } = Compiler::new(robot).identifiability(rotors);
+        let dof = robot.dof();
+        let kept: Vec<Parameter> = parameters
+            .iter()
+            .filter(|(_, visibility)| *visibility == Visibility::Kept)
+            .map(|(parameter, _)| *parameter)
+            .collect();
+        let place = |parameter: Parameter| match parameter {
+            Parameter::Link(link, index) => link * PER_LINK + index,
+            Parameter::Rotor(joint) => dof * PER_LINK + joint,
+        };
+        let all = dof * PER_LINK + if rotors { dof } else { 0 };
+        let stacked = stacked(robot, all);
+        let mut bases: Vec<Base> = kept.iter().map(|&kept| Base { kept, regrouped: Vec::new() }).collect();
+        let mut regrouping = DMatrix::zeros(kept.len(), all);
+        for (row, &parameter) in kept.iter().enumerate() {
+            regrouping[(row, place(parameter))] = 1.0;
+        }
+        for (parameter, visibility) in &parameters {
+            let Visibility::Regrouped(parts) = visibility else { continue };
+            // which factors there are is exact; those that are no whole numbers are lengths and their products
+            let unknown: Vec<usize> = parts.iter().filter(|part| part.1.is_none()).map(|part| part.0).collect();
+            let mut rest: DVector<f64> = stacked.column(place(*parameter)).clone_owned();
+            for (at, whole) in parts {
+                if let Some(whole) = whole {
+                    rest.axpy(-f64::from(*whole), &stacked.column(place(kept[*at])), 1.0);
+                }
+            }
+            let columns: Vec<usize> = unknown.iter().map(|&at| place(kept[at])).collect();
+            let found = match columns.is_empty() {
+                true => DVector::zeros(0),
+                false => stacked.select_columns(&columns).svd(true, true).solve(&rest, 0.0).unwrap_or_default(),
+            };
+            for (at, whole) in parts {
+                let position = unknown.iter().position(|other| other == at);
+                let factor = whole.map(f64::from).or_else(|| Some(found[position?])).unwrap_or_default();
+                regrouping[(*at, place(*parameter))] = factor;
+                bases[*at].regrouped.push((factor, *parameter));
+            }
+        }
+        Self { bases, regrouping, rotors }
+    }
+
+    /// How many base parameters there are.
+    #[must_use]
+    pub fn rank(&self) -> usize {
+        self.bases.len()
+    }
+
+    /// The parameters of links and rotors as [`regrouping`](Self::regrouping) counts them, of a robot.
+    #[must_use]
+    pub fn of_robot(&self, robot: &Robot) -> DVector<f64> {
+        let arm = DynArm::from_robot(robot);
+        let mut values: Vec<f64> = arm.inertial_parameters().into_iter().flatten().collect();
+        if self.rotors {
+            values.extend(
+                robot
+                    .joints
+                    .iter()
+                    .map(|joint| joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia)),
+            );
+        }
+        DVector::from_vec(values)
+    }
+
+    /// Whether the torque of a joint may depend on a base parameter.
+    pub(crate) fn is_felt(base: &Base, joint: usize) -> bool {
+        match base.kept {
+            Parameter::Link(link, _) => link >= joint,
+            Parameter::Rotor(of) => of == joint,
+        }
+    }
+}
+
+/// The regressor with the columns of rotors at random states, one below the other.
+fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
+    let dof = robot.dof();
+    let bare = Robot {
+        joints: robot
+            .joints
+            .iter()
+            .cloned()
+            .map(|mut joint| {
+                joint.row.link = Link::default();
+                joint
+            })
+            .collect(),
+        rotors: false,
+        ..robot.clone()
+    };
+    let arm = DynArm::from_robot(&bare);
+    let mut random = Random(1);
+    let mut stacked = DMatrix::zeros(STATES * dof, columns);
+    for state in 0..STATES {
+        let mut numbers = |most: f64| -> Vec<f64> { (0..dof).map(|_| most * random.number()).collect() };
+        let (q, qd, qdd) = (numbers(std::f64::consts::PI), numbers(1.0), numbers(1.0));
+        // there is one number per joint
+        let Ok(matrix) = arm.regressor(&q, &qd, &qdd) else { continue };
+        for (joint, torque) in matrix.iter().enumerate() {
+            for (at, element) in torque.iter().flatten().enumerate() {
+                stacked[(state * dof + joint, at)] = *element;
+            }
+            if columns > dof * PER_LINK {
+                stacked[(state * dof + joint, dof * PER_LINK + joint)] = qdd[joint];
+            }
+        }
+    }
+    stacked
+}
+
+/// The name of a parameter, joints counted from 1: `Jzz2`, `Jm3`.
+#[must_use]
+pub fn name(parameter: Parameter) -> String {
+    match parameter {
+        Parameter::Link(link, index) => LinkParameter { link, index }.to_string(),
+        Parameter::Rotor(joint) => format!("Jm{}", joint + 1),
+    }
+}
+
+/// The unit of a parameter, of a rotor at a revolute joint.
+#[must_use]
+pub const fn unit(parameter: Parameter) -> &'static str {
+    match parameter {
+        Parameter::Link(_, 0) => "kg",
+        Parameter::Link(_, 1..=3) => "kg m",
+        _ => "kg m²",
+    }
+}
+
+/// Steele's SplitMix64: the same states on every machine.
+struct Random(u64);
+
+impl Random {
+    /// Between -1 and 1.
+    #[allow(clippy::cast_precision_loss)] // 53 bits
+    fn number(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut bits = self.0;
+        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        bits ^= bits >> 31;
+        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}

@@ -1,0 +1,212 @@
+//! What a robot file says of a log: predicted torques beside measured ones.
+
+use rne_logs::Motion;
+use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
+use rne_model::{Joint, Robot};
+
+use crate::information::{MotionError, checked};
+use crate::smoothing::Kernel;
+use crate::structure::smooth_sign;
+
+/// States that are computed at once.
+const WINDOW: usize = 4096;
+
+/// Speeds, rad/s or m/s, that part errors: standing still, creeping, slow, fast.
+pub const SPEEDS: [f64; 3] = [0.02, 0.1, 0.5];
+
+/// Torques of a robot file, held against those of logs in memory that does not grow with them.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    robot: Robot,
+    arm: CompiledArm,
+    cutoff: Option<f64>,
+    sums: Vec<Sums>,
+}
+
+/// How far predicted torques of a joint are from measured ones.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct JointError {
+    /// Root mean square of measured minus predicted, both behind the same low-pass, over the deviation of the measured
+    /// effort: of the states about which the log has the whole kernel of the low-pass, unless it is shorter than that.
+    pub error: f64,
+    /// The same at every instant, without the low-pass.
+    pub unfiltered: f64,
+    /// Root mean square of measured minus predicted behind the low-pass, N m or N.
+    pub residual: f64,
+    /// Deviation of the measured effort, N m or N.
+    pub deviation: f64,
+    /// Root mean square of what is left at speeds up to each of [`SPEEDS`], and above; NaN where the joint was at none.
+    pub by_speed: [f64; 4],
+    /// How many states.
+    pub states: u64,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    states: u64,
+    mean: f64,
+    squares: f64,
+    unfiltered: f64,
+    inner: u64,
+    filtered: f64,
+    by_speed: [(u64, f64); 4],
+}
+
+/// Measured and predicted torques behind the low-pass, by joint, and the speed.
+type Pairs = Vec<Vec<(f64, f64)>>;
+
+impl Prediction {
+    /// By a robot with its rotors and friction. Both sides pass a low-pass of this cut-off, Hz.
+    #[must_use]
+    pub fn new(robot: &Robot, cutoff: Option<f64>) -> Self {
+        let arm = CompiledArm::from_robot(&robot.clone().with_rotors());
+        Self { robot: robot.clone(), arm, cutoff, sums: vec![Sums::default(); robot.dof()] }
+    }
+
+    /// The torques of a motion, joint by joint, N m or N: inverse dynamics with rotors, and friction.
+    ///
+    /// # Errors
+    /// When the motion is of another robot.
+    pub fn torques(&self, motion: &Motion) -> Result<Vec<Vec<f64>>, MotionError> {
+        checked(self.robot.dof(), motion)?;
+        let mut torques = vec![vec![0.0; motion.len()]; self.robot.dof()];
+        for start in (0..motion.len()).step_by(WINDOW) {
+            let range = start..motion.len().min(start + WINDOW);
+            let of =
+                |list: &'_ [Vec<f64>]| -> Vec<Vec<f64>> { list.iter().map(|x| x[range.clone()].to_vec()).collect() };
+            let (q, qd, qdd) = (of(&motion.q), of(&motion.qd), of(&motion.qdd));
+            let [q, qd, qdd] = [&q, &qd, &qdd].map(|list| list.iter().map(Vec::as_slice).collect::<Vec<_>>());
+            let arguments = Arguments::new().q(Array::Columns(&q)).qd(Array::Columns(&qd)).qdd(Array::Columns(&qdd));
+            let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
+            self.arm.run(Function::InverseDynamics, range.len(), &arguments, Destination::Columns(columns))?;
+        }
+        for ((torques, speeds), joint) in torques.iter_mut().zip(&motion.qd).zip(&self.robot.joints) {
+            for (torque, speed) in torques.iter_mut().zip(speeds) {
+                *torque += friction(joint, *speed);
+            }
+        }
+        Ok(torques)
+    }
+
+    /// Measured and predicted torques of a motion behind the low-pass, joint by joint.
+    ///
+    /// # Errors
+    /// When the motion is of another robot.
+    pub fn pairs(&self, motion: &Motion) -> Result<Pairs, MotionError> {
+        let predicted = self.torques(motion)?;
+        Ok(self.smoothed(motion, &predicted))
+    }
+
+    fn smoothed(&self, motion: &Motion, predicted: &[Vec<f64>]) -> Pairs {
+        let both = motion.tau.iter().zip(predicted);
+        let Some(kernel) = self.cutoff.map(Kernel::of_cutoff) else {
+            return both.map(|(tau, of)| tau.iter().copied().zip(of.iter().copied()).collect()).collect();
+        };
+        let mut pairs: Pairs = vec![Vec::with_capacity(motion.len()); self.robot.dof()];
+        for instant in &motion.time {
+            let weights = kernel.about(&motion.time, *instant);
+            for ((pairs, tau), predicted) in pairs.iter_mut().zip(&motion.tau).zip(predicted) {
+                pairs.push((weights.of(tau), weights.of(predicted)));
+            }
+        }
+        pairs
+    }
+
+    /// Takes in a motion.
+    ///
+    /// # Errors
+    /// When the motion is of another robot; nothing has been taken in then.
+    pub fn absorb(&mut self, motion: &Motion) -> Result<(), MotionError> {
+        let predicted = self.torques(motion)?;
+        let pairs = self.smoothed(motion, &predicted);
+        let inner = self.inner(&motion.time);
+        for (joint, sums) in self.sums.iter_mut().enumerate() {
+            for (at, (measured, of)) in pairs[joint].iter().enumerate() {
+                let tau = motion.tau[joint][at];
+                sums.take(tau, tau - predicted[joint][at]);
+                if inner.contains(&at) {
+                    sums.take_filtered(measured - of, motion.qd[joint][at].abs());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The states about which the whole kernel finds samples; all, where there are none.
+    fn inner(&self, time: &[f64]) -> std::ops::Range<usize> {
+        let reach = self.cutoff.map_or(0.0, |cutoff| Kernel::of_cutoff(cutoff).reach());
+        let (Some(first), Some(last)) = (time.first(), time.last()) else { return 0..0 };
+        let start = time.partition_point(|time| *time < first + reach);
+        let end = time.partition_point(|time| *time <= last - reach);
+        if start < end { start..end } else { 0..time.len() }
+    }
+
+    /// The errors over all motions.
+    #[must_use]
+    pub fn errors(&self) -> Vec<JointError> {
+        self.sums.iter().map(Sums::error).collect()
+    }
+}
+
+/// Friction of a joint, N m or N, at a speed: viscous, and Coulomb's that changes its sign about the width of the file.
+#[must_use]
+pub fn friction(joint: &Joint, speed: f64) -> f64 {
+    let Some(motor) = joint.motor else { return 0.0 };
+    let ratio = motor.gear_ratio.abs();
+    let [forward, backward] = motor.coulomb;
+    let sign = smooth_sign(speed, joint.coulomb_width.unwrap_or(0.0));
+    let coulomb = 0.5 * (forward - backward) * sign + 0.5 * (forward + backward) * sign * sign;
+    ratio * ratio * motor.viscous * speed + ratio * coulomb
+}
+
+/// The errors of a robot file over motions: for each joint the root mean square of measured minus predicted torques,
+/// both behind a low-pass of this cut-off (Hz), over the deviation of the measured effort.
+///
+/// # Errors
+/// When a motion is of another robot.
+pub fn prediction_errors<'a>(
+    robot: &Robot,
+    motions: impl IntoIterator<Item = &'a Motion>,
+    cutoff: Option<f64>,
+) -> Result<Vec<JointError>, MotionError> {
+    let mut prediction = Prediction::new(robot, cutoff);
+    for motion in motions {
+        prediction.absorb(motion)?;
+    }
+    Ok(prediction.errors())
+}
+
+impl Sums {
+    #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ states
+    fn take(&mut self, tau: f64, unfiltered: f64) {
+        self.states += 1;
+        let from = tau - self.mean;
+        self.mean += from / self.states as f64;
+        self.squares += from * (tau - self.mean);
+        self.unfiltered += unfiltered * unfiltered;
+    }
+
+    fn take_filtered(&mut self, filtered: f64, speed: f64) {
+        self.inner += 1;
+        self.filtered += filtered * filtered;
+        let (states, squares) = &mut self.by_speed[SPEEDS.partition_point(|most| *most < speed)];
+        *states += 1;
+        *squares += filtered * filtered;
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn error(&self) -> JointError {
+        let root = |sum: f64, states: u64| (sum / states as f64).sqrt();
+        let deviation = root(self.squares, self.states);
+        let residual = root(self.filtered, self.inner);
+        JointError {
+            error: residual / deviation,
+            unfiltered: root(self.unfiltered, self.states) / deviation,
+            residual,
+            deviation,
+            by_speed: self.by_speed.map(|(states, squares)| root(squares, states)),
+            states: self.states,
+        }
+    }
+}

@@ -1,0 +1,147 @@
+//! What is known before: the links of the file, or plausible bodies where the file has none.
+
+use nalgebra::{DVector, Matrix4, Vector3};
+use rne_model::{Convention, Robot};
+
+use crate::parameters::{PER_LINK, Parameters};
+use crate::pseudo_inertia;
+use crate::structure::{FRICTION, Structure};
+
+/// kg: a link of which nothing is known.
+const MASS: f64 = 3.0;
+/// m: as thick as links are.
+const RADIUS: f64 = 0.06;
+/// Unknowns are kept finite by knowing them to so many times their scale.
+const FAR: f64 = 30.0;
+/// s: no torque lags more.
+const DELAY: f64 = 0.05;
+
+/// A link as it is supposed to be.
+#[derive(Clone, Debug)]
+pub struct PriorLink {
+    /// The pseudo-inertia, 4 × 4.
+    pub pseudo_inertia: Matrix4<f64>,
+    /// Whether it is the file's, and no guess.
+    pub is_of_file: bool,
+}
+
+/// The links of a robot as they are supposed to be, all of them bodies.
+#[must_use]
+pub fn links(robot: &Robot) -> Vec<PriorLink> {
+    let values = rne_runtime::DynArm::from_robot(robot).inertial_parameters();
+    let is_body = |joint: usize| {
+        let link = &robot.joints[joint].row.link;
+        link.mass > 0.0 && !link.has_first_moment()
+    };
+    (0..robot.dof())
+        .map(|joint| {
+            let written = pseudo_inertia::of(&values[joint]);
+            let guess = plausible(robot, joint, if is_body(joint) { values[joint][0] } else { MASS });
+            if !is_body(joint) {
+                return PriorLink { pseudo_inertia: guess, is_of_file: false };
+            }
+            // thin rods and point masses have room to become bodies
+            let thick = written + guess * 1e-2;
+            let is_positive = thick.symmetric_eigenvalues().min() > 0.0;
+            let pseudo_inertia = if is_positive { thick } else { guess };
+            PriorLink { pseudo_inertia, is_of_file: is_positive }
+        })
+        .collect()
+}
+
+/// A round rod from the link's own joint to the next one.
+fn plausible(robot: &Robot, joint: usize, mass: f64) -> Matrix4<f64> {
+    let along = extent(robot, joint);
+    let centre = along * 0.5;
+    let length = along.norm();
+    let mut second = nalgebra::Matrix3::identity() * (RADIUS * RADIUS * 0.5);
+    if length > 0.0 {
+        second += along * along.transpose() / 12.0;
+    }
+    second += centre * centre.transpose();
+    let mut pseudo = Matrix4::zeros();
+    pseudo.fixed_view_mut::<3, 3>(0, 0).copy_from(&(second * mass));
+    pseudo.fixed_view_mut::<3, 1>(0, 3).copy_from(&(centre * mass));
+    pseudo.fixed_view_mut::<1, 3>(3, 0).copy_from(&(centre.transpose() * mass));
+    pseudo[(3, 3)] = mass;
+    pseudo
+}
+
+/// In the axes of the link frame, from its origin to the other end of the link.
+fn extent(robot: &Robot, joint: usize) -> Vector3<f64> {
+    match robot.convention {
+        // frame i is at the far end; the near one is where the row came from
+        Convention::Standard => {
+            let dh = &robot.joints[joint].row.dh;
+            let (sin, cos) = (dh.alpha.sin, dh.alpha.cos);
+            // Rx(-alpha) of (a, 0, d), back
+            -Vector3::new(dh.a, sin * dh.d, cos * dh.d)
+        }
+        Convention::Modified => robot.joints.get(joint + 1).map_or_else(
+            || Vector3::new(0.0, 0.0, RADIUS),
+            |next| {
+                let dh = &next.row.dh;
+                Vector3::new(dh.a, -dh.alpha.sin * dh.d, dh.alpha.cos * dh.d)
+            },
+        ),
+    }
+}
+
+/// How large unknowns are, in orders of magnitude.
+#[derive(Clone, Debug)]
+pub struct Scales {
+    /// Of each base parameter: what plausible links would give it.
+    pub bases: DVector<f64>,
+    /// Of each joint's friction, N m or N.
+    pub friction: Vec<f64>,
+}
+
+impl Scales {
+    /// Of a robot, whose efforts have these deviations.
+    #[must_use]
+    pub fn of(robot: &Robot, parameters: &Parameters, efforts: &[f64]) -> Self {
+        let links = links(robot);
+        let mut values = DVector::zeros(parameters.regrouping.ncols());
+        for (link, prior) in links.iter().enumerate() {
+            let size = size(&prior.pseudo_inertia);
+            let mass = prior.pseudo_inertia[(3, 3)];
+            for index in 0..PER_LINK {
+                let power = match index {
+                    0 => 0,
+                    1..=3 => 1,
+                    _ => 2,
+                };
+                values[link * PER_LINK + index] = mass * size.powi(power);
+            }
+        }
+        if parameters.rotors {
+            for joint in 0..robot.dof() {
+                // rotors resist as links do
+                let behind: f64 = (joint..robot.dof()).map(|link| values[link * PER_LINK + 9]).sum();
+                values[robot.dof() * PER_LINK + joint] = behind;
+            }
+        }
+        let squares = parameters.regrouping.map(|factor| factor * factor) * values.map(|value| value * value);
+        Self { bases: squares.map(f64::sqrt), friction: efforts.iter().map(|effort| effort.max(1e-6)).collect() }
+    }
+
+    /// One over far more than each unknown can be.
+    pub(crate) fn ridge(&self, structure: &Structure) -> DVector<f64> {
+        let rank = structure.parameters.rank();
+        DVector::from_fn(structure.count(), |at, _| {
+            let scale = if at < rank {
+                self.bases[at]
+            } else if structure.options.friction && at < rank + FRICTION * structure.dof() {
+                self.friction[(at - rank) / FRICTION]
+            } else {
+                DELAY
+            };
+            1.0 / (FAR * scale)
+        })
+    }
+}
+
+/// m: the radius of gyration about the origin of the frame.
+fn size(pseudo: &Matrix4<f64>) -> f64 {
+    ((pseudo[(0, 0)] + pseudo[(1, 1)] + pseudo[(2, 2)]) / pseudo[(3, 3)]).sqrt()
+}

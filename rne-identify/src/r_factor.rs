@@ -1,0 +1,197 @@
+//! Least squares over rows that pass by: the triangle of a QR factorisation, updated by blocks of rows.
+//!
+//! Of a matrix A with more rows than anybody keeps, the triangle R with RᵀR = AᵀA is all that least squares need, and
+//! it has the size of one row squared. Householder reflections fold a block of new rows into it; the condition of A is
+//! not squared, as normal equations would. Triangles of parts of the rows merge into that of all, in any order.
+//!
+//! Å. Björck, Numerical Methods for Least Squares Problems, SIAM 1996, section 3.2.3.
+
+use nalgebra::DMatrix;
+
+/// A square that counts as zero.
+const SMALLEST: f64 = 1e-280;
+
+/// The triangle of a QR factorisation of rows that have been absorbed, and how many they were.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RFactor {
+    /// Upper triangular; below it zeros.
+    triangle: DMatrix<f64>,
+    /// Rows absorbed.
+    rows: u64,
+    /// Their weights, one each where no weight was given.
+    weight: f64,
+}
+
+impl RFactor {
+    /// Of no rows with so many columns.
+    #[must_use]
+    pub fn new(columns: usize) -> Self {
+        Self { triangle: DMatrix::zeros(columns, columns), rows: 0, weight: 0.0 }
+    }
+
+    /// How many numbers a row has.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.triangle.ncols()
+    }
+
+    /// How many rows it has absorbed.
+    #[must_use]
+    pub fn rows(&self) -> u64 {
+        self.rows
+    }
+
+    /// The sum of the weights of its rows.
+    #[must_use]
+    pub fn weight(&self) -> f64 {
+        self.weight
+    }
+
+    /// R, upper triangular: RᵀR is the sum of the outer products of the rows.
+    #[must_use]
+    pub fn triangle(&self) -> &DMatrix<f64> {
+        &self.triangle
+    }
+
+    /// Takes in a block of rows, of weight one each.
+    ///
+    /// # Errors
+    /// When the rows have another length; nothing has been taken in then.
+    pub fn absorb(&mut self, rows: DMatrix<f64>) -> Result<(), WrongColumns> {
+        #[allow(clippy::cast_precision_loss)] // a block
+        let weight = rows.nrows() as f64;
+        self.absorb_weighted(rows, weight)
+    }
+
+    /// Takes in a block of rows that have been multiplied with the roots of their weights, of this sum.
+    ///
+    /// # Errors
+    /// When the rows have another length; nothing has been taken in then.
+    pub fn absorb_weighted(&mut self, rows: DMatrix<f64>, weight: f64) -> Result<(), WrongColumns> {
+        self.fits(rows.ncols())?;
+        self.rows += rows.nrows() as u64;
+        self.weight += weight;
+        self.fold(rows);
+        Ok(())
+    }
+
+    /// Takes in all rows of another.
+    ///
+    /// # Errors
+    /// When its rows have another length; nothing has been taken in then.
+    pub fn merge(&mut self, other: &Self) -> Result<(), WrongColumns> {
+        self.fits(other.columns())?;
+        self.rows += other.rows;
+        self.weight += other.weight;
+        self.fold(other.triangle.clone());
+        Ok(())
+    }
+
+    /// The triangle of some of the columns, in this order.
+    #[must_use]
+    pub fn selected(&self, columns: &[usize]) -> Self {
+        let chosen = DMatrix::from_fn(self.columns(), columns.len(), |row, column| {
+            columns.get(column).and_then(|&at| self.triangle.get((row, at))).copied().unwrap_or_default()
+        });
+        let mut selected = Self { rows: self.rows, weight: self.weight, ..Self::new(columns.len()) };
+        selected.fold(chosen);
+        selected
+    }
+
+    fn fits(&self, found: usize) -> Result<(), WrongColumns> {
+        let expected = self.columns();
+        if found == expected { Ok(()) } else { Err(WrongColumns { expected, found }) }
+    }
+
+    /// Reflects the rows into the triangle, column by column: of the triangle a reflection touches one row alone.
+    fn fold(&mut self, mut block: DMatrix<f64>) {
+        let columns = self.columns();
+        for k in 0..columns {
+            let below = block.column(k).norm_squared();
+            // squares that small are nothing, and their inverses no numbers
+            if below < SMALLEST {
+                continue;
+            }
+            let head = self.triangle[(k, k)];
+            // away from cancellation
+            let length = -(head * head + below).sqrt().copysign(head);
+            let pivot = head - length;
+            let scale = 1.0 / (length * pivot);
+            self.triangle[(k, k)] = length;
+            let reflector = block.column(k).clone_owned();
+            for j in k + 1..columns {
+                let dot = reflector.dot(&block.column(j));
+                let factor = scale * (pivot * self.triangle[(k, j)] + dot);
+                self.triangle[(k, j)] += factor * pivot;
+                block.column_mut(j).axpy(factor, &reflector, 1.0);
+            }
+        }
+    }
+}
+
+/// Rows that have another length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongColumns {
+    /// Columns of the factor.
+    pub expected: usize,
+    /// Columns of the rows.
+    pub found: usize,
+}
+
+impl std::fmt::Display for WrongColumns {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(
+            f,
+            "rows of {} columns, not {}: they are of another robot or another choice of friction",
+            self.found, self.expected
+        )
+    }
+}
+
+impl std::error::Error for WrongColumns {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn random(rows: usize, columns: usize, seed: u64) -> DMatrix<f64> {
+        let mut rng = fastrand::Rng::with_seed(seed);
+        DMatrix::from_fn(rows, columns, |_, _| rng.f64() - 0.5)
+    }
+
+    #[test]
+    fn the_triangle_has_the_squares_of_the_rows() {
+        let rows = random(57, 6, 1);
+        let mut factor = RFactor::new(6);
+        factor.absorb(rows.rows(0, 20).clone_owned()).unwrap();
+        factor.absorb(rows.rows(20, 37).clone_owned()).unwrap();
+        let expected = rows.tr_mul(&rows);
+        assert!((factor.triangle().tr_mul(factor.triangle()) - expected).norm() < 1e-13);
+        assert_eq!((factor.rows(), factor.weight()), (57, 57.0));
+        assert!(factor.triangle().lower_triangle().iter().filter(|x| **x != 0.0).count() <= 6);
+    }
+
+    #[test]
+    fn parts_merge_into_the_whole_and_columns_are_selected() {
+        let rows = random(40, 5, 2);
+        let mut parts: Vec<RFactor> = vec![RFactor::new(5); 8];
+        for (index, row) in rows.row_iter().enumerate() {
+            parts[index % 8].absorb(DMatrix::from_iterator(1, 5, row.iter().copied())).unwrap();
+        }
+        let mut whole = RFactor::new(5);
+        for part in parts.iter().rev() {
+            whole.merge(part).unwrap();
+        }
+        let chosen = whole.selected(&[4, 1]);
+        let expected = rows.select_columns(&[4, 1]);
+        assert!((chosen.triangle().tr_mul(chosen.triangle()) - expected.tr_mul(&expected)).norm() < 1e-13);
+    }
+
+    #[test]
+    fn rows_of_another_length_are_refused() {
+        let mut factor = RFactor::new(3);
+        assert_eq!(factor.absorb(DMatrix::zeros(2, 4)), Err(WrongColumns { expected: 3, found: 4 }));
+        assert!(factor.merge(&RFactor::new(2)).is_err());
+        assert_eq!(factor, RFactor::new(3));
+    }
+}

@@ -1,0 +1,134 @@
+//! What is asked of the logs: which parameters, which friction, which filter.
+
+use rne_machine::CompiledArm;
+use rne_model::{Link, Robot};
+
+use crate::parameters::Parameters;
+
+/// What to identify, and how.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Options {
+    /// Viscous and Coulomb friction, the latter for each direction of its own.
+    pub friction: bool,
+    /// Inertia of rotors behind their gears.
+    pub rotors: bool,
+    /// How much the torques lag behind the positions.
+    pub delay: bool,
+    /// Hz: what both sides of the equations of motion pass; `None`: nothing is filtered.
+    pub cutoff: Option<f64>,
+    /// rad/s or m/s: speeds about which Coulomb friction may change its sign; the data choose one for each joint.
+    pub widths: Vec<f64>,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        let widths = vec![0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2];
+        Self { friction: true, rotors: false, delay: true, cutoff: Some(2.0), widths }
+    }
+}
+
+/// The equations of a robot: its columns, joint by joint.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    pub(crate) options: Options,
+    pub(crate) parameters: Parameters,
+    pub(crate) robot: Robot,
+    /// The geometry alone.
+    pub(crate) arm: CompiledArm,
+    /// Of each joint, the base parameters that its torque may depend on.
+    pub(crate) felt: Vec<Vec<usize>>,
+}
+
+/// Unknowns of the friction of one joint: viscous, odd and even part of Coulomb friction.
+pub(crate) const FRICTION: usize = 3;
+
+impl Structure {
+    /// Of a robot's geometry; its links count as prior knowledge alone.
+    #[must_use]
+    pub fn new(robot: &Robot, options: Options) -> Self {
+        let parameters = Parameters::of(robot, options.rotors);
+        let mut bare = Robot { rotors: false, ..robot.clone() };
+        for joint in &mut bare.joints {
+            joint.row.link = Link::default();
+        }
+        let felt = (0..robot.dof())
+            .map(|joint| {
+                let felt = |base: &usize| Parameters::is_felt(&parameters.bases[*base], joint);
+                (0..parameters.rank()).filter(felt).collect()
+            })
+            .collect();
+        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options }
+    }
+
+    /// The base parameters.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// What was asked for.
+    #[must_use]
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    /// The robot whose geometry it is.
+    #[must_use]
+    pub fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    pub(crate) fn dof(&self) -> usize {
+        self.robot.dof()
+    }
+
+    /// Columns of the rows of a joint: base parameters; viscous friction, then odd and even part of each width; the
+    /// torque's slope; the torque.
+    pub(crate) fn columns(&self, joint: usize) -> usize {
+        self.felt[joint].len() + self.own_columns() + 1
+    }
+
+    pub(crate) fn own_columns(&self) -> usize {
+        let friction = if self.options.friction { 1 + 2 * self.options.widths.len() } else { 0 };
+        friction + usize::from(self.options.delay)
+    }
+
+    /// The columns of a joint's rows that are used with the width of this index.
+    pub(crate) fn used(&self, joint: usize, width: usize) -> Vec<usize> {
+        let felt = self.felt[joint].len();
+        let mut used: Vec<usize> = (0..felt).collect();
+        if self.options.friction {
+            used.extend([felt, felt + 1 + 2 * width, felt + 2 + 2 * width]);
+        }
+        if self.options.delay {
+            used.push(felt + self.own_columns() - 1);
+        }
+        used.push(felt + self.own_columns());
+        used
+    }
+
+    /// The unknowns that belong to the columns of [`used`](Self::used), but for the torque.
+    pub(crate) fn unknowns(&self, joint: usize) -> Vec<usize> {
+        let rank = self.parameters.rank();
+        let mut unknowns = self.felt[joint].clone();
+        if self.options.friction {
+            unknowns.extend((0..FRICTION).map(|k| rank + joint * FRICTION + k));
+        }
+        if self.options.delay {
+            unknowns.push(self.count() - 1);
+        }
+        unknowns
+    }
+
+    /// How many unknowns there are: base parameters, friction joint by joint, the delay.
+    pub(crate) fn count(&self) -> usize {
+        let friction = if self.options.friction { FRICTION * self.dof() } else { 0 };
+        self.parameters.rank() + friction + usize::from(self.options.delay)
+    }
+}
+
+/// The odd part of a smooth sign, v / √(v² + width²); its square is the even part. Of width 0 the sign itself.
+pub(crate) fn smooth_sign(speed: f64, width: f64) -> f64 {
+    if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() }
+}

@@ -1,0 +1,108 @@
+//! The robot file of an identification, with sources and deviations in its comments.
+
+use std::fmt::Write as _;
+
+use rne_convert::robot_file;
+use rne_model::{JointKind, one_line};
+
+use crate::identification::{Identification, JointReport};
+
+/// The text of the robot file; `logs` says in words from what it was identified.
+#[must_use]
+pub fn written(identification: &Identification, logs: &str) -> String {
+    let mut robot = identification.robot.clone();
+    let geometry = one_line(&robot.source);
+    robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
+    robot.notes = Some(
+        "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
+         torques\n- what the log does not excite is what was supposed before"
+            .to_owned(),
+    );
+    let mut text = head(identification);
+    let mut joint: usize = 0;
+    for line in robot_file::write(&robot).lines() {
+        if line.starts_with("  - name:") {
+            joint += 1;
+        }
+        if let Some(report) = joint.checked_sub(1).and_then(|joint| identification.joints.get(joint)) {
+            let kind = identification.robot.joints[joint - 1].row.kind;
+            if line == "    link:" {
+                let _ = writeln!(text, "    # {}", of_link(identification, report, joint - 1));
+            } else if line.starts_with("    motor:")
+                && let Some(words) = of_motor(report, kind)
+            {
+                let _ = writeln!(text, "    # {words}");
+            }
+        }
+        text.push_str(line);
+        text.push('\n');
+    }
+    text
+}
+
+/// The base parameters with their deviations: what the logs say, and what the file makes of it.
+fn head(identification: &Identification) -> String {
+    let excited = identification.bases.iter().filter(|base| base.is_excited()).count();
+    let mut text = format!(
+        "# Identified from {} states over {:.1} s. Of {} base parameters the log excites {excited}.\n#\n# base \
+         parameter: least squares ± deviation; what the links below make of it\n",
+        identification.states,
+        identification.duration,
+        identification.bases.len(),
+    );
+    for base in &identification.bases {
+        if base.is_excited() {
+            let _ = writeln!(
+                text,
+                "#   {:<6} {:>11} ± {:<9}  {:>11}",
+                base.name,
+                short(base.value),
+                short(base.deviation),
+                short(base.written)
+            );
+        } else {
+            let _ = writeln!(text, "#   {:<6} {:>23}  {:>11}", base.name, "not excited", short(base.written));
+        }
+    }
+    text
+}
+
+fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
+    let unit = unit(identification.robot.joints[joint].row.kind);
+    if report.is_excited() {
+        format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
+    } else {
+        format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.unfiltered)
+    }
+}
+
+fn of_motor(report: &JointReport, kind: JointKind) -> Option<String> {
+    let [viscous, forward, backward] = report.friction?;
+    let unit = unit(kind);
+    Some(format!(
+        "deviations at the joint: viscous {}, Coulomb {} and {} {unit}",
+        short(viscous.1),
+        short(forward.1),
+        short(backward.1)
+    ))
+}
+
+fn unit(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "N m",
+        JointKind::Prismatic => "N",
+    }
+}
+
+/// Four digits.
+fn short(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{value}");
+    }
+    #[allow(clippy::cast_possible_truncation)] // an exponent
+    let exponent = value.abs().log10().floor() as i32;
+    match exponent {
+        -4..=3 => format!("{value:.*}", usize::try_from(3 - exponent).unwrap_or_default()),
+        _ => format!("{value:.3e}"),
+    }
+}
