@@ -8,13 +8,13 @@ use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
-#[cfg(feature = "logs")]
-use crate::{identify, log};
 use crate::terminal::HELP_STYLES;
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot,
-    report, search, shell, show,
+    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
+    search, shell, show,
 };
+#[cfg(feature = "logs")]
+use crate::{identify, log};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]

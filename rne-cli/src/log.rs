@@ -157,7 +157,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     if states == 0 {
         let what = format!(
-            "{}: no run is longer than the two ends that the filter drops, {} states each; a higher --cutoff drops less",
+            "{}: no run is longer than the two ends that the filter drops, {} states each; a higher --cutoff drops \
+             less",
             arguments.files[0].display(),
             survey.dropped
         );
@@ -209,12 +210,14 @@ fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) ->
             let _ = write!(header, ",{quantity}{joint}");
         }
     }
-    writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
     let mut states = 0;
     let mut line = String::new();
     while let Some(piece) = motions.next() {
         let piece = piece.map_err(Stopped::Unreadable)?;
         bar.set_position(thousandths(motions.progress()));
+        if states == 0 {
+            writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
+        }
         let Motion { time, q, qd, qdd, tau } = &piece.motion;
         for (i, time) in time.iter().enumerate() {
             line.clear();

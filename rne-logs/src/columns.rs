@@ -79,8 +79,8 @@ impl Columns {
             return Err(LogError::file(
                 path,
                 format_args!(
-                    "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the joint, as in \
-                     elbow/position, position.elbow, elbow_position; there is {all}"
+                    "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the \
+                     joint, as in elbow/position, position.elbow, elbow_position; there is {all}"
                 ),
             ));
         }

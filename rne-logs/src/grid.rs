@@ -54,8 +54,8 @@ impl Grid {
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
     fn emit(&mut self, first: usize, last: bool, emit: &mut impl FnMut(&[f64])) {
         let (begin, end) = (self.near[first].0, self.near[first + 1].0);
-        // stamps are whole nanoseconds, the grid is not
-        let end = if last { end + 1.0 } else { end };
+        // stamps are rounded, and the last sample is one of the grid
+        let end = if last { end + 1e-3 * self.step } else { end };
         let is_cubic = first == 1
             && self.near.len() == 4
             && (0..3).all(|i| self.near[i + 1].0 - self.near[i].0 >= 0.5 * self.step);

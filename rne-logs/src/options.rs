@@ -11,8 +11,8 @@ pub struct Options {
     pub joints: Option<Vec<String>>,
     /// The topic of a bag, or how the columns' names of a table begin.
     pub topic: Option<String>,
-    /// What efforts are multiplied by, N m/A or N/A where they are currents: one number for all joints or one per joint.
-    /// Empty: efforts are torques.
+    /// What efforts are multiplied by, N m/A or N/A where they are currents: one number for all joints or one per
+    /// joint. Empty: efforts are torques.
     pub torque_constants: Vec<f64>,
     /// The unit of positions and velocities.
     pub angles: Angles,

@@ -1,7 +1,8 @@
 //! Where the motion of a log ends and its noise begins: the spectrum of positions.
 //!
 //! The method of P. D. Welch (1967): segments of a power of two of rows, at least `seconds` long, half overlapping,
-//! their line of least squares subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side lobes at −92 dB).
+//! their line of least squares subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side
+//! lobes at −92 dB).
 
 use std::f64::consts::PI;
 use std::sync::Arc;

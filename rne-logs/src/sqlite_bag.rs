@@ -60,7 +60,8 @@ impl SqliteBag {
             (Ok(first), Ok(last)) => (first.unwrap_or(0), last.unwrap_or(0)),
             (Err(error), _) | (_, Err(error)) => return Err(unreadable(path, &error)),
         };
-        let is_indexed = "SELECT count(*) FROM pragma_index_list('messages') AS list, pragma_index_info(list.name) AS info \
+        let is_indexed = "SELECT count(*) FROM pragma_index_list('messages') AS list, \
+                          pragma_index_info(list.name) AS info \
                           WHERE info.seqno = 0 AND info.name = 'timestamp'";
         let indices: i64 =
             connection.query_row(is_indexed, [], |row| row.get(0)).map_err(|error| unreadable(path, &error))?;

@@ -1,5 +1,5 @@
-//! Units of stamps in tables. Inside, stamps are whole nanoseconds: seconds since 1970 as a number of 53 bits are good to
-//! a quarter of a microsecond only, which is seen in velocities.
+//! Units of stamps in tables. Inside, stamps are whole nanoseconds: seconds since 1970 as a number of 53 bits are good
+//! to a quarter of a microsecond only, which is seen in velocities.
 
 /// The unit of a column of times.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

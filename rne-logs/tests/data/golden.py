@@ -42,7 +42,7 @@ def message(data):
 def even(times, columns):
     """The cubic through the two samples before and the two behind each time of the grid."""
     step = float(np.median(np.diff(times)))
-    grid = np.arange(0, times[-1] - times[0] + 1, step)
+    grid = np.arange(0, times[-1] - times[0] + 1e-3 * step, step)
     t = (times - times[0]).astype(float)
     rows = []
     for at in grid:
