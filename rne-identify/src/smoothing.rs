@@ -60,7 +60,9 @@ impl Kernel {
             taken.iter().zip(&values).map(|(time, value)| (time - instant - mean) * value).collect();
         let spread: f64 = taken.iter().zip(&slopes).map(|(time, slope)| (time - instant) * slope).sum();
         if spread > 0.0 {
-            slopes.iter_mut().for_each(|slope| *slope /= spread);
+            for slope in &mut slopes {
+                *slope /= spread;
+            }
         }
         Weights { start, values, slopes }
     }
