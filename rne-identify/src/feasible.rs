@@ -9,12 +9,12 @@
 //!
 //! The pull is Bregman's divergence of the log determinant (T. Lee, F. C. Park, A geometric algorithm for robust
 //! multibody inertial parameter identification, IEEE RA-L 3(3), 2018): it does not depend on the frames, is least at
-//! the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do not. Newton's
-//! method follows the minima from large γ to the one that was asked for.
+//! the prior P₀, and grows beyond all bounds where a link ceases to be a body. It decides where the logs do not.
+//! Newton's method follows the minima from large γ to the one that was asked for.
 //!
-//! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: the gradient is theirs,
-//! they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the [`Certificate`]'s gap of
-//! the exact one.
+//! G = γ P⁻¹ and g = γ / y are multipliers of P ⪰ 0 and y ≥ 0 in the problem without logarithms: the gradient is
+//! theirs, they are positive, and tr(G P) is γ for each row of a matrix, so the minimum is within the [`Certificate`]'s
+//! gap of the exact one.
 
 use nalgebra::{DMatrix, DVector, Matrix4};
 

@@ -113,9 +113,9 @@ impl Fit {
     }
 }
 
-/// Errors behind the filter depend on each other across the ends of stretches, too: white noise behind a Gaussian kernel
-/// of width σ has the correlation exp(-t²/4σ²), of which stretches of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ times
-/// ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
+/// Errors behind the filter depend on each other across the ends of stretches, too: white noise behind a Gaussian
+/// kernel of width σ has the correlation exp(-t²/4σ²), of which stretches of n σ miss ∫|t| exp(-t²/4σ²) dt over n σ
+/// times ∫ exp(-t²/4σ²) dt, that is 2/√π over n. A row stands for σ.
 const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 
 /// The quantile 0.975 of Student's t, by Cornish and Fisher's expansion: to 0.002 from five degrees of freedom on.

@@ -1,5 +1,7 @@
 //! The unknowns: base parameters of links and rotors, and how they are made of the links' own.
 
+use std::fmt::Write as _;
+
 use nalgebra::{DMatrix, DVector};
 use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
 use rne_model::{Link, Robot};
@@ -30,7 +32,7 @@ impl Base {
             let sign = if *factor < 0.0 { '-' } else { '+' };
             let size = factor.abs();
             let size = if size == 1.0 { String::new() } else { format!("{} ", (size * 1e4).round() / 1e4) };
-            text.push_str(&format!(" {sign} {size}{}", name(*parameter)));
+            let _ = write!(text, " {sign} {size}{}", name(*parameter));
         }
         text
     }
@@ -80,9 +82,11 @@ impl Parameters {
                 }
             }
             let columns: Vec<usize> = unknown.iter().map(|&at| place(kept[at])).collect();
-            let found = match columns.is_empty() {
-                true => DVector::zeros(0),
-                false => stacked.select_columns(&columns).svd(true, true).solve(&rest, 0.0).unwrap_or_default(),
+            // no column has no factorisation
+            let found = if columns.is_empty() {
+                DVector::zeros(0)
+            } else {
+                stacked.select_columns(&columns).svd(true, true).solve(&rest, 0.0).unwrap_or_default()
             };
             for (at, whole) in parts {
                 let position = unknown.iter().position(|other| other == at);

@@ -1,8 +1,9 @@
 //! A low-pass of finite length and without delay: what passes on both sides of an equation leaves it an equation.
 //!
-//! Measured torques are noisy, and robots smooth them before anybody logs them; friction that changes its sign is sharp.
-//! So the torque and every column of the regressor pass the same filter: its kernel is Gaussian in time, symmetrical,
-//! and has unit sum at every instant, also where samples are not evenly spaced. The parameters stay what they are.
+//! Measured torques are noisy, and robots smooth them before anybody logs them; friction that changes its sign is
+//! sharp. So the torque and every column of the regressor pass the same filter: its kernel is Gaussian in time,
+//! symmetrical, and has unit sum at every instant, also where samples are not evenly spaced. The parameters stay what
+//! they are.
 //!
 //! M. Gautier, Dynamic identification of robots with power model, IEEE ICRA 1997 ("parallel filtering").
 
@@ -60,7 +61,9 @@ impl Kernel {
             taken.iter().zip(&values).map(|(time, value)| (time - instant - mean) * value).collect();
         let spread: f64 = taken.iter().zip(&slopes).map(|(time, slope)| (time - instant) * slope).sum();
         if spread > 0.0 {
-            slopes.iter_mut().for_each(|slope| *slope /= spread);
+            for slope in &mut slopes {
+                *slope /= spread;
+            }
         }
         Weights { start, values, slopes }
     }

@@ -68,8 +68,8 @@ fn base_parameters_of_random_arms_are_the_exact_ones() {
     }
 }
 
-/// The rotor of joint 1 resists as its link does, and that of joint 2 where its axis is at a right angle; the others are
-/// seen by themselves.
+/// The rotor of joint 1 resists as its link does, and that of joint 2 where its axis is at a right angle; the others
+/// are seen by themselves.
 #[test]
 fn rotors_of_the_first_joints_are_seen_with_their_links() {
     let ranks = |name: &str| {
