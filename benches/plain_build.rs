@@ -5,8 +5,9 @@
 //! cargo run --release --manifest-path benches/Cargo.toml --no-default-features --bin plain_build
 //! ```
 //!
-//! A line for a robot, a scalar and a kind of call: nanoseconds of the reduced form and of the same with `#[robot(inline)]`, which does not ask the processor; the minima of many alternating
-//! repetitions over the same states. The states are a few, so that they stay in the nearest cache.
+//! A line for a robot, a scalar and a kind of call: nanoseconds of the reduced form and of the same with
+//! `#[robot(inline)]`, which does not ask the processor; the minima of many alternating repetitions over the same
+//! states. The states are a few, so that they stay in the nearest cache.
 
 use std::hint::black_box;
 use std::time::Instant;

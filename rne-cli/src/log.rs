@@ -26,6 +26,7 @@ Examples:
   rne log rne-logs/tests/data/ur10.db3 --robot ur10 --json
 
 Bags of ROS 2 (*.db3, *.mcap), Parquet, CSV, npy; their columns: docs/logs.md.")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
     /// Files, one behind another; of a folder the bags inside
     #[arg(required = true, value_name = "FILE")]
@@ -164,9 +165,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         );
         return Err(Failure::input(what));
     }
-    let remark = match is_result_shown {
-        true => String::new(),
-        false => format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display()),
+    let remark = if is_result_shown {
+        String::new()
+    } else {
+        format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display())
     };
     Ok(Outcome { text, remark, at_fault: false })
 }

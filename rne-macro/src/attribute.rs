@@ -101,8 +101,8 @@ impl Attribute {
     }
 }
 
-const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `inline`, `tests`, `inspect`, `allow_lints` and \
-     `crate`";
+const KEYS: &str = "`path`, `yaml`, `builtin`, `form`, `max_ops`, `rotors`, `inline`, `tests`, `inspect`, \
+     `allow_lints` and `crate`";
 
 #[derive(Default)]
 struct Entries {

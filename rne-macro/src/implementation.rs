@@ -144,7 +144,8 @@ impl Target<'_> {
     ///
     /// The seven steps keep their bits on every processor. What has no sine to compute and is short stays as it is: to
     /// ask and to call costs one or two nanoseconds, and what is inlined is not written to memory and read again. Calls
-    /// one after the other in `f64`, plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with these arms):
+    /// one after the other in `f64`, plain build on an AMD EPYC with AVX-512 (`benches/plain_build.rs` with these
+    /// arms):
     ///
     /// | | operations, angles | ns: inlined | asked |
     /// |---|---|---:|---:|

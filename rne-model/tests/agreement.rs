@@ -87,6 +87,6 @@ fn assert_joint(joint: &Joint, value: &Value) {
             ["inertia", "gear_ratio", "viscous"].map(|key| number(&motor[key]))
         );
         assert_eq!(ours.coulomb[..], numbers(&motor["coulomb"])[..]);
-        assert_eq!(joint.coulomb_width, motor.get("coulomb_width").and_then(|width| width.as_f64()));
+        assert_eq!(joint.coulomb_width, motor.get("coulomb_width").and_then(Value::as_f64));
     }
 }

@@ -156,10 +156,8 @@ fn compare(name: &str, derived: &[(Form, Box<dyn Derived>)], count: usize) -> Se
                     .run(unit, count, &states.given(), Destination::Rows(&mut found))
                     .expect("arrays of one length");
                 let is_same = index == 0 && !cfg!(target_feature = "fma");
-                let pair = match is_same {
-                    true => "machine and interpreter",
-                    false => "machine with fused multiply-add and interpreter",
-                };
+                let pair =
+                    if is_same { "machine and interpreter" } else { "machine with fused multiply-add and interpreter" };
                 let error = seen.see(pair, width, function, [&found, &expected]);
                 assert!(error <= if is_same { 0.0 } else { tolerance }, "{what}, {unit}: {error:e}");
             }

@@ -54,7 +54,7 @@ fn base_parameters_of_the_shipped_robots_are_the_exact_ones() {
     let folder = fs::read_dir(format!("{}/robots", env!("CARGO_MANIFEST_DIR"))).expect("it is there");
     let names = folder.filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".yaml")?.to_owned()));
     let mut count = 0;
-    for name in names.filter(|name| !name.ends_with(".plan")) {
+    for name in names.filter(|name| !name.contains(".plan")) {
         compare(&shipped(&name), &name);
         count += 1;
     }

@@ -12,8 +12,8 @@ use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::prelude::SessionConfig;
 use rne_datafusion::{Robots, aggregates, functions};
 
-/// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the stages
-/// of a query in a folder.
+/// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the
+/// stages of a query in a folder.
 ///
 /// # Errors
 /// When it cannot listen there, or no scheduler answers.

@@ -1,4 +1,5 @@
-//! Scheduler, executor and client of Ballista that know the dynamics of robot arms, and the same queries on one machine.
+//! Scheduler, executor and client of Ballista that know the dynamics of robot arms, and the same queries on one
+//! machine.
 
 mod executor;
 mod scheduler;

@@ -36,8 +36,8 @@ impl Session {
         Ok(Self { context, robots })
     }
 
-    /// Makes a Parquet file, or a folder of them, a table. A fleet reads it on every executor: it stands on storage that
-    /// they share.
+    /// Makes a Parquet file, or a folder of them, a table. A fleet reads it on every executor: it stands on storage
+    /// that they share.
     ///
     /// # Errors
     /// When it cannot be read.

@@ -147,8 +147,8 @@ fn gather<'a>(
             whole &= length == joints && start == next;
         } else if length != joints {
             return exec_err!(
-                "{function}: column `{column}`, row {} of a batch of {states}: {length} numbers, and {robot} has {joints} \
-                 joints",
+                "{function}: column `{column}`, row {} of a batch of {states}: {length} numbers, and {robot} has \
+                 {joints} joints",
                 state + 1
             );
         } else {

@@ -14,9 +14,9 @@ const DIGITS: usize = 16;
 
 /// The robots that the functions of a process compute.
 ///
-/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file, as
-/// `sha256sum` prints it. Functions travel to other machines by name alone, so a process that holds another file under
-/// the same name would compute other torques, and nobody would notice: by the key it refuses.
+/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file,
+/// as `sha256sum` prints it. Functions travel to other machines by name alone, so a process that holds another file
+/// under the same name would compute other torques, and nobody would notice: by the key it refuses.
 #[derive(Clone, Debug)]
 pub struct Robots(Arc<BTreeMap<String, Held>>);
 
@@ -102,8 +102,8 @@ impl Robots {
         match hash {
             Some(hash) if hash == held.hash => Ok(held),
             Some(_) => plan_err!(
-                "`{key}` is not the {name} that this process holds: its robot file is `{name}@{}`. Give every process the \
-                 same file",
+                "`{key}` is not the {name} that this process holds: its robot file is `{name}@{}`. Give every process \
+                 the same file",
                 held.hash
             ),
             None => plan_err!(

@@ -81,12 +81,12 @@ fn what_is_wrong_is_said() {
 fn degrees_are_asked_for() {
     let folder = folder("log_degrees");
     let path = folder.join("degrees.csv");
-    let mut text = "time,q1\n".to_owned();
-    for i in 0..400 {
+    let row = |i| {
         let time = f64::from(i) * 0.01;
-        text += &format!("{time},{}\n", 60.0 * (time * 2.0).sin());
-    }
-    fs::write(&path, text).expect("a file");
+        format!("{time},{}\n", 60.0 * (time * 2.0).sin())
+    };
+    let rows: String = (0..400).map(row).collect();
+    fs::write(&path, format!("time,q1\n{rows}")).expect("a file");
     let path = path.to_str().expect("UTF-8");
     let called = rne(&["log", path, "--cutoff", "5"]);
     assert!(called.status == 1 && called.out.contains("--degrees"), "{called:?}");

@@ -422,10 +422,10 @@ fn a_reader_that_goes_away_is_no_error() {
 /// The most memory, in kB, that `rne eval` had while it read so many states from a pipe.
 #[cfg(target_os = "linux")]
 fn peak(states: usize) -> u64 {
+    const PART: usize = 1000;
     let mut command = command(&["eval", "planar2", "--states", "-"]);
     let mut child = command.stdin(Stdio::piped()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("rne");
     let mut stdin = child.stdin.take().expect("a pipe");
-    const PART: usize = 1000;
     let part = bytes(&(0..6 * PART).map(|index| number(index / 6, index % 6)).collect::<Vec<_>>());
     stdin.write_all(&npy("<f8", "False", &format!("({states}, 6)"), &[])).expect("it reads");
     for _ in 0..states / PART {

@@ -202,7 +202,10 @@ macro_rules! register {
             }
         }
     };
-    (single calls $Register:ident, $element:ident, $LANES:literal, $less_or_equal:ident, $and:ident, $movemask:ident) => {
+    (
+        single calls $Register:ident, $element:ident, $LANES:literal,
+        $less_or_equal:ident, $and:ident, $movemask:ident
+    ) => {
         impl Register for $Register<V3> {
             const LANES: usize = $LANES;
 
