@@ -63,7 +63,7 @@ fn flat(value: &Value, numbers: &mut Vec<f64>) {
     match value {
         Value::Array(parts) => parts.iter().for_each(|part| flat(part, numbers)),
         // in their order, which is not that of their names
-        Value::Object(parts) => ["rotation", "translation", "force", "moment", "dq", "dqd"]
+        Value::Object(parts) => ["rotation", "translation", "force", "moment", "dq", "dqd", "momentum", "rate"]
             .iter()
             .filter_map(|name| parts.get(*name))
             .for_each(|part| flat(part, numbers)),

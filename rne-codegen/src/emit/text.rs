@@ -319,7 +319,7 @@ impl Piece {
         let width = line.as_str().len();
         let is_nested = elements.iter().any(|element| matches!(element, Self::List(..)));
         let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
-        if width <= room && !(*open == '(' && is_nested && width > LIST) {
+        if width <= room && !(*open == '(' && is_nested && width > LIST + 2) {
             return line;
         }
         let (start, end) = (Annotated::from(open.to_string()), close.to_string());
