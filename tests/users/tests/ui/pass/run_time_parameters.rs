@@ -73,7 +73,7 @@ fn main() {
     let (centre, jacobian) = (heavy.centre_of_mass(&q), heavy.centre_of_mass_jacobian(&q));
     assert!(centre.iter().chain(jacobian.as_flattened()).all(|x| x.is_finite()));
     assert!(heavy.regressor(&q, &qd, &qdd)[0][0][0].is_finite() && heavy.jacobian(&q)[0][0].is_finite());
-    let [loaded, bare] = [&heavy, &light].map(|arm| arm.momentum_and_rate(&q, &qd, &qdd).momentum[1]);
+    let [loaded, bare] = [&heavy, &light].map(|arm| arm.momentum_and_rate(&q, &qd, &qdd).momentum[0]);
     assert!(loaded.is_finite() && loaded != bare);
     let base = rne::BaseMotion::fixed([0.0, 0.0, -9.81]);
     let moving = heavy.inverse_dynamics_on_moving_base(&q, &qd, &qdd, &base);
