@@ -8,7 +8,7 @@ use std::path::Path;
 use anyhow::{Context, Result, anyhow, ensure};
 use rne_codegen::emit::{Precision, Prefix, c_code};
 use rne_codegen::plan::{PlanFile, PlanSet};
-use rne_codegen::{Argument, Compiler, Form, Function, Layout};
+use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
 use rne_model::Robot;
 use robots::puma560::Arguments;
 use robots::{STATES, State};
@@ -171,8 +171,8 @@ const ARGUMENTS: [&str; 4] = [
     "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
 ];
 
-/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight is Rust's, which is
-/// computed in double precision and rounded.
+/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight and its frequency are
+/// Rust's, which are computed in double precision and rounded.
 fn observed(prefix: &str) -> Result<String> {
     let form = ["seven_steps", "reduced"].into_iter().find(|form| prefix.ends_with(form)).context("a form")?;
     let weight = -(-std::f64::consts::TAU * 20.0 * 1e-3).exp_m1();
@@ -181,6 +181,7 @@ fn observed(prefix: &str) -> Result<String> {
     Ok(format!(
         "    {{\n        {prefix}_observer observer;\n        float out[6];\n        \
          {prefix}_observer_begin(&observer, 20.0f, 1e-3f);\n        observer.weight = {weight:?}f;\n        \
+         observer.frequency = 1000.0f;\n        \
          {prefix}_observer_update(&observer, s.q, s.qd, s.qdd, out);\n        \
          {prefix}_observer_update(&observer, sines[number], cosines[number], s.qdd, out);\n        \
          {prefix}_observer_update(&observer, cosines[number], sines[number], s.qd, out);\n        \
@@ -246,6 +247,8 @@ fn declaration(prefix: &str, layout: &Layout) -> (String, String) {
             let (kind, lengths) = declaration(prefix, of);
             (kind, format!("[{length}]{lengths}"))
         }
+        // a function and a type of one name cannot be in C
+        Layout::Record(Record::MomentumAndRate, _) => (format!("{prefix}_momentum"), String::new()),
         Layout::Record(record, _) => {
             let name = record.name().chars().enumerate().fold(String::new(), |name, (index, letter)| {
                 let gap = if index > 0 && letter.is_uppercase() { "_" } else { "" };
