@@ -323,9 +323,9 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
 /// then.
 #[test]
 fn threads_change_no_number() {
-    let (arm, id) = (puma(), id(c"bias_torques"));
     // three tasks, and some states that fill none
     const STATES: usize = 3 * 4096 + 17;
+    let (arm, id) = (puma(), id(c"bias_torques"));
     let q: Vec<f64> = (0_u32..).map(|index| f64::from(index % 1009) * 0.003).take(6 * STATES).collect();
     let same = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6];
     for inputs in
