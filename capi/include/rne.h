@@ -328,7 +328,8 @@ enum rne_status rne_evaluate_batch(const struct rne_arm *arm,
  * rne_evaluate_batch() in so many threads, the caller's among them; `threads` of 0 is one for each core.
  *
  * The others are started and end within the call, each with some thousand states at a time: fewer states take fewer
- * threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do all.
+ * threads. Every row has the bits that it has otherwise. Where the system gives no thread, those that there are do
+ * all.
  */
 enum rne_status rne_evaluate_batch_threads(const struct rne_arm *arm,
                                            uint32_t id,
