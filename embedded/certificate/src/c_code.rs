@@ -171,8 +171,8 @@ const ARGUMENTS: [&str; 4] = [
     "const float base_gravity[3] = {0.0f, 0.0f, -9.81f};",
 ];
 
-/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight and its frequency are
-/// Rust's, which are computed in double precision and rounded.
+/// As `Arguments::observed` of ../robots/src/puma560.rs: the third tick of an observer. Its weight and its frequency
+/// are Rust's, which are computed in double precision and rounded.
 fn observed(prefix: &str) -> Result<String> {
     let form = ["seven_steps", "reduced"].into_iter().find(|form| prefix.ends_with(form)).context("a form")?;
     let weight = -(-std::f64::consts::TAU * 20.0 * 1e-3).exp_m1();
