@@ -14,7 +14,7 @@ use crate::{
     search, shell, show,
 };
 #[cfg(feature = "logs")]
-use crate::{identify, log};
+use crate::{identify, log, watch};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -22,14 +22,13 @@ use crate::{identify, log};
 #[command(about = "The dynamics compiler for robot arms: a DH table in, straight-line code out")]
 #[command(max_term_width = 80)]
 #[command(after_help = "\
-Without a command, a tour: the PUMA 560 from its table to its torques.
-
 Examples:
   rne check robots/*.yaml                   are the files in order?
   rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
   rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
 
-FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.")]
+FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.
+Without a command, a tour: the PUMA 560 from its table to its torques.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
@@ -49,6 +48,8 @@ pub(crate) enum Command {
     Log(log::Arguments),
     #[cfg(feature = "logs")]
     Identify(identify::Arguments),
+    #[cfg(feature = "logs")]
+    Watch(watch::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

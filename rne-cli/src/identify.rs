@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, Options, Prediction, SPEEDS, identify, written};
+use rne_identify::{Identification, JointError, MotionError, Options, Prediction, SPEEDS, identify, written};
 use rne_logs::Motion;
 use rne_model::{JointKind, Robot, one_line};
 use rne_plot::comparison_svg;
@@ -202,13 +202,23 @@ fn judged(
     found: Option<&Identification>,
     title: &str,
 ) -> Result<String, Failure> {
+    Ok(errors_table(robot, &prediction(robot, log, part)?, found, title))
+}
+
+/// How far the torques of a robot are from those of a part of a log, by joint.
+pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<Vec<JointError>, Failure> {
     let mut prediction = Prediction::new(robot, Some(log.cutoff));
     log.pass(part, &mut |motion| prediction.absorb(motion))?;
-    Ok(errors_table(robot, &prediction.errors(), found, title))
+    Ok(prediction.errors())
 }
 
 /// Errors by joint and by speed.
-fn errors_table(robot: &Robot, errors: &[JointError], found: Option<&Identification>, title: &str) -> String {
+pub(crate) fn errors_table(
+    robot: &Robot,
+    errors: &[JointError],
+    found: Option<&Identification>,
+    title: &str,
+) -> String {
     let mut heading = ["  joint", "error", "unfiltered", "left", ""].map(str::to_owned).to_vec();
     heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
     heading.push("faster".to_owned());
@@ -261,7 +271,7 @@ fn draw(
     let mut states = 0;
     log.pass(part, &mut |motion| {
         states += motion.len() as u64;
-        Ok(())
+        Ok::<(), MotionError>(())
     })?;
     let stride = usize::try_from(states.div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
     let prediction = Prediction::new(robot, Some(log.cutoff));
@@ -271,7 +281,7 @@ fn draw(
         for (all, of) in pairs.iter_mut().zip(prediction.pairs(motion)?) {
             all.extend(of.into_iter().step_by(stride));
         }
-        Ok(())
+        Ok::<(), MotionError>(())
     })?;
     let side = |of: fn(&(f64, f64)) -> f64| -> Vec<Vec<f64>> {
         pairs.iter().map(|pairs: &Vec<(f64, f64)>| pairs.iter().map(of).collect()).collect()

@@ -35,6 +35,7 @@ mod log;
 #[cfg(feature = "logs")]
 mod log_report;
 mod mistyped;
+#[cfg(feature = "logs")]
 mod motion_log;
 mod new;
 mod numbers;
@@ -56,6 +57,8 @@ mod states;
 mod terminal;
 mod tour;
 mod trajectory_file;
+#[cfg(feature = "logs")]
+mod watch;
 mod worksheet;
 mod worksheet_file;
 
@@ -98,6 +101,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
         #[cfg(feature = "logs")]
         Some(Command::Identify(arguments)) => ("rne identify", identify::run(&arguments)),
+        #[cfg(feature = "logs")]
+        Some(Command::Watch(arguments)) => ("rne watch", watch::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

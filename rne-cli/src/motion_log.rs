@@ -1,9 +1,9 @@
 //! Logs of an arm, by the joints of its robot file.
 
+use std::fmt::Display;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_identify::MotionError;
 use rne_logs::{Log, LogError, Motion, Options, Survey};
 use rne_model::{Robot, one_line};
 
@@ -23,7 +23,7 @@ const PART: f64 = 0.5;
 const HIGHEST: f64 = 0.3;
 
 /// How a log is read.
-#[derive(Args)]
+#[derive(Args, Clone)]
 pub(crate) struct LogArguments {
     /// Joints of the log, base to tip
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
@@ -37,6 +37,13 @@ pub(crate) struct LogArguments {
     /// The low-pass; by the spectrum, unless given
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     cutoff: Option<f64>,
+}
+
+impl LogArguments {
+    /// The same with this low-pass, Hz.
+    pub(crate) fn with_cutoff(&self, cutoff: f64) -> Self {
+        Self { cutoff: Some(cutoff), ..self.clone() }
+    }
 }
 
 fn hertz(text: &str) -> Result<f64, String> {
@@ -64,8 +71,17 @@ pub(crate) enum Part {
 }
 
 impl MotionLog {
-    /// Opens logs of a robot.
+    /// Opens logs of a robot; the log's own filter passes what a motion may have.
     pub(crate) fn open(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments) -> Result<Self, Failure> {
+        Self::open_with(paths, robot, arguments, WIDER)
+    }
+
+    /// Opens logs of a robot; the log's own filter passes all that it may, for what is sudden.
+    pub(crate) fn open_wide(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments) -> Result<Self, Failure> {
+        Self::open_with(paths, robot, arguments, f64::INFINITY)
+    }
+
+    fn open_with(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments, wider: f64) -> Result<Self, Failure> {
         let mut options = Options {
             topic: arguments.topic.clone(),
             torque_constants: arguments.torque_constants.clone(),
@@ -87,7 +103,7 @@ impl MotionLog {
             Failure::input(format_args!("no run is long enough to choose a low-pass; say {TYPED}--cutoff HZ{TYPED:#}"))
         })?;
         let rate = 1.0 / log.layout().step;
-        let log = Log::open(paths, Options { cutoff: Some((WIDER * cutoff).min(HIGHEST * rate)), ..options })
+        let log = Log::open(paths, Options { cutoff: Some((wider * cutoff).min(HIGHEST * rate)), ..options })
             .map_err(failure)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
         remarks.extend(log.layout().notes.iter().map(|note| one_line(note)));
@@ -109,11 +125,16 @@ impl MotionLog {
         format!("{files} ({} states at {:.0} Hz)", self.survey.counts.states, 1.0 / self.log.layout().step)
     }
 
+    /// How many states there are.
+    pub(crate) fn states(&self) -> u64 {
+        self.survey.counts.states
+    }
+
     /// Hands the motions of a part to what takes them.
-    pub(crate) fn pass(
+    pub(crate) fn pass<E: Display>(
         &self,
         part: Part,
-        take: &mut dyn FnMut(&Motion) -> Result<(), MotionError>,
+        take: &mut dyn FnMut(&Motion) -> Result<(), E>,
     ) -> Result<(), Failure> {
         let runs = &self.survey.runs;
         let total: f64 = runs.iter().map(|run| run.duration).sum();

@@ -6,7 +6,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 use std::rc::Rc;
 
-use npyz::{DType, NpyFile, NpyHeader, Order};
+use rne_logs::Npy;
 use rne_model::{did_you_mean, open_file};
 
 use crate::csv_table::quoted;
@@ -15,12 +15,6 @@ use crate::outcome::Failure;
 
 /// States of a part: some megabytes, whatever the file's size.
 pub(crate) const PART: usize = 16_384;
-
-/// What a file of numpy begins with.
-const MAGIC: &[u8] = b"\x93NUMPY";
-
-/// The longest header of an array, far more than one of numbers has.
-const LONGEST_HEADER: usize = 1 << 16;
 
 /// The longest line of a CSV file, with its line ends where a quote holds them.
 const LONGEST_LINE: u64 = 1 << 20;
@@ -93,7 +87,7 @@ impl Table {
         if first.starts_with(&[0xFF, 0xFE]) || first.starts_with(&[0xFE, 0xFF]) {
             return Err(Failure::input(format_args!("{name} looks like UTF-16; save the file as UTF-8")));
         }
-        if first.starts_with(&MAGIC[..MAGIC.len().min(first.len())]) && !first.is_empty() {
+        if first.starts_with(&Npy::MAGIC[..Npy::MAGIC.len().min(first.len())]) && !first.is_empty() {
             return Ok(Self { mass, ..Self::npy(name, file, columns)? });
         }
         Ok(Self { mass, ..Self::csv(name, file, columns)? })
@@ -138,19 +132,11 @@ impl Table {
         Ok(Self { states: None, name, rows, mass: None })
     }
 
-    fn npy(name: String, mut file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
+    fn npy(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
         let wrong = |what: &dyn std::fmt::Display| Failure::input(format_args!("{name}: {what}"));
-        let header = array_header(&mut file).map_err(|error| {
-            // the first line will do: the rest of it shows the header
-            let reason = error.to_string();
-            let reason = match error.kind() {
-                ErrorKind::UnexpectedEof => "the file ends in its header",
-                _ => reason.lines().next().unwrap_or_default(),
-            };
-            wrong(&format_args!("no array of numpy: {reason}"))
-        })?;
-        let [states, width] = header.shape()[..] else {
-            let axes = header.shape().len();
+        let npy = Npy::open(file).map_err(|error| wrong(&error))?;
+        let [states, width] = npy.shape[..] else {
+            let axes = npy.shape.len();
             let axes = if axes == 1 { "1 axis".to_owned() } else { format!("{axes} axes") };
             return Err(wrong(&format_args!("the array has {axes}; its shape is (states, {})", wanted.len())));
         };
@@ -158,22 +144,7 @@ impl Table {
             let (numbers, needed) = (wanted.len(), wanted.join(", "));
             return Err(wrong(&format_args!("the array has {width} columns where there are {numbers}: {needed}")));
         }
-        if header.order() == Order::Fortran && states > 1 && width > 1 {
-            return Err(wrong(&"the array is in Fortran's order; save numpy.ascontiguousarray(states)"));
-        }
-        let kind = match header.dtype() {
-            DType::Plain(kind) => kind.to_string(),
-            other => other.descr(),
-        };
-        let npy = NpyFile::with_header(header, file);
-        let numbers: Box<dyn Iterator<Item = io::Result<f64>>> = match kind.trim_start_matches(['<', '>', '=', '|']) {
-            "f8" => Box::new(npy.data::<f64>().map_err(|error| wrong(&error))?),
-            "f4" => Box::new(npy.data::<f32>().map_err(|error| wrong(&error))?.map(|x| x.map(f64::from))),
-            _ => {
-                return Err(wrong(&format_args!("the numbers are {}; save them as float64 or float32", quoted(&kind))));
-            }
-        };
-        let rows = Rows::Npy { numbers, width: wanted.len(), read: 0 };
+        let rows = Rows::Npy { numbers: npy.numbers, width: wanted.len(), read: 0 };
         Ok(Self { states: Some(states), name, rows, mass: None })
     }
 
@@ -288,36 +259,4 @@ fn reason(error: csv::Error) -> String {
         csv::ErrorKind::Io(error) => error.to_string(),
         kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),
     }
-}
-
-/// The header of an array; the file stands before its numbers then.
-fn array_header(file: &mut impl Read) -> io::Result<NpyHeader> {
-    let invalid = |what: &str| io::Error::new(ErrorKind::InvalidData, what);
-    let mut bytes = vec![0; MAGIC.len() + 2];
-    file.read_exact(&mut bytes)?;
-    // version 1 tells the length by two bytes, later ones by four
-    let of_length = if bytes[MAGIC.len()] == 1 { 2 } else { 4 };
-    let mut length = [0; 4];
-    file.read_exact(&mut length[..of_length])?;
-    bytes.extend_from_slice(&length[..of_length]);
-    let length = u32::from_le_bytes(length) as usize;
-    if length > LONGEST_HEADER {
-        return Err(invalid("its header is too long"));
-    }
-    let start = bytes.len();
-    bytes.resize(start + length, 0);
-    file.read_exact(&mut bytes[start..])?;
-    if !is_countable(&String::from_utf8_lossy(&bytes[start..])) {
-        return Err(invalid("its shape is too large, or none"));
-    }
-    NpyHeader::from_reader(&bytes[..])
-}
-
-/// Whether the integers of a header are decimal and their product, in which a zero is as good as 1, is one too: so are
-/// the number of elements, and the strides, that are computed from a shape.
-fn is_countable(header: &str) -> bool {
-    let words = header.split(|c: char| !c.is_alphanumeric() && c != '_');
-    let mut numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit()));
-    let product = numbers.try_fold(1_u64, |product, word| product.checked_mul(word.parse::<u64>().ok()?.max(1)));
-    product.is_some_and(|product| product < 1 << 60)
 }

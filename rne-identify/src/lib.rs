@@ -20,7 +20,7 @@ pub use fit::Fit;
 pub use identification::{BaseReport, Identification, JointReport, identify, scales};
 pub use information::{Information, MotionError, Weighting};
 pub use parameters::{Base, Parameters, name, unit};
-pub use prediction::{JointError, Prediction, SPEEDS, friction, prediction_errors};
+pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use rne_codegen::Parameter;
 pub use structure::{Options, Structure};

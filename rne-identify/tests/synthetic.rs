@@ -3,7 +3,7 @@
 use fastrand::Rng;
 use nalgebra::DVector;
 use rne_identify::{
-    Feasible, Fit, Information, MotionError, Options, Parameter, Structure, friction, identify, prediction_errors,
+    Feasible, Fit, Information, MotionError, Options, Parameter, Structure, identify, prediction_errors,
     pseudo_inertia, scales, written,
 };
 use rne_logs::Motion;
@@ -60,7 +60,7 @@ impl Sines {
 
 fn torques(robot: &Robot, arm: &DynArm, state: &[Vec<f64>; 3]) -> Vec<f64> {
     let tau = arm.inverse_dynamics(&state[0], &state[1], &state[2]).unwrap();
-    tau.iter().zip(&robot.joints).zip(&state[1]).map(|((tau, joint), qd)| tau + friction(joint, *qd)).collect()
+    tau.iter().zip(&robot.joints).zip(&state[1]).map(|((tau, joint), qd)| tau + joint.friction(*qd)).collect()
 }
 
 fn gaussian(rng: &mut Rng) -> f64 {

@@ -35,6 +35,7 @@ mod log;
 mod mcap_bag;
 mod motion;
 mod motions;
+mod npy;
 mod npy_array;
 mod options;
 #[cfg(feature = "parquet")]
@@ -55,6 +56,7 @@ pub use crate::format::Format;
 pub use crate::log::{Layout, Log};
 pub use crate::motion::Motion;
 pub use crate::motions::{Motions, Piece};
+pub use crate::npy::Npy;
 pub use crate::options::{Angles, Options};
 pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::time_unit::TimeUnit;

@@ -1,20 +1,12 @@
 //! Arrays of numpy: `*.npy`.
 
 use std::fs::File;
-use std::io::{self, BufReader, ErrorKind, Read};
+use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
-
-use npyz::{DType, NpyFile, NpyHeader, Order};
 
 use crate::csv_table::no_time;
 use crate::sample::{Sample, Source};
-use crate::{LogError, Options, TimeUnit};
-
-/// What a file of numpy begins with.
-const MAGIC: &[u8] = b"\x93NUMPY";
-
-/// The longest header of an array, far more than one of numbers has.
-const LONGEST_HEADER: usize = 1 << 16;
+use crate::{LogError, Npy, Options, TimeUnit};
 
 /// An array of states by columns, a sample a row.
 pub(crate) struct NpyArray {
@@ -34,39 +26,18 @@ impl NpyArray {
     pub(crate) fn open(path: &Path, options: &Options) -> Result<Self, LogError> {
         let wrong = |what: &dyn std::fmt::Display| LogError::file(path, what);
         let file = File::open(path).map_err(|error| wrong(&format_args!("the file cannot be read: {error}")))?;
-        let mut file = BufReader::with_capacity(1 << 16, file);
-        let header = header(&mut file).map_err(|error| {
-            let reason = error.to_string();
-            let reason = match error.kind() {
-                ErrorKind::UnexpectedEof => "the file ends in its header",
-                _ => reason.lines().next().unwrap_or_default(),
-            };
-            wrong(&format_args!("no array of numpy: {reason}"))
-        })?;
-        let [rows, width] = header.shape()[..] else {
-            let axes = header.shape().len();
+        let npy = Npy::open(BufReader::with_capacity(1 << 16, file)).map_err(|error| wrong(&error))?;
+        let [rows, width] = npy.shape[..] else {
+            let axes = npy.shape.len();
             return Err(wrong(&format_args!("the array has {axes} axes, not 2: states, and their numbers")));
         };
-        if header.order() == Order::Fortran && rows > 1 && width > 1 {
-            return Err(wrong(&"the array is in Fortran's order; save numpy.ascontiguousarray(states)"));
-        }
         let (places, joints) = places(path, &options.columns, width)?;
         if places[0].is_none() && options.rate.is_none() {
             return Err(no_time(path));
         }
-        let kind = match header.dtype() {
-            DType::Plain(kind) => kind.to_string(),
-            other => other.descr(),
-        };
-        let npy = NpyFile::with_header(header, file);
-        let numbers: Box<dyn Iterator<Item = io::Result<f64>>> = match kind.trim_start_matches(['<', '>', '=', '|']) {
-            "f8" => Box::new(npy.data::<f64>().map_err(|error| wrong(&error))?),
-            "f4" => Box::new(npy.data::<f32>().map_err(|error| wrong(&error))?.map(|x| x.map(f64::from))),
-            _ => return Err(wrong(&format_args!("the numbers are {kind:?}; save them as float64"))),
-        };
         Ok(Self {
             path: path.to_owned(),
-            numbers,
+            numbers: npy.numbers,
             row: Vec::new(),
             rows,
             read: 0,
@@ -165,36 +136,4 @@ fn places(path: &Path, columns: &[String], width: u64) -> Result<([Option<usize>
         place += if quantity == 0 { 1 } else { joints };
     }
     Ok((places, joints))
-}
-
-/// The header of an array; the file stands before its numbers then.
-fn header(file: &mut impl Read) -> io::Result<NpyHeader> {
-    let invalid = |what: &str| io::Error::new(ErrorKind::InvalidData, what);
-    let mut bytes = vec![0; MAGIC.len() + 2];
-    file.read_exact(&mut bytes)?;
-    // version 1 tells the length by two bytes, later ones by four
-    let of_length = if bytes[MAGIC.len()] == 1 { 2 } else { 4 };
-    let mut length = [0; 4];
-    file.read_exact(&mut length[..of_length])?;
-    bytes.extend_from_slice(&length[..of_length]);
-    let length = u32::from_le_bytes(length) as usize;
-    if length > LONGEST_HEADER {
-        return Err(invalid("its header is too long"));
-    }
-    let start = bytes.len();
-    bytes.resize(start + length, 0);
-    file.read_exact(&mut bytes[start..])?;
-    if !is_countable(&String::from_utf8_lossy(&bytes[start..])) {
-        return Err(invalid("its shape is too large, or none"));
-    }
-    NpyHeader::from_reader(&bytes[..])
-}
-
-/// Whether the integers of a header are decimal and their product, in which a zero is as good as 1, is one too: so are
-/// the number of elements, and the strides, that are computed from a shape.
-fn is_countable(header: &str) -> bool {
-    let words = header.split(|c: char| !c.is_alphanumeric() && c != '_');
-    let mut numbers = words.filter(|word| word.starts_with(|c: char| c.is_ascii_digit()));
-    let product = numbers.try_fold(1_u64, |product, word| product.checked_mul(word.parse::<u64>().ok()?.max(1)));
-    product.is_some_and(|product| product < 1 << 60)
 }

@@ -71,6 +71,30 @@ pub struct Limits {
 }
 
 impl Joint {
+    /// Friction, N m or N, at a speed: viscous, and Coulomb's, which changes its sign about the width of the file, and
+    /// is zero at rest.
+    ///
+    /// ```text
+    /// G² B q̇ + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²)      s = q̇ / √(q̇² + width²)
+    /// ```
+    #[must_use]
+    pub fn friction(&self, speed: f64) -> f64 {
+        let Some(motor) = self.motor else { return 0.0 };
+        let ratio = motor.gear_ratio.abs();
+        let [forward, backward] = motor.coulomb;
+        let width = self.coulomb_width.unwrap_or(0.0);
+        let sign = if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() };
+        let coulomb = 0.5 * (forward - backward) * sign + 0.5 * (forward + backward) * sign * sign;
+        ratio * ratio * motor.viscous * speed + ratio * coulomb
+    }
+
+    /// From Coulomb's friction of one direction to that of the other, N m or N: a joint at rest may be held by anything
+    /// between.
+    #[must_use]
+    pub fn coulomb_span(&self) -> f64 {
+        self.motor.map_or(0.0, |motor| motor.gear_ratio.abs() * (motor.coulomb[0] - motor.coulomb[1]))
+    }
+
     /// Whether the inertia of its link is positive semidefinite about the centre of mass, but for rounding, and there
     /// is no first moment without mass: so it is with a body. A file must say `physical: false` where it is not.
     #[must_use]

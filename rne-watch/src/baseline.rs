@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use crate::{Signals, WatchError};
+use crate::{Settings, Signals, Test, WatchError, watch};
+
+/// By so much deviations are raised at a time.
+const RAISE: f64 = 1.1;
 
 /// Of a stretch that tells what noise is: so many blocks at least.
 const BLOCKS: usize = 20;
@@ -57,7 +60,11 @@ impl Baseline {
         for joint in 0..signals.dof() {
             let least = LEAST * signals.measured[joint].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let least = least.max(f64::MIN_POSITIVE);
-            let level = level(&signals.residual[joint][quiet.clone()], signals.period, least);
+            let known = known(signals, joint, quiet.clone());
+            let known: Vec<f64> = known.into_iter().map(|(_, number)| number).collect();
+            // of an arm that never leaves its place all is known that there is
+            let of_residual = if known.len() < BLOCKS { &signals.residual[joint][quiet.clone()] } else { &known };
+            let level = level(of_residual, signals.period, least);
             let moving = along_motion(signals, joint, level.mean, quiet.clone());
             let moving: Vec<f64> = moving.into_iter().map(|(_, number)| number).collect();
             // of an arm that stands still: the same noise
@@ -68,17 +75,87 @@ impl Baseline {
                 Level { deviation: found.deviation.max(scaled(&level, &found)), ..found }
             });
             residual.push(level);
-            let seen: Vec<f64> =
-                quiet.clone().filter(|&at| signals.settled[at]).map(|at| signals.external[joint][at]).collect();
-            if seen.len() < BLOCKS {
-                return Err(WatchError::TooFew { found: seen.len(), needed: BLOCKS });
+            let settled: Vec<usize> = quiet.clone().filter(|&at| signals.settled[at]).collect();
+            if settled.len() < BLOCKS {
+                return Err(WatchError::TooFew { found: settled.len(), needed: BLOCKS });
             }
+            let sure: Vec<usize> = settled.iter().copied().filter(|&at| signals.open[joint][at] == 0.0).collect();
+            let seen = if sure.len() < BLOCKS { settled } else { sure };
+            let seen: Vec<f64> = seen.into_iter().map(|at| signals.external[joint][at]).collect();
             // neighbours know of each other: fewer tell of the deviation
             let alone = seen.len() / remembered(&seen).max(1);
             let (mean, deviation) = spread(&seen, alone, least);
             external.push(Level { mean, deviation, block: 0.0 });
         }
         Ok(Self { residual, friction, external })
+    }
+
+    /// What several stretches have in common: the medians of their levels, which a stretch in which something happens
+    /// does not change. `None` of none.
+    #[must_use]
+    pub fn typical(baselines: &[Self]) -> Option<Self> {
+        Self::of_levels(baselines, |levels| {
+            let of = |each: fn(&Level) -> f64| median(levels.iter().map(each).collect());
+            Level {
+                mean: of(|level| level.mean),
+                deviation: of(|level| level.deviation),
+                block: of(|level| level.block),
+            }
+        })
+    }
+
+    /// What covers several stretches in which nothing happens: means of all of them are within its deviation, and no
+    /// deviation or block is larger. `None` of none.
+    #[must_use]
+    pub fn covering(baselines: &[Self]) -> Option<Self> {
+        Self::of_levels(baselines, |levels| {
+            let most = |of: fn(&Level) -> f64| levels.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+            let (low, high) = (-most(|level| -level.mean), most(|level| level.mean));
+            let deviation = most(|level| level.deviation) + 0.5 * (high - low);
+            Level { mean: 0.5 * (low + high), deviation, block: most(|level| level.block) }
+        })
+    }
+
+    /// Deviations that are so many times as large.
+    #[must_use]
+    pub fn widened(mut self, times: f64) -> Self {
+        for level in [&mut self.residual, &mut self.friction, &mut self.external].into_iter().flatten() {
+            level.deviation *= times;
+        }
+        self
+    }
+
+    fn of_levels(baselines: &[Self], one: impl Fn(&[Level]) -> Level) -> Option<Self> {
+        let dof = baselines.iter().map(|baseline| baseline.residual.len()).min()?;
+        let of = |levels: fn(&Self) -> &[Level]| -> Vec<Level> {
+            (0..dof).map(|joint| one(&baselines.iter().map(|of| levels(of)[joint]).collect::<Vec<_>>())).collect()
+        };
+        Some(Self { residual: of(|of| &of.residual), friction: of(|of| &of.friction), external: of(|of| &of.external) })
+    }
+
+    /// Raises the deviations of what would be an event in a stretch in which nothing happens, until nothing is: a
+    /// model's errors in motion are no noise that is normal.
+    ///
+    /// # Errors
+    /// Those of [`watch`].
+    pub fn silent(mut self, signals: &Signals, settings: &Settings) -> Result<Self, WatchError> {
+        loop {
+            let report = watch(signals, &self, settings)?;
+            if report.events.is_empty() {
+                return Ok(self);
+            }
+            let mut raised: Vec<(usize, Test)> = report.events.iter().map(|event| (event.joint, event.test)).collect();
+            raised.sort_unstable();
+            raised.dedup();
+            for (joint, test) in raised {
+                let levels = match test {
+                    Test::External => &mut self.external,
+                    Test::Offset => &mut self.residual,
+                    Test::Friction => &mut self.friction,
+                };
+                levels[joint].deviation *= RAISE;
+            }
+        }
     }
 
     /// From standard deviations that are known: of white noise of the measured efforts, and of what the observer makes
@@ -93,10 +170,16 @@ impl Baseline {
     }
 }
 
+/// The residual of a joint where friction leaves nothing open, with the samples.
+pub(crate) fn known(signals: &Signals, joint: usize, samples: Range<usize>) -> Vec<(usize, f64)> {
+    let (residual, open) = (&signals.residual[joint], &signals.open[joint]);
+    samples.filter(|&at| open[at] == 0.0).map(|at| (at, residual[at])).collect()
+}
+
 /// The residual of a joint, less its level, in the direction of motion: where it moves, with the samples.
 pub(crate) fn along_motion(signals: &Signals, joint: usize, mean: f64, samples: Range<usize>) -> Vec<(usize, f64)> {
     let (residual, direction) = (&signals.residual[joint], &signals.direction[joint]);
-    let moving = samples.filter(|&at| direction[at] != 0.0);
+    let moving = samples.filter(|&at| direction[at] != 0.0 && signals.open[joint][at] == 0.0);
     moving.map(|at| (at, (residual[at] - mean) * direction[at])).collect()
 }
 

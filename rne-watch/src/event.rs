@@ -28,6 +28,18 @@ impl Test {
     }
 }
 
+impl Test {
+    /// What shows itself by it.
+    #[must_use]
+    pub const fn meaning(self) -> &'static str {
+        match self {
+            Self::External => "a collision, a hand, a payload",
+            Self::Offset => "a payload, a sensor's offset",
+            Self::Friction => "wear, a brake, cold grease",
+        }
+    }
+}
+
 impl fmt::Display for Test {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.name())
@@ -49,4 +61,24 @@ pub struct Event {
     /// Its largest deviation from the baseline, N m or N: of the observer (torque of the environment on the arm), or of
     /// the residual's mean over a block (measured less model; in the direction of motion for friction).
     pub peak: f64,
+}
+
+impl Event {
+    /// Events of the same joint and test that are closer than `gap`, s, made one, by their beginnings.
+    #[must_use]
+    pub fn joined(mut events: Vec<Self>, gap: f64) -> Vec<Self> {
+        events.sort_by(|a, b| (a.joint, a.test).cmp(&(b.joint, b.test)).then(a.start.total_cmp(&b.start)));
+        let mut joined: Vec<Self> = Vec::with_capacity(events.len());
+        for event in events {
+            match joined.last_mut() {
+                Some(last) if (last.joint, last.test) == (event.joint, event.test) && event.start - last.end <= gap => {
+                    last.end = last.end.max(event.end);
+                    last.peak = if event.peak.abs() > last.peak.abs() { event.peak } else { last.peak };
+                }
+                _ => joined.push(event),
+            }
+        }
+        joined.sort_by(|a, b| a.start.total_cmp(&b.start).then((a.joint, a.test).cmp(&(b.joint, b.test))));
+        joined
+    }
 }

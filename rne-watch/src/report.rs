@@ -1,6 +1,6 @@
 //! The tests.
 
-use crate::baseline::{along_motion, means};
+use crate::baseline::{along_motion, known, means};
 use crate::cumulative_sum::{Alarm, alarms};
 use crate::{Baseline, Event, Level, Settings, Signals, Test, Thresholds, WatchError};
 
@@ -44,7 +44,7 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
         #[allow(clippy::cast_precision_loss)] // samples of a block
         let seconds = levels.map(|level| samples_in(level.block, signals.period) as f64 * signals.period);
         let thresholds = Thresholds::new(&settings, dof, seconds);
-        let whole: Vec<(usize, f64)> = signals.residual[joint].iter().copied().enumerate().collect();
+        let whole = known(signals, joint, 0..signals.time.len());
         let moving = along_motion(signals, joint, levels[0].mean, 0..signals.time.len());
         for (index, (test, numbers)) in [(Test::Offset, whole), (Test::Friction, moving)].into_iter().enumerate() {
             let blocks = blocks(&numbers, samples_in(levels[index].block, signals.period));
@@ -103,6 +103,7 @@ fn of_observer(signals: &Signals, joint: usize, level: &Level, threshold: f64, h
             continue;
         }
         let sign_stays = beyond == 0 || off * (signals.external[joint][at - 1] - level.mean) > 0.0;
+        let limit = limit + signals.open[joint][at];
         beyond = if off.abs() > limit { if sign_stays { beyond + 1 } else { 1 } } else { 0 };
         if let Some(event) = &mut open {
             event.peak = farther(event.peak, off);

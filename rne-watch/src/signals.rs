@@ -9,13 +9,19 @@
 //! and in quasi-static contact `external` is about -`residual`, through a low-pass.
 
 use rne_logs::Motion;
-use rne_model::Robot;
+use rne_model::{Joint, Robot};
 use rne_runtime::{DynArm, DynObserverState, WrongLength};
 
 use crate::WatchError;
 
 /// Fewer tell nothing.
 const FEWEST: usize = 16;
+
+/// A joint creeps up to so many times the speed at which it is as good as at rest, or its friction changes its sign.
+const CREEPING: f64 = 5.0;
+
+/// Less of what friction leaves open is nothing.
+const FORGOTTEN: f64 = 0.02;
 
 /// A step that is so many times as long as the usual one is a gap: the observer begins anew behind it.
 const GAP: f64 = 2.5;
@@ -36,6 +42,9 @@ pub struct Signals {
     pub direction: Vec<Vec<f64>>,
     /// Torques of the environment on the arm by the momentum observer.
     pub external: Vec<Vec<f64>>,
+    /// What friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by anything
+    /// between Coulomb's friction of both directions, whatever the file says of its speed.
+    pub open: Vec<Vec<f64>>,
     /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
     pub settled: Vec<bool>,
 }
@@ -52,18 +61,18 @@ impl Signals {
         }
         let arm = DynArm::from_robot(&robot.clone().with_rotors());
         let period = usual_step(&motion.time);
-        Self::along(&arm, motion, gain, period)
+        Self::along(robot, &arm, motion, gain, period)
             .map_err(|WrongLength { expected, found, .. }| WatchError::Joints { expected, found })
     }
 
-    fn along(arm: &DynArm, motion: &Motion, gain: f64, period: f64) -> Result<Self, WrongLength> {
+    fn along(robot: &Robot, arm: &DynArm, motion: &Motion, gain: f64, period: f64) -> Result<Self, WrongLength> {
         let (dof, samples) = (arm.dof(), motion.len());
         let lists = || vec![Vec::with_capacity(samples); dof];
-        let (mut residual, mut direction, mut external) = (lists(), lists(), lists());
+        let (mut residual, mut direction, mut external, mut open) = (lists(), lists(), lists(), lists());
         let mut settled = Vec::with_capacity(samples);
         let mut observer = DynObserverState::new(dof, gain, period);
         let still = still(&motion.qd);
-        let (zeros, wait) = (vec![0.0; dof], 3.0 / (std::f64::consts::TAU * gain));
+        let wait = 3.0 / (std::f64::consts::TAU * gain);
         let mut since = 0.0;
         for sample in 0..samples {
             let of = |lists: &[Vec<f64>]| -> Vec<f64> { lists.iter().map(|list| list[sample]).collect() };
@@ -75,9 +84,10 @@ impl Signals {
             } else {
                 since += step;
             }
-            let friction = arm.actuator_torques(&qd, &zeros)?;
+            let fade = (-std::f64::consts::TAU * gain * step).exp();
+            let friction = robot.joints.iter().zip(&qd).map(|(joint, speed)| joint.friction(*speed));
             let model = arm.inverse_dynamics(&q, &qd, &qdd)?;
-            let net: Vec<f64> = tau.iter().zip(&friction).map(|(tau, friction)| tau - friction).collect();
+            let net: Vec<f64> = tau.iter().zip(friction).map(|(tau, friction)| tau - friction).collect();
             let seen = observer.update(arm, &q, &qd, &net)?;
             settled.push(since > wait);
             for joint in 0..dof {
@@ -85,10 +95,50 @@ impl Signals {
                 external[joint].push(seen[joint]);
                 let moves = qd[joint].abs() > still[joint];
                 direction[joint].push(if moves { qd[joint].signum() } else { 0.0 });
+                let now = left_open(&robot.joints[joint], qd[joint], still[joint]);
+                let before = open[joint].last().map_or(0.0, |open: &f64| open * fade);
+                // what the observer has all but forgotten is over
+                let is_over = before < FORGOTTEN * robot.joints[joint].coulomb_span();
+                open[joint].push(if is_over { now } else { now.max(before) });
             }
         }
         let (time, measured) = (motion.time.clone(), motion.tau.clone());
-        Ok(Self { time, period, measured, residual, direction, external, settled })
+        Ok(Self { time, period, measured, residual, direction, external, open, settled })
+    }
+
+    /// One sample of so many: what a picture needs of a long motion.
+    #[must_use]
+    pub fn thinned(&self, stride: usize) -> Self {
+        fn of<T: Clone>(list: &[T], stride: usize) -> Vec<T> {
+            list.iter().step_by(stride.max(1)).cloned().collect()
+        }
+        let each = |lists: &[Vec<f64>]| lists.iter().map(|list| of(list, stride)).collect();
+        Self {
+            time: of(&self.time, stride),
+            period: self.period,
+            measured: each(&self.measured),
+            residual: each(&self.residual),
+            direction: each(&self.direction),
+            external: each(&self.external),
+            open: each(&self.open),
+            settled: of(&self.settled, stride),
+        }
+    }
+
+    /// Appends the samples of what follows.
+    pub fn append(&mut self, next: Self) {
+        self.time.extend(next.time);
+        self.settled.extend(next.settled);
+        let lists = [
+            (&mut self.measured, next.measured),
+            (&mut self.residual, next.residual),
+            (&mut self.direction, next.direction),
+            (&mut self.external, next.external),
+            (&mut self.open, next.open),
+        ];
+        for (lists, next) in lists {
+            lists.iter_mut().zip(next).for_each(|(list, next)| list.extend(next));
+        }
     }
 
     /// The number of joints.
@@ -110,6 +160,12 @@ impl Signals {
         let error = (residual.iter().map(|x| x * x).sum::<f64>() / count).sqrt();
         (spread > 0.0).then(|| error / spread)
     }
+}
+
+/// What friction leaves open at a speed.
+fn left_open(joint: &Joint, speed: f64, still: f64) -> f64 {
+    let creeping = CREEPING * joint.coulomb_width.unwrap_or(0.0).max(still);
+    if speed.abs() > creeping { 0.0 } else { joint.coulomb_span() }
 }
 
 /// The speed of each joint below which it is as good as at rest: a fiftieth of its usual largest, the 95th percentile.

@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use rne_logs::Motion;
-use rne_model::{Reader, Robot};
+use rne_model::{Motor, Reader, Robot};
 use rne_runtime::DynArm;
 use rne_watch::{Baseline, Event, Report, Settings, Signals, Test, WatchError, svg, watch};
 
@@ -162,6 +162,97 @@ fn a_payload_that_is_taken_up_is_found() {
     assert!(report.events.iter().any(|event| event.end > 39.0));
 }
 
+/// A joint that turns back is held by anything between Coulomb's friction of both directions: real gears give way over
+/// some travel, the model at once. What is beyond that is still seen.
+#[test]
+fn a_joint_that_turns_back_is_no_event() {
+    let mut robot = shipped("planar2");
+    let motor = Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.3, coulomb: [2.0, -2.0] };
+    for joint in &mut robot.joints {
+        joint.motor = Some(motor);
+        joint.coulomb_width = Some(0.01);
+    }
+    // friction of a spring that slides: it lags behind the sign by two milliradians
+    let lagging = |robot: &Robot| {
+        let mut motion = motion(robot, 21, |_, _, _| {});
+        for joint in 0..2 {
+            let mut bent = 0.001_f64; // all joints set out forward
+            for at in 0..motion.len() {
+                let step = if at == 0 { 0.0 } else { motion.q[joint][at] - motion.q[joint][at - 1] };
+                bent = (bent + step).clamp(-0.001, 0.001);
+                let sign = 2.0 * bent / 0.001;
+                let instant = robot.joints[joint].friction(motion.qd[joint][at]) - 0.3 * motion.qd[joint][at];
+                motion.tau[joint][at] += sign - instant;
+            }
+        }
+        motion
+    };
+    let settings = Settings::default();
+    let free = lagging(&robot);
+    let signals = Signals::new(&robot, &free, settings.gain).expect("a motion of the robot");
+    let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
+    let mut blind = signals.clone();
+    blind.open = vec![vec![0.0; free.len()]; 2];
+    assert!(!watch(&blind, &baseline, &settings).expect("two joints").events.is_empty(), "nothing lags");
+    assert_eq!(watch(&signals, &baseline, &settings).expect("two joints").events, []);
+    let mut knocked = free;
+    for (tau, time) in knocked.tau[1].iter_mut().zip(&knocked.time) {
+        *tau += if (20.0..20.2).contains(time) { 8.0 } else { 0.0 };
+    }
+    let signals = Signals::new(&robot, &knocked, settings.gain).expect("a motion of the robot");
+    let events = watch(&signals, &baseline, &settings).expect("two joints").events;
+    assert!(events.iter().any(|event| event.joint == 1 && (19.99..20.1).contains(&event.start)), "{events:?}");
+}
+
+/// Levels of several stretches: the medians know nothing of one that is different, what covers them knows all.
+#[test]
+fn levels_of_several_stretches() {
+    let of = |mean: f64, deviation: f64| Baseline::white(&[deviation], &[deviation]).widened(1.0 + mean);
+    let typical = Baseline::typical(&[of(0.0, 1.0), of(0.0, 1.2), of(0.0, 50.0)]).expect("three");
+    assert!((typical.residual[0].deviation - 1.2).abs() < 1e-12 && typical.external[0].mean == 0.0);
+    let mut offset = of(0.0, 1.0);
+    offset.residual[0].mean = 4.0;
+    let covering = Baseline::covering(&[of(0.0, 3.0), offset]).expect("two");
+    assert_eq!((covering.residual[0].mean, covering.residual[0].deviation), (2.0, 5.0));
+    assert!(Baseline::typical(&[]).is_none());
+}
+
+/// In a stretch in which nothing happens nothing is found, however the model is wrong there; and twice as much is.
+#[test]
+fn a_quiet_stretch_stays_quiet() {
+    let robot = shipped("puma560");
+    let settings = Settings::default();
+    // a wave that the model has not
+    let wrong =
+        |times: f64| motion(&robot, 22, move |time, _, tau| tau[1] += times * 9.0 * (0.8 * time).sin().powi(41));
+    let signals = |times| Signals::new(&robot, &wrong(times), settings.gain).expect("a motion of the robot");
+    let quiet = signals(1.0);
+    let before = Baseline::of(&quiet, 0..quiet.time.len()).expect("long enough");
+    assert!(!watch(&quiet, &before, &settings).expect("six joints").events.is_empty());
+    let silent = before.silent(&quiet, &settings).expect("six joints");
+    assert_eq!(watch(&quiet, &silent, &settings).expect("six joints").events, []);
+    let events = watch(&signals(2.0), &silent, &settings).expect("six joints").events;
+    assert!(events.iter().any(|event| event.joint == 1), "{events:?}");
+    assert!(events.iter().all(|event| event.joint == 1), "{events:?}");
+}
+
+/// Events on both sides of a border are one.
+#[test]
+fn events_are_joined() {
+    let robot = shipped("planar2");
+    let (_, _, report) = watched(&robot, 23, |time, _, tau| tau[1] += if time > 20.0 { 9.0 } else { 0.0 });
+    let first = report.events[0];
+    let later = |by: f64, peak: f64| {
+        let mut event = first;
+        (event.start, event.end, event.peak) = (first.start + by, first.end + by, peak);
+        event
+    };
+    let long = first.end - first.start;
+    let joined = Event::joined(vec![later(long + 0.1, -99.0), first], 0.25);
+    assert_eq!((joined.len(), joined[0].start, joined[0].peak), (1, first.start, -99.0));
+    assert_eq!(Event::joined(vec![later(long + 0.3, 1.0), first], 0.25).len(), 2);
+}
+
 /// Of noise that is white, and of one that a filter has smoothed: alarms are no more than asked for, and those of
 /// cumulative sums about as many.
 #[test]
@@ -191,6 +282,7 @@ fn false_alarms_are_as_rare_as_asked_for() {
         signals.measured = noise();
         signals.time = (0..samples).map(|sample| f64::from(sample) / RATE).collect();
         signals.settled = vec![true; signals.time.len()];
+        signals.open = vec![vec![0.0; signals.time.len()]; 2];
         // to and fro, twice in a second
         let direction = |sample: u32| if (sample / 63).is_multiple_of(2) { 1.0 } else { -1.0 };
         signals.direction = vec![(0..samples).map(direction).collect(); 2];

@@ -25,4 +25,5 @@ mod show;
 mod states;
 mod terminal;
 mod views;
+mod watch;
 mod worksheet;

@@ -1,0 +1,307 @@
+//! `rne watch`: what happens to an arm, by its logs.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_model::{JointKind, Robot, one_line};
+use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
+use serde::Serialize;
+
+use crate::identify::{errors_table, prediction};
+use crate::layout::{Align, columns, shortened, wrap};
+use crate::motion_log::{LogArguments, MotionLog, Part};
+use crate::numbers::rounded;
+use crate::outcome::{Failure, Outcome};
+use crate::output_file;
+use crate::robot_file;
+use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
+
+/// Columns of the account.
+const WIDTH: usize = 80;
+
+/// Events that are shown; the others are counted.
+const SHOWN: usize = 40;
+
+/// States of a picture.
+const DRAWN: u64 = 20_000;
+
+/// Watch an arm by its logs: torques that its file does not explain
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
+  rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
+
+Exit status 1: there are events. What is looked for, and how: docs/watch.md.")]
+pub(crate) struct Arguments {
+    /// Robot file, with friction: what `rne identify` wrote
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
+    #[arg(value_name = "LOG", required = true)]
+    logs: Vec<PathBuf>,
+    /// A log in which nothing happens: what is usual
+    #[arg(long, value_name = "LOG")]
+    quiet: Vec<PathBuf>,
+    #[command(flatten)]
+    reading: LogArguments,
+    /// Of the momentum observer, Hz
+    #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero)]
+    gain: f64,
+    /// How long an external torque lasts at least, s
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.005, value_parser = above_zero)]
+    hold: f64,
+    /// False alarms in an hour, of all joints together
+    #[arg(long, value_name = "RATE", default_value_t = 0.01, value_parser = above_zero)]
+    false_alarms: f64,
+    /// Draw residuals, external torques and events, as SVG
+    #[arg(long, value_name = "SVG")]
+    plot: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "plot")]
+    force: bool,
+    /// Events and errors as JSON
+    #[arg(long)]
+    json: bool,
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite() && *number > 0.0);
+    number.ok_or_else(|| "it is a number above 0".to_owned())
+}
+
+/// What a motion may be too short for.
+fn unless_too_short<T>(found: Result<T, WatchError>) -> Result<Option<T>, WatchError> {
+    match found {
+        Ok(found) => Ok(Some(found)),
+        Err(WatchError::TooFew { .. }) => Ok(None),
+        Err(error) => Err(error),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = robot_file::robot(&arguments.file)?;
+    let log = MotionLog::open_wide(&arguments.logs, &robot, &arguments.reading)?;
+    let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
+    let quiet = match &arguments.quiet[..] {
+        [] => None,
+        logs => Some(MotionLog::open_wide(logs, &robot, &arguments.reading.with_cutoff(log.cutoff))?),
+    };
+    let mut remark = String::new();
+    for line in log.remarks.iter().chain(quiet.iter().flat_map(|quiet| &quiet.remarks)) {
+        let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {}", wrap(line, WIDTH - 6, "      "));
+    }
+    let baseline = match &quiet {
+        Some(quiet) => silent(&robot, quiet, &settings)?,
+        None => typical(&robot, &log, &settings)?,
+    };
+    let watched = Watched::of(&robot, &log, &baseline, &settings, arguments.plot.is_some())?;
+    if let (Some(path), Some((signals, report))) = (&arguments.plot, &watched.drawn) {
+        let inputs = arguments.logs.iter().chain(&arguments.quiet).chain([&arguments.file]);
+        let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+        let picture = svg(&robot, signals, &baseline, report, &log.words());
+        remark += &output_file::write_new(path, &picture, &sources, arguments.force)?;
+    }
+    let errors = prediction(&robot, &log, Part::All)?;
+    let at_fault = !watched.events.is_empty();
+    if arguments.json {
+        let reply = Reply::of(&robot, &log, &watched.events, &errors);
+        return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
+    }
+    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
+    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
+    let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
+    let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), WIDTH, "  "));
+    text += &events_table(&robot, &watched.events);
+    text += &errors_table(&robot, &errors, None, "prediction of the log");
+    Ok(Outcome { text, remark, at_fault })
+}
+
+/// Hands the signals of a log to what takes them, piece by piece; how many pieces were long enough for it.
+fn each_signals(
+    robot: &Robot,
+    log: &MotionLog,
+    gain: f64,
+    mut take: impl FnMut(Signals) -> Result<Option<()>, WatchError>,
+) -> Result<u64, Failure> {
+    let mut taken = 0;
+    log.pass(Part::All, &mut |motion| {
+        let signals = unless_too_short(Signals::new(robot, motion, gain))?;
+        if let Some(signals) = signals {
+            taken += u64::from(take(signals)?.is_some());
+        }
+        Ok::<(), WatchError>(())
+    })?;
+    Ok(taken)
+}
+
+/// The levels of each piece of a log that is long enough to have some.
+fn levels(robot: &Robot, log: &MotionLog, gain: f64) -> Result<Vec<Baseline>, Failure> {
+    let mut found = Vec::new();
+    each_signals(robot, log, gain, |signals| {
+        let baseline = unless_too_short(Baseline::of(&signals, 0..signals.time.len()))?;
+        Ok(baseline.map(|baseline| found.push(baseline)))
+    })?;
+    Ok(found)
+}
+
+fn too_short(log: &MotionLog) -> Failure {
+    Failure::input(format_args!("{} is too short to tell what is usual", log.words()))
+}
+
+/// What is usual in a log in which something may happen.
+fn typical(robot: &Robot, log: &MotionLog, settings: &Settings) -> Result<Baseline, Failure> {
+    Baseline::typical(&levels(robot, log, settings.gain)?).ok_or_else(|| too_short(log))
+}
+
+/// What is usual in a log in which nothing happens.
+fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Baseline, Failure> {
+    let mut baseline = Baseline::covering(&levels(robot, quiet, settings.gain)?).ok_or_else(|| too_short(quiet))?;
+    each_signals(robot, quiet, settings.gain, |signals| {
+        baseline = baseline.clone().silent(&signals, settings)?;
+        Ok(Some(()))
+    })?;
+    Ok(baseline.widened(ELSEWHERE))
+}
+
+/// A model is worse where it has not been before: levels of another log are so many times as wide.
+const ELSEWHERE: f64 = 1.5;
+
+/// What was found in a log.
+struct Watched {
+    events: Vec<Event>,
+    /// For a picture: signals that are thinned, and all events.
+    drawn: Option<(Signals, Report)>,
+}
+
+impl Watched {
+    fn of(
+        robot: &Robot,
+        log: &MotionLog,
+        baseline: &Baseline,
+        settings: &Settings,
+        is_drawn: bool,
+    ) -> Result<Self, Failure> {
+        let stride = usize::try_from(log.states().div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
+        let (mut events, mut drawn) = (Vec::new(), None::<(Signals, Report)>);
+        let taken = each_signals(robot, log, settings.gain, |signals| {
+            let report = watch(&signals, baseline, settings)?;
+            events.extend(report.events.iter().copied());
+            if is_drawn {
+                let thin = signals.thinned(stride);
+                match &mut drawn {
+                    Some((all, _)) => all.append(thin),
+                    None => drawn = Some((thin, report)),
+                }
+            }
+            Ok(Some(()))
+        })?;
+        if taken == 0 {
+            return Err(Failure::input(format_args!("{} is too short to be watched", log.words())));
+        }
+        let events = Event::joined(events, JOINED);
+        if let Some((signals, report)) = &mut drawn {
+            report.events.clone_from(&events);
+            report.errors = (0..signals.dof()).map(|joint| signals.prediction_error(joint)).collect();
+        }
+        Ok(Self { events, drawn })
+    }
+}
+
+/// s: events that are closer are one, such as those on both sides of the border of two pieces.
+const JOINED: f64 = 0.25;
+
+const fn unit(kind: JointKind) -> &'static str {
+    match kind {
+        JointKind::Revolute => "N m",
+        JointKind::Prismatic => "N",
+    }
+}
+
+fn events_table(robot: &Robot, events: &[Event]) -> String {
+    if events.is_empty() {
+        return format!("\n{GOOD}no events{GOOD:#}\n");
+    }
+    let mut cells = vec![["  from, s", "to, s", "joint", "", "peak", "", "what it is like"].map(str::to_owned)];
+    for event in events.iter().take(SHOWN) {
+        let joint = &robot.joints[event.joint];
+        cells.push([
+            format!("  {:.3}", event.start),
+            format!("{:.3}", event.end),
+            shortened(&one_line(&joint.name), 20),
+            event.test.name().to_owned(),
+            rounded(event.peak, 3),
+            unit(joint.row.kind).to_owned(),
+            event.test.meaning().to_owned(),
+        ]);
+    }
+    let align = [Align::Right, Align::Right, Align::Left, Align::Left, Align::Right, Align::Left, Align::Left];
+    let lines = columns(&align, &cells);
+    let count = if events.len() == 1 { "1 event".to_owned() } else { format!("{} events", events.len()) };
+    let mut text = format!("\n{WARNING}{count}{WARNING:#}\n{QUIET}{}{QUIET:#}\n", lines[0]);
+    for line in &lines[1..] {
+        let _ = writeln!(text, "{line}");
+    }
+    if events.len() > SHOWN {
+        let _ = writeln!(text, "  and {} more; --json has them all", events.len() - SHOWN);
+    }
+    text
+}
+
+/// What was found, as JSON has it.
+#[derive(Serialize)]
+struct Reply {
+    robot: String,
+    log: String,
+    low_pass: f64,
+    events: Vec<OfEvent>,
+    joints: Vec<OfJoint>,
+}
+
+#[derive(Serialize)]
+struct OfEvent {
+    start: f64,
+    end: f64,
+    joint: usize,
+    name: String,
+    test: &'static str,
+    peak: f64,
+    unit: &'static str,
+}
+
+#[derive(Serialize)]
+struct OfJoint {
+    joint: usize,
+    name: String,
+    error: Option<f64>,
+    unfiltered: Option<f64>,
+}
+
+impl Reply {
+    fn of(robot: &Robot, log: &MotionLog, events: &[Event], errors: &[rne_identify::JointError]) -> Self {
+        let finite = |number: f64| number.is_finite().then_some(number);
+        let of_event = |event: &Event| OfEvent {
+            start: event.start,
+            end: event.end,
+            joint: event.joint + 1,
+            name: robot.joints[event.joint].name.clone(),
+            test: event.test.name(),
+            peak: event.peak,
+            unit: unit(robot.joints[event.joint].row.kind),
+        };
+        let of_joint = |(at, error): (usize, &rne_identify::JointError)| OfJoint {
+            joint: at + 1,
+            name: robot.joints[at].name.clone(),
+            error: finite(error.error),
+            unfiltered: finite(error.unfiltered),
+        };
+        Self {
+            robot: robot.name.clone(),
+            log: log.words(),
+            low_pass: log.cutoff,
+            events: events.iter().map(of_event).collect(),
+            joints: errors.iter().enumerate().map(of_joint).collect(),
+        }
+    }
+}
