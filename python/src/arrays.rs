@@ -3,7 +3,7 @@
 use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{Array, Number};
 
 /// An argument: its name, how many elements it has for a state, and what was given.
@@ -23,22 +23,33 @@ pub(crate) fn are_single(given: &[Given<'_>]) -> bool {
 pub(crate) struct Held<'py, T: Element> {
     name: &'static str,
     elements: usize,
-    array: PyReadonlyArrayDyn<'py, T>,
+    layout: Layout<'py, T>,
     /// How many states it has; `None`: it is one row for all.
     pub(crate) states: Option<usize>,
-    /// Whether its elements come before its states in memory.
-    is_fortran: bool,
+}
+
+enum Layout<'py, T: Element> {
+    /// State by state.
+    Rows(PyReadonlyArrayDyn<'py, T>),
+    /// Element by element.
+    Fortran(PyReadonlyArrayDyn<'py, T>),
+    /// An array for each element.
+    Columns(Vec<PyReadonlyArrayDyn<'py, T>>),
 }
 
 impl<'py, T: Element + Number> Held<'py, T> {
-    /// Takes an array as it is where its layout allows, a copy where not.
+    /// Takes an array as it is where its layout allows, a copy where not; of columns of Polars and PyArrow likewise.
     pub(crate) fn of(given: &Given<'py>, dtype: &str) -> PyResult<Self> {
         let &Given { name, elements, ref value } = given;
         let py = value.py();
-        let array = match value.cast::<PyArrayDyn<T>>() {
-            Ok(array) => array.clone(),
-            Err(_) => converted(py, name, value, dtype)?,
+        let value = match seen(given)? {
+            None => value.clone(),
+            Some(views) => match views.cast::<PyTuple>() {
+                Ok(columns) => return Self::of_columns(given, columns, dtype),
+                Err(_) => views,
+            },
         };
+        let array = taken(py, name, &value, dtype)?;
         let shape = array.shape().to_vec();
         let states = match shape[..] {
             [found] if found == elements => None,
@@ -52,29 +63,56 @@ impl<'py, T: Element + Number> Held<'py, T> {
                 return Err(PyValueError::new_err(message));
             }
         };
-        let array = if array.is_c_contiguous() || array.is_fortran_contiguous() {
-            array
-        } else {
-            let copy = py.import("numpy")?.call_method1("ascontiguousarray", (array,))?;
-            copy.cast_into::<PyArrayDyn<T>>()?
-        };
+        let array =
+            if array.is_c_contiguous() || array.is_fortran_contiguous() { array } else { contiguous(py, array)? };
         let is_fortran = !array.is_c_contiguous();
-        let array = array.try_readonly().map_err(|_| {
-            PyValueError::new_err(format!("`{name}` is being written to: it is an `out` that is still in use"))
-        })?;
-        Ok(Self { name, elements, array, states, is_fortran })
+        let array = readable(name, &array)?;
+        let layout = if is_fortran { Layout::Fortran(array) } else { Layout::Rows(array) };
+        Ok(Self { name, elements, layout, states })
+    }
+
+    fn of_columns(given: &Given<'py>, columns: &Bound<'py, PyTuple>, dtype: &str) -> PyResult<Self> {
+        let &Given { name, elements, .. } = given;
+        let py = columns.py();
+        let of_column = |column: Bound<'py, PyAny>| {
+            let array = taken(py, name, &column, dtype)?;
+            let array = if array.is_c_contiguous() { array } else { contiguous(py, array)? };
+            readable(name, &array)
+        };
+        let columns: Vec<_> = columns.iter().map(of_column).collect::<PyResult<_>>()?;
+        let states = columns.first().map(|column| column.len());
+        Ok(Self { name, elements, layout: Layout::Columns(columns), states })
+    }
+
+    /// The slices of its columns, which [`array`](Self::array) is given.
+    pub(crate) fn columns(&self) -> PyResult<Vec<&[T]>> {
+        let Layout::Columns(columns) = &self.layout else { return Ok(Vec::new()) };
+        columns.iter().map(|column| column.as_slice().map_err(|_| not_contiguous())).collect()
     }
 
     /// The array for so many states: a single row is that of all.
-    pub(crate) fn array(&self, states: usize) -> PyResult<Array<'_, T>> {
-        let numbers = self.array.as_slice().map_err(|_| PyValueError::new_err("an array is not contiguous"))?;
+    pub(crate) fn array<'a>(&'a self, states: usize, columns: &'a [&'a [T]]) -> PyResult<Array<'a, T>> {
+        if let Some(found) = self.states.filter(|&found| found != states && found != 1) {
+            return Err(PyValueError::new_err(format!(
+                "`{}` has {found} states where others have {states}",
+                self.name
+            )));
+        }
+        let (array, is_fortran) = match &self.layout {
+            Layout::Rows(array) => (array, false),
+            Layout::Fortran(array) => (array, true),
+            Layout::Columns(_) if self.states == Some(1) && states != 1 => {
+                let message =
+                    format!("`{}` has 1 state where others have {states}; a row of numpy is that of all", self.name);
+                return Err(PyValueError::new_err(message));
+            }
+            Layout::Columns(_) => return Ok(Array::Columns(columns)),
+        };
+        let numbers = array.as_slice().map_err(|_| not_contiguous())?;
         match self.states {
             None | Some(1) if states != 1 => Ok(Array::Same(numbers)),
             None => Ok(Array::Rows(numbers)),
-            Some(found) if found != states => {
-                Err(PyValueError::new_err(format!("`{}` has {found} states where others have {states}", self.name)))
-            }
-            Some(_) if self.is_fortran => Ok(Array::Strided { numbers, state: 1, element: states }),
+            Some(_) if is_fortran => Ok(Array::Strided { numbers, state: 1, element: states }),
             Some(_) => Ok(Array::Rows(numbers)),
         }
     }
@@ -86,6 +124,47 @@ impl<'py, T: Element + Number> Held<'py, T> {
     pub(crate) fn elements(&self) -> usize {
         self.elements
     }
+}
+
+fn not_contiguous() -> PyErr {
+    PyValueError::new_err("an array is not contiguous")
+}
+
+/// What `rne.columns` sees of a column or a table; `None` of all else.
+fn seen<'py>(given: &Given<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+    let Given { name, elements, value } = given;
+    let has = |attribute| value.hasattr(attribute).unwrap_or(false);
+    if !(has("__arrow_c_stream__") || has("__arrow_c_array__") || has("collect_schema")) {
+        return Ok(None);
+    }
+    let views = value.py().import("rne.columns")?.call_method1("views", (value, *elements, *name))?;
+    Ok((!views.is_none()).then_some(views))
+}
+
+fn taken<'py, T: Element>(
+    py: Python<'py>,
+    name: &'static str,
+    value: &Bound<'py, PyAny>,
+    dtype: &str,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    match value.cast::<PyArrayDyn<T>>() {
+        Ok(array) => Ok(array.clone()),
+        Err(_) => converted(py, name, value, dtype),
+    }
+}
+
+fn contiguous<'py, T: Element>(
+    py: Python<'py>,
+    array: Bound<'py, PyArrayDyn<T>>,
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    let copy = py.import("numpy")?.call_method1("ascontiguousarray", (array,))?;
+    Ok(copy.cast_into::<PyArrayDyn<T>>()?)
+}
+
+fn readable<'py, T: Element>(name: &str, array: &Bound<'py, PyArrayDyn<T>>) -> PyResult<PyReadonlyArrayDyn<'py, T>> {
+    array.try_readonly().map_err(|_| {
+        PyValueError::new_err(format!("`{name}` is being written to: it is an `out` that is still in use"))
+    })
 }
 
 /// What numpy makes of lists, integers and other floats.

@@ -65,9 +65,10 @@ fn evaluate_in<'py, T: Element + Number>(
     let held: Vec<Held<'py, T>> = given.iter().map(|given| Held::of(given, dtype)).collect::<PyResult<_>>()?;
     let many = states(&held)?;
     let count = many.unwrap_or(1);
+    let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
     let mut arguments = Arguments::new();
-    for held in &held {
-        let array = held.array(count)?;
+    for (held, columns) in held.iter().zip(&columns) {
+        let array = held.array(count, columns)?;
         // one array for the two vectors of a wrench
         let (name, parts): (_, &[&str]) = match held.name() {
             "wrench" => ("wrench", &["force", "moment"]),

@@ -19,6 +19,9 @@ const TESTS: [&str; 1] = ["pytest>=8"];
 /// What they need to hold the wheel against Pinocchio on real arms.
 const PEERS: [&str; 3] = ["pin==4.1.0", "example-robot-data==6.0.0", "rtb-data==2.0.0"];
 
+/// Whose columns the wheel reads.
+const COLUMNS: [&str; 2] = ["polars>=1.8", "pyarrow>=17"];
+
 /// What is timed beside the wheel, besides: the version of `benches/peers/run`.
 const TOOLBOX: &str = "roboticstoolbox-python==1.5.0";
 
@@ -63,7 +66,7 @@ pub(crate) struct Python {
 impl Python {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let place = Place::new()?;
-        let mut packages = TESTS.to_vec();
+        let mut packages = [&TESTS[..], &COLUMNS].concat();
         packages.extend(PEERS.iter().filter(|_| self.peers));
         packages.extend(NOTEBOOKS.iter().filter(|_| self.notebooks));
         let wheel = place.wheel(self.install)?;
