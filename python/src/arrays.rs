@@ -111,9 +111,8 @@ impl<'py, T: Element + Number> Held<'py, T> {
         let numbers = array.as_slice().map_err(|_| not_contiguous())?;
         match self.states {
             None | Some(1) if states != 1 => Ok(Array::Same(numbers)),
-            None => Ok(Array::Rows(numbers)),
             Some(_) if is_fortran => Ok(Array::Strided { numbers, state: 1, element: states }),
-            Some(_) => Ok(Array::Rows(numbers)),
+            _ => Ok(Array::Rows(numbers)),
         }
     }
 

@@ -109,10 +109,10 @@ fn evaluate_in<'py, T: Element + Number>(
         });
         computed.map_err(|error: rne::compiled::EvaluationError| of_evaluation(&error))?;
     }
-    Ok(finished(result, whole.is_empty())?)
+    finished(result, whole.is_empty())
 }
 
 /// A number for an array without axes.
-fn finished<'py, T: Element>(result: Bound<'py, PyArrayDyn<T>>, is_number: bool) -> PyResult<Bound<'py, PyAny>> {
+fn finished<T: Element>(result: Bound<'_, PyArrayDyn<T>>, is_number: bool) -> PyResult<Bound<'_, PyAny>> {
     if is_number { result.into_any().get_item(()) } else { Ok(result.into_any()) }
 }

@@ -63,6 +63,7 @@ pub(crate) fn builtin(py: Python<'_>, name: &str) -> PyResult<Arm> {
 #[pyfunction]
 #[pyo3(signature = (source, *, tip=None, base=None, lock=None, lock_others=false, convention="standard", snap=false,
     keep_unphysical=false, run_time=Vec::new(), settings=None, form="reduced", rotors=false))]
+#[allow(clippy::fn_params_excessive_bools)] // keywords of Python
 pub(crate) fn load(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
