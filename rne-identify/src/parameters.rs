@@ -7,6 +7,8 @@ use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
 use rne_model::{Link, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
+use crate::random::Random;
+
 /// Inertial parameters of a link.
 pub(crate) const PER_LINK: usize = 10;
 
@@ -146,7 +148,7 @@ fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
         ..robot.clone()
     };
     let arm = DynArm::from_robot(&bare);
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     let mut stacked = DMatrix::zeros(STATES * dof, columns);
     for state in 0..STATES {
         let mut numbers = |most: f64| -> Vec<f64> { (0..dof).map(|_| most * random.number()).collect() };
@@ -181,21 +183,5 @@ pub const fn unit(parameter: Parameter) -> &'static str {
         Parameter::Link(_, 0) => "kg",
         Parameter::Link(_, 1..=3) => "kg m",
         _ => "kg m²",
-    }
-}
-
-/// Steele's SplitMix64: the same states on every machine.
-struct Random(u64);
-
-impl Random {
-    /// Between -1 and 1.
-    #[allow(clippy::cast_precision_loss)] // 53 bits
-    fn number(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = self.0;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        bits ^= bits >> 31;
-        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
     }
 }
