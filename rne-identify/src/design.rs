@@ -22,6 +22,8 @@ const WIDTH: f64 = 0.025;
 /// Noise of torques: as a part of the effort limit, and of what moving takes where a file has no limits.
 const NOISE_OF_LIMIT: f64 = 0.01;
 const NOISE_OF_EFFORT: f64 = 0.05;
+/// Squares of singular values that are less than this part of the largest one are rounding.
+const ROUNDING: f64 = 1e-13;
 /// N m or N: noise is no less.
 const SMALLEST: f64 = 1e-6;
 
@@ -173,7 +175,7 @@ fn condition_of(mut products: DMatrix<f64>) -> f64 {
     }
     let squares = products.symmetric_eigenvalues();
     let (least, most) = (squares.min(), squares.max());
-    if least > 0.0 { (most / least).sqrt() } else { f64::INFINITY }
+    if least > ROUNDING * most { (most / least).sqrt() } else { f64::INFINITY }
 }
 
 /// The base parameters of the links of the file, or of plausible ones.

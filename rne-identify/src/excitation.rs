@@ -1,10 +1,11 @@
 //! A motion that excites an arm: of the Fourier series within the limits that were tried, the one whose regressor has
 //! the least condition number, unless it leaves more parameters unexcited than others do.
 //!
-//! It is looked for by random starts and a (1+1) evolution strategy from the best of them (I. Rechenberg 1973): a change
-//! of all joints or of one is kept where it is no worse, and changes become larger where one of five is. Limits are no
-//! penalty: a series that leaves its box is made smaller about its centre, and its centre is moved, until it is inside.
-//! Effort limits are none of a box: what is beyond them is worse than all that is not.
+//! It is looked for by random starts and a (1+1) evolution strategy from the best of them (I. Rechenberg,
+//! Evolutionsstrategie, 1973): a change of all joints or of one is kept where it is no worse, and changes become larger
+//! where more than one of five is. Limits are no penalty: a series that leaves its box is made smaller about its
+//! centre, and its centre is moved, until it is inside. Effort limits are none of a box: what is beyond them is worse
+//! than all that is not.
 
 use rne_machine::EvaluationError;
 use rne_model::{Robot, one_line};
@@ -164,7 +165,7 @@ struct Tried {
 ///
 /// # Errors
 /// When the options make no motion, when there are not as many limits as joints, when no motion was found within the
-/// effort limits, or when the equations cannot be computed.
+/// effort limits, or none that tells all base parameters from each other, or when the equations cannot be computed.
 pub fn excite(
     robot: &Robot,
     limits: &[MotionLimits],
@@ -348,7 +349,10 @@ impl<'a> Problem<'a> {
         if let Some((_, joint, needed, limit)) = worst {
             return Err(ExcitationError::Effort { joint, needed, limit });
         }
-        let deviations = self.design.quality(motion)?.deviations;
+        let Quality { condition, deviations } = self.design.quality(motion)?;
+        if !condition.is_finite() {
+            return Err(ExcitationError::Indistinct);
+        }
         let bases = &self.design.structure().parameters().bases;
         let bases = bases.iter().zip(deviations).zip(self.design.scales().iter());
         let bases = bases.map(|((base, deviation), plausible)| BaseExcitation {

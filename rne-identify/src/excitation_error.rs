@@ -44,6 +44,8 @@ pub enum ExcitationError {
         /// N m or N
         limit: f64,
     },
+    /// No motion was found that tells all base parameters from each other.
+    Indistinct,
     /// The equations of motion cannot be computed.
     Evaluation(EvaluationError),
 }
@@ -75,6 +77,10 @@ impl fmt::Display for ExcitationError {
                 f,
                 "no motion was found within the effort limits: {joint} would need {needed:.3} of {limit:.3}; a slower \
                  one, by --seconds, --velocity or --acceleration, needs less, or a smaller --range"
+            ),
+            Self::Indistinct => f.write_str(
+                "no motion was found that tells the base parameters from each other: the limits are too narrow, or \
+                 numbers of the robot file too large or too small",
             ),
             Self::Evaluation(error) => error.fmt(f),
         }

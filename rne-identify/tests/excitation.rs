@@ -330,6 +330,11 @@ fn what_makes_no_motion_is_refused() {
     one.harmonics = 1;
     assert!(refused(&limits, &one).1.contains("2 harmonics"));
     assert!(refused(&limits[..2], &options(10)).1.contains("3 joints"));
+    // where hardly anything moves, everything looks the same
+    let mut asked = AskedLimits::default();
+    asked.range = Some(vec![1e-9]);
+    let narrow = MotionLimits::of(&arm, &asked).unwrap();
+    assert!(refused(&narrow, &options(10)).1.contains("too narrow"));
     // a motor that cannot carry its link
     let mut weak = arm.clone();
     weak.joints[1].limits.effort = Some(0.1);
