@@ -26,6 +26,9 @@ const WIDTH: usize = 80;
 /// Samples of a trajectory, at most: a hundred megabytes of an arm of six joints.
 const MOST: f64 = 500_000.0;
 
+/// Motions that are tried, at most: a day.
+const MOTIONS: u64 = 100_000_000;
+
 /// Samples of a picture.
 const DRAWN: u32 = 1000;
 
@@ -70,7 +73,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     rotors: bool,
     /// How many motions are tried
-    #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=100_000_000))]
+    #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=MOTIONS))]
     evaluations: u64,
     /// Seed of the random numbers
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -180,7 +183,7 @@ fn watched(robot: &Robot, limits: &[MotionLimits], options: &ExcitationOptions) 
         if shown.elapsed() > Duration::from_millis(100) {
             shown = Instant::now();
             bar.set_position(progress.evaluations);
-            bar.set_message(format!("condition {}", condition(progress.condition)));
+            bar.set_message(format!("condition {}, {} excited", condition(progress.condition), progress.excited));
         }
         !interruption::is_wished()
     });
@@ -211,7 +214,9 @@ fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
     );
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
     let excited = found.bases.iter().filter(|base| base.is_excited()).count();
-    let _ = writeln!(text, "{} base parameters, {excited} of them would be excited", found.bases.len());
+    let mark = if excited < found.bases.len() { WARNING } else { GOOD };
+    let all = found.bases.len();
+    let _ = writeln!(text, "{all} base parameters, {mark}{excited}{mark:#} of them would be excited");
     let _ = writeln!(
         text,
         "condition {GOOD}{}{GOOD:#}, the best of {} motions; {} of the first one, {friction}",
@@ -257,12 +262,8 @@ fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
 fn not_excited(text: &mut String, found: &Excitation) {
     let mut cells = vec![["  parameter", "deviation", "plausible", "unit"].map(str::to_owned)];
     for base in found.bases.iter().filter(|base| !base.is_excited()) {
-        cells.push([
-            format!("  {WARNING}{}{WARNING:#}", base.name),
-            rounded(base.deviation, 4),
-            rounded(base.plausible, 4),
-            base.unit.to_owned(),
-        ]);
+        let name = format!("  {}", base.name);
+        cells.push([name, rounded(base.deviation, 4), rounded(base.plausible, 4), base.unit.to_owned()]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Left];
     push_table(text, "not excited: a deviation of more than half of what is plausible", &align, &cells);

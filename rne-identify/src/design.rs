@@ -80,7 +80,7 @@ impl Design {
         let own: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows.tr_mul(rows)).collect();
         let efforts: Vec<f64> = (0..rows.len()).map(|joint| self.effort(joint, &rows[joint])).collect();
         let condition = condition_of(self.products(&own, &self.weights));
-        Ok(Quality { condition, deviations: self.deviations(&own, efforts) })
+        Ok(Quality { condition, deviations: self.deviations(&own, &efforts) })
     }
 
     /// Products of all columns, rows weighted by joint.
@@ -109,7 +109,7 @@ impl Design {
 
     /// Of each base parameter the deviation that an identification would find were every row a measurement with noise
     /// of its own.
-    fn deviations(&self, own: &[DMatrix<f64>], efforts: Vec<f64>) -> Vec<f64> {
+    fn deviations(&self, own: &[DMatrix<f64>], efforts: &[f64]) -> Vec<f64> {
         let noise = |joint: usize| match self.weights[joint] {
             weight if self.has_efforts => NOISE_OF_LIMIT / weight,
             _ => (NOISE_OF_EFFORT * efforts[joint]).max(SMALLEST),

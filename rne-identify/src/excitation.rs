@@ -1,8 +1,8 @@
 //! A motion that excites an arm: of the Fourier series within the limits that were tried, the one whose regressor has
 //! the least condition number, unless it leaves more parameters unexcited than others do.
 //!
-//! It is looked for by random starts and a (1+1) evolution strategy from the best of them (I. Rechenberg,
-//! Evolutionsstrategie, 1973): a change of all joints or of one is kept where it is no worse, and changes become larger
+//! It is looked for in rounds: random starts, then a (1+1) evolution strategy from the best of them (I. Rechenberg,
+//! Evolutionsstrategie, 1973). A change of all joints or of one is kept where it is no worse, and changes become larger
 //! where more than one of five is. Limits are no penalty: a series that leaves its box is made smaller about its
 //! centre, and its centre is moved, until it is inside. Effort limits are none of a box: what is beyond them is worse
 //! than all that is not.
@@ -19,6 +19,9 @@ use crate::motion_limits::MotionLimits;
 use crate::parameters::{name, unit};
 use crate::random::Random;
 
+/// So often a search begins anew, with so many evaluations at least.
+const ROUNDS: u64 = 5;
+const ROUND: u64 = 500;
 /// One of so many evaluations is a random start.
 const STARTS: u64 = 10;
 /// Deviation of the first change, of coefficients of order one.
@@ -152,6 +155,7 @@ struct Problem<'a> {
 }
 
 /// A motion that was tried.
+#[derive(Clone)]
 struct Tried {
     point: Point,
     motion: Fourier,
@@ -174,30 +178,35 @@ pub fn excite(
 ) -> Result<Excitation, ExcitationError> {
     let problem = Problem::new(robot, limits, options)?;
     let mut random = Random::new(options.seed);
+    let round = (options.evaluations / ROUNDS).max(ROUND);
+    let starts = (round / STARTS).max(1);
     let mut best = problem.tried(problem.start(&mut random))?;
+    let mut current = best.clone();
     let mut first = best.condition();
-    let mut evaluations = 1;
     let mut step = FIRST;
-    let starts = (options.evaluations / STARTS).max(1);
+    let mut evaluations = 1;
     loop {
         let progress = ExcitationProgress { evaluations, condition: best.condition(), excited: problem.excited(&best) };
         if !watch(&progress) || evaluations >= options.evaluations {
             break;
         }
-        let is_start = evaluations < starts;
-        let point = if is_start { problem.start(&mut random) } else { problem.changed(&best.point, step, &mut random) };
+        let in_round = evaluations % round;
+        let is_start = in_round < starts;
+        let point =
+            if is_start { problem.start(&mut random) } else { problem.changed(&current.point, step, &mut random) };
         let tried = problem.tried(point)?;
         evaluations += 1;
         if first.is_infinite() {
             first = tried.condition();
         }
-        let is_better = tried.score <= best.score;
+        if tried.score < best.score {
+            best = tried.clone();
+        }
+        let is_better = in_round == 0 || tried.score <= current.score;
         if is_better {
-            best = tried;
+            current = tried;
         }
-        if !is_start {
-            step = (step * if is_better { GROWTH } else { DECAY }).clamp(SMALLEST, FIRST);
-        }
+        step = if is_start { FIRST } else { (step * if is_better { GROWTH } else { DECAY }).clamp(SMALLEST, FIRST) };
     }
     problem.result(robot, &best, first, evaluations)
 }
@@ -241,7 +250,7 @@ impl<'a> Problem<'a> {
     /// Large, so that every joint meets one of its limits.
     fn start(&self, random: &mut Random) -> Point {
         let own = self.coordinates();
-        let coordinate = |at: usize| if at % own == 0 { random.number() } else { random.bell() };
+        let coordinate = |at: usize| if at.is_multiple_of(own) { random.number() } else { random.bell() };
         (0..own * self.limits.len()).map(coordinate).collect()
     }
 

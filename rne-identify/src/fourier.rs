@@ -97,10 +97,14 @@ impl Series {
         #[allow(clippy::cast_precision_loss)] // some dozens
         let count = harmonics.max(1) as f64;
         let mean = a.iter().sum::<f64>() / count;
-        a.iter_mut().for_each(|a| *a -= mean);
+        for a in &mut a {
+            *a -= mean;
+        }
         let squares: f64 = numbers().take(harmonics).map(|k| k * k).sum();
         let along = b.iter().zip(numbers()).map(|(b, k)| k * b).sum::<f64>() / squares.max(1.0);
-        b.iter_mut().zip(numbers()).for_each(|(b, k)| *b -= k * along);
+        for (b, k) in b.iter_mut().zip(numbers()) {
+            *b -= k * along;
+        }
         Self { centre, a, b }
     }
 

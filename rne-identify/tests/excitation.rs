@@ -2,6 +2,7 @@
 //! such that an identification finds the arm by a log of them.
 
 use std::f64::consts::TAU;
+use std::fmt::Write as _;
 
 use fastrand::Rng;
 use nalgebra::DMatrix;
@@ -148,7 +149,8 @@ fn random_arm(rng: &mut Rng) -> (String, Robot) {
             number(0.0, 1e-3)
         );
         let alpha = angles[rng.usize(..angles.len())];
-        text += &format!(
+        let _ = write!(
+            text,
             "  - type: {}\n    dh: {{theta: 0.3, d: {d}, a: {a}, alpha: {alpha}}}\n    link: {{mass: {mass}, com: \
              [{com}, 0.02, 0.05], inertia: {{xx: 0.05, yy: 0.06, zz: 0.07}}}}\n    {motor}\n    {limits}\n",
             if slides { "prismatic" } else { "revolute" },
