@@ -8,19 +8,19 @@ use rne_codegen::plan::Trick;
 use rne_codegen::{Form, Function, Step};
 use rne_model::Convention;
 
-use crate::terminal::HELP_STYLES;
+use crate::terminal::{HELP_STYLES, TITLE, TYPED};
 use crate::{
     check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
     search, shell, show,
 };
 #[cfg(feature = "logs")]
-use crate::{identify, log, watch};
+use crate::{excite, identify, log, watch};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
 #[command(name = "rne", version, styles = HELP_STYLES)]
 #[command(about = "The dynamics compiler for robot arms: a DH table in, straight-line code out")]
-#[command(max_term_width = 80)]
+#[command(max_term_width = 80, help_template = page())]
 #[command(after_help = "\
 Examples:
   rne check robots/*.yaml                   are the files in order?
@@ -32,6 +32,15 @@ Without a command, a tour: the PUMA 560 from its table to its torques.")]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Option<Command>,
+}
+
+/// The help of rne itself: the usual one, but that its two options share a line. A page has 40.
+fn page() -> String {
+    format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{TITLE}Commands:{TITLE:#}\n{{subcommands}}\n\n\
+         {TITLE}Options:{TITLE:#} {TYPED}-h{TYPED:#}, {TYPED}--help{TYPED:#}  Print help   \
+         {TYPED}-V{TYPED:#}, {TYPED}--version{TYPED:#}  Print version{{after-help}}"
+    )
 }
 
 #[derive(Subcommand)]
@@ -50,6 +59,8 @@ pub(crate) enum Command {
     Identify(identify::Arguments),
     #[cfg(feature = "logs")]
     Watch(watch::Arguments),
+    #[cfg(feature = "logs")]
+    Excite(excite::Arguments),
     Search(search::Arguments),
     New(new::Arguments),
     List(list::Arguments),

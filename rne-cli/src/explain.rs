@@ -119,7 +119,7 @@ const EXIT_STATUS: &str = "\
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file that rne does
      not overwrite
-130  `rne search` was ended by a second Ctrl-C; the plan file is what it was
+130  a second Ctrl-C ended `rne search` or `rne excite`; files are as they were
 
 Errors go to standard error, and nothing to standard output then; but what
 `rne eval --states` has printed of states before a mistake stays, while a file

@@ -15,6 +15,8 @@ mod emit;
 mod equations;
 mod eval;
 mod example;
+#[cfg(feature = "logs")]
+mod excite;
 mod explain;
 mod export;
 mod firmware;
@@ -26,6 +28,7 @@ mod highlight;
 mod identify;
 mod import;
 mod input_file;
+mod interruption;
 mod layout;
 mod letters;
 mod limits;
@@ -103,6 +106,8 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Identify(arguments)) => ("rne identify", identify::run(&arguments)),
         #[cfg(feature = "logs")]
         Some(Command::Watch(arguments)) => ("rne watch", watch::run(&arguments)),
+        #[cfg(feature = "logs")]
+        Some(Command::Excite(arguments)) => ("rne excite", excite::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),

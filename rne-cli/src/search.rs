@@ -4,7 +4,6 @@ use std::fmt::Write as _;
 use std::fs::OpenOptions;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant, SystemTime};
 
 use clap::Args;
@@ -18,7 +17,7 @@ use crate::input_file::is_stream;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Written};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
-use crate::{arguments, plan_file, robot_file};
+use crate::{arguments, interruption, plan_file, robot_file};
 
 /// Look for a reduced form with fewer operations; keep its plan
 #[derive(Args)]
@@ -66,9 +65,6 @@ fn seconds(text: &str) -> Result<f64, String> {
     }
 }
 
-/// Set by Ctrl-C.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
-
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if is_stream(&arguments.file) {
         return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
@@ -92,12 +88,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         (read.map(|read| read.plan), Vec::new())
     };
     plan_file::is_writable(&path)?;
-    // the first Ctrl-C ends the search, the second one the program, if a handler can be had at all
-    let _ = ctrlc::set_handler(|| {
-        if INTERRUPTED.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-    });
+    interruption::expect();
     let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
     let mut found = watched(&robot, known.as_ref(), &options, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
@@ -152,7 +143,7 @@ fn watched(
     let start = Instant::now();
     let mut shown = start;
     let found = plan::search(robot, known, options, &mut |progress: &Progress| {
-        if INTERRUPTED.load(Ordering::Relaxed) {
+        if interruption::is_wished() {
             return None;
         }
         let elapsed = start.elapsed();

@@ -270,7 +270,7 @@ fn inverse(triangle: &RFactor, count: usize) -> Option<DMatrix<f64>> {
 }
 
 /// Of the columns, each of length one; those that the ridge alone holds are left out.
-fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
+pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) -> f64 {
     let square = triangle.triangle().view((0, 0), (count, count));
     let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
     if kept.is_empty() {

@@ -17,7 +17,7 @@ use crate::structure::{FRICTION, Options, Structure};
 const PASSES: usize = 3;
 
 /// A base parameter is not excited where its deviation is larger than this part of what plausible links would give it.
-const UNKNOWN: f64 = 0.5;
+pub(crate) const UNKNOWN: f64 = 0.5;
 
 /// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
 const NOISE: f64 = 0.5;

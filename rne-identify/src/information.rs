@@ -318,11 +318,11 @@ fn slope(time: &[f64], values: &[f64], at: usize) -> f64 {
 }
 
 /// The columns of every joint's rows at every state, but for those of the torque.
-fn plain_columns(
+pub(crate) fn plain_columns(
     structure: &Structure,
     motion: &Motion,
     range: std::ops::Range<usize>,
-) -> Result<Vec<DMatrix<f64>>, MotionError> {
+) -> Result<Vec<DMatrix<f64>>, EvaluationError> {
     let dof = structure.dof();
     let states = range.len();
     let of =

@@ -2,23 +2,34 @@
 #![forbid(unsafe_code)]
 #![warn(missing_debug_implementations)]
 
+mod design;
+mod effort;
+mod excitation;
+mod excitation_error;
 mod feasible;
 mod fit;
+mod fourier;
 mod identification;
 mod information;
+mod motion_limits;
 mod parameters;
 mod prediction;
 pub mod prior;
 pub mod pseudo_inertia;
 mod r_factor;
+mod random;
 mod smoothing;
 mod structure;
 mod written;
 
+pub use excitation::{BaseExcitation, Excitation, ExcitationOptions, ExcitationProgress, JointUse, excite};
+pub use excitation_error::ExcitationError;
 pub use feasible::{Certificate, Feasible};
 pub use fit::Fit;
+pub use fourier::{Extent, Fourier, Series};
 pub use identification::{BaseReport, Identification, JointReport, identify, scales};
 pub use information::{Information, MotionError, Weighting};
+pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters, name, unit};
 pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};

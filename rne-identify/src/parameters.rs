@@ -2,11 +2,12 @@
 
 use std::fmt::Write as _;
 
-use fastrand::Rng;
 use nalgebra::{DMatrix, DVector};
 use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
 use rne_model::{Link, Robot};
 use rne_runtime::{DynArm, LinkParameter};
+
+use crate::random::Random;
 
 /// Inertial parameters of a link.
 pub(crate) const PER_LINK: usize = 10;
@@ -147,11 +148,10 @@ fn stacked(robot: &Robot, columns: usize) -> DMatrix<f64> {
         ..robot.clone()
     };
     let arm = DynArm::from_robot(&bare);
-    // the same states on every machine
-    let mut random = Rng::with_seed(1);
+    let mut random = Random::new(1);
     let mut stacked = DMatrix::zeros(STATES * dof, columns);
     for state in 0..STATES {
-        let mut numbers = |most: f64| -> Vec<f64> { (0..dof).map(|_| most * (2.0 * random.f64() - 1.0)).collect() };
+        let mut numbers = |most: f64| -> Vec<f64> { (0..dof).map(|_| most * random.number()).collect() };
         let (q, qd, qdd) = (numbers(std::f64::consts::PI), numbers(1.0), numbers(1.0));
         // there is one number per joint
         let Ok(matrix) = arm.regressor(&q, &qd, &qdd) else { continue };

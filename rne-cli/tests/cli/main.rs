@@ -10,6 +10,7 @@ mod emit;
 mod emit_c;
 mod emit_tests;
 mod eval;
+mod excite;
 mod firmware;
 mod help;
 #[cfg(unix)]

@@ -1,0 +1,96 @@
+//! Why there is no motion that excites an arm.
+
+use std::fmt;
+
+use rne_machine::EvaluationError;
+
+/// Why there is no motion that excites an arm.
+#[derive(Debug)]
+#[non_exhaustive]
+pub enum ExcitationError {
+    /// The period is not a number of seconds above 0.
+    Period,
+    /// One harmonic that starts at rest without acceleration does not move.
+    Harmonics,
+    /// A list of limits has another length.
+    Length {
+        /// `velocity`
+        what: &'static str,
+        /// Of the list.
+        found: usize,
+        /// Of the robot.
+        joints: usize,
+    },
+    /// A limit is not a number above 0: which.
+    NotPositive(&'static str),
+    /// A sliding joint has no limits.
+    NoPosition {
+        /// Its name.
+        joint: String,
+    },
+    /// Limits of the file leave a joint no room to move.
+    NoRoom {
+        /// Its name.
+        joint: String,
+        /// Which limits.
+        what: &'static str,
+    },
+    /// No motion was found within the effort limit of a joint.
+    Effort {
+        /// Its name.
+        joint: String,
+        /// N m or N, of the motion that came nearest.
+        needed: f64,
+        /// N m or N
+        limit: f64,
+    },
+    /// No motion was found that tells all base parameters from each other.
+    Indistinct,
+    /// The equations of motion cannot be computed.
+    Evaluation(EvaluationError),
+}
+
+impl ExcitationError {
+    /// Whether what was asked is at fault, not the robot file.
+    #[must_use]
+    pub fn is_of_request(&self) -> bool {
+        matches!(self, Self::Period | Self::Harmonics | Self::Length { .. } | Self::NotPositive(_))
+    }
+}
+
+impl fmt::Display for ExcitationError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Period => f.write_str("a period is a number of seconds above 0"),
+            Self::Harmonics => f.write_str("a motion from rest to rest takes 2 harmonics or more"),
+            Self::Length { what, found, joints } => {
+                write!(f, "--{what} has {found} numbers, and the robot {joints} joints; one number is for all of them")
+            }
+            Self::NotPositive(what) => write!(f, "--{what} takes finite numbers above 0"),
+            Self::NoPosition { joint } => write!(
+                f,
+                "{joint} slides and has no position limits; write `limits: {{position: [LOWER, UPPER]}}` (m) in the \
+                 robot file, or give --range"
+            ),
+            Self::NoRoom { joint, what } => write!(f, "the {what} limits of {joint} leave it no room to move"),
+            Self::Effort { joint, needed, limit } => write!(
+                f,
+                "no motion was found within the effort limits: {joint} would need {needed:.3} of {limit:.3}; a slower \
+                 one, by --seconds, --velocity or --acceleration, needs less, or a smaller --range"
+            ),
+            Self::Indistinct => f.write_str(
+                "no motion was found that tells the base parameters from each other: the limits are too narrow, or \
+                 numbers of the robot file too large or too small",
+            ),
+            Self::Evaluation(error) => error.fmt(f),
+        }
+    }
+}
+
+impl std::error::Error for ExcitationError {}
+
+impl From<EvaluationError> for ExcitationError {
+    fn from(error: EvaluationError) -> Self {
+        Self::Evaluation(error)
+    }
+}
