@@ -4,6 +4,7 @@
 
 mod feasible;
 mod fit;
+mod friction;
 mod identification;
 mod information;
 mod parameters;
@@ -17,11 +18,12 @@ mod written;
 
 pub use feasible::{Certificate, Feasible};
 pub use fit::Fit;
+pub use friction::{Friction, Reversal, friction};
 pub use identification::{BaseReport, Identification, JointReport, identify, scales};
 pub use information::{Information, MotionError, Weighting};
 pub use parameters::{Base, Parameters, name, unit};
-pub use prediction::{JointError, Prediction, SPEEDS, friction, prediction_errors};
+pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use rne_codegen::Parameter;
 pub use structure::{Options, Structure};
-pub use written::written;
+pub use written::{not_excited, written};

@@ -2,11 +2,11 @@
 
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
-use rne_model::{Joint, Robot};
+use rne_model::Robot;
 
+use crate::friction::Friction;
 use crate::information::{MotionError, checked};
 use crate::smoothing::Kernel;
-use crate::structure::smooth_sign;
 
 /// States that are computed at once.
 const WINDOW: usize = 4096;
@@ -81,9 +81,10 @@ impl Prediction {
             let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
             self.arm.run(Function::InverseDynamics, range.len(), &arguments, Destination::Columns(columns))?;
         }
-        for ((torques, speeds), joint) in torques.iter_mut().zip(&motion.qd).zip(&self.robot.joints) {
-            for (torque, speed) in torques.iter_mut().zip(speeds) {
-                *torque += friction(joint, *speed);
+        for (at, (torques, joint)) in torques.iter_mut().zip(&self.robot.joints).enumerate() {
+            let mut friction = Friction::of(joint);
+            for ((torque, position), speed) in torques.iter_mut().zip(&motion.q[at]).zip(&motion.qd[at]) {
+                *torque += friction.next(*position, *speed);
             }
         }
         Ok(torques)
@@ -147,17 +148,6 @@ impl Prediction {
     pub fn errors(&self) -> Vec<JointError> {
         self.sums.iter().map(Sums::error).collect()
     }
-}
-
-/// Friction of a joint, N m or N, at a speed: viscous, and Coulomb's that changes its sign about the width of the file.
-#[must_use]
-pub fn friction(joint: &Joint, speed: f64) -> f64 {
-    let Some(motor) = joint.motor else { return 0.0 };
-    let ratio = motor.gear_ratio.abs();
-    let [forward, backward] = motor.coulomb;
-    let sign = smooth_sign(speed, joint.coulomb_width.unwrap_or(0.0));
-    let coulomb = 0.5 * (forward - backward) * sign + 0.5 * (forward + backward) * sign * sign;
-    ratio * ratio * motor.viscous * speed + ratio * coulomb
 }
 
 /// The errors of a robot file over motions: for each joint the root mean square of measured minus predicted torques,

@@ -48,6 +48,9 @@ pub struct Joint {
     /// The speed about which Coulomb friction changes its sign, rad/s or m/s, where somebody found it: the `width` that
     /// smooth friction takes. Information, as limits are.
     pub coulomb_width: Option<f64>,
+    /// The displacement over which Coulomb friction changes its sign after a reversal, rad or m, where somebody found
+    /// it: friction that remembers where it turned, of Dahl's model. Information, as limits are.
+    pub coulomb_displacement: Option<f64>,
 }
 
 /// The point a written inertia tensor refers to; its axes are the link's in both cases.
