@@ -257,8 +257,8 @@ fn errors_table(robot: &Robot, log: &MotionLog, errors: &[JointError], unknown: 
     align.push(Align::Left);
     let lines = columns(&align, &cells);
     let about = format!(
-        "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; unfiltered: \
-         as the log is read, up to {:.1} Hz; left: by speed, too",
+        "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
+         unfiltered: as the log is read, up to {:.1} Hz; left: by speed, too",
         log.cutoff, log.read_to
     );
     let about = wrap(&about, WIDTH, "");

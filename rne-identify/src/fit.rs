@@ -25,7 +25,7 @@ pub struct Fit {
     pub noise: Vec<f64>,
     /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
     pub delay: f64,
-    /// How the friction of each joint changes its sign, of the ways of [`Options::reversals`](crate::Options::reversals).
+    /// How the friction of each joint changes its sign: which of [`Options::reversals`](crate::Options::reversals).
     pub reversals: Vec<usize>,
     /// Largest over smallest singular value of the weighted columns, each of length one.
     pub condition: f64,

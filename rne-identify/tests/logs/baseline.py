@@ -12,7 +12,8 @@ import numpy as np
 HERE = pathlib.Path(__file__).parent
 PI = np.pi
 ARMS = {  # alpha, a, d of modified rows
-    "ur10": ([0, PI / 2, 0, 0, PI / 2, -PI / 2], [0, 0, -0.612, -0.5723, 0, 0], [0.1273, 0, 0, 0.163941, 0.1157, 0.0922]),
+    "ur10": ([0, PI / 2, 0, 0, PI / 2, -PI / 2], [0, 0, -0.612, -0.5723, 0, 0],
+             [0.1273, 0, 0, 0.163941, 0.1157, 0.0922]),
     "panda": ([0, -PI / 2, PI / 2, PI / 2, -PI / 2, PI / 2, PI / 2], [0, 0, 0, 0.0825, -0.0825, 0, 0.088],
               [0.333, 0, 0.316, 0, 0.384, 0, 0]),
 }
@@ -83,4 +84,5 @@ def errors(arm):
 if __name__ == "__main__":
     for arm in ARMS:
         rank, percent = errors(arm)
-        print(f"{arm} {rank} base parameters:", *(f"{error:.1f}" for error in percent), f"median {np.median(percent):.1f}")
+        errors_of_joints = " ".join(f"{error:.1f}" for error in percent)
+        print(f"{arm} {rank} base parameters: {errors_of_joints} median {np.median(percent):.1f}")
