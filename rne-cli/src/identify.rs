@@ -4,9 +4,11 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_identify::{Identification, JointError, MotionError, Options, Prediction, SPEEDS, identify, written};
+use rne_identify::{
+    Identification, JointError, MotionError, Options, Prediction, SPEEDS, identify, not_excited, written,
+};
 use rne_logs::Motion;
-use rne_model::{JointKind, Robot, one_line};
+use rne_model::{JointKind, Reversal, Robot, one_line};
 use rne_plot::comparison_svg;
 
 use crate::layout::{Align, columns, shortened, wrap};
@@ -87,7 +89,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
     let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     if arguments.judge {
-        text += &judged(&robot, &log, Part::All, None, "prediction of the log")?;
+        text += &judged(&robot, &log, Part::All, &not_excited(&robot), "prediction of the log")?;
         draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
         return Ok(Outcome { text, remark, ..Outcome::default() });
     }
@@ -97,9 +99,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         None => (Part::All, None),
     };
     let found = identify(&robot, options, arguments.pull, |take| log.pass(training, take))?;
-    text += &account(&found);
+    text += &account(&found, &log);
     if let Some(part) = held {
-        text += &judged(&found.robot, &log, part, Some(&found), "held-out part of the log")?;
+        text += &judged(&found.robot, &log, part, &unknown(&found), "held-out part of the log")?;
     }
     draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
     if let Some(path) = &arguments.output {
@@ -117,8 +119,13 @@ fn options(arguments: &Arguments, cutoff: f64) -> Options {
     options
 }
 
+/// The joints that are not excited.
+fn unknown(found: &Identification) -> Vec<bool> {
+    found.joints.iter().map(|joint| !joint.is_excited()).collect()
+}
+
 /// What was found, in tables.
-fn account(found: &Identification) -> String {
+fn account(found: &Identification, log: &MotionLog) -> String {
     let of_links =
         found.structure.parameters().bases.iter().filter(|base| matches!(base.kept, rne_identify::Parameter::Link(..)));
     let of_links = of_links.count();
@@ -163,13 +170,15 @@ fn account(found: &Identification) -> String {
     let align = [Align::Left, Align::Right, Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
     push_table(&mut text, "base parameters, by least squares and as the links are written", &align, &cells);
     friction(&mut text, found);
+    inertia_of_rotors(&mut text, found);
     let errors: Vec<JointError> = found.joints.iter().map(|joint| joint.error).collect();
-    text += &errors_table(&found.robot, &errors, Some(found), "what is left of the log");
+    text += &errors_table(&found.robot, log, &errors, &unknown(found), "what is left of the log");
     text
 }
 
 fn friction(text: &mut String, found: &Identification) {
-    let mut cells = vec![["  joint", "viscous", "Coulomb +", "Coulomb -", "about", "rotor, kg m²"].map(str::to_owned)];
+    let heading = ["  joint", "viscous", "Coulomb +", "Coulomb -", "turns in"].map(str::to_owned);
+    let mut cells = vec![heading];
     for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
         let Some(friction) = report.friction else { return };
         let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 3));
@@ -178,12 +187,30 @@ fn friction(text: &mut String, found: &Identification) {
             with(friction[0]),
             with(friction[1]),
             with(friction[2]),
-            report.width.map_or_else(String::new, |width| format!("{width}")),
-            report.rotor.map_or_else(|| "-".to_owned(), |rotor| rounded(rotor, 4)),
+            report.reversal.map_or_else(String::new, |reversal| turns(reversal, joint.row.kind)),
         ]);
     }
-    let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right, Align::Right];
-    push_table(text, "friction at the joint, N m s/rad, N m; about a speed, rad/s", &align, &cells);
+    let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
+    push_table(text, "friction at the joint, N m s/rad, N m; turns about a speed or over a way", &align, &cells);
+}
+
+/// The speed or the displacement in which friction changes its sign.
+fn turns(reversal: Reversal, kind: JointKind) -> String {
+    let unit = if kind == JointKind::Revolute { "rad" } else { "m" };
+    match reversal {
+        Reversal::Width(width) => format!("{width} {unit}/s"),
+        Reversal::Displacement(length) => format!("{length} {unit}"),
+    }
+}
+
+/// The rotors, where they were asked for.
+fn inertia_of_rotors(text: &mut String, found: &Identification) {
+    let mut cells = vec![["  joint", "rotor"].map(str::to_owned)];
+    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+        let Some(rotor) = report.rotor else { return };
+        cells.push([format!("  {}", shortened(&one_line(&joint.name), 14)), rounded(rotor, 4)]);
+    }
+    push_table(text, "inertia of the rotors at the joint, kg m² or kg", &[Align::Left, Align::Right], &cells);
 }
 
 fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], cells: &[[String; N]]) {
@@ -195,14 +222,8 @@ fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], c
 }
 
 /// How well a robot predicts a part of a log.
-fn judged(
-    robot: &Robot,
-    log: &MotionLog,
-    part: Part,
-    found: Option<&Identification>,
-    title: &str,
-) -> Result<String, Failure> {
-    Ok(errors_table(robot, &prediction(robot, log, part)?, found, title))
+fn judged(robot: &Robot, log: &MotionLog, part: Part, unknown: &[bool], title: &str) -> Result<String, Failure> {
+    Ok(errors_table(robot, log, &prediction(robot, log, part)?, unknown, title))
 }
 
 /// How far the torques of a robot are from those of a part of a log, by joint.
@@ -215,8 +236,9 @@ pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<V
 /// Errors by joint and by speed.
 pub(crate) fn errors_table(
     robot: &Robot,
+    log: &MotionLog,
     errors: &[JointError],
-    found: Option<&Identification>,
+    unknown: &[bool],
     title: &str,
 ) -> String {
     let mut heading = ["  joint", "error", "unfiltered", "left", ""].map(str::to_owned).to_vec();
@@ -224,7 +246,7 @@ pub(crate) fn errors_table(
     heading.push("faster".to_owned());
     let mut cells = vec![heading];
     let percent = |part: f64| format!("{:.1} %", 100.0 * part);
-    let mut all = Vec::new();
+    let (mut filtered, mut unfiltered) = (Vec::new(), Vec::new());
     for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
         let unit = if joint.row.kind == JointKind::Revolute { "N m" } else { "N" };
         let mut line = vec![
@@ -235,27 +257,41 @@ pub(crate) fn errors_table(
             unit.to_owned(),
         ];
         line.extend(error.by_speed.map(|left| if left.is_nan() { "-".to_owned() } else { rounded(left, 3) }));
-        if found.is_some_and(|found| !found.joints[at].is_excited()) {
+        if unknown.get(at).is_some_and(|unknown| *unknown) {
             line.push("not excited".to_owned());
         }
-        all.push(error.error);
+        filtered.push(error.error);
+        unfiltered.push(error.unfiltered);
         cells.push(line);
     }
+    cells.push(vec!["  median".to_owned(), percent(median(filtered)), percent(median(unfiltered))]);
     let mut align = vec![Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
     align.extend([Align::Right; 4]);
     align.push(Align::Left);
     let lines = columns(&align, &cells);
-    let about = "root mean square of measured - predicted, over the effort's deviation; by speed";
+    let about = format!(
+        "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
+         unfiltered: as the log is read, up to {:.1} Hz; left: by speed, too",
+        log.cutoff, log.read_to
+    );
+    let about = wrap(&about, WIDTH, "");
     let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);
     for line in &lines[1..] {
         let marked = line.replace("not excited", &format!("{WARNING}not excited{WARNING:#}"));
+        let marked = match marked.strip_prefix("  median ") {
+            Some(rest) => format!("  {GOOD}median{GOOD:#} {rest}"),
+            None => marked,
+        };
         let _ = writeln!(text, "{marked}");
     }
-    all.sort_by(f64::total_cmp);
-    let middle = all.len() / 2;
-    let median = if all.len().is_multiple_of(2) { 0.5 * (all[middle - 1] + all[middle]) } else { all[middle] };
-    let _ = writeln!(text, "  {GOOD}median{GOOD:#} {}", percent(median));
     text
+}
+
+/// Of one number at least.
+fn median(mut of: Vec<f64>) -> f64 {
+    of.sort_by(f64::total_cmp);
+    let middle = of.len() / 2;
+    if of.len().is_multiple_of(2) { 0.5 * (of[middle - 1] + of[middle]) } else { of[middle] }
 }
 
 /// Draws a part of the log.

@@ -55,8 +55,10 @@ fn hertz(text: &str) -> Result<f64, String> {
 pub(crate) struct MotionLog {
     log: Log,
     survey: Survey,
-    /// Hz
+    /// Hz: what both sides pass.
     pub(crate) cutoff: f64,
+    /// Hz: the log's own filter.
+    pub(crate) read_to: f64,
     /// What a reader should know of it.
     pub(crate) remarks: Vec<String>,
 }
@@ -103,11 +105,11 @@ impl MotionLog {
             Failure::input(format_args!("no run is long enough to choose a low-pass; say {TYPED}--cutoff HZ{TYPED:#}"))
         })?;
         let rate = 1.0 / log.layout().step;
-        let log = Log::open(paths, Options { cutoff: Some((wider * cutoff).min(HIGHEST * rate)), ..options })
-            .map_err(failure)?;
+        let read_to = (wider * cutoff).min(HIGHEST * rate);
+        let log = Log::open(paths, Options { cutoff: Some(read_to), ..options }).map_err(failure)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
         remarks.extend(log.layout().notes.iter().map(|note| one_line(note)));
-        Ok(Self { log, survey, cutoff, remarks })
+        Ok(Self { log, survey, cutoff, read_to, remarks })
     }
 
     /// What was read, in words.

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use rne_identify::not_excited;
 use rne_model::{JointKind, Robot, one_line};
 use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
 use serde::Serialize;
@@ -114,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), WIDTH, "  "));
     text += &events_table(&robot, &watched.events);
-    text += &errors_table(&robot, &errors, None, "prediction of the log");
+    text += &errors_table(&robot, &log, &errors, &not_excited(&robot), "prediction of the log");
     Ok(Outcome { text, remark, at_fault })
 }
 

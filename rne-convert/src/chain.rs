@@ -56,6 +56,7 @@ pub(crate) struct ChainJoint {
     pub(crate) limits: Limits,
     pub(crate) motor: Option<Motor>,
     pub(crate) coulomb_width: Option<f64>,
+    pub(crate) coulomb_displacement: Option<f64>,
 }
 
 /// What became of a tree on its way to a chain.
@@ -359,6 +360,7 @@ impl Walk<'_> {
                     limits: joint.limits,
                     motor,
                     coulomb_width: None,
+                    coulomb_displacement: None,
                 });
                 self.told.spans.push(joint.span.clone());
                 self.told.lumped.push(Vec::new());

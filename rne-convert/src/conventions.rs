@@ -71,6 +71,7 @@ pub(crate) fn of_robot(robot: &Robot) -> Chain {
             limits: joint.limits,
             motor: joint.motor,
             coulomb_width: joint.coulomb_width,
+            coulomb_displacement: joint.coulomb_displacement,
         });
         end = after;
     }

@@ -188,6 +188,7 @@ pub(crate) fn robot(chain: &Chain, table: &Table, convention: Convention) -> Rob
             limits: joint.limits,
             motor: joint.motor,
             coulomb_width: joint.coulomb_width,
+            coulomb_displacement: joint.coulomb_displacement,
         }
     });
     Robot {

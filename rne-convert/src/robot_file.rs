@@ -75,7 +75,7 @@ fn noted(text: &mut String, line: &str, units: &str) {
 
 /// One block of the list; with units where `is_first`.
 fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
-    let Joint { name, row, limits, motor, coulomb_width, .. } = joint;
+    let Joint { name, row, limits, motor, .. } = joint;
     let is_revolute = row.kind == JointKind::Revolute;
     let line = |text: &mut String, line: String, units: &str| {
         if is_first {
@@ -122,7 +122,7 @@ fn write_joint(text: &mut String, joint: &Joint, is_first: bool) {
         line(text, format!("    limits: {}", limited(limits, is_revolute)), units);
     }
     if let Some(motor) = motor {
-        let _ = writeln!(text, "    motor: {}", motor_text(motor, *coulomb_width));
+        let _ = writeln!(text, "    motor: {}", motor_text(motor, joint));
     }
 }
 
@@ -146,17 +146,19 @@ fn limited(limits: &Limits, is_revolute: bool) -> String {
     pairs([position, velocity, effort].into_iter().flatten())
 }
 
-fn motor_text(motor: &Motor, width: Option<f64>) -> String {
+fn motor_text(motor: &Motor, joint: &Joint) -> String {
     let Motor { inertia, gear_ratio, viscous, coulomb } = *motor;
     let given = |key, value: f64, default: f64| (value != default).then(|| (key, number(value)));
     let coulomb = (coulomb != [0.0; 2]).then(|| ("coulomb", list(&coulomb)));
-    let width = width.map(|width| ("coulomb_width", number(width)));
+    let width = joint.coulomb_width.map(|width| ("coulomb_width", number(width)));
+    let displacement = joint.coulomb_displacement.map(|length| ("coulomb_displacement", number(length)));
     let parts = [
         given("inertia", inertia, 0.0),
         given("gear_ratio", gear_ratio, 1.0),
         given("viscous", viscous, 0.0),
         coulomb,
         width,
+        displacement,
     ];
     pairs(parts.into_iter().flatten())
 }

@@ -7,7 +7,7 @@ use rne_model::Robot;
 
 use crate::fit::condition;
 use crate::fourier::{Fourier, Grid};
-use crate::information::plain_columns;
+use crate::information::{Walk, plain_columns};
 use crate::motion_limits::MotionLimits;
 use crate::prior::{self, Scales};
 use crate::r_factor::RFactor;
@@ -47,7 +47,7 @@ impl Design {
     /// Rows are weighted by one over the effort limits, as if noise were so large, where every joint has one; else all
     /// are equal.
     pub(crate) fn new(robot: &Robot, limits: &[MotionLimits], harmonics: usize, friction: bool, rotors: bool) -> Self {
-        let options = Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH] };
+        let options = Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
         let mut structure = Structure::new(robot, options);
         // with the same bits everywhere: a search goes other ways by the last one
         structure.arm = structure.arm.in_form(Form::SevenSteps);
@@ -71,7 +71,7 @@ impl Design {
 
     fn rows(&self, motion: &Fourier) -> Result<Rows, EvaluationError> {
         let states = states(motion, &self.grid);
-        plain_columns(&self.structure, &states, 0..states.len())
+        plain_columns(&self.structure, &states, 0..states.len(), &Walk::new(&self.structure))
     }
 
     /// What a motion would tell, by products of columns: exact to half the digits.

@@ -1,4 +1,4 @@
-//! Weighted least squares on the triangles: unknowns, noise, widths of friction, and deviations.
+//! Weighted least squares on the triangles: unknowns, noise, reversals of friction, and deviations.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -9,7 +9,7 @@ use crate::structure::Structure;
 
 /// Rounds in which noise and unknowns settle.
 const ROUNDS: usize = 12;
-/// Rounds before the widths of friction are chosen, and in which they are.
+/// Rounds before the reversals of friction are chosen, and in which they are.
 const FIRST: usize = 3;
 const CHOOSING: usize = 2;
 
@@ -25,8 +25,8 @@ pub struct Fit {
     pub noise: Vec<f64>,
     /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
     pub delay: f64,
-    /// Which width of friction each joint has, of those that were offered.
-    pub widths: Vec<usize>,
+    /// How the friction of each joint changes its sign: which of [`Options::reversals`](crate::Options::reversals).
+    pub reversals: Vec<usize>,
     /// Largest over smallest singular value of the weighted columns, each of length one.
     pub condition: f64,
     /// Stretches of time that the deviations are from.
@@ -42,7 +42,7 @@ impl Fit {
         let total = information.total(structure);
         let dof = structure.dof();
         let middle = structure.options.widths.len() / 2;
-        let mut state = State { structure, scales, noise: vec![1.0; dof], widths: vec![middle; dof] };
+        let mut state = State { structure, scales, noise: vec![1.0; dof], reversals: vec![middle; dof] };
         for (noise, factor) in state.noise.iter_mut().zip(&total) {
             // the torque itself, to begin with
             let target = factor.columns() - 1;
@@ -51,7 +51,7 @@ impl Fit {
         }
         for round in 0..ROUNDS {
             if (FIRST..FIRST + CHOOSING).contains(&round) && structure.options.friction {
-                state.choose_widths(&total);
+                state.choose_reversals(&total);
             }
             state.settle_noise(&total);
         }
@@ -59,10 +59,19 @@ impl Fit {
         let solution = solved(&triangle, state.count());
         let covariance = state.covariance(&information.stretches, &triangle, &solution);
         let condition = condition(&triangle, state.count(), &state.ridge());
-        let State { noise, widths, .. } = state;
+        let State { noise, reversals, .. } = state;
         let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
         let delay = information.shift + left;
-        Self { solution, covariance, noise, delay, widths, condition, stretches: information.stretches.len(), triangle }
+        Self {
+            solution,
+            covariance,
+            noise,
+            delay,
+            reversals,
+            condition,
+            stretches: information.stretches.len(),
+            triangle,
+        }
     }
 
     /// What rows are weighted by in the next pass.
@@ -83,7 +92,7 @@ impl Fit {
         };
         Weighting {
             solutions: (0..dof).map(solution).collect(),
-            used: (0..dof).map(|joint| structure.used(joint, self.widths[joint])).collect(),
+            used: (0..dof).map(|joint| structure.used(joint, self.reversals[joint])).collect(),
             noise: self.noise.clone(),
             delay,
         }
@@ -135,7 +144,7 @@ struct State<'a> {
     structure: &'a Structure,
     scales: &'a Scales,
     noise: Vec<f64>,
-    widths: Vec<usize>,
+    reversals: Vec<usize>,
 }
 
 impl State<'_> {
@@ -144,8 +153,8 @@ impl State<'_> {
     }
 
     /// A joint's triangle as rows of all unknowns and the torque, in units of its noise.
-    fn rows(&self, joint: usize, width: usize, factor: &RFactor) -> DMatrix<f64> {
-        let selected = factor.selected(&self.structure.used(joint, width));
+    fn rows(&self, joint: usize, reversal: usize, factor: &RFactor) -> DMatrix<f64> {
+        let selected = factor.selected(&self.structure.used(joint, reversal));
         let mut columns = self.structure.unknowns(joint);
         columns.push(self.count());
         let mut rows = DMatrix::zeros(columns.len(), self.count() + 1);
@@ -170,7 +179,7 @@ impl State<'_> {
         };
         add(ridge);
         for (joint, factor) in stretch.iter().enumerate() {
-            add(self.rows(joint, self.widths[joint], factor));
+            add(self.rows(joint, self.reversals[joint], factor));
         }
         all
     }
@@ -181,7 +190,7 @@ impl State<'_> {
         let solution = solved(&triangle, self.count());
         let Some(inverse) = inverse(&triangle, self.count()) else { return };
         for (joint, factor) in total.iter().enumerate() {
-            let rows = self.rows(joint, self.widths[joint], factor);
+            let rows = self.rows(joint, self.reversals[joint], factor);
             let (design, target) = (rows.columns(0, self.count()), rows.column(self.count()));
             let residual = (target - design * &solution).norm_squared() * self.noise[joint].powi(2);
             let taken = (design * &inverse).norm_squared();
@@ -191,23 +200,23 @@ impl State<'_> {
         }
     }
 
-    /// Joint by joint the width that leaves the least.
-    fn choose_widths(&mut self, total: &Stretch) {
+    /// Joint by joint the reversal that leaves the least.
+    fn choose_reversals(&mut self, total: &Stretch) {
         for joint in 0..self.structure.dof() {
-            let before = self.widths[joint];
+            let before = self.reversals[joint];
             let left = |state: &Self| {
                 let triangle = state.stacked(total);
                 triangle.triangle()[(state.count(), state.count())].abs()
             };
             let mut best = (before, left(self));
-            for width in 0..self.structure.options.widths.len() {
-                self.widths[joint] = width;
+            for reversal in 0..self.structure.reversals.len() {
+                self.reversals[joint] = reversal;
                 let left = left(self);
                 if left < best.1 {
-                    best = (width, left);
+                    best = (reversal, left);
                 }
             }
-            self.widths[joint] = best.0;
+            self.reversals[joint] = best.0;
         }
     }
 
@@ -225,7 +234,7 @@ impl State<'_> {
             let mut share = DMatrix::identity(count, count);
             let mut pull = DVector::zeros(count);
             for (joint, factor) in stretch.iter().enumerate() {
-                let rows = self.rows(joint, self.widths[joint], factor);
+                let rows = self.rows(joint, self.reversals[joint], factor);
                 let design = rows.columns(0, count) * &inverse;
                 let residual = rows.column(count) - rows.columns(0, count) * solution;
                 pull += design.tr_mul(&residual);

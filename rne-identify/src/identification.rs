@@ -2,7 +2,7 @@
 
 use nalgebra::Matrix4;
 use rne_logs::Motion;
-use rne_model::{Inertia, InertiaReference, Link, Motor, Robot};
+use rne_model::{Inertia, InertiaReference, Link, Motor, Reversal, Robot};
 
 use crate::feasible::Feasible;
 use crate::fit::Fit;
@@ -89,8 +89,8 @@ pub struct JointReport {
     pub error: JointError,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
     pub friction: Option<[(f64, f64); FRICTION]>,
-    /// rad/s: about which Coulomb friction changes its sign.
-    pub width: Option<f64>,
+    /// How Coulomb friction changes its sign.
+    pub reversal: Option<Reversal>,
     /// kg m² at the joint.
     pub rotor: Option<f64>,
 }
@@ -196,7 +196,7 @@ fn joints(structure: &Structure, fit: &Fit, feasible: &Feasible, errors: &[Joint
             noise: fit.noise[joint],
             error: *error,
             friction,
-            width: structure.options.friction.then(|| structure.options.widths[fit.widths[joint]]),
+            reversal: structure.options.friction.then(|| structure.reversals[fit.reversals[joint]]),
             rotor: structure.options.rotors.then(|| feasible.rotors[joint]),
         }
     });
@@ -219,7 +219,10 @@ fn robot_of(structure: &Structure, fit: &Fit, feasible: &Feasible) -> Robot {
             let [viscous, forward, backward] = feasible.friction[at];
             motor.viscous = rounded(viscous / (ratio * ratio));
             motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];
-            joint.coulomb_width = Some(structure.options.widths[fit.widths[at]]);
+            (joint.coulomb_width, joint.coulomb_displacement) = match structure.reversals[fit.reversals[at]] {
+                Reversal::Width(width) => (Some(width), None),
+                Reversal::Displacement(length) => (None, Some(length)),
+            };
         }
         if structure.options.rotors || structure.options.friction {
             joint.motor = Some(motor);

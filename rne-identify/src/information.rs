@@ -5,11 +5,12 @@ use std::fmt;
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, Destination, EvaluationError, Function};
+use rne_model::ReversalSign;
 
 use crate::parameters::PER_LINK;
 use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
-use crate::structure::{Structure, smooth_sign};
+use crate::structure::Structure;
 
 /// States that are computed at once.
 const WINDOW: usize = 2048;
@@ -165,8 +166,9 @@ impl Information {
         let delay = weighting.map_or(0.0, |weighting| weighting.delay);
         self.shift = delay;
         let instants = instants(structure, &motion.time, delay);
+        let mut walk = Walk::new(structure);
         for instants in instants.chunks(WINDOW) {
-            for (rows, weights) in rows(structure, motion, instants, weighting, delay)? {
+            for (rows, weights) in rows(structure, motion, instants, weighting, delay, &mut walk)? {
                 self.take(rows, weights);
             }
         }
@@ -248,6 +250,33 @@ fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
     (0..=count).map(|k| first + k as f64 * kernel.width()).collect()
 }
 
+/// The signs of friction of every joint by every reversal, on their way through a motion: some remember.
+pub(crate) struct Walk {
+    /// The state that comes next.
+    at: usize,
+    signs: Vec<Vec<ReversalSign>>,
+}
+
+impl Walk {
+    pub(crate) fn new(structure: &Structure) -> Self {
+        let signs: Vec<ReversalSign> =
+            structure.reversals.iter().map(|reversal| ReversalSign::new(*reversal)).collect();
+        Self { at: 0, signs: vec![signs; structure.dof()] }
+    }
+
+    /// To a state that has not been passed.
+    fn advance(&mut self, motion: &Motion, to: usize) {
+        for (signs, (q, qd)) in self.signs.iter_mut().zip(motion.q.iter().zip(&motion.qd)) {
+            for sign in signs {
+                for (q, qd) in q.iter().zip(qd).take(to).skip(self.at) {
+                    sign.next(*q, *qd);
+                }
+            }
+        }
+        self.at = self.at.max(to);
+    }
+}
+
 type Rows = (Vec<DMatrix<f64>>, Vec<f64>);
 
 /// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a stretch's length.
@@ -257,6 +286,7 @@ fn rows(
     instants: &[f64],
     weighting: Option<&Weighting>,
     delay: f64,
+    walk: &mut Walk,
 ) -> Result<Vec<Rows>, MotionError> {
     let (Some(start), Some(end)) = (instants.first(), instants.last()) else { return Ok(Vec::new()) };
     let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
@@ -264,7 +294,8 @@ fn rows(
     let from = motion.time.partition_point(|time| *time < start - reach);
     let to = motion.time.partition_point(|time| *time <= end + reach);
     let time = &motion.time[from..to];
-    let plain = plain_columns(structure, motion, from..to)?;
+    walk.advance(motion, from);
+    let plain = plain_columns(structure, motion, from..to, walk)?;
     let weights: Vec<Weights> = match kernel {
         Some(kernel) => instants.iter().map(|instant| kernel.about(time, *instant)).collect(),
         None => Vec::new(),
@@ -322,6 +353,7 @@ pub(crate) fn plain_columns(
     structure: &Structure,
     motion: &Motion,
     range: std::ops::Range<usize>,
+    walk: &Walk,
 ) -> Result<Vec<DMatrix<f64>>, EvaluationError> {
     let dof = structure.dof();
     let states = range.len();
@@ -352,8 +384,9 @@ pub(crate) fn plain_columns(
         }
         if friction {
             columns.push(DVector::from_column_slice(&qd[joint]));
-            for &width in &structure.options.widths {
-                let odd = DVector::from_iterator(states, qd[joint].iter().map(|speed| smooth_sign(*speed, width)));
+            for mut sign in walk.signs[joint].iter().copied() {
+                let states_of = q[joint].iter().zip(&qd[joint]);
+                let odd = DVector::from_iterator(states, states_of.map(|(q, qd)| sign.next(*q, *qd)));
                 let even = odd.map(|sign| sign * sign);
                 columns.extend([odd, even]);
             }

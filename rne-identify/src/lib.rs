@@ -35,4 +35,4 @@ pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use rne_codegen::Parameter;
 pub use structure::{Options, Structure};
-pub use written::written;
+pub use written::{not_excited, written};

@@ -2,7 +2,7 @@
 
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Function};
-use rne_model::Robot;
+use rne_model::{Friction, Robot};
 
 use crate::information::{MotionError, checked};
 use crate::smoothing::Kernel;
@@ -80,9 +80,10 @@ impl Prediction {
             let columns = torques.iter_mut().map(|torques| &mut torques[range.clone()]).collect();
             self.arm.run(Function::InverseDynamics, range.len(), &arguments, Destination::Columns(columns))?;
         }
-        for ((torques, speeds), joint) in torques.iter_mut().zip(&motion.qd).zip(&self.robot.joints) {
-            for (torque, speed) in torques.iter_mut().zip(speeds) {
-                *torque += joint.friction(*speed);
+        for (at, (torques, joint)) in torques.iter_mut().zip(&self.robot.joints).enumerate() {
+            let mut friction = Friction::of(joint);
+            for ((torque, position), speed) in torques.iter_mut().zip(&motion.q[at]).zip(&motion.qd[at]) {
+                *torque += friction.next(*position, *speed);
             }
         }
         Ok(torques)

@@ -1,7 +1,7 @@
 //! What is asked of the logs: which parameters, which friction, which filter.
 
 use rne_machine::CompiledArm;
-use rne_model::{Link, Robot};
+use rne_model::{Link, Reversal, Robot};
 
 use crate::parameters::Parameters;
 
@@ -17,14 +17,29 @@ pub struct Options {
     pub delay: bool,
     /// Hz: what both sides of the equations of motion pass; `None`: nothing is filtered.
     pub cutoff: Option<f64>,
-    /// rad/s or m/s: speeds about which Coulomb friction may change its sign; the data choose one for each joint.
+    /// rad/s or m/s: speeds about which Coulomb friction may change its sign.
     pub widths: Vec<f64>,
+    /// rad or m: displacements over which it may do so after a reversal. Of all speeds and displacements the data
+    /// choose one for each joint.
+    pub displacements: Vec<f64>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        let widths = vec![0.003, 0.006, 0.012, 0.025, 0.05, 0.1, 0.2];
-        Self { friction: true, rotors: false, delay: true, cutoff: Some(2.0), widths }
+        let widths = vec![0.003, 0.006, 0.012, 0.025, 0.05, 0.1];
+        let displacements = vec![0.001, 0.002, 0.005, 0.01, 0.02];
+        Self { friction: true, rotors: false, delay: true, cutoff: Some(2.0), widths, displacements }
+    }
+}
+
+impl Options {
+    /// How Coulomb friction may change its sign; at once, where no way was offered.
+    #[must_use]
+    pub fn reversals(&self) -> Vec<Reversal> {
+        let widths = self.widths.iter().map(|width| Reversal::Width(*width));
+        let all: Vec<Reversal> =
+            widths.chain(self.displacements.iter().map(|length| Reversal::Displacement(*length))).collect();
+        if all.is_empty() { vec![Reversal::Width(0.0)] } else { all }
     }
 }
 
@@ -32,6 +47,7 @@ impl Default for Options {
 #[derive(Clone, Debug)]
 pub struct Structure {
     pub(crate) options: Options,
+    pub(crate) reversals: Vec<Reversal>,
     pub(crate) parameters: Parameters,
     pub(crate) robot: Robot,
     /// The geometry alone.
@@ -58,7 +74,8 @@ impl Structure {
                 (0..parameters.rank()).filter(felt).collect()
             })
             .collect();
-        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options }
+        let reversals = options.reversals();
+        Self { parameters, robot: robot.clone(), arm: CompiledArm::from_robot(&bare), felt, options, reversals }
     }
 
     /// The base parameters.
@@ -83,23 +100,23 @@ impl Structure {
         self.robot.dof()
     }
 
-    /// Columns of the rows of a joint: base parameters; viscous friction, then odd and even part of each width; the
-    /// torque's slope; the torque.
+    /// Columns of the rows of a joint: base parameters; viscous friction, then odd and even part of Coulomb friction
+    /// by each reversal; the torque's slope; the torque.
     pub(crate) fn columns(&self, joint: usize) -> usize {
         self.felt[joint].len() + self.own_columns() + 1
     }
 
     pub(crate) fn own_columns(&self) -> usize {
-        let friction = if self.options.friction { 1 + 2 * self.options.widths.len() } else { 0 };
+        let friction = if self.options.friction { 1 + 2 * self.reversals.len() } else { 0 };
         friction + usize::from(self.options.delay)
     }
 
-    /// The columns of a joint's rows that are used with the width of this index.
-    pub(crate) fn used(&self, joint: usize, width: usize) -> Vec<usize> {
+    /// The columns of a joint's rows that are used with the reversal of this index.
+    pub(crate) fn used(&self, joint: usize, reversal: usize) -> Vec<usize> {
         let felt = self.felt[joint].len();
         let mut used: Vec<usize> = (0..felt).collect();
         if self.options.friction {
-            used.extend([felt, felt + 1 + 2 * width, felt + 2 + 2 * width]);
+            used.extend([felt, felt + 1 + 2 * reversal, felt + 2 + 2 * reversal]);
         }
         if self.options.delay {
             used.push(felt + self.own_columns() - 1);
@@ -126,9 +143,4 @@ impl Structure {
         let friction = if self.options.friction { FRICTION * self.dof() } else { 0 };
         self.parameters.rank() + friction + usize::from(self.options.delay)
     }
-}
-
-/// The odd part of a smooth sign, v / √(v² + width²); its square is the even part. Of width 0 the sign itself.
-pub(crate) fn smooth_sign(speed: f64, width: f64) -> f64 {
-    if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() }
 }

@@ -3,9 +3,12 @@
 use std::fmt::Write as _;
 
 use rne_convert::robot_file;
-use rne_model::{JointKind, one_line};
+use rne_model::{JointKind, Robot, one_line};
 
 use crate::identification::{Identification, JointReport};
+
+/// Begins a note on a joint.
+const NOT_EXCITED: &str = "- joint not excited: ";
 
 /// The text of the robot file; `logs` says in words from what it was identified.
 #[must_use]
@@ -13,11 +16,16 @@ pub fn written(identification: &Identification, logs: &str) -> String {
     let mut robot = identification.robot.clone();
     let geometry = one_line(&robot.source);
     robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
-    robot.notes = Some(
+    let mut notes =
         "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
          torques\n- what the log does not excite is what was supposed before"
-            .to_owned(),
-    );
+            .to_owned();
+    for (joint, report) in robot.joints.iter().zip(&identification.joints) {
+        if !report.is_excited() {
+            let _ = write!(notes, "\n{NOT_EXCITED}{}", one_line(&joint.name));
+        }
+    }
+    robot.notes = Some(notes);
     let mut text = head(identification);
     let mut joint: usize = 0;
     for line in robot_file::write(&robot).lines() {
@@ -38,6 +46,15 @@ pub fn written(identification: &Identification, logs: &str) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The joints of which the notes of a robot file say that they were not excited when it was identified: `written` puts
+/// it there, a line for each.
+#[must_use]
+pub fn not_excited(robot: &Robot) -> Vec<bool> {
+    let notes = robot.notes.as_deref().unwrap_or_default();
+    let named: Vec<&str> = notes.lines().filter_map(|line| line.trim().strip_prefix(NOT_EXCITED)).collect();
+    robot.joints.iter().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
 }
 
 /// The base parameters with their deviations: what the logs say, and what the file makes of it.

@@ -3,11 +3,11 @@
 use fastrand::Rng;
 use nalgebra::DVector;
 use rne_identify::{
-    Feasible, Fit, Information, MotionError, Options, Parameter, Structure, identify, prediction_errors,
+    Feasible, Fit, Information, MotionError, Options, Parameter, Structure, identify, not_excited, prediction_errors,
     pseudo_inertia, scales, written,
 };
 use rne_logs::Motion;
-use rne_model::Robot;
+use rne_model::{Friction, Reversal, Robot};
 use rne_runtime::DynArm;
 
 /// Two bodies in three dimensions, with friction.
@@ -127,8 +127,9 @@ fn truth(structure: &Structure, robot: &Robot) -> DVector<f64> {
     DVector::from_vec(unknowns)
 }
 
-fn without_friction_columns(options: &mut Options) {
+fn with_few_reversals(options: &mut Options) {
     options.widths = vec![0.025, 0.05];
+    options.displacements = vec![0.005];
 }
 
 #[test]
@@ -137,7 +138,7 @@ fn a_clean_log_gives_the_arm_back() {
     let mut rng = Rng::with_seed(3);
     let motion = log(&robot, &Sines::new(&mut rng, 2), 0.0, 4000, 200.0, CLEAN, &mut rng);
     let mut options = Options::default();
-    without_friction_columns(&mut options);
+    with_few_reversals(&mut options);
     options.delay = false;
     let found = identify(&robot, options, 1e-4, |take| take(&motion)).unwrap();
     let truth = truth(&found.structure, &robot);
@@ -164,6 +165,8 @@ fn parts_in_any_order_are_the_whole() {
     let mut options = Options::default();
     options.cutoff = None;
     options.delay = false;
+    // friction that remembers does not know what was before a part
+    options.displacements.clear();
     let structure = Structure::new(&robot, options);
     let parts: Vec<Motion> =
         (0..64).map(|part| log(&robot, &sines, 0.5 * f64::from(part), 50, 100.0, spoilt, &mut rng)).collect();
@@ -180,10 +183,81 @@ fn parts_in_any_order_are_the_whole() {
     }
     let of = |information: &Information| Fit::of(&structure, information, &scales(&structure, information));
     let (whole, merged) = (of(&whole), of(&merged));
-    assert_eq!(whole.widths, merged.widths);
+    assert_eq!(whole.reversals, merged.reversals);
     for (a, b) in whole.solution.iter().zip(merged.solution.iter()) {
         assert!((a - b).abs() <= 1e-10 * whole.solution.amax(), "{a} {b}");
     }
+}
+
+/// The arm with friction that turns over a displacement, and a log of it.
+fn remembering(displacements: [f64; 2], noise: f64) -> (Robot, Motion) {
+    let mut robot = arm();
+    for (joint, displacement) in robot.joints.iter_mut().zip(displacements) {
+        joint.coulomb_width = None;
+        joint.coulomb_displacement = Some(displacement);
+    }
+    let mut rng = Rng::with_seed(13);
+    let without = {
+        let mut bare = robot.clone();
+        bare.joints.iter_mut().for_each(|joint| joint.motor = None);
+        bare
+    };
+    let spoilt = Spoilt { noise, ..CLEAN };
+    let mut motion = log(&without, &Sines::new(&mut rng, 2), 0.0, 6000, 200.0, spoilt, &mut rng);
+    for (at, joint) in robot.joints.iter().enumerate() {
+        let mut friction = Friction::of(joint);
+        for ((tau, q), qd) in motion.tau[at].iter_mut().zip(&motion.q[at]).zip(&motion.qd[at]) {
+            *tau += friction.next(*q, *qd);
+        }
+    }
+    (robot, motion)
+}
+
+/// Friction that remembers is told from friction that does not, and the file says it again.
+#[test]
+fn friction_that_remembers_is_found() {
+    let (robot, motion) = remembering([0.02, 0.01], 0.0);
+    let mut options = Options::default();
+    options.delay = false;
+    let found = identify(&robot, options.clone(), 1e-4, |take| take(&motion)).unwrap();
+    let reversals: Vec<_> = found.joints.iter().map(|joint| joint.reversal.unwrap()).collect();
+    assert_eq!(reversals, [Reversal::Displacement(0.02), Reversal::Displacement(0.01)]);
+    let truth = truth(&found.structure, &robot);
+    for (at, value) in truth.iter().enumerate() {
+        let error = found.fit.solution[at] - value;
+        assert!(error.abs() < 1e-6 * (1.0 + value.abs()), "{at}: {error}");
+    }
+    let read = Robot::from_yaml(&written(&found, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(read.joints, found.robot.joints);
+    for error in prediction_errors(&read, [&motion], Some(2.0)).unwrap() {
+        assert!(error.error < 1e-4 && error.unfiltered < 1e-4, "{error:?}");
+    }
+    // speeds alone do not explain it
+    options.displacements.clear();
+    let speeds = identify(&robot, options, 1e-4, |take| take(&motion)).unwrap();
+    assert!(speeds.joints.iter().all(|joint| joint.error.unfiltered > 0.01));
+    // and in noise it is found, too
+    let (robot, noisy) = remembering([0.02, 0.01], 0.1);
+    let found = identify(&robot, Options::default(), 1.0, |take| take(&noisy)).unwrap();
+    assert!(found.joints.iter().all(|joint| matches!(joint.reversal, Some(Reversal::Displacement(_)))));
+}
+
+/// What is not excited is said by the file alone.
+#[test]
+fn a_file_says_which_joints_were_not_excited() {
+    let robot = arm();
+    let mut rng = Rng::with_seed(17);
+    let mut motion = log(&robot, &Sines::new(&mut rng, 2), 0.0, 4000, 200.0, CLEAN, &mut rng);
+    let plain = identify(&robot, Options::default(), 1.0, |take| take(&motion)).unwrap();
+    let read = Robot::from_yaml(&written(&plain, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(not_excited(&read), [false, false]);
+    // noise where there was a torque
+    motion.tau[1] = (0..4000).map(|_| gaussian(&mut rng)).collect();
+    let found = identify(&robot, Options::default(), 1.0, |take| take(&motion)).unwrap();
+    assert!(!found.joints[1].is_excited());
+    let read = Robot::from_yaml(&written(&found, "a made-up log")).unwrap_or_else(|report| panic!("{report}"));
+    assert_eq!(not_excited(&read), [false, true]);
+    assert_eq!(not_excited(&robot), [false, false]);
 }
 
 fn joined(parts: &[Motion]) -> Motion {
@@ -271,7 +345,7 @@ fn five_million_states_need_no_more_memory() {
 fn coverage(trials: u64) -> Vec<f64> {
     let robot = arm();
     let mut options = Options::default();
-    without_friction_columns(&mut options);
+    with_few_reversals(&mut options);
     options.cutoff = Some(4.0);
     let structure = Structure::new(&robot, options);
     let truth = truth(&structure, &robot);

@@ -339,7 +339,7 @@ fn place_of(key: &str, allowed: &[&str]) -> Option<String> {
         "theta" | "d" | "a" | "alpha" => "dh",
         "mass" | "com" | "first_moment" | "inertia" | "inertia_about" | "physical" => "link",
         "position" | "velocity" | "effort" => "limits",
-        "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" => "motor",
+        "gear_ratio" | "viscous" | "coulomb" | "coulomb_width" | "coulomb_displacement" => "motor",
         "xyz" | "rpy" => "base` or `tool",
         "<<" => return Some("YAML merge keys are not part of the format; write the keys out".to_owned()),
         "offset" => return Some("a joint offset is the constant in `theta` or `d`".to_owned()),

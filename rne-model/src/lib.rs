@@ -60,6 +60,8 @@ mod expression;
 #[cfg(feature = "std")]
 mod formula;
 #[cfg(feature = "std")]
+mod friction;
+#[cfg(feature = "std")]
 mod golden;
 #[cfg(feature = "std")]
 mod inertia;
@@ -102,6 +104,8 @@ pub use double::{Double, decimal_digits};
 pub use expression::number;
 #[cfg(feature = "std")]
 pub use formula::Formula;
+#[cfg(feature = "std")]
+pub use friction::{Friction, Reversal, ReversalSign};
 #[cfg(feature = "std")]
 pub use golden::{GoldenFile, GoldenState};
 #[cfg(feature = "std")]

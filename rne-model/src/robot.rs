@@ -1,6 +1,6 @@
 //! The validated robot: what a robot file says, with every expression evaluated.
 
-use crate::{Convention, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
+use crate::{Convention, Friction, Inertia, Link, Model, Motor, Row, RunTime, Transform, inertia};
 
 /// A validated robot, as its file describes it.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +48,9 @@ pub struct Joint {
     /// The speed about which Coulomb friction changes its sign, rad/s or m/s, where somebody found it: the `width` that
     /// smooth friction takes. Information, as limits are.
     pub coulomb_width: Option<f64>,
+    /// The displacement over which Coulomb friction changes its sign after a reversal, rad or m, where somebody found
+    /// it: friction that remembers where it turned, of Dahl's model. Information, as limits are.
+    pub coulomb_displacement: Option<f64>,
 }
 
 /// The point a written inertia tensor refers to; its axes are the link's in both cases.
@@ -71,21 +74,10 @@ pub struct Limits {
 }
 
 impl Joint {
-    /// Friction, N m or N, at a speed: viscous, and Coulomb's, which changes its sign about the width of the file, and
-    /// is zero at rest.
-    ///
-    /// ```text
-    /// G² B q̇ + |G| (½ (Tc⁺ - Tc⁻) s + ½ (Tc⁺ + Tc⁻) s²)      s = q̇ / √(q̇² + width²)
-    /// ```
+    /// Friction, N m or N, at a speed that the joint has had for long: [`Friction`] knows the way there.
     #[must_use]
     pub fn friction(&self, speed: f64) -> f64 {
-        let Some(motor) = self.motor else { return 0.0 };
-        let ratio = motor.gear_ratio.abs();
-        let [forward, backward] = motor.coulomb;
-        let width = self.coulomb_width.unwrap_or(0.0);
-        let sign = if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() };
-        let coulomb = 0.5 * (forward - backward) * sign + 0.5 * (forward + backward) * sign * sign;
-        ratio * ratio * motor.viscous * speed + ratio * coulomb
+        Friction::at(self, speed)
     }
 
     /// From Coulomb's friction of one direction to that of the other, N m or N: a joint at rest may be held by anything

@@ -261,8 +261,10 @@ fn joint(cx: &Context, node: &Node, index: usize) -> Option<Joint> {
         lint::position_limits(cx, position, kind, &limits);
     }
     let (link, written_inertia) = link;
-    let (motor, coulomb_width) = motor.map_or((None, None), |(motor, width)| (Some(motor), width));
-    Some(Joint { name, row: Row { kind, dh, link }, written_inertia, limits, motor, coulomb_width })
+    let (motor, [coulomb_width, coulomb_displacement]) =
+        motor.map_or((None, [None; 2]), |(motor, changes)| (Some(motor), changes));
+    let row = Row { kind, dh, link };
+    Some(Joint { name, row, written_inertia, limits, motor, coulomb_width, coulomb_displacement })
 }
 
 fn joint_kind(cx: &Context, node: &Node) -> Option<JointKind> {
@@ -422,16 +424,17 @@ fn position_limits(cx: &Context, node: &Node) -> Option<(f64, f64)> {
     cx.refuse(Diagnostic::error(node.span.clone(), message).help("exchange the two"))
 }
 
-/// The motor, and the speed about which its friction changes its sign.
-fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, Option<f64>)> {
+/// The motor, and the speed about which its friction changes its sign, or the displacement over which it does.
+fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, [Option<f64>; 2])> {
     read_mapping!(cx, node, "`motor`", {
         inertia: or(0.0) "inertia" not_negative("rotor inertia", entry(Entry::MotorInertia(joint))),
         gear_ratio: or(1.0) "gear_ratio" |cx, node| gear_ratio(cx, node, joint),
         viscous: or(0.0) "viscous" not_negative("viscous friction", entry(Entry::Viscous(joint))),
         coulomb: or([0.0; 2]) "coulomb" |cx, node| coulomb(cx, node, joint),
         width: optional "coulomb_width" not_negative("width", fixed("the width")),
+        displacement: optional "coulomb_displacement" not_negative("displacement", fixed("the displacement")),
     });
-    Some((Motor { inertia, gear_ratio, viscous, coulomb }, width))
+    Some((Motor { inertia, gear_ratio, viscous, coulomb }, [width, displacement]))
 }
 
 fn gear_ratio(cx: &Context, node: &Node, joint: usize) -> Option<f64> {

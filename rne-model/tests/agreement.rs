@@ -24,7 +24,8 @@ joints:
         - 2.5
       velocity: 2
       effort: 50.125
-    motor: {inertia: 2.0e-4, gear_ratio: -62.6111, viscous: 1.48e-3, coulomb: [0.395, -0.435], coulomb_width: 0.02}
+    motor: {inertia: 2.0e-4, gear_ratio: -62.6111, viscous: 1.48e-3, coulomb: [0.395, -0.435],
+            coulomb_width: 0.02, coulomb_displacement: 0.003}
   - {name: 'it''s', type: prismatic, dh: *row, link: {mass: 0.1234567890123456789}}
 "#;
 
@@ -88,5 +89,6 @@ fn assert_joint(joint: &Joint, value: &Value) {
         );
         assert_eq!(ours.coulomb[..], numbers(&motor["coulomb"])[..]);
         assert_eq!(joint.coulomb_width, motor.get("coulomb_width").and_then(Value::as_f64));
+        assert_eq!(joint.coulomb_displacement, motor.get("coulomb_displacement").and_then(Value::as_f64));
     }
 }

@@ -9,7 +9,7 @@
 //! and in quasi-static contact `external` is about -`residual`, through a low-pass.
 
 use rne_logs::Motion;
-use rne_model::{Joint, Robot};
+use rne_model::{Friction, Joint, Robot};
 use rne_runtime::{DynArm, DynObserverState, WrongLength};
 
 use crate::WatchError;
@@ -70,6 +70,8 @@ impl Signals {
         let lists = || vec![Vec::with_capacity(samples); dof];
         let (mut residual, mut direction, mut external, mut open) = (lists(), lists(), lists(), lists());
         let mut settled = Vec::with_capacity(samples);
+        let begun = || -> Vec<Friction> { robot.joints.iter().map(Friction::of).collect() };
+        let mut frictions = begun();
         let mut observer = DynObserverState::new(dof, gain, period);
         let still = still(&motion.qd);
         let wait = 3.0 / (std::f64::consts::TAU * gain);
@@ -80,12 +82,14 @@ impl Signals {
             let step = if sample == 0 { 0.0 } else { motion.time[sample] - motion.time[sample - 1] };
             if step > GAP * period {
                 observer.reset();
+                frictions = begun();
                 since = 0.0;
             } else {
                 since += step;
             }
             let fade = (-std::f64::consts::TAU * gain * step).exp();
-            let friction = robot.joints.iter().zip(&qd).map(|(joint, speed)| joint.friction(*speed));
+            let states = q.iter().zip(&qd);
+            let friction = frictions.iter_mut().zip(states).map(|(friction, (q, qd))| friction.next(*q, *qd));
             let model = arm.inverse_dynamics(&q, &qd, &qdd)?;
             let net: Vec<f64> = tau.iter().zip(friction).map(|(tau, friction)| tau - friction).collect();
             let seen = observer.update(arm, &q, &qd, &net)?;

@@ -1,0 +1,143 @@
+//! Friction of a joint: viscous, and Coulomb's, that changes its sign about a speed or over a displacement.
+//!
+//! ```text
+//! f_v q̇ + ½ (f⁺ + f⁻) s + ½ (f⁺ - f⁻) s²
+//! about a speed w:          s = q̇ / √(q̇² + w²)
+//! over a displacement ℓ:    ds = (sgn dq - s) |dq| / ℓ
+//! ```
+//!
+//! The second s remembers where the joint turned: bristles, teeth and belts give way before they slip, so that a joint
+//! that sticks or creeps has any friction between f⁺ and -f⁻. It is Dahl's model, of exponent one (P. R. Dahl, A solid
+//! friction model, Aerospace Corporation TOR-0158(3107-18)-1, 1968), exact between samples where the joint does not
+//! turn between them.
+
+use crate::{Joint, Motor};
+
+/// rad/s or m/s: a joint that begins faster than that begins slipping.
+const SLIPPING: f64 = 0.05;
+
+/// How Coulomb friction changes its sign.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reversal {
+    /// About a speed, rad/s or m/s.
+    Width(f64),
+    /// Over a displacement after the joint turned, rad or m.
+    Displacement(f64),
+}
+
+impl Reversal {
+    /// As a robot file has it; at once where it says nothing.
+    #[must_use]
+    pub fn of(joint: &Joint) -> Self {
+        let width = Self::Width(joint.coulomb_width.unwrap_or(0.0));
+        joint.coulomb_displacement.map_or(width, Self::Displacement)
+    }
+}
+
+/// The friction of a joint on its way from state to state.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction {
+    /// N m s/rad, N m: at the joint; viscous, odd and even part of Coulomb friction.
+    parts: [f64; 3],
+    sign: ReversalSign,
+}
+
+impl Friction {
+    /// Of a joint that was nowhere yet.
+    #[must_use]
+    pub fn of(joint: &Joint) -> Self {
+        let motor = joint.motor.unwrap_or(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.0, coulomb: [0.0; 2] });
+        let ratio = motor.gear_ratio.abs();
+        let [forward, backward] = motor.coulomb;
+        let parts =
+            [ratio * ratio * motor.viscous, 0.5 * ratio * (forward - backward), 0.5 * ratio * (forward + backward)];
+        Self { parts, sign: ReversalSign::new(Reversal::of(joint)) }
+    }
+
+    /// The friction of a joint at a speed that it has had for long, N m or N.
+    #[must_use]
+    pub fn at(joint: &Joint, speed: f64) -> f64 {
+        let mut friction = Self::of(joint);
+        if matches!(friction.sign.reversal, Reversal::Displacement(_)) {
+            friction.sign.reversal = Reversal::Width(0.0);
+        }
+        friction.next(0.0, speed)
+    }
+
+    /// The friction at the next state, N m or N: a position and a speed.
+    pub fn next(&mut self, position: f64, speed: f64) -> f64 {
+        let [viscous, odd, even] = self.parts;
+        let sign = self.sign.next(position, speed);
+        viscous * speed + odd * sign + even * sign * sign
+    }
+}
+
+/// The odd part of Coulomb friction, -1 to 1, from state to state.
+#[derive(Clone, Copy, Debug)]
+pub struct ReversalSign {
+    reversal: Reversal,
+    /// The position before, and what it was there.
+    before: Option<(f64, f64)>,
+}
+
+impl ReversalSign {
+    /// Of a joint that was nowhere yet.
+    #[must_use]
+    pub fn new(reversal: Reversal) -> Self {
+        Self { reversal, before: None }
+    }
+
+    /// At the next state: a position and a speed.
+    pub fn next(&mut self, position: f64, speed: f64) -> f64 {
+        let length = match self.reversal {
+            Reversal::Width(width) => return smooth_sign(speed, width),
+            Reversal::Displacement(length) => length,
+        };
+        let sign = match self.before {
+            None => smooth_sign(speed, SLIPPING),
+            Some((last, sign)) if position == last => sign,
+            Some((last, sign)) => {
+                let moved = position - last;
+                moved.signum() + (sign - moved.signum()) * (-moved.abs() / length).exp()
+            }
+        };
+        self.before = Some((position, sign));
+        sign
+    }
+}
+
+/// v / √(v² + width²). Of width 0 the sign itself.
+fn smooth_sign(speed: f64, width: f64) -> f64 {
+    if speed == 0.0 { 0.0 } else { speed / (speed * speed + width * width).sqrt() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// After a reversal the friction is 1 - 2 exp(-x / ℓ), however finely the way is sampled.
+    #[test]
+    fn a_reversal_takes_its_displacement() {
+        for steps in [1, 10, 1000] {
+            let mut sign = ReversalSign::new(Reversal::Displacement(0.01));
+            let mut last = 0.0;
+            for k in 0..=100 {
+                last = sign.next(-0.01 * f64::from(k), -1.0);
+            }
+            assert!((last + 1.0).abs() < 1e-12);
+            for k in 1..=steps {
+                last = sign.next(-1.0 + 0.02 * f64::from(k) / f64::from(steps), 0.1);
+            }
+            assert!((last - (1.0 - 2.0 * (-2.0_f64).exp())).abs() < 1e-9, "{last}");
+        }
+    }
+
+    #[test]
+    fn what_stands_still_keeps_its_friction() {
+        let mut sign = ReversalSign::new(Reversal::Displacement(0.002));
+        let begun = sign.next(0.3, 0.05);
+        assert!((begun - 0.5_f64.sqrt()).abs() < 1e-15);
+        assert_eq!(sign.next(0.3, 0.0), begun);
+        assert_eq!(ReversalSign::new(Reversal::Width(0.0)).next(1.0, -3.0), -1.0);
+    }
+}
