@@ -47,7 +47,8 @@ impl Design {
     /// Rows are weighted by one over the effort limits, as if noise were so large, where every joint has one; else all
     /// are equal.
     pub(crate) fn new(robot: &Robot, limits: &[MotionLimits], harmonics: usize, friction: bool, rotors: bool) -> Self {
-        let options = Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
+        let options =
+            Options { friction, rotors, delay: false, cutoff: None, widths: vec![WIDTH], displacements: Vec::new() };
         let mut structure = Structure::new(robot, options);
         // with the same bits everywhere: a search goes other ways by the last one
         structure.arm = structure.arm.in_form(Form::SevenSteps);
