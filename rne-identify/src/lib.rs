@@ -17,11 +17,11 @@ mod written;
 
 pub use feasible::{Certificate, Feasible};
 pub use fit::Fit;
-pub use identification::{BaseReport, Identification, JointReport, identify, scales};
-pub use information::{Information, MotionError, Weighting};
+pub use identification::{BaseReport, Identification, JointReport, OnePass, identify, scales};
+pub use information::{Information, MotionError, Weighting, WrongNumbers};
 pub use parameters::{Base, Parameters, name, unit};
 pub use prediction::{JointError, Prediction, SPEEDS, friction, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use rne_codegen::Parameter;
 pub use structure::{Options, Structure};
-pub use written::written;
+pub use written::{written, written_robot};

@@ -3,24 +3,16 @@
 use std::fmt::Write as _;
 
 use rne_convert::robot_file;
-use rne_model::{JointKind, one_line};
+use rne_model::{JointKind, Robot, one_line};
 
 use crate::identification::{Identification, JointReport};
 
 /// The text of the robot file; `logs` says in words from what it was identified.
 #[must_use]
 pub fn written(identification: &Identification, logs: &str) -> String {
-    let mut robot = identification.robot.clone();
-    let geometry = one_line(&robot.source);
-    robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
-    robot.notes = Some(
-        "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
-         torques\n- what the log does not excite is what was supposed before"
-            .to_owned(),
-    );
     let mut text = head(identification);
     let mut joint: usize = 0;
-    for line in robot_file::write(&robot).lines() {
+    for line in written_robot(&identification.robot, logs).lines() {
         if line.starts_with("  - name:") {
             joint += 1;
         }
@@ -38,6 +30,21 @@ pub fn written(identification: &Identification, logs: &str) -> String {
         text.push('\n');
     }
     text
+}
+
+/// The text of the robot file of an identified robot, without deviations; `logs` says in words from what it was
+/// identified.
+#[must_use]
+pub fn written_robot(robot: &Robot, logs: &str) -> String {
+    let mut robot = robot.clone();
+    let geometry = one_line(&robot.source);
+    robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
+    robot.notes = Some(
+        "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
+         torques\n- what the log does not excite is what was supposed before"
+            .to_owned(),
+    );
+    robot_file::write(&robot)
 }
 
 /// The base parameters with their deviations: what the logs say, and what the file makes of it.

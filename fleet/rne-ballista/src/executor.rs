@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ballista::prelude::SessionConfigExt as _;
+use ballista_core::config::TaskSchedulingPolicy;
 use ballista_core::registry::BallistaFunctionRegistry;
 use ballista_core::utils::default_session_builder;
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
@@ -21,6 +22,7 @@ pub async fn executor(
     listen: SocketAddr,
     scheduler: SocketAddr,
     cores: usize,
+    policy: TaskSchedulingPolicy,
     work: Option<&Path>,
     robots: &Robots,
 ) -> Result<()> {
@@ -41,6 +43,7 @@ pub async fn executor(
         scheduler_host: scheduler.ip().to_string(),
         scheduler_port: scheduler.port(),
         vcores: cores,
+        task_scheduling_policy: policy,
         work_dir: work.map(|work| work.display().to_string()),
         executor_heartbeat_interval_seconds: 1,
         override_function_registry: Some(Arc::new(registry)),

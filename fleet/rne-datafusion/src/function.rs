@@ -118,7 +118,7 @@ pub(crate) struct DynamicsFunction {
 
 /// What the engine tells of a function; not part of what it is.
 #[derive(Debug)]
-struct About(Documentation);
+pub(crate) struct About(pub(crate) Documentation);
 
 impl PartialEq for About {
     fn eq(&self, _: &Self) -> bool {
