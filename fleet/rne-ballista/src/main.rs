@@ -63,6 +63,9 @@ struct Query {
     /// Parts that are computed beside each other
     #[arg(long, value_name = "N")]
     partitions: Option<usize>,
+    /// A setting of the engine
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
     #[command(flatten)]
     robots: Files,
 }
@@ -70,7 +73,14 @@ struct Query {
 impl Query {
     async fn run(&self) -> Result<()> {
         let robots = self.robots.read()?;
-        let session = Session::new(self.scheduler.as_deref(), self.partitions, robots).await?;
+        let mut settings = Vec::new();
+        for setting in &self.settings {
+            let Some((key, value)) = setting.split_once('=') else {
+                return plan_err!("`--set {setting}`: a setting is KEY=VALUE");
+            };
+            settings.push((key.to_owned(), value.to_owned()));
+        }
+        let session = Session::new(self.scheduler.as_deref(), self.partitions, &settings, robots).await?;
         for table in &self.tables {
             let Some((name, path)) = table.split_once('=') else {
                 return plan_err!("`--table {table}`: a table is NAME=PATH, `--table log=log.parquet`");
