@@ -13,11 +13,14 @@ use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::prelude::SessionConfig;
 use rne_datafusion::{Robots, aggregates, functions};
 
+/// Seconds for which an executor waits for its scheduler.
+const PATIENCE: u16 = 60;
+
 /// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the
 /// stages of a query in a folder.
 ///
 /// # Errors
-/// When it cannot listen there, or no scheduler answers.
+/// When it cannot listen there, or no scheduler answers within a minute.
 pub async fn executor(
     listen: SocketAddr,
     scheduler: SocketAddr,
@@ -45,6 +48,7 @@ pub async fn executor(
         vcores: cores,
         task_scheduling_policy: policy,
         work_dir: work.map(|work| work.display().to_string()),
+        scheduler_connect_timeout_seconds: PATIENCE,
         executor_heartbeat_interval_seconds: 1,
         override_function_registry: Some(Arc::new(registry)),
         ..ExecutorProcessConfig::default()

@@ -65,9 +65,13 @@ fn start(arguments: &[&str]) -> Process {
 }
 
 impl Fleet {
-    fn new(work: &Path) -> Self {
+    fn new(work: &Path, like: Like) -> Self {
         let port = ports(5);
         let address = |offset: u16| format!("127.0.0.1:{}", port + offset);
+        let start = |arguments: &[&str]| {
+            let push = ["--push"].into_iter().filter(|_| like == Like::Sent);
+            start(&arguments.iter().copied().chain(push).collect::<Vec<_>>())
+        };
         let scheduler = start(&["scheduler", "--listen", &address(0), "--lost-after", "12"]);
         let executors = [1, 3].map(|offset| {
             let work = work.join(offset.to_string());
@@ -86,20 +90,22 @@ impl Fleet {
     }
 
     /// A session, once all processes answer.
-    async fn session(&self, log: &Path) -> Result<Session> {
+    async fn session(&self, log: &Path, like: Like) -> Result<Session> {
         for address in [&self.scheduler].into_iter().chain(&self.addresses) {
-            let mut tries = 0..2400;
+            let mut tries = 0..LOOKS;
             while TcpStream::connect(address).is_err() {
                 assert!(tries.next().is_some(), "nobody answers at {address}");
                 tokio::time::sleep(Duration::from_millis(50)).await;
             }
         }
-        session(Some(&self.scheduler), log).await
+        session(Some(&self.scheduler), log, like).await
     }
 }
 
-async fn session(scheduler: Option<&str>, log: &Path) -> Result<Session> {
-    let session = Session::new(scheduler, Some(PARTS), &[], Robots::shipped()?).await?;
+async fn session(scheduler: Option<&str>, log: &Path, like: Like) -> Result<Session> {
+    let adaptive = ("ballista.planner.adaptive.enabled".to_owned(), "true".to_owned());
+    let settings: Vec<_> = Some(adaptive).into_iter().filter(|_| like == Like::Adaptive).collect();
+    let session = Session::new(scheduler, Some(PARTS), &settings, Robots::shipped()?).await?;
     session.table("log", log.to_str().expect("a name")).await?;
     Ok(session)
 }
@@ -216,9 +222,9 @@ async fn two_executors_give_what_one_process_gives() -> Result<()> {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log");
     write_log(&log).await?;
-    let here = session(None, &log).await?;
-    let fleet = Fleet::new(&folder.path().join("work"));
-    let there = fleet.session(&log).await?;
+    let here = session(None, &log, Like::Ours).await?;
+    let fleet = Fleet::new(&folder.path().join("work"), Like::Ours);
+    let there = fleet.session(&log, Like::Ours).await?;
     let (found, expected) = (all(&there, &rows()).await?, all(&here, &rows()).await?);
     assert_eq!(expected.num_rows(), FILES * STATES / 40);
     assert_eq!(found, expected);
@@ -241,18 +247,41 @@ enum Loss {
 
 #[tokio::test(flavor = "multi_thread")]
 async fn an_executor_that_dies_in_the_first_stage_costs_time_and_no_rows() -> Result<()> {
-    an_executor_dies(Loss::FirstStage).await
+    an_executor_dies(Loss::FirstStage, Like::Ours).await
 }
 
 #[tokio::test(flavor = "multi_thread")]
 async fn an_executor_that_dies_after_a_shuffle_costs_time_and_no_rows() -> Result<()> {
-    an_executor_dies(Loss::AfterAShuffle).await
+    an_executor_dies(Loss::AfterAShuffle, Like::Ours).await
 }
 
-/// Looks whether a query has ended, at most; each time some time passes.
-const LOOKS: usize = 2400;
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "Ballista 55.0 waits for ever: docs/fleet.md"]
+async fn the_adaptive_planner_bears_an_executor_that_dies_after_a_shuffle() -> Result<()> {
+    an_executor_dies(Loss::AfterAShuffle, Like::Adaptive).await
+}
 
-async fn an_executor_dies(loss: Loss) -> Result<()> {
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "Ballista 55.0 may wait for ever: docs/fleet.md"]
+async fn tasks_that_are_sent_bear_an_executor_that_dies_after_a_shuffle() -> Result<()> {
+    an_executor_dies(Loss::AfterAShuffle, Like::Sent).await
+}
+
+/// How queries are planned, and how tasks come to executors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Like {
+    /// As `rne-fleet` does it.
+    Ours,
+    /// Planned anew after each stage.
+    Adaptive,
+    /// Tasks are sent to executors.
+    Sent,
+}
+
+/// Looks whether a process answers or a query has ended, at most; some time passes between them.
+const LOOKS: usize = 6000;
+
+async fn an_executor_dies(loss: Loss, like: Like) -> Result<()> {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log");
     write_log(&log).await?;
@@ -260,9 +289,9 @@ async fn an_executor_dies(loss: Loss) -> Result<()> {
         Loss::FirstStage => sums(),
         Loss::AfterAShuffle => late_sums(),
     };
-    let expected = all(&session(None, &log).await?, &sql).await?;
-    let mut fleet = Fleet::new(&folder.path().join("work"));
-    let there = fleet.session(&log).await?;
+    let expected = all(&session(None, &log, Like::Ours).await?, &sql).await?;
+    let mut fleet = Fleet::new(&folder.path().join("work"), like);
+    let there = fleet.session(&log, like).await?;
     let query = tokio::spawn(async move { all(&there, &sql).await });
     let killed = wait_for(&fleet.work, loss, &query).await;
     drop(fleet.executors.remove(0));
