@@ -108,7 +108,8 @@ impl Fit {
     }
 
     /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
-    /// of freedom less than there are stretches of time; of rows without an order, with the rows that the unknowns leave.
+    /// of freedom less than there are stretches of time; of rows without an order, with the rows that are
+    /// more than unknowns.
     #[must_use]
     pub fn half_interval(&self, unknown: usize) -> f64 {
         student(self.freedom) * self.deviation(unknown)

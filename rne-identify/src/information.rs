@@ -230,7 +230,9 @@ impl Information {
         if self.is_unordered() {
             let rest = self.stretches.drain(self.stretches.len().min(1)..).collect::<Vec<_>>();
             if let Some(total) = self.stretches.first_mut() {
-                rest.iter().for_each(|stretch| add(total, stretch));
+                for stretch in &rest {
+                    add(total, stretch);
+                }
             }
         }
         while self.stretches.len() > STRETCHES {

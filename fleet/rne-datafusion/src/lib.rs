@@ -17,9 +17,9 @@
 //! # }
 //! ```
 //!
-//! Each argument is a list per state, or a column per joint: columns are read as they are, and fastest. What is null in
-//! an argument makes the result of that state null; the aggregate `identification` leaves such a state out. Units, signs and frames are those of
-//! [`rne`](https://docs.rs/rne).
+//! Each argument is a list per state, or a column per joint: columns are read as they are. What is null in
+//! an argument makes the result of that state null; the aggregate `identification` leaves such a state out. Units,
+//! signs and frames are those of [`rne`](https://docs.rs/rne).
 
 mod argument;
 mod function;

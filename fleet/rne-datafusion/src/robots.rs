@@ -30,8 +30,8 @@ pub(crate) struct Held {
 }
 
 impl Held {
-    /// What identification asks of its rows: links and friction, and rotors where the file has any; row by row, for rows
-    /// of a table have no time to filter over. It is found once, when it is asked for.
+    /// What identification asks of its rows: links and friction, and rotors where the file has any; row by row, for
+    /// those of a table have no time to filter over. It is found once, when it is asked for.
     pub(crate) fn structure(&self) -> Arc<Structure> {
         let found = self.structure.get_or_init(|| {
             let mut options = Options::default();

@@ -272,8 +272,8 @@ async fn what_is_null_is_left_out_and_no_rows_are_null() -> Result<()> {
     context.register_table("log", Arc::new(table(&states, 2)))?;
     let whole = identified(&context, &format!("SELECT identification('{two}', q, qd, qdd, tau) FROM log")).await?;
     // the same rows, and some of which a list, a number or a column is null
-    let with_nulls = "(SELECT q, qd, qdd, tau, tau1, tau2 FROM log UNION ALL SELECT NULL, qd, qdd, tau, tau1, tau2 FROM \
-                      log UNION ALL SELECT q, [NULL, 0.5], qdd, tau, NULL, tau2 FROM log)";
+    let with_nulls = "(SELECT q, qd, qdd, tau, tau1, tau2 FROM log UNION ALL SELECT NULL, qd, qdd, tau, tau1, tau2 \
+                      FROM log UNION ALL SELECT q, [NULL, 0.5], qdd, tau, NULL, tau2 FROM log)";
     let lists = format!("SELECT identification('{two}', q, qd, qdd, tau) FROM {with_nulls}");
     same(&identified(&context, &lists).await?, &whole);
     let columns = format!("SELECT identification('{two}', q, qd, qdd, tau1, tau2) FROM {with_nulls}");

@@ -23,7 +23,7 @@ impl fmt::Display for WrongNumbers {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "{} numbers that are no rows of this robot: they are of another robot, of other options or of another version",
+            "{} numbers that are no rows of this robot: they are of another robot, other options or another version",
             self.found
         )
     }
