@@ -152,10 +152,10 @@ impl DynamicsFunction {
 
 /// The key of a robot out of the first argument.
 pub(crate) fn key<'a>(function: &str, robot: Option<&'a ScalarValue>) -> Result<&'a str> {
-    match robot.and_then(|robot| robot.try_as_str().flatten()) {
-        Some(key) => Ok(key),
-        None => plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'"),
-    }
+    let Some(key) = robot.and_then(|robot| robot.try_as_str().flatten()) else {
+        return plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'");
+    };
+    Ok(key)
 }
 
 /// The types of all arguments: a robot's name, and numbers.
