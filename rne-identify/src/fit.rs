@@ -33,6 +33,8 @@ pub struct Fit {
     pub stretches: usize,
     /// The triangle of all weighted rows, torque last.
     pub(crate) triangle: RFactor,
+    /// Degrees of freedom of the deviations.
+    freedom: usize,
 }
 
 impl Fit {
@@ -57,21 +59,19 @@ impl Fit {
         }
         let triangle = state.stacked(&total);
         let solution = solved(&triangle, state.count());
-        let covariance = state.covariance(&information.stretches, &triangle, &solution);
+        let (covariance, freedom) = if information.is_unordered() {
+            let left = information.rows().saturating_sub(solution.len() as u64);
+            (state.independent(&triangle), usize::try_from(left).unwrap_or(usize::MAX))
+        } else {
+            let stretches = &information.stretches;
+            (state.covariance(stretches, &triangle, &solution), stretches.len().saturating_sub(1))
+        };
         let condition = condition(&triangle, state.count(), &state.ridge());
         let State { noise, reversals, .. } = state;
         let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
         let delay = information.shift + left;
-        Self {
-            solution,
-            covariance,
-            noise,
-            delay,
-            reversals,
-            condition,
-            stretches: information.stretches.len(),
-            triangle,
-        }
+        let stretches = information.stretches.len();
+        Self { solution, covariance, noise, delay, reversals, condition, stretches, triangle, freedom }
     }
 
     /// What rows are weighted by in the next pass.
@@ -108,10 +108,11 @@ impl Fit {
     }
 
     /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
-    /// of freedom less than there are stretches of time.
+    /// of freedom less than there are stretches of time; of rows without an order, with the rows that are
+    /// more than unknowns.
     #[must_use]
     pub fn half_interval(&self, unknown: usize) -> f64 {
-        student(self.stretches.saturating_sub(1)) * self.deviation(unknown)
+        student(self.freedom) * self.deviation(unknown)
     }
 
     /// The deviation of an unknown.
@@ -131,7 +132,7 @@ const ACROSS: f64 = std::f64::consts::FRAC_2_SQRT_PI;
 ///
 /// M. Abramowitz, I. Stegun, Handbook of Mathematical Functions, 26.7.5.
 fn student(freedom: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss)] // at most 64 stretches
+    #[allow(clippy::cast_precision_loss)] // of many, z is left
     let n = freedom.max(1) as f64;
     let z: f64 = 1.959_964;
     let (z3, z5, z7) = (z.powi(3), z.powi(5), z.powi(7));
@@ -218,6 +219,13 @@ impl State<'_> {
             }
             self.reversals[joint] = best.0;
         }
+    }
+
+    /// The covariance of the unknowns where errors of rows do not depend on each other: (RᵀR)⁻¹, in units of the noise.
+    fn independent(&self, triangle: &RFactor) -> DMatrix<f64> {
+        let count = self.count();
+        inverse(triangle, count)
+            .map_or_else(|| DMatrix::from_element(count, count, f64::NAN), |inverse| &inverse * inverse.transpose())
     }
 
     /// The covariance of the unknowns by leaving out one stretch of time after the other: errors within a stretch may

@@ -127,11 +127,9 @@ pub fn identify<E>(
         found = one(Some(&found.2.weighting(&structure)))?;
     }
     let (information, scales, fit) = found;
-    let feasible = Feasible::of(&structure, &fit, &scales, pull);
-    let identified = robot_of(&structure, &fit, &feasible);
+    let OnePass { robot: identified, fit, feasible, bases, .. } = OnePass::of_fit(&structure, fit, &scales, pull);
     let mut prediction = Prediction::new(&identified, structure.options.cutoff);
     pass(&mut |motion| prediction.absorb(motion))?;
-    let bases = bases(&structure, &fit, &scales, &identified);
     let joints = joints(&structure, &fit, &feasible, &prediction.errors());
     // what the last pass found beyond what its rows were shifted by
     let delay = structure.options.delay.then(|| {
@@ -150,6 +148,43 @@ pub fn identify<E>(
         joints,
         delay,
     })
+}
+
+/// A robot of one pass over its rows, none of which counts less for being far off.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct OnePass {
+    /// The robot: the geometry that was given, links and motors that were identified.
+    pub robot: Robot,
+    /// What least squares say, without asking whether bodies can be so.
+    pub fit: Fit,
+    /// What bodies can be.
+    pub feasible: Feasible,
+    /// Every base parameter, base to tip.
+    pub bases: Vec<BaseReport>,
+    /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at each joint; without
+    /// friction none.
+    pub friction: Vec<[(f64, f64); FRICTION]>,
+    /// Of each joint's efforts, root mean square, N m or N.
+    pub efforts: Vec<f64>,
+}
+
+impl OnePass {
+    /// Of what was gathered. `pull` is γ of [`Feasible`].
+    #[must_use]
+    pub fn new(structure: &Structure, information: &Information, pull: f64) -> Self {
+        let scales = scales(structure, information);
+        Self::of_fit(structure, Fit::of(structure, information, &scales), &scales, pull)
+    }
+
+    fn of_fit(structure: &Structure, fit: Fit, scales: &Scales, pull: f64) -> Self {
+        let feasible = Feasible::of(structure, &fit, scales, pull);
+        let robot = robot_of(structure, &fit, &feasible);
+        let bases = bases(structure, &fit, scales, &robot);
+        let joints = if structure.options.friction { structure.dof() } else { 0 };
+        let friction = (0..joints).map(|joint| friction(structure, &fit, &feasible, joint)).collect();
+        Self { robot, bases, friction, efforts: scales.friction.clone(), fit, feasible }
+    }
 }
 
 /// How large unknowns are, where efforts are as large as in the logs.
@@ -181,24 +216,21 @@ fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Ve
     each.collect()
 }
 
+fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
+    let at = structure.parameters.rank() + FRICTION * joint;
+    let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
+    let both = |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
+    let [viscous, forward, backward] = feasible.friction[joint];
+    [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
+}
+
 fn joints(structure: &Structure, fit: &Fit, feasible: &Feasible, errors: &[JointError]) -> Vec<JointReport> {
-    let rank = structure.parameters.rank();
-    let each = errors.iter().enumerate().map(|(joint, error)| {
-        let friction = structure.options.friction.then(|| {
-            let at = rank + FRICTION * joint;
-            let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
-            let both =
-                |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
-            let [viscous, forward, backward] = feasible.friction[joint];
-            [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
-        });
-        JointReport {
-            noise: fit.noise[joint],
-            error: *error,
-            friction,
-            reversal: structure.options.friction.then(|| structure.reversals[fit.reversals[joint]]),
-            rotor: structure.options.rotors.then(|| feasible.rotors[joint]),
-        }
+    let each = errors.iter().enumerate().map(|(joint, error)| JointReport {
+        noise: fit.noise[joint],
+        error: *error,
+        friction: structure.options.friction.then(|| friction(structure, fit, feasible, joint)),
+        reversal: structure.options.friction.then(|| structure.reversals[fit.reversals[joint]]),
+        rotor: structure.options.rotors.then(|| feasible.rotors[joint]),
     });
     each.collect()
 }

@@ -1,5 +1,7 @@
 //! What logs say of the unknowns: triangles of the weighted rows, in memory that does not grow with the logs.
 
+mod numbers;
+
 use std::fmt;
 
 use nalgebra::{DMatrix, DVector};
@@ -12,6 +14,8 @@ use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
 
+pub use numbers::WrongNumbers;
+
 /// States that are computed at once.
 const WINDOW: usize = 2048;
 
@@ -21,6 +25,9 @@ const STRETCHES: usize = 64;
 /// A stretch lasts so many widths of the filter at least; without filter it has so many states.
 const LENGTH: f64 = 20.0;
 const STATES_UNFILTERED: u64 = 64;
+
+/// The length of the one stretch of rows that have no order.
+const UNORDERED: u64 = u64::MAX;
 
 /// A row that is off by more deviations than that counts less: Huber's function.
 const HUBER: f64 = 2.5;
@@ -125,6 +132,19 @@ impl Information {
         Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0 }
     }
 
+    /// Of no rows, and of rows that have no order, as those of a table: no stretches are kept apart, so that memory is
+    /// one triangle a joint, and what is found depends on the order of rows and of merging by rounding alone.
+    #[must_use]
+    pub fn unordered(structure: &Structure) -> Self {
+        Self { length: UNORDERED, ..Self::new(structure) }
+    }
+
+    /// Whether its rows have no order: deviations suppose then that errors of rows are independent.
+    #[must_use]
+    pub fn is_unordered(&self) -> bool {
+        self.length == UNORDERED
+    }
+
     /// How many states it has read.
     #[must_use]
     pub fn states(&self) -> u64 {
@@ -209,6 +229,14 @@ impl Information {
     }
 
     fn compress(&mut self) {
+        if self.is_unordered() {
+            let rest = self.stretches.drain(self.stretches.len().min(1)..).collect::<Vec<_>>();
+            if let Some(total) = self.stretches.first_mut() {
+                for stretch in &rest {
+                    add(total, stretch);
+                }
+            }
+        }
         while self.stretches.len() > STRETCHES {
             self.length *= 2;
             let mut merged: Vec<Stretch> = Vec::with_capacity(self.stretches.len().div_ceil(2));

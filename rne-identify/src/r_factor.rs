@@ -29,6 +29,27 @@ impl RFactor {
         Self { triangle: DMatrix::zeros(columns, columns), rows: 0, weight: 0.0 }
     }
 
+    /// Of a triangle, row by row from the diagonal on; `None` when they are not as many as so many columns have.
+    pub(crate) fn from_upper(columns: usize, rows: u64, weight: f64, upper: &[f64]) -> Option<Self> {
+        if upper.len() != columns * (columns + 1) / 2 {
+            return None;
+        }
+        let mut numbers = upper.iter().copied();
+        let mut triangle = DMatrix::zeros(columns, columns);
+        for row in 0..columns {
+            for column in row..columns {
+                triangle[(row, column)] = numbers.next()?;
+            }
+        }
+        Some(Self { triangle, rows, weight })
+    }
+
+    /// The triangle, row by row from the diagonal on.
+    pub(crate) fn upper(&self) -> impl Iterator<Item = f64> {
+        let columns = self.columns();
+        (0..columns).flat_map(move |row| (row..columns).map(move |column| self.triangle[(row, column)]))
+    }
+
     /// How many numbers a row has.
     #[must_use]
     pub fn columns(&self) -> usize {

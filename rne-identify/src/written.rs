@@ -13,19 +13,10 @@ const NOT_EXCITED: &str = "- joint not excited: ";
 /// The text of the robot file; `logs` says in words from what it was identified.
 #[must_use]
 pub fn written(identification: &Identification, logs: &str) -> String {
-    let mut robot = identification.robot.clone();
-    let geometry = one_line(&robot.source);
-    robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
-    let mut notes =
-        "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
-         torques\n- what the log does not excite is what was supposed before"
-            .to_owned();
-    for (joint, report) in robot.joints.iter().zip(&identification.joints) {
-        if !report.is_excited() {
-            let _ = write!(notes, "\n{NOT_EXCITED}{}", one_line(&joint.name));
-        }
-    }
-    robot.notes = Some(notes);
+    let unknown = identification.joints.iter().zip(&identification.robot.joints);
+    let unknown = unknown.filter(|(report, _)| !report.is_excited());
+    let unknown: String = unknown.map(|(_, joint)| format!("\n{NOT_EXCITED}{}", one_line(&joint.name))).collect();
+    let robot = described(&identification.robot, logs, &unknown);
     let mut text = head(identification);
     let mut joint: usize = 0;
     for line in robot_file::write(&robot).lines() {
@@ -55,6 +46,25 @@ pub fn not_excited(robot: &Robot) -> Vec<bool> {
     let notes = robot.notes.as_deref().unwrap_or_default();
     let named: Vec<&str> = notes.lines().filter_map(|line| line.trim().strip_prefix(NOT_EXCITED)).collect();
     robot.joints.iter().map(|joint| named.iter().any(|name| *name == one_line(&joint.name))).collect()
+}
+
+/// The text of the robot file of an identified robot, without deviations; `logs` says in words from what it was
+/// identified.
+#[must_use]
+pub fn written_robot(robot: &Robot, logs: &str) -> String {
+    robot_file::write(&described(robot, logs, ""))
+}
+
+/// A robot with its source and notes, the latter with what is added.
+fn described(robot: &Robot, logs: &str, added: &str) -> Robot {
+    let mut robot = robot.clone();
+    let geometry = one_line(&robot.source);
+    robot.source = format!("identified by rne from {}; geometry: {geometry}", one_line(logs));
+    robot.notes = Some(format!(
+        "- identified: torques are those of the log, single numbers of a link are one choice among many with the same \
+         torques\n- what the log does not excite is what was supposed before{added}"
+    ));
+    robot
 }
 
 /// The base parameters with their deviations: what the logs say, and what the file makes of it.

@@ -104,7 +104,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
-            Self::Fleet(task) => ("fleet", false, task.run()),
+            Self::Fleet(task) => ("fleet", task.changed, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),

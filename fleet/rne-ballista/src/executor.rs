@@ -5,6 +5,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ballista::prelude::SessionConfigExt as _;
+use ballista_core::config::TaskSchedulingPolicy;
 use ballista_core::registry::BallistaFunctionRegistry;
 use ballista_core::utils::default_session_builder;
 use ballista_executor::executor_process::{ExecutorProcessConfig, start_executor_process};
@@ -12,15 +13,19 @@ use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::prelude::SessionConfig;
 use rne_datafusion::{Robots, aggregates, functions};
 
+/// Seconds for which an executor waits for its scheduler.
+const PATIENCE: u16 = 60;
+
 /// Does the work of a scheduler until it is stopped: so many parts beside each other, with what passes between the
 /// stages of a query in a folder.
 ///
 /// # Errors
-/// When it cannot listen there, or no scheduler answers.
+/// When it cannot listen there, or no scheduler answers within a minute.
 pub async fn executor(
     listen: SocketAddr,
     scheduler: SocketAddr,
     cores: usize,
+    policy: TaskSchedulingPolicy,
     work: Option<&Path>,
     robots: &Robots,
 ) -> Result<()> {
@@ -41,7 +46,9 @@ pub async fn executor(
         scheduler_host: scheduler.ip().to_string(),
         scheduler_port: scheduler.port(),
         vcores: cores,
+        task_scheduling_policy: policy,
         work_dir: work.map(|work| work.display().to_string()),
+        scheduler_connect_timeout_seconds: PATIENCE,
         executor_heartbeat_interval_seconds: 1,
         override_function_registry: Some(Arc::new(registry)),
         ..ExecutorProcessConfig::default()

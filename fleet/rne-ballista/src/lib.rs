@@ -5,6 +5,10 @@ mod executor;
 mod scheduler;
 mod session;
 
+/// Whether executors ask for tasks or are sent them. With what is sent, Ballista 55.0 loses slots of executors when
+/// another one dies after a shuffle: `docs/fleet.md`.
+pub use ballista_core::config::TaskSchedulingPolicy;
+
 pub use crate::executor::executor;
 pub use crate::scheduler::scheduler;
 pub use crate::session::Session;

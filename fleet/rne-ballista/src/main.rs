@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand};
 use datafusion::arrow::util::pretty::pretty_format_batches;
 use datafusion::common::{Result, plan_err};
 use futures::StreamExt as _;
-use rne_ballista::{Session, executor, scheduler};
+use rne_ballista::{Session, TaskSchedulingPolicy, executor, scheduler};
 use rne_datafusion::Robots;
 
 /// Dynamics of robot arms in SQL, on one machine or on several.
@@ -63,6 +63,9 @@ struct Query {
     /// Parts that are computed beside each other
     #[arg(long, value_name = "N")]
     partitions: Option<usize>,
+    /// A setting of the engine
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    settings: Vec<String>,
     #[command(flatten)]
     robots: Files,
 }
@@ -70,7 +73,14 @@ struct Query {
 impl Query {
     async fn run(&self) -> Result<()> {
         let robots = self.robots.read()?;
-        let session = Session::new(self.scheduler.as_deref(), self.partitions, robots).await?;
+        let mut settings = Vec::new();
+        for setting in &self.settings {
+            let Some((key, value)) = setting.split_once('=') else {
+                return plan_err!("`--set {setting}`: a setting is KEY=VALUE");
+            };
+            settings.push((key.to_owned(), value.to_owned()));
+        }
+        let session = Session::new(self.scheduler.as_deref(), self.partitions, &settings, robots).await?;
         for table in &self.tables {
             let Some((name, path)) = table.split_once('=') else {
                 return plan_err!("`--table {table}`: a table is NAME=PATH, `--table log=log.parquet`");
@@ -89,6 +99,20 @@ impl Query {
     }
 }
 
+/// How tasks come to executors.
+#[derive(Args, Clone, Copy)]
+struct Policy {
+    /// Tasks are sent to executors, which do not ask; for all processes of a fleet or for none
+    #[arg(long)]
+    push: bool,
+}
+
+impl Policy {
+    fn of_tasks(self) -> TaskSchedulingPolicy {
+        if self.push { TaskSchedulingPolicy::PushStaged } else { TaskSchedulingPolicy::PullStaged }
+    }
+}
+
 #[derive(Args)]
 struct Scheduler {
     /// Where it listens
@@ -97,6 +121,8 @@ struct Scheduler {
     /// Seconds without a sign of life after which an executor is lost
     #[arg(long, value_name = "SECONDS", default_value_t = 30)]
     lost_after: u64,
+    #[command(flatten)]
+    policy: Policy,
     #[command(flatten)]
     robots: Files,
 }
@@ -116,6 +142,8 @@ struct Executor {
     #[arg(long, value_name = "DIR")]
     work: Option<PathBuf>,
     #[command(flatten)]
+    policy: Policy,
+    #[command(flatten)]
     robots: Files,
 }
 
@@ -124,12 +152,12 @@ async fn main() -> ExitCode {
     env_logger::Builder::from_env(env_logger::Env::default().default_filter_or("warn")).init();
     let said = match Line::parse().command {
         Command::Sql(query) => query.run().await,
-        Command::Scheduler(Scheduler { listen, lost_after, robots }) => match robots.read() {
-            Ok(robots) => scheduler(listen, Duration::from_secs(lost_after), robots).await,
+        Command::Scheduler(Scheduler { listen, lost_after, policy, robots }) => match robots.read() {
+            Ok(robots) => scheduler(listen, Duration::from_secs(lost_after), policy.of_tasks(), robots).await,
             Err(error) => Err(error),
         },
-        Command::Executor(Executor { listen, scheduler, cores, work, robots }) => match robots.read() {
-            Ok(robots) => executor(listen, scheduler, cores, work.as_deref(), &robots).await,
+        Command::Executor(Executor { listen, scheduler, cores, work, policy, robots }) => match robots.read() {
+            Ok(robots) => executor(listen, scheduler, cores, policy.of_tasks(), work.as_deref(), &robots).await,
             Err(error) => Err(error),
         },
         Command::Robots(files) => files.read().map(|robots| robots.keys().for_each(|key| println!("{key}"))),

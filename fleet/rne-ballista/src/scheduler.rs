@@ -4,6 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::time::Duration;
 
+use ballista_core::config::TaskSchedulingPolicy;
 use ballista_core::utils::default_session_builder;
 use ballista_scheduler::cluster::BallistaCluster;
 use ballista_scheduler::config::SchedulerConfig;
@@ -12,16 +13,23 @@ use datafusion::common::{Result, exec_datafusion_err};
 use datafusion::execution::FunctionRegistry as _;
 use rne_datafusion::{Robots, aggregates, functions};
 
-/// Gives work to executors until it is stopped; one without a sign of life for so long is lost.
+/// Gives work to executors until it is stopped; one without a sign of life for so long is lost. Executors have the same
+/// policy; busy ones give a sign of life every five seconds when they pull.
 ///
 /// # Errors
 /// When it cannot listen there.
-pub async fn scheduler(listen: SocketAddr, lost_after: Duration, robots: Robots) -> Result<()> {
+pub async fn scheduler(
+    listen: SocketAddr,
+    lost_after: Duration,
+    policy: TaskSchedulingPolicy,
+    robots: Robots,
+) -> Result<()> {
     let lost_after = lost_after.as_secs().max(1);
     let config = SchedulerConfig {
         bind_host: listen.ip().to_string(),
         external_host: listen.ip().to_string(),
         bind_port: listen.port(),
+        scheduling_policy: policy,
         executor_timeout_seconds: lost_after,
         expire_dead_executor_interval_seconds: lost_after.div_ceil(5).max(1),
         // functions travel by name: a session of this process has them too

@@ -1,7 +1,7 @@
 //! Queries, here or on a fleet.
 
 use ballista::prelude::{SessionConfigExt as _, SessionContextExt as _};
-use datafusion::common::{Result, exec_datafusion_err};
+use datafusion::common::{DataFusionError, Result, exec_datafusion_err};
 use datafusion::execution::SessionStateBuilder;
 use datafusion::prelude::{DataFrame, ParquetReadOptions, SessionConfig, SessionContext};
 use rne_datafusion::{Robots, register};
@@ -14,19 +14,29 @@ pub struct Session {
 
 impl Session {
     /// A session on the fleet of a scheduler (`127.0.0.1:50050`), or without one in this process; `partitions` are
-    /// computed beside each other.
+    /// computed beside each other. `settings` are keys and values of the engine.
     ///
     /// # Errors
-    /// When no scheduler answers there.
-    pub async fn new(scheduler: Option<&str>, partitions: Option<usize>, robots: Robots) -> Result<Self> {
-        let partitioned = |config: SessionConfig| match partitions {
-            Some(partitions) => config.with_target_partitions(partitions),
-            None => config,
+    /// When no scheduler answers there, or there is no such setting.
+    pub async fn new(
+        scheduler: Option<&str>,
+        partitions: Option<usize>,
+        settings: &[(String, String)],
+        robots: Robots,
+    ) -> Result<Self> {
+        let configured = |mut config: SessionConfig| {
+            if let Some(partitions) = partitions {
+                config = config.with_target_partitions(partitions);
+            }
+            settings.iter().try_for_each(|(key, value)| config.options_mut().set(key, value))?;
+            Ok::<_, DataFusionError>(config)
         };
         let context = match scheduler {
-            None => SessionContext::new_with_config(partitioned(SessionConfig::new())),
+            None => SessionContext::new_with_config(configured(SessionConfig::new())?),
             Some(scheduler) => {
-                let config = partitioned(SessionConfig::new_with_ballista());
+                // the adaptive planner of Ballista 55.0 waits for ever for an executor that died after a shuffle
+                let config = SessionConfig::new_with_ballista().with_ballista_adaptive_query_planner(false);
+                let config = configured(config)?;
                 let state = SessionStateBuilder::new().with_config(config).with_default_features().build();
                 let unreached = |error| exec_datafusion_err!("no scheduler answers at {scheduler}: {error}");
                 SessionContext::remote_with_state(&format!("df://{scheduler}"), state).await.map_err(unreached)?

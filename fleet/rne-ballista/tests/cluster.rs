@@ -55,15 +55,24 @@ fn ports(count: u16) -> u16 {
 
 fn start(arguments: &[&str]) -> Process {
     let mut command = Command::new(env!("CARGO_BIN_EXE_rne-fleet"));
-    let command = command.args(arguments).stdout(Stdio::null()).stderr(Stdio::null());
+    // what they say, for who looks
+    let said = std::env::var_os("RNE_FLEET_LOG").map(|folder| {
+        let name = format!("{}-{}.log", arguments[0], arguments[2].replace(':', "-"));
+        std::fs::File::create(Path::new(&folder).join(name)).expect("the folder is there")
+    });
+    let command = command.args(arguments).stdout(Stdio::null()).stderr(said.map_or_else(Stdio::null, Stdio::from));
     Process(command.spawn().expect("it is built"))
 }
 
 impl Fleet {
-    fn new(work: &Path) -> Self {
+    fn new(work: &Path, like: Like) -> Self {
         let port = ports(5);
         let address = |offset: u16| format!("127.0.0.1:{}", port + offset);
-        let scheduler = start(&["scheduler", "--listen", &address(0), "--lost-after", "5"]);
+        let start = |arguments: &[&str]| {
+            let push = ["--push"].into_iter().filter(|_| like == Like::Sent);
+            start(&arguments.iter().copied().chain(push).collect::<Vec<_>>())
+        };
+        let scheduler = start(&["scheduler", "--listen", &address(0), "--lost-after", "12"]);
         let executors = [1, 3].map(|offset| {
             let work = work.join(offset.to_string());
             std::fs::create_dir_all(&work).expect("a folder");
@@ -81,20 +90,22 @@ impl Fleet {
     }
 
     /// A session, once all processes answer.
-    async fn session(&self, log: &Path) -> Result<Session> {
+    async fn session(&self, log: &Path, like: Like) -> Result<Session> {
         for address in [&self.scheduler].into_iter().chain(&self.addresses) {
-            let mut tries = 0..2400;
+            let mut tries = 0..LOOKS;
             while TcpStream::connect(address).is_err() {
                 assert!(tries.next().is_some(), "nobody answers at {address}");
                 tokio::time::sleep(Duration::from_millis(50)).await;
             }
         }
-        session(Some(&self.scheduler), log).await
+        session(Some(&self.scheduler), log, like).await
     }
 }
 
-async fn session(scheduler: Option<&str>, log: &Path) -> Result<Session> {
-    let session = Session::new(scheduler, Some(PARTS), Robots::shipped()?).await?;
+async fn session(scheduler: Option<&str>, log: &Path, like: Like) -> Result<Session> {
+    let adaptive = ("ballista.planner.adaptive.enabled".to_owned(), "true".to_owned());
+    let settings: Vec<_> = Some(adaptive).into_iter().filter(|_| like == Like::Adaptive).collect();
+    let session = Session::new(scheduler, Some(PARTS), &settings, Robots::shipped()?).await?;
     session.table("log", log.to_str().expect("a name")).await?;
     Ok(session)
 }
@@ -119,9 +130,14 @@ async fn write_log(folder: &Path) -> Result<()> {
     Ok(())
 }
 
-fn call() -> String {
+/// The columns of positions, rates and accelerations.
+fn columns() -> String {
     let of = |name: &str| (1..=6).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>().join(", ");
-    format!("inverse_dynamics({{puma560}}, {}, {}, {})", of("q"), of("qd"), of("qdd"))
+    ["q", "qd", "qdd"].map(of).join(", ")
+}
+
+fn call() -> String {
+    format!("inverse_dynamics({{puma560}}, {})", columns())
 }
 
 async fn all(session: &Session, sql: &str) -> Result<RecordBatch> {
@@ -142,6 +158,52 @@ fn sums() -> String {
     )
 }
 
+/// The same, with the torques behind a shuffle: a state is a group.
+fn late_sums() -> String {
+    let latest = columns().split(", ").map(|column| format!("max({column})")).collect::<Vec<_>>().join(", ");
+    format!(
+        "SELECT i % 7 AS part, count(*) AS states, count(DISTINCT i) AS different, sum(tau[2]) AS sum \
+         FROM (SELECT i, inverse_dynamics({{puma560}}, {latest}) AS tau FROM log GROUP BY i) \
+         GROUP BY i % 7 ORDER BY part"
+    )
+}
+
+/// Links and friction of some of the states, of two groups, from torques with a noise that is none.
+fn identification() -> String {
+    let noisy = (1..=6).map(|joint| format!("tau[{joint}] + 0.1 * sin(1.7 * i * i + {joint})"));
+    let noisy = noisy.collect::<Vec<_>>().join(", ");
+    format!(
+        "SELECT i % 3 AS part, identification({{puma560}}, {}, make_array({noisy})) AS found FROM (SELECT *, {} AS tau \
+         FROM log WHERE i % 40 < 2) GROUP BY i % 3 ORDER BY part",
+        columns(),
+        call()
+    )
+}
+
+/// As many states, and values and deviations to 1e-10.
+fn same_identification(found: &RecordBatch, expected: &RecordBatch) {
+    assert_eq!((found.num_rows(), found.column(0)), (3, expected.column(0)));
+    let column = |batch: &RecordBatch, name: &str| {
+        batch.column(1).as_struct().column_by_name(name).expect("it is there").clone()
+    };
+    assert_eq!(&column(found, "states"), &column(expected, "states"));
+    for name in ["value", "deviation"] {
+        for row in 0..expected.num_rows() {
+            let numbers = |batch: &RecordBatch| {
+                let parameters = column(batch, "parameters").as_list::<i32>().value(row);
+                let numbers = parameters.as_struct().column_by_name(name).expect("it is there").clone();
+                numbers.as_primitive::<Float64Type>().values().to_vec()
+            };
+            let (found, expected) = (numbers(found), numbers(expected));
+            let largest = expected.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            assert_eq!(found.len(), expected.len());
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() <= 1e-10 * largest, "{name}: {found}, {expected}");
+            }
+        }
+    }
+}
+
 /// Rows exactly; sums to the order of summing, and their counts exactly.
 fn same_sums(found: &RecordBatch, expected: &RecordBatch) {
     let show = |batch: &RecordBatch| pretty_format_batches(std::slice::from_ref(batch)).expect("a table").to_string();
@@ -160,13 +222,14 @@ async fn two_executors_give_what_one_process_gives() -> Result<()> {
     let folder = tempfile::tempdir().expect("a folder");
     let log = folder.path().join("log");
     write_log(&log).await?;
-    let here = session(None, &log).await?;
-    let fleet = Fleet::new(&folder.path().join("work"));
-    let there = fleet.session(&log).await?;
+    let here = session(None, &log, Like::Ours).await?;
+    let fleet = Fleet::new(&folder.path().join("work"), Like::Ours);
+    let there = fleet.session(&log, Like::Ours).await?;
     let (found, expected) = (all(&there, &rows()).await?, all(&here, &rows()).await?);
     assert_eq!(expected.num_rows(), FILES * STATES / 40);
     assert_eq!(found, expected);
     same_sums(&all(&there, &sums()).await?, &all(&here, &sums()).await?);
+    same_identification(&all(&there, &identification()).await?, &all(&here, &identification()).await?);
     // a robot that the executors do not hold is refused, and said to the client
     let said = all(&there, "SELECT gravity_torques('puma560@0000000000000000', q1, q2, q3, q4, q5, q6) FROM log").await;
     assert!(said.expect_err("it is refused").to_string().contains("is not the puma560"));
@@ -183,32 +246,75 @@ enum Loss {
 }
 
 #[tokio::test(flavor = "multi_thread")]
-#[ignore = "the query waits for ever for the executor that is lost: docs/fleet.md"]
-async fn an_executor_that_dies_costs_time_and_no_rows() -> Result<()> {
-    for loss in [Loss::FirstStage, Loss::AfterAShuffle] {
-        let folder = tempfile::tempdir().expect("a folder");
-        let log = folder.path().join("log");
-        write_log(&log).await?;
-        let expected = all(&session(None, &log).await?, &sums()).await?;
-        let mut fleet = Fleet::new(&folder.path().join("work"));
-        let there = fleet.session(&log).await?;
-        let query = tokio::spawn(async move { all(&there, &sums()).await });
-        let killed = wait_for(&fleet.work, loss, &query).await;
-        drop(fleet.executors.remove(0));
-        let found = query.await.expect("no panic")?;
-        assert!(killed, "{loss:?}: the query ended before");
-        same_sums(&found, &expected);
+async fn an_executor_that_dies_in_the_first_stage_costs_time_and_no_rows() -> Result<()> {
+    an_executor_dies(Loss::FirstStage, Like::Ours).await
+}
+
+#[tokio::test(flavor = "multi_thread")]
+async fn an_executor_that_dies_after_a_shuffle_costs_time_and_no_rows() -> Result<()> {
+    an_executor_dies(Loss::AfterAShuffle, Like::Ours).await
+}
+
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "Ballista 55.0 waits for ever: docs/fleet.md"]
+async fn the_adaptive_planner_bears_an_executor_that_dies_after_a_shuffle() -> Result<()> {
+    an_executor_dies(Loss::AfterAShuffle, Like::Adaptive).await
+}
+
+#[tokio::test(flavor = "multi_thread")]
+#[ignore = "Ballista 55.0 may wait for ever: docs/fleet.md"]
+async fn tasks_that_are_sent_bear_an_executor_that_dies_after_a_shuffle() -> Result<()> {
+    an_executor_dies(Loss::AfterAShuffle, Like::Sent).await
+}
+
+/// How queries are planned, and how tasks come to executors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Like {
+    /// As `rne-fleet` does it.
+    Ours,
+    /// Planned anew after each stage.
+    Adaptive,
+    /// Tasks are sent to executors.
+    Sent,
+}
+
+/// Looks whether a process answers or a query has ended, at most; some time passes between them.
+const LOOKS: usize = 6000;
+
+async fn an_executor_dies(loss: Loss, like: Like) -> Result<()> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let log = folder.path().join("log");
+    write_log(&log).await?;
+    let sql = match loss {
+        Loss::FirstStage => sums(),
+        Loss::AfterAShuffle => late_sums(),
+    };
+    let expected = all(&session(None, &log, Like::Ours).await?, &sql).await?;
+    let mut fleet = Fleet::new(&folder.path().join("work"), like);
+    let there = fleet.session(&log, like).await?;
+    let query = tokio::spawn(async move { all(&there, &sql).await });
+    let killed = wait_for(&fleet.work, loss, &query).await;
+    drop(fleet.executors.remove(0));
+    assert!(killed, "{loss:?}: the query ended before");
+    for _ in 0..LOOKS {
+        if query.is_finished() {
+            break;
+        }
+        tokio::time::sleep(Duration::from_millis(50)).await;
     }
+    assert!(query.is_finished(), "{loss:?}: the query waits without an end");
+    same_sums(&query.await.expect("no panic")?, &expected);
     Ok(())
 }
 
 /// Waits until the query is that far; false when it ended before.
 async fn wait_for<T>(work: &Path, loss: Loss, query: &tokio::task::JoinHandle<T>) -> bool {
     while !query.is_finished() {
-        let stages = stages(&work.join("1"));
+        let [of_lost, of_other] = ["1", "3"].map(|executor| stages(&work.join(executor)));
         let is_there = match loss {
-            Loss::FirstStage => !stages.is_empty(),
-            Loss::AfterAShuffle => stages.iter().any(|stage| *stage >= 2),
+            Loss::FirstStage => !of_lost.is_empty(),
+            // what it has of the first stage is wanted by the second
+            Loss::AfterAShuffle => !of_lost.is_empty() && of_lost.iter().chain(&of_other).any(|stage| *stage >= 2),
         };
         if is_there {
             return true;

@@ -183,13 +183,11 @@ fn gather<'a>(
 
 /// A column of numbers.
 pub(crate) fn of_column<'a>(array: &'a ArrayRef, place: &Place<'_>) -> Result<&'a Float64Array> {
-    match array.as_primitive_opt::<Float64Type>() {
-        Some(numbers) => Ok(numbers),
-        None => {
-            let Place { function, column, .. } = place;
-            exec_err!("{function}: column `{column}` is {}; Float64 is wanted", array.data_type())
-        }
-    }
+    let Some(numbers) = array.as_primitive_opt::<Float64Type>() else {
+        let Place { function, column, .. } = place;
+        return exec_err!("{function}: column `{column}` is {}; Float64 is wanted", array.data_type());
+    };
+    Ok(numbers)
 }
 
 /// The arguments of a function out of the columns of a batch, and the states of which some number is null.
@@ -203,7 +201,7 @@ pub(crate) fn all<'a>(
     robot: &str,
     joints: usize,
 ) -> Result<(Vec<Argument<'a>>, Option<NullBuffer>)> {
-    let types: Vec<&DataType> = arrays.iter().map(|array| array.data_type()).collect();
+    let types: Vec<&DataType> = arrays.iter().map(Array::data_type).collect();
     let (mut first, mut nulls) = (0, None);
     let mut arguments = Vec::with_capacity(names.len());
     for name in names {

@@ -92,14 +92,14 @@ impl Computation {
             Self::Of(function) => run(function),
             Self::Residual => {
                 let mut torques = run(Function::InverseDynamics)?;
-                if arm.robot().joints.iter().any(|joint| joint.motor.is_some()) {
-                    let motors = run(Function::ActuatorTorques)?;
-                    torques.iter_mut().zip(motors).for_each(|(torque, motor)| *torque += motor);
-                }
-                let Some(measured) = arguments.last() else { return internal_err!("residual: no torques") };
+                let [_, qd, qdd, measured] = arguments else { return internal_err!("residual: no torques") };
                 let joints = arm.dof();
                 for (at, torque) in torques.iter_mut().enumerate() {
-                    *torque = measured.at(at / joints, at % joints, joints) - *torque;
+                    let (state, joint) = (at / joints, &arm.robot().joints[at % joints]);
+                    let of = |argument: &Argument<'_>| argument.at(state, at % joints, joints);
+                    let rotor = joint.motor.map_or(0.0, |motor| motor.gear_ratio * motor.gear_ratio * motor.inertia);
+                    // rows have no order: friction is that of a speed
+                    *torque = of(measured) - (*torque + rotor * of(qdd) + joint.friction(of(qd)));
                 }
                 Ok(torques)
             }
@@ -118,7 +118,7 @@ pub(crate) struct DynamicsFunction {
 
 /// What the engine tells of a function; not part of what it is.
 #[derive(Debug)]
-struct About(Documentation);
+pub(crate) struct About(pub(crate) Documentation);
 
 impl PartialEq for About {
     fn eq(&self, _: &Self) -> bool {
@@ -152,10 +152,10 @@ impl DynamicsFunction {
 
 /// The key of a robot out of the first argument.
 pub(crate) fn key<'a>(function: &str, robot: Option<&'a ScalarValue>) -> Result<&'a str> {
-    match robot.and_then(|robot| robot.try_as_str().flatten()) {
-        Some(key) => Ok(key),
-        None => plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'"),
-    }
+    let Some(key) = robot.and_then(|robot| robot.try_as_str().flatten()) else {
+        return plan_err!("{function}: the first argument is the robot, a literal such as 'puma560@0123456789abcdef'");
+    };
+    Ok(key)
 }
 
 /// The types of all arguments: a robot's name, and numbers.

@@ -17,12 +17,13 @@
 //! # }
 //! ```
 //!
-//! Each argument is a list per state, or a column per joint: columns are read as they are, and fastest. What is null in
-//! an argument makes the result of that state null. Units, signs and frames are those of
-//! [`rne`](https://docs.rs/rne).
+//! Each argument is a list per state, or a column per joint: columns are read as they are. What is null in
+//! an argument makes the result of that state null; the aggregate `identification` leaves such a state out. Units,
+//! signs and frames are those of [`rne`](https://docs.rs/rne).
 
 mod argument;
 mod function;
+mod identification;
 mod result;
 mod robots;
 
@@ -30,6 +31,7 @@ use datafusion::logical_expr::{AggregateUDF, ScalarUDF};
 use datafusion::prelude::SessionContext;
 
 use crate::function::{Computation, DynamicsFunction};
+use crate::identification::IdentificationFunction;
 pub use crate::robots::Robots;
 
 /// Every scalar function, for those robots.
@@ -44,10 +46,13 @@ pub fn register(context: &SessionContext, robots: &Robots) {
     for function in functions(robots) {
         context.register_udf(function);
     }
+    for function in aggregates(robots) {
+        context.register_udaf(function);
+    }
 }
 
 /// Every aggregate, for those robots.
 #[must_use]
-pub fn aggregates(_: &Robots) -> Vec<AggregateUDF> {
-    Vec::new()
+pub fn aggregates(robots: &Robots) -> Vec<AggregateUDF> {
+    vec![AggregateUDF::new_from_impl(IdentificationFunction::new(robots.clone()))]
 }

@@ -26,9 +26,9 @@ pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: O
     if numbers.len() != states * outputs {
         return exec_err!("{} numbers are no {states} results of {outputs}", numbers.len());
     }
-    let numbers = Numbers { numbers, outputs, states };
+    let numbers = Numbers { values: numbers, outputs, states };
     match layout {
-        Layout::Number => Ok(Arc::new(Float64Array::new(numbers.numbers.into(), nulls))),
+        Layout::Number => Ok(Arc::new(Float64Array::new(numbers.values.into(), nulls))),
         Layout::Array(length, of) => {
             let inner = numbers.elements(of, &each(&[0], *length, of))?;
             Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*length), inner, nulls)?))
@@ -46,7 +46,7 @@ pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: O
 }
 
 struct Numbers {
-    numbers: Vec<f64>,
+    values: Vec<f64>,
     outputs: usize,
     states: usize,
 }
@@ -54,7 +54,7 @@ struct Numbers {
 impl Numbers {
     /// The elements that start at those outputs, of every state, state by state.
     fn elements(&self, layout: &Layout, starts: &[usize]) -> Result<ArrayRef> {
-        let Self { numbers, outputs, states } = self;
+        let Self { values: numbers, outputs, states } = self;
         let length = states * starts.len();
         match layout {
             Layout::Number if starts.iter().copied().eq(0..*outputs) => {

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use datafusion::common::{DataFusionError, Result, plan_err};
 use rne::compiled::CompiledArm;
+use rne_identify::{Options, Structure};
 use sha2::{Digest, Sha256};
 
 /// Hexadecimal digits of a content hash in a key.
@@ -25,6 +26,25 @@ pub struct Robots(Arc<BTreeMap<String, Held>>);
 pub(crate) struct Held {
     pub(crate) arm: CompiledArm,
     hash: String,
+    structure: OnceLock<Arc<Structure>>,
+}
+
+impl Held {
+    /// What identification asks of its rows: links and friction, and rotors where the file has any; row by row, for
+    /// those of a table have no time to filter over. It is found once, when it is asked for.
+    pub(crate) fn structure(&self) -> Arc<Structure> {
+        let found = self.structure.get_or_init(|| {
+            let mut options = Options::default();
+            let motors = self.arm.robot().joints.iter().filter_map(|joint| joint.motor);
+            options.rotors = motors.into_iter().any(|motor| motor.inertia > 0.0);
+            options.cutoff = None;
+            // rows know nothing of those before
+            options.displacements = Vec::new();
+            options.delay = false;
+            Arc::new(Structure::new(self.arm.robot(), options))
+        });
+        Arc::clone(found)
+    }
 }
 
 impl Robots {
@@ -77,7 +97,7 @@ impl Robots {
             hash
         });
         hash.truncate(DIGITS);
-        Arc::make_mut(&mut self.0).insert(name.to_owned(), Held { arm, hash });
+        Arc::make_mut(&mut self.0).insert(name.to_owned(), Held { arm, hash, structure: OnceLock::new() });
         self
     }
 

@@ -27,8 +27,23 @@ joints:
     motor: {inertia: 0.001, gear_ratio: 10, viscous: 0.02, coulomb: [0.0, 0.0]}
 ";
 
+/// A wheel whose hinge has Coulomb friction that changes its sign about a speed.
+const WHEEL: &str = "
+format: 1
+name: wheel
+source: own
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - type: revolute
+    dh: {theta: 0, d: 0, a: 0, alpha: 0}
+    link: {mass: 1.0}
+    motor: {inertia: 0, gear_ratio: 1, viscous: 0, coulomb: [2.0, -1.0], coulomb_width: 0.05}
+";
+
 fn robots() -> Robots {
-    Robots::shipped().and_then(|robots| robots.with_yaml(ROD)).expect("they are shipped")
+    let robots = Robots::shipped().and_then(|robots| robots.with_yaml(ROD));
+    robots.and_then(|robots| robots.with_yaml(WHEEL)).expect("they are shipped")
 }
 
 fn context() -> SessionContext {
@@ -150,6 +165,19 @@ async fn a_residual_is_what_the_model_and_its_motors_do_not_explain() -> Result<
     let call = format!("residual('{rod}', [{angle}], [{speed}], [{acceleration}], [{measured}])");
     let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
     assert!((found - (measured - model)).abs() < 1e-13, "{found}, by hand {}", measured - model);
+    Ok(())
+}
+
+/// Coulomb's friction changes its sign about the width of the file, as identification has it.
+#[tokio::test]
+async fn a_residual_has_the_friction_of_the_file() -> Result<()> {
+    let (context, name) = (context(), key("wheel"));
+    // 2 N m forward, 1 backward; at the width s is 0.7, and half of each counts
+    let s = 0.5_f64.sqrt();
+    let by_hand = 1.5 * s + 0.5 * s * s;
+    let call = format!("residual('{name}', [0.0], [0.05], [0.0], [0.0])");
+    let found = numbers(one(&context, &format!("SELECT {call}")).await?.column(0))[0];
+    assert!((found + by_hand).abs() < 1e-13, "{found}, by hand {}", -by_hand);
     Ok(())
 }
 

@@ -1,0 +1,282 @@
+//! Identification as an aggregate: `identification('puma560@…', q, qd, qdd, tau)`.
+
+use std::sync::Arc;
+
+use datafusion::arrow::array::{
+    Array, ArrayRef, AsArray, BooleanArray, Float64Array, Int64Array, ListArray, StringArray, StructArray,
+};
+use datafusion::arrow::buffer::OffsetBuffer;
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields, Float64Type};
+use datafusion::common::{Result, ScalarValue, exec_err, plan_err};
+use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
+use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, DocSection, Documentation, Signature, Volatility};
+use datafusion::physical_expr::expressions::Literal;
+use rne_identify::{Information, OnePass, Structure, unit, written_robot};
+use rne_logs::Motion;
+
+use crate::argument::{self, Argument};
+use crate::function::{About, coerced, key};
+use crate::robots::{Held, Robots, external};
+
+const NAME: &str = "identification";
+
+/// The arguments after the robot.
+const ARGUMENTS: [&str; 4] = ["q", "qd", "qdd", "tau"];
+
+/// How strongly links are pulled to those of the file, as `rne identify` does unasked.
+const PULL: f64 = 1.0;
+
+/// A friction is not excited where its deviation is larger than this part of the joint's efforts, root mean square.
+const UNKNOWN: f64 = 0.5;
+
+const SUMMARY: &str = "Links and friction from states with measured torques, by least squares row by row.";
+
+/// The aggregate, with the robots that it may be asked for.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub(crate) struct IdentificationFunction {
+    robots: Robots,
+    signature: Signature,
+    documentation: About,
+}
+
+impl IdentificationFunction {
+    pub(crate) fn new(robots: Robots) -> Self {
+        let section = DocSection { include: true, label: "Robot dynamics", description: None };
+        let syntax = format!("{NAME}(robot, {})", ARGUMENTS.join(", "));
+        Self {
+            robots,
+            signature: Signature::user_defined(Volatility::Immutable),
+            documentation: About(Documentation::builder(section, SUMMARY, syntax).build()),
+        }
+    }
+}
+
+impl AggregateUDFImpl for IdentificationFunction {
+    fn name(&self) -> &'static str {
+        NAME
+    }
+
+    fn signature(&self) -> &Signature {
+        &self.signature
+    }
+
+    fn coerce_types(&self, given: &[DataType]) -> Result<Vec<DataType>> {
+        coerced(NAME, given)
+    }
+
+    fn return_type(&self, _: &[DataType]) -> Result<DataType> {
+        Ok(DataType::Struct(result_fields()))
+    }
+
+    fn state_fields(&self, given: StateFieldsArgs<'_>) -> Result<Vec<FieldRef>> {
+        Ok(vec![Arc::new(Field::new(format!("{}[rows]", given.name), DataType::List(item(DataType::Float64)), true))])
+    }
+
+    fn accumulator(&self, given: AccumulatorArgs<'_>) -> Result<Box<dyn Accumulator>> {
+        if given.is_distinct {
+            return plan_err!("{NAME}: DISTINCT is not for rows of states; select the distinct rows before");
+        }
+        let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
+        let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
+        let fields = given.expr_fields.get(1..).unwrap_or_default();
+        let types: Vec<&DataType> = fields.iter().map(|field| field.data_type()).collect();
+        let robot = held.arm.robot();
+        argument::check(NAME, &ARGUMENTS, &types, &robot.name, robot.dof())?;
+        let columns = fields.iter().map(|field| field.name().clone()).collect();
+        Ok(Box::new(Gathered::new(held, columns)))
+    }
+
+    fn documentation(&self) -> Option<&Documentation> {
+        Some(&self.documentation.0)
+    }
+}
+
+/// What the rows of a group say, so far.
+#[derive(Debug)]
+struct Gathered {
+    robot: String,
+    structure: Arc<Structure>,
+    information: Information,
+    /// The names of the columns after the robot.
+    columns: Vec<String>,
+}
+
+impl Gathered {
+    fn new(held: &Held, columns: Vec<String>) -> Self {
+        let structure = held.structure();
+        let information = Information::unordered(&structure);
+        Self { robot: held.arm.robot().name.clone(), structure, information, columns }
+    }
+
+    fn joints(&self) -> usize {
+        self.structure.robot().dof()
+    }
+
+    /// Of an argument the numbers of each joint in those states.
+    fn of_joints(&self, argument: &Argument<'_>, states: &[usize]) -> Vec<Vec<f64>> {
+        let joints = self.joints();
+        (0..joints).map(|joint| states.iter().map(|&state| argument.at(state, joint, joints)).collect()).collect()
+    }
+
+    /// The first number that is none, with its column.
+    fn check_finite(&self, arguments: &[Argument<'_>], lists: &[Vec<Vec<f64>>], states: &[usize]) -> Result<()> {
+        let mut first = 0;
+        for (argument, list) in arguments.iter().zip(lists) {
+            let (width, step) = if matches!(argument, Argument::Columns(_)) { (self.joints(), 1) } else { (1, 0) };
+            for (joint, numbers) in list.iter().enumerate() {
+                if let Some(at) = numbers.iter().position(|number| !number.is_finite()) {
+                    let column = self.columns.get(first + step * joint).map_or("?", String::as_str);
+                    return exec_err!(
+                        "{NAME}: column `{column}`, row {} of a batch: joint {} has {}, which is no finite number",
+                        states[at] + 1,
+                        joint + 1,
+                        numbers[at]
+                    );
+                }
+            }
+            first += width;
+        }
+        Ok(())
+    }
+}
+
+impl Accumulator for Gathered {
+    fn update_batch(&mut self, values: &[ArrayRef]) -> Result<()> {
+        let arrays = values.get(1..).unwrap_or_default();
+        let columns: Vec<&str> = self.columns.iter().map(String::as_str).collect();
+        let (arguments, nulls) =
+            argument::all(NAME, &ARGUMENTS, &columns, arrays, &self.robot, self.structure.robot().dof())?;
+        let rows = arrays.first().map_or(0, Array::len);
+        let states: Vec<usize> =
+            (0..rows).filter(|&state| nulls.as_ref().is_none_or(|nulls| nulls.is_valid(state))).collect();
+        let lists: Vec<Vec<Vec<f64>>> = arguments.iter().map(|argument| self.of_joints(argument, &states)).collect();
+        self.check_finite(&arguments, &lists, &states)?;
+        let Ok([q, qd, qdd, tau]) = <[Vec<Vec<f64>>; 4]>::try_from(lists) else { return Ok(()) };
+        // rows of a table have no time: nothing is asked of it but to grow
+        let time = (0_u32..).map(f64::from).take(states.len()).collect();
+        let motion = Motion { time, q, qd, qdd, tau };
+        self.information.absorb(&self.structure, &motion, None).map_err(external)
+    }
+
+    fn state(&mut self) -> Result<Vec<ScalarValue>> {
+        let numbers = self.information.to_numbers();
+        let offsets = OffsetBuffer::from_lengths([numbers.len()]);
+        let list = ListArray::try_new(item(DataType::Float64), offsets, Arc::new(Float64Array::from(numbers)), None)?;
+        Ok(vec![ScalarValue::List(Arc::new(list))])
+    }
+
+    fn merge_batch(&mut self, states: &[ArrayRef]) -> Result<()> {
+        let Some(lists) = states.first().and_then(|states| states.as_list_opt::<i32>()) else {
+            return exec_err!("{NAME}: what other processes gathered is no list: they are of another version");
+        };
+        for list in lists.iter().flatten() {
+            let Some(numbers) = list.as_primitive_opt::<Float64Type>() else {
+                return exec_err!("{NAME}: what other processes gathered are no numbers: they are of another version");
+            };
+            let part = Information::from_numbers(&self.structure, numbers.values()).map_err(external)?;
+            self.information.merge(part);
+        }
+        Ok(())
+    }
+
+    fn evaluate(&mut self) -> Result<ScalarValue> {
+        if self.information.states() == 0 {
+            return ScalarValue::try_from(&DataType::Struct(result_fields()));
+        }
+        let found = OnePass::new(&self.structure, &self.information, PULL);
+        Ok(ScalarValue::Struct(Arc::new(result(&self.structure, &self.information, &found)?)))
+    }
+
+    fn size(&self) -> usize {
+        size_of_val(self) + self.information.size() * size_of::<f64>()
+    }
+}
+
+/// What was found of one unknown.
+struct Unknown {
+    name: String,
+    value: f64,
+    deviation: f64,
+    unit: String,
+    is_excited: bool,
+}
+
+/// Base parameters, base to tip, then the friction of each joint.
+fn unknowns(structure: &Structure, found: &OnePass) -> Vec<Unknown> {
+    let bases = structure.parameters().bases.iter().zip(&found.bases).map(|(base, report)| Unknown {
+        name: report.name.clone(),
+        value: report.value,
+        deviation: report.deviation,
+        unit: unit(base.kept).to_owned(),
+        is_excited: report.is_excited(),
+    });
+    let joints = structure.robot().joints.iter().zip(&found.friction).zip(&found.efforts).enumerate();
+    let friction = joints.flat_map(|(at, ((joint, friction), effort))| {
+        let force =
+            if joint.row.kind == rne::model::JointKind::Revolute { ["N m s/rad", "N m"] } else { ["N s/m", "N"] };
+        let names = [("viscous", force[0]), ("coulomb_forward", force[1]), ("coulomb_backward", force[1])];
+        names.into_iter().zip(friction).map(move |((name, unit), &(value, deviation))| Unknown {
+            name: format!("{name}{}", at + 1),
+            value,
+            deviation,
+            unit: unit.to_owned(),
+            is_excited: deviation < UNKNOWN * effort,
+        })
+    });
+    bases.chain(friction).collect()
+}
+
+/// A row of the result.
+fn result(structure: &Structure, information: &Information, found: &OnePass) -> Result<StructArray> {
+    let unknowns = unknowns(structure, found);
+    let texts =
+        |of: fn(&Unknown) -> &str| -> ArrayRef { Arc::new(unknowns.iter().map(of).map(Some).collect::<StringArray>()) };
+    let numbers = |of: fn(&Unknown) -> f64| -> ArrayRef {
+        Arc::new(unknowns.iter().map(of).collect::<Vec<_>>().into_iter().map(Some).collect::<Float64Array>())
+    };
+    let excited: BooleanArray = unknowns.iter().map(|unknown| Some(unknown.is_excited)).collect();
+    let columns = vec![
+        texts(|unknown| &unknown.name),
+        numbers(|unknown| unknown.value),
+        numbers(|unknown| unknown.deviation),
+        texts(|unknown| &unknown.unit),
+        Arc::new(excited),
+    ];
+    let unknowns = StructArray::try_new(unknown_fields(), columns, None)?;
+    let one = |values: ArrayRef| -> Result<ArrayRef> {
+        let (of, offsets) = (item(values.data_type().clone()), OffsetBuffer::from_lengths([values.len()]));
+        Ok(Arc::new(ListArray::try_new(of, offsets, values, None)?))
+    };
+    let states = i64::try_from(information.states()).unwrap_or(i64::MAX);
+    let robot = written_robot(&found.robot, &format!("{states} states of a table"));
+    let columns: Vec<ArrayRef> = vec![
+        Arc::new(Int64Array::from(vec![states])),
+        one(Arc::new(unknowns))?,
+        one(Arc::new(Float64Array::from(found.fit.noise.clone())))?,
+        Arc::new(StringArray::from(vec![robot])),
+    ];
+    Ok(StructArray::try_new(result_fields(), columns, None)?)
+}
+
+fn unknown_fields() -> Fields {
+    Fields::from(vec![
+        Field::new("parameter", DataType::Utf8, true),
+        Field::new("value", DataType::Float64, true),
+        Field::new("deviation", DataType::Float64, true),
+        Field::new("unit", DataType::Utf8, true),
+        Field::new("excited", DataType::Boolean, true),
+    ])
+}
+
+fn result_fields() -> Fields {
+    Fields::from(vec![
+        Field::new("states", DataType::Int64, true),
+        Field::new("parameters", DataType::List(item(DataType::Struct(unknown_fields()))), true),
+        Field::new("noise", DataType::List(item(DataType::Float64)), true),
+        Field::new("robot", DataType::Utf8, true),
+    ])
+}
+
+fn item(of: DataType) -> FieldRef {
+    Arc::new(Field::new_list_field(of, true))
+}

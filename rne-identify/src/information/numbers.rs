@@ -1,0 +1,85 @@
+//! Information as plain numbers, in which it travels between processes.
+
+use std::fmt;
+
+use super::{Information, STRETCHES, Stretch};
+use crate::r_factor::RFactor;
+use crate::structure::Structure;
+
+/// Numbers before those of the stretches: rows of a stretch, states, duration, shift, stretches.
+const HEAD: usize = 5;
+
+/// Counts from here on are no longer exact as numbers.
+const EXACT: f64 = 9_007_199_254_740_992.0;
+
+/// Numbers that are no information of a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct WrongNumbers {
+    /// How many there are.
+    pub found: usize,
+}
+
+impl fmt::Display for WrongNumbers {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "{} numbers that are no rows of this robot: they are of another robot, other options or another version",
+            self.found
+        )
+    }
+}
+
+impl std::error::Error for WrongNumbers {}
+
+impl Information {
+    /// Everything it has, as numbers: a head, then of each stretch and joint the rows, their weight and the triangle.
+    #[must_use]
+    #[allow(clippy::cast_precision_loss)] // counts below 2^53; one that has no end is infinite
+    pub fn to_numbers(&self) -> Vec<f64> {
+        let length = if self.is_unordered() { f64::INFINITY } else { self.length as f64 };
+        let mut numbers = vec![length, self.states as f64, self.duration, self.shift, self.stretches.len() as f64];
+        for factor in self.stretches.iter().flatten() {
+            numbers.extend([factor.rows() as f64, factor.weight()]);
+            numbers.extend(factor.upper());
+        }
+        numbers
+    }
+
+    /// The information whose numbers these are, bit for bit.
+    ///
+    /// # Errors
+    /// When they are not of this structure.
+    pub fn from_numbers(structure: &Structure, numbers: &[f64]) -> Result<Self, WrongNumbers> {
+        Self::read(structure, numbers).ok_or(WrongNumbers { found: numbers.len() })
+    }
+
+    fn read(structure: &Structure, numbers: &[f64]) -> Option<Self> {
+        let (&[length, states, duration, shift, stretches], mut rest) = numbers.split_first_chunk::<HEAD>()?;
+        let empty = Self::new(structure);
+        let empty = if length == f64::INFINITY {
+            Self::unordered(structure)
+        } else {
+            Self { length: count(length).filter(|length| *length >= empty.length)?, ..empty }
+        };
+        let stretches = count(stretches).filter(|stretches| *stretches <= STRETCHES as u64)?;
+        let mut read = Self { states: count(states)?, duration, shift, ..empty };
+        for _ in 0..stretches {
+            let mut stretch: Stretch = Vec::with_capacity(structure.dof());
+            for joint in 0..structure.dof() {
+                let columns = structure.columns(joint);
+                let (&[rows, weight], after) = rest.split_first_chunk()?;
+                let (upper, after) = after.split_at_checked(columns * (columns + 1) / 2)?;
+                stretch.push(RFactor::from_upper(columns, count(rows)?, weight, upper)?);
+                rest = after;
+            }
+            read.stretches.push(stretch);
+        }
+        rest.is_empty().then_some(read)
+    }
+}
+
+/// A number that counts something.
+fn count(number: f64) -> Option<u64> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a whole number in that range
+    (number.fract() == 0.0 && (0.0..EXACT).contains(&number)).then_some(number as u64)
+}
