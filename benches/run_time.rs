@@ -37,12 +37,12 @@ const HEADER: &str = concat!(
 const OF_FUNCTIONS: &str = "robot           unit     function                       derived  machine  times";
 
 macro_rules! arms {
-    ($($Arm:ident: $name:literal;)*) => {
+    ($($Arm:ident: $name:literal by $key:ident = $value:literal;)*) => {
         $(
             #[derive(
                 InverseDynamics, BatchInverseDynamics, MassMatrix, ForwardDynamics, InverseDynamicsDerivatives,
             )]
-            #[robot(builtin = $name, form = "reduced")]
+            #[robot($key = $value, form = "reduced")]
             struct $Arm;
         )*
 
@@ -55,12 +55,24 @@ macro_rules! arms {
     };
 }
 arms! {
-    Puma560: "puma560";
-    Panda: "panda";
-    Iiwa14: "iiwa14";
-    Ur5: "ur5";
-    Cobra600: "scara_cobra600";
-    Stanford: "stanford";
+    Puma560: "puma560" by builtin = "puma560";
+    Panda: "panda" by builtin = "panda";
+    Iiwa14: "iiwa14" by builtin = "iiwa14";
+    Ur5: "ur5" by builtin = "ur5";
+    Cobra600: "scara_cobra600" by builtin = "scara_cobra600";
+    Stanford: "stanford" by builtin = "stanford";
+    Dense7: "dense7" by path = "peers/models/dense7.yaml";
+}
+
+/// The texts of a robot file and its plan file: of the box, or the arm of random numbers in which nothing folds.
+fn texts(name: &str) -> (&'static str, &'static str) {
+    match name {
+        "dense7" => (include_str!("peers/models/dense7.yaml"), include_str!("peers/models/dense7.plan.yaml")),
+        _ => {
+            let file = rne_robots::find(name).expect("it is shipped");
+            (file.yaml, file.plan.expect("it has a plan"))
+        }
+    }
 }
 
 /// Numbers of every joint, of every state.
@@ -163,8 +175,8 @@ fn functions<const DOF: usize, R>(derived: &R, name: &str)
 where
     R: BatchInverseDynamics<DOF> + MassMatrix<DOF> + ForwardDynamics<DOF> + InverseDynamicsDerivatives<DOF>,
 {
-    let file = rne_robots::find(name).expect("it is shipped");
-    let arm = CompiledArm::with_plan(file.yaml, file.plan.expect("it has a plan")).expect("a shipped robot");
+    let (robot, plan) = texts(name);
+    let arm = CompiledArm::with_plan(robot, plan).expect("a robot that is here");
     let mut random = fastrand::Rng::with_seed(2);
     let motion: [Numbers<DOF>; 3] =
         std::array::from_fn(|_| (0..STATES).map(|_| std::array::from_fn(|_| 2.0 * random.f64() - 1.0)).collect());
@@ -180,7 +192,7 @@ where
             Function::ForwardDynamics,
             Function::InverseDynamicsDerivatives,
         ] {
-            let compiled = arm.function(function).expect("a shipped plan");
+            let compiled = arm.function(function).expect("its plan");
             let mut results = vec![0.0; compiled.outputs() * STATES];
             let mut torques: [Vec<f64>; DOF] = std::array::from_fn(|_| vec![0.0; STATES]);
             let mut times = [f64::INFINITY; 2];
@@ -214,11 +226,11 @@ where
 }
 
 fn program(name: &str, target: Target) -> Program {
-    let file = rne_robots::find(name).expect("it is shipped");
-    let robot = Robot::from_yaml(file.yaml).expect("a shipped robot");
-    let plan = PlanFile::read(name, file.plan.expect("it has a plan"), &robot).expect("a shipped plan");
+    let (robot, plan) = texts(name);
+    let robot = Robot::from_yaml(robot).expect("a robot that is here");
+    let plan = PlanFile::read(name, plan, &robot).expect("its plan");
     let compiler = Compiler::new(&robot).for_target(target).with_plans(plan);
-    compiler.compile(Function::InverseDynamics, Form::Reduced).expect("a shipped plan")
+    compiler.compile(Function::InverseDynamics, Form::Reduced).expect("its plan")
 }
 
 /// `qd3`: the second quantity of the motion, the third joint.

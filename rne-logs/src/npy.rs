@@ -46,7 +46,7 @@ impl Npy {
         let numbers: Box<dyn Iterator<Item = io::Result<f64>>> = match kind.trim_start_matches(['<', '>', '=', '|']) {
             "f8" => Box::new(npy.data::<f64>().map_err(unreadable)?),
             "f4" => Box::new(npy.data::<f32>().map_err(unreadable)?.map(|x| x.map(f64::from))),
-            _ => return Err(format!("the numbers are {kind:?}; save them as float64 or float32")),
+            _ => return Err(format!("the numbers are `{}`; save them as float64 or float32", kind.escape_debug())),
         };
         Ok(Self { shape, numbers })
     }
