@@ -13,9 +13,12 @@ const NOT_EXCITED: &str = "- joint not excited: ";
 /// The text of the robot file; `logs` says in words from what it was identified.
 #[must_use]
 pub fn written(identification: &Identification, logs: &str) -> String {
-    let unknown = identification.joints.iter().zip(&identification.robot.joints);
-    let unknown = unknown.filter(|(report, _)| !report.is_excited());
-    let unknown: String = unknown.map(|(_, joint)| format!("\n{NOT_EXCITED}{}", one_line(&joint.name))).collect();
+    let mut unknown = String::new();
+    for (report, joint) in identification.joints.iter().zip(&identification.robot.joints) {
+        if !report.is_excited() {
+            let _ = write!(unknown, "\n{NOT_EXCITED}{}", one_line(&joint.name));
+        }
+    }
     let robot = described(&identification.robot, logs, &unknown);
     let mut text = head(identification);
     let mut joint: usize = 0;
