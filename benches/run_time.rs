@@ -66,13 +66,11 @@ arms! {
 
 /// The texts of a robot file and its plan file: of the box, or the arm of random numbers in which nothing folds.
 fn texts(name: &str) -> (&'static str, &'static str) {
-    match name {
-        "dense7" => (include_str!("peers/models/dense7.yaml"), include_str!("peers/models/dense7.plan.yaml")),
-        _ => {
-            let file = rne_robots::find(name).expect("it is shipped");
-            (file.yaml, file.plan.expect("it has a plan"))
-        }
+    if name == "dense7" {
+        return (include_str!("peers/models/dense7.yaml"), include_str!("peers/models/dense7.plan.yaml"));
     }
+    let file = rne_robots::find(name).expect("it is shipped");
+    (file.yaml, file.plan.expect("it has a plan"))
 }
 
 /// Numbers of every joint, of every state.
