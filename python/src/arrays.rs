@@ -135,7 +135,9 @@ fn not_contiguous() -> PyErr {
 
 /// Whether it may be a column or a table of Polars or PyArrow.
 fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
-    ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"].iter().any(|name| value.hasattr(name).unwrap_or(false))
+    ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"]
+        .iter()
+        .any(|name| value.hasattr(name).unwrap_or(false))
 }
 
 /// What `rne.columns` sees of a column or a table; `None` of all else.

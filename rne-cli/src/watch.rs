@@ -34,7 +34,7 @@ Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
 
-Exit status 1: there are events. What is looked for, and how: docs/watch.md.")]
+Exit status 1: there are events, or the model explains nothing: docs/watch.md.")]
 pub(crate) struct Arguments {
     /// Robot file, with friction: what `rne identify` wrote
     #[arg(value_name = "FILE")]
@@ -108,7 +108,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     }
     let errors = prediction(&robot, &log, Part::All)?;
-    let at_fault = !watched.events.is_empty();
+    let unexplained = unexplained(&robot, &errors);
+    if !unexplained.is_empty() {
+        let names = unexplained.join(", ");
+        let what =
+            format!("the model explains nothing of the torques of {names}: is FILE of this arm, with its friction?");
+        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
+    }
+    let at_fault = !(watched.events.is_empty() && unexplained.is_empty());
     if arguments.json {
         let reply = Reply::of(&robot, &log, &watched.events, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
@@ -172,6 +179,17 @@ fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Basel
 /// A model is worse where it has not been before: levels of another log are so many times as wide.
 const ELSEWHERE: f64 = 1.5;
 
+/// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
+/// that nothing is known.
+fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String> {
+    let each = robot.joints.iter().zip(errors).zip(not_excited(robot));
+    // what is no number is no prediction
+    let found = each.filter(|((_, error), unknown)| {
+        !unknown && error.deviation != 0.0 && (error.error >= 1.0 || error.error.is_nan())
+    });
+    found.map(|((joint, _), _)| one_line(&joint.name)).collect()
+}
+
 /// What was found in a log.
 struct Watched {
     /// Run by run; the number of the run, from 0.
@@ -201,15 +219,14 @@ impl Watched {
             }
             if is_drawn && !is_cut {
                 let thin = signals.thinned(stride);
-                match &mut drawn {
-                    Some((all, _)) => {
-                        is_cut = all.time.last() >= thin.time.first();
-                        if !is_cut {
-                            all.append(thin);
-                            last_drawn = run;
-                        }
+                if let Some((all, _)) = &mut drawn {
+                    is_cut = all.time.last() >= thin.time.first();
+                    if !is_cut {
+                        all.append(thin);
+                        last_drawn = run;
                     }
-                    None => (drawn, last_drawn) = (Some((thin, report)), run),
+                } else {
+                    (drawn, last_drawn) = (Some((thin, report)), run);
                 }
             }
             Ok(Some(()))

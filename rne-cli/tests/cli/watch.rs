@@ -1,5 +1,6 @@
 //! `rne watch`: what happens to an arm, and what does not.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use crate::call::{ROOT, fails, fine, folder, rne};
@@ -57,8 +58,17 @@ fn events_belong_to_their_run() {
 fn a_long_log_is_one() {
     let folder = folder("watch_long");
     let (robot, log) = (folder.join("rod.yaml"), folder.join("long.csv"));
-    let file = "format: 1\nname: rod\nsource: own\nconvention: standard\ngravity: [0, -9.81, 0]\njoints:\n  - type: revolute\n    dh: \
-                {theta: 0, d: 0, a: 0.5, alpha: 0}\n    link: {mass: 2, com: [-0.25, 0, 0], inertia: {zz: 0.05}}\n";
+    let file = r"
+format: 1
+name: rod
+source: own
+convention: standard
+gravity: [0, -9.81, 0]
+joints:
+  - type: revolute
+    dh: {theta: 0, d: 0, a: 0.5, alpha: 0}
+    link: {mass: 2, com: [-0.25, 0, 0], inertia: {zz: 0.05}}
+";
     fs::write(&robot, file).expect("a file");
     // 2 kg at 0.25 m; 0.05 + 2 (0.25)² kg m² about the hinge
     let mut text = "time,q1,qd1,tau1\n".to_owned();
@@ -69,7 +79,7 @@ fn a_long_log_is_one() {
         // the piece ends at 131 s
         let hand = if (130.8..131.4).contains(&time) { 1.0 } else { 0.0 };
         let tau = 0.175 * qdd + 2.0 * 9.81 * 0.25 * q.cos() + ripple + hand;
-        text += &format!("{time:.3},{q:.6},{qd:.6},{tau:.5}\n");
+        writeln!(text, "{time:.3},{q:.6},{qd:.6},{tau:.5}").expect("a text grows");
     }
     fs::write(&log, text).expect("a file");
     let path = |path: &std::path::Path| path.to_str().expect("UTF-8").to_owned();
@@ -97,6 +107,18 @@ fn the_picture_has_the_events() {
     assert_eq!(rne(&["watch", ARM, KNOCK, "--plot", path]).status, 1);
     fails(2, &["watch", ARM, QUIET, "--plot", path], &["--force"]);
     assert_eq!(fs::read_to_string(&picture).expect("a picture"), svg);
+}
+
+/// A model that explains nothing is no quiet arm.
+#[test]
+fn another_arm_is_not_in_order() {
+    let folder = folder("watch_other");
+    let other = folder.join("other.yaml");
+    let file = fs::read_to_string(format!("{ROOT}/docs/desk_arm.yaml")).expect("a file");
+    fs::write(&other, file.replace("[0, 0, -9.81]", "[9.81, 0, 0]")).expect("a file");
+    let called = rne(&["watch", other.to_str().expect("UTF-8"), QUIET]);
+    assert_eq!(called.status, 1, "{}", called.out);
+    assert!(called.err.contains("warning") && called.err.contains("shoulder"), "{}", called.err);
 }
 
 #[test]
