@@ -15,6 +15,10 @@ pub(crate) struct Given<'py> {
 
 /// Whether all arrays among the arguments are of single precision; lists and numbers follow them.
 pub(crate) fn are_single(given: &[Given<'_>]) -> bool {
+    // columns have doubles
+    if given.iter().any(|given| is_arrow(&given.value)) {
+        return false;
+    }
     let mut arrays = given.iter().filter(|given| given.value.hasattr("dtype").unwrap_or(false)).peekable();
     arrays.peek().is_some() && arrays.all(|given| given.value.cast::<PyArrayDyn<f32>>().is_ok())
 }
@@ -129,11 +133,17 @@ fn not_contiguous() -> PyErr {
     PyValueError::new_err("an array is not contiguous")
 }
 
+/// Whether it may be a column or a table of Polars or PyArrow.
+fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
+    ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"]
+        .iter()
+        .any(|name| value.hasattr(name).unwrap_or(false))
+}
+
 /// What `rne.columns` sees of a column or a table; `None` of all else.
 fn seen<'py>(given: &Given<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
     let Given { name, elements, value } = given;
-    let has = |attribute| value.hasattr(attribute).unwrap_or(false);
-    if !(has("__arrow_c_stream__") || has("__arrow_c_array__") || has("collect_schema")) {
+    if !is_arrow(value) {
         return Ok(None);
     }
     let views = value.py().import("rne.columns")?.call_method1("views", (value, *elements, *name))?;

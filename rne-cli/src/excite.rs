@@ -1,7 +1,7 @@
 //! `rne excite`: a motion by which an identification learns the most.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -13,17 +13,17 @@ use rne_identify::{
 use rne_model::{JointKind, Robot, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
-use crate::layout::{Align, columns, shortened, wrap};
+use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, Replacement, check_new, unwritable};
-use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
+use crate::output_file::{self, Replacement, check_new, is_standard_output, unwritable};
+use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
 /// Columns of the account.
 const WIDTH: usize = 80;
 
-/// Samples of a trajectory, at most: a hundred megabytes of an arm of six joints.
+/// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
 const MOST: f64 = 500_000.0;
 
 /// Motions that are tried, at most: a day.
@@ -124,6 +124,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         // before the search, not after it
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
     }
+    if out.is_some() && out == arguments.plot.as_deref() {
+        return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
+    }
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();
     let found = watched(&robot, &limits, &options(arguments)).map_err(|error| failure(&error))?;
@@ -142,10 +145,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
         None => Ok(Outcome { text: account, remark, ..Outcome::default() }),
     }
-}
-
-fn is_standard_output(path: &Path) -> bool {
-    path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
 fn failure(error: &ExcitationError) -> Failure {
@@ -267,14 +266,6 @@ fn not_excited(text: &mut String, found: &Excitation) {
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Left];
     push_table(text, "not excited: a deviation of more than half of what is plausible", &align, &cells);
-}
-
-fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], cells: &[[String; N]]) {
-    let lines = columns(align, cells);
-    let _ = writeln!(text, "\n{TITLE}{title}{TITLE:#}\n{QUIET}{}{QUIET:#}", lines[0]);
-    for line in &lines[1..] {
-        let _ = writeln!(text, "{line}");
-    }
 }
 
 /// The states of the whole motion, its ends included.

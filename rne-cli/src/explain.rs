@@ -115,13 +115,15 @@ const EXIT_STATUS: &str = "\
 1    the input is at fault: a robot file or a plan has an error or cannot be
      read, the result of one state is not finite, a file that is checked is
      stale, torques differ and `rne diagnose` cannot say why, a value differs
-     from that of `rne eval --trace --compare`, or the output cannot be written
+     from that of `rne eval --trace --compare`, `rne watch` has events, or the
+     output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file that rne does
      not overwrite
 130  a second Ctrl-C ended `rne search` or `rne excite`; files are as they were
 
-Errors go to standard error, and nothing to standard output then; but what
+Errors go to standard error, and nothing to standard output then; but what an
+answer of status 1 has to say, such as events, is on standard output, and what
 `rne eval --states` has printed of states before a mistake stays, while a file
 of -o appears whole or not at all. There a result that is not finite is NaN or
 inf in its row, with a note and status 0. A reader that goes away

@@ -11,7 +11,7 @@ use rne_logs::Motion;
 use rne_model::{JointKind, Reversal, Robot, one_line};
 use rne_plot::comparison_svg;
 
-use crate::layout::{Align, columns, shortened, wrap};
+use crate::layout::{Align, columns, push_table, shortened, wrap};
 use crate::motion_log::{LogArguments, MotionLog, Part};
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
@@ -211,14 +211,6 @@ fn inertia_of_rotors(text: &mut String, found: &Identification) {
         cells.push([format!("  {}", shortened(&one_line(&joint.name), 14)), rounded(rotor, 4)]);
     }
     push_table(text, "inertia of the rotors at the joint, kg m² or kg", &[Align::Left, Align::Right], &cells);
-}
-
-fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], cells: &[[String; N]]) {
-    let lines = columns(align, cells);
-    let _ = writeln!(text, "\n{TITLE}{title}{TITLE:#}\n{QUIET}{}{QUIET:#}", lines[0]);
-    for line in &lines[1..] {
-        let _ = writeln!(text, "{line}");
-    }
 }
 
 /// How well a robot predicts a part of a log.

@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use textwrap::{Options, WordSeparator, WordSplitter, WrapAlgorithm};
 use unicode_width::UnicodeWidthStr;
 
+use crate::terminal::{QUIET, TITLE};
+
 /// On which side of its column a cell stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Align {
@@ -33,6 +35,15 @@ pub(crate) fn columns(alignment: &[Align], lines: &[impl AsRef<[String]>]) -> Ve
         line
     };
     lines.iter().map(|cells| line(cells.as_ref())).collect()
+}
+
+/// Appends a table below its title; the first line of cells is its heading.
+pub(crate) fn push_table<const N: usize>(text: &mut String, title: &str, align: &[Align], cells: &[[String; N]]) {
+    let lines = columns(align, cells);
+    let _ = writeln!(text, "\n{TITLE}{title}{TITLE:#}\n{QUIET}{}{QUIET:#}", lines[0]);
+    for line in &lines[1..] {
+        let _ = writeln!(text, "{line}");
+    }
 }
 
 /// A text, then blanks up to a width.

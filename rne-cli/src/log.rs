@@ -13,7 +13,7 @@ use crate::input_file::is_standard_input;
 use crate::log_report::{self, Reply};
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{Replacement, check_new, unwritable};
+use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::robot_file;
 use crate::terminal::GOOD;
 
@@ -171,10 +171,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display())
     };
     Ok(Outcome { text, remark, at_fault: false })
-}
-
-fn is_standard_output(path: &Path) -> bool {
-    path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
 /// What stops the writing.

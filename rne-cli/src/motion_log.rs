@@ -132,11 +132,25 @@ impl MotionLog {
         self.survey.counts.states
     }
 
+    /// How many runs there are.
+    pub(crate) fn runs(&self) -> u64 {
+        self.survey.run_count
+    }
+
     /// Hands the motions of a part to what takes them.
     pub(crate) fn pass<E: Display>(
         &self,
         part: Part,
         take: &mut dyn FnMut(&Motion) -> Result<(), E>,
+    ) -> Result<(), Failure> {
+        self.pass_runs(part, &mut |_, motion| take(motion))
+    }
+
+    /// Hands the motions of a part to what takes them, each with the number of its run, from 0.
+    pub(crate) fn pass_runs<E: Display>(
+        &self,
+        part: Part,
+        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
     ) -> Result<(), Failure> {
         let runs = &self.survey.runs;
         let total: f64 = runs.iter().map(|run| run.duration).sum();
@@ -154,7 +168,7 @@ impl MotionLog {
                 Part::From(part) => cut(&piece.motion, |time| time >= edge(run, part)),
             };
             if !motion.is_empty() {
-                take(&motion).map_err(Failure::input)?;
+                take(piece.run, &motion).map_err(Failure::input)?;
             }
         }
         Ok(())

@@ -128,6 +128,11 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
     Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
 }
 
+/// Whether a path names standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-") || path == Path::new("/dev/stdout")
+}
+
 /// Whether a file may be written: none stands there, or one with this text, or `force` says so, and none of `sources`.
 pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
     let shown = path.display();

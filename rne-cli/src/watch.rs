@@ -34,7 +34,7 @@ Examples:
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv
   rne watch docs/desk_arm_identified.yaml docs/desk_arm_log.csv --json
 
-Exit status 1: there are events. What is looked for, and how: docs/watch.md.")]
+Exit status 1: there are events, or the model explains nothing: docs/watch.md.")]
 pub(crate) struct Arguments {
     /// Robot file, with friction: what `rne identify` wrote
     #[arg(value_name = "FILE")]
@@ -103,18 +103,28 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
         let picture = svg(&robot, signals, &baseline, report, &log.words());
         remark += &output_file::write_new(path, &picture, &sources, arguments.force)?;
+        if watched.is_cut {
+            let _ = writeln!(remark, "{TITLE}note{TITLE:#}: the picture ends where the times of the logs go back");
+        }
     }
     let errors = prediction(&robot, &log, Part::All)?;
-    let at_fault = !watched.events.is_empty();
+    let unexplained = unexplained(&robot, &errors);
+    if !unexplained.is_empty() {
+        let names = unexplained.join(", ");
+        let what =
+            format!("the model explains nothing of the torques of {names}: is FILE of this arm, with its friction?");
+        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
+    }
+    let at_fault = !(watched.events.is_empty() && unexplained.is_empty());
     if arguments.json {
         let reply = Reply::of(&robot, &log, &watched.events, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
     }
-    let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
+    let about = format!("{} from {}, read up to {:.1} Hz", one_line(&robot.name), log.words(), log.read_to);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
     let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), WIDTH, "  "));
-    text += &events_table(&robot, &watched.events);
+    text += &events_table(&robot, &watched.events, log.runs() > 1);
     text += &errors_table(&robot, &log, &errors, &not_excited(&robot), "prediction of the log");
     Ok(Outcome { text, remark, at_fault })
 }
@@ -124,13 +134,13 @@ fn each_signals(
     robot: &Robot,
     log: &MotionLog,
     gain: f64,
-    mut take: impl FnMut(Signals) -> Result<Option<()>, WatchError>,
+    mut take: impl FnMut(u64, Signals) -> Result<Option<()>, WatchError>,
 ) -> Result<u64, Failure> {
     let mut taken = 0;
-    log.pass(Part::All, &mut |motion| {
+    log.pass_runs(Part::All, &mut |run, motion| {
         let signals = unless_too_short(Signals::new(robot, motion, gain))?;
         if let Some(signals) = signals {
-            taken += u64::from(take(signals)?.is_some());
+            taken += u64::from(take(run, signals)?.is_some());
         }
         Ok::<(), WatchError>(())
     })?;
@@ -140,7 +150,7 @@ fn each_signals(
 /// The levels of each piece of a log that is long enough to have some.
 fn levels(robot: &Robot, log: &MotionLog, gain: f64) -> Result<Vec<Baseline>, Failure> {
     let mut found = Vec::new();
-    each_signals(robot, log, gain, |signals| {
+    each_signals(robot, log, gain, |_, signals| {
         let baseline = unless_too_short(Baseline::of(&signals, 0..signals.time.len()))?;
         Ok(baseline.map(|baseline| found.push(baseline)))
     })?;
@@ -159,7 +169,7 @@ fn typical(robot: &Robot, log: &MotionLog, settings: &Settings) -> Result<Baseli
 /// What is usual in a log in which nothing happens.
 fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Baseline, Failure> {
     let mut baseline = Baseline::covering(&levels(robot, quiet, settings.gain)?).ok_or_else(|| too_short(quiet))?;
-    each_signals(robot, quiet, settings.gain, |signals| {
+    each_signals(robot, quiet, settings.gain, |_, signals| {
         baseline = baseline.clone().silent(&signals, settings)?;
         Ok(Some(()))
     })?;
@@ -169,11 +179,25 @@ fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Basel
 /// A model is worse where it has not been before: levels of another log are so many times as wide.
 const ELSEWHERE: f64 = 1.5;
 
+/// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
+/// that nothing is known.
+fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String> {
+    let each = robot.joints.iter().zip(errors).zip(not_excited(robot));
+    // what is no number is no prediction
+    let found = each.filter(|((_, error), unknown)| {
+        !unknown && error.deviation != 0.0 && (error.error >= 1.0 || error.error.is_nan())
+    });
+    found.map(|((joint, _), _)| one_line(&joint.name)).collect()
+}
+
 /// What was found in a log.
 struct Watched {
-    events: Vec<Event>,
-    /// For a picture: signals that are thinned, and all events.
+    /// Run by run; the number of the run, from 0.
+    events: Vec<(u64, Event)>,
+    /// For a picture: signals that are thinned, and their events.
     drawn: Option<(Signals, Report)>,
+    /// Whether the picture leaves runs out, whose times are not behind those before.
+    is_cut: bool,
 }
 
 impl Watched {
@@ -185,15 +209,24 @@ impl Watched {
         is_drawn: bool,
     ) -> Result<Self, Failure> {
         let stride = usize::try_from(log.states().div_ceil(DRAWN)).unwrap_or(usize::MAX).max(1);
-        let (mut events, mut drawn) = (Vec::new(), None::<(Signals, Report)>);
-        let taken = each_signals(robot, log, settings.gain, |signals| {
+        let (mut found, mut drawn) = (Vec::<(u64, Vec<Event>)>::new(), None::<(Signals, Report)>);
+        let (mut is_cut, mut last_drawn) = (false, 0);
+        let taken = each_signals(robot, log, settings.gain, |run, signals| {
             let report = watch(&signals, baseline, settings)?;
-            events.extend(report.events.iter().copied());
-            if is_drawn {
+            match found.last_mut() {
+                Some((last, events)) if *last == run => events.extend(report.events.iter().copied()),
+                _ => found.push((run, report.events.clone())),
+            }
+            if is_drawn && !is_cut {
                 let thin = signals.thinned(stride);
-                match &mut drawn {
-                    Some((all, _)) => all.append(thin),
-                    None => drawn = Some((thin, report)),
+                if let Some((all, _)) = &mut drawn {
+                    is_cut = all.time.last() >= thin.time.first();
+                    if !is_cut {
+                        all.append(thin);
+                        last_drawn = run;
+                    }
+                } else {
+                    (drawn, last_drawn) = (Some((thin, report)), run);
                 }
             }
             Ok(Some(()))
@@ -201,12 +234,13 @@ impl Watched {
         if taken == 0 {
             return Err(Failure::input(format_args!("{} is too short to be watched", log.words())));
         }
-        let events = Event::joined(events, JOINED);
+        let joined = |(run, events)| Event::joined(events, JOINED).into_iter().map(move |event| (run, event));
+        let events: Vec<(u64, Event)> = found.into_iter().flat_map(joined).collect();
         if let Some((signals, report)) = &mut drawn {
-            report.events.clone_from(&events);
+            report.events = events.iter().filter(|(run, _)| *run <= last_drawn).map(|(_, event)| *event).collect();
             report.errors = (0..signals.dof()).map(|joint| signals.prediction_error(joint)).collect();
         }
-        Ok(Self { events, drawn })
+        Ok(Self { events, drawn, is_cut })
     }
 }
 
@@ -220,15 +254,15 @@ const fn unit(kind: JointKind) -> &'static str {
     }
 }
 
-fn events_table(robot: &Robot, events: &[Event]) -> String {
+fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> String {
     if events.is_empty() {
         return format!("\n{GOOD}no events{GOOD:#}\n");
     }
     let mut cells = vec![["  from, s", "to, s", "joint", "", "peak", "", "what it is like"].map(str::to_owned)];
-    for event in events.iter().take(SHOWN) {
+    for (run, event) in events.iter().take(SHOWN) {
         let joint = &robot.joints[event.joint];
         cells.push([
-            format!("  {:.3}", event.start),
+            if has_runs { format!("  run {}: {:.3}", run + 1, event.start) } else { format!("  {:.3}", event.start) },
             format!("{:.3}", event.end),
             shortened(&one_line(&joint.name), 20),
             event.test.name().to_owned(),
@@ -255,13 +289,16 @@ fn events_table(robot: &Robot, events: &[Event]) -> String {
 struct Reply {
     robot: String,
     log: String,
+    /// Hz: of the errors; events are of the log as it was read.
     low_pass: f64,
+    read_to: f64,
     events: Vec<OfEvent>,
     joints: Vec<OfJoint>,
 }
 
 #[derive(Serialize)]
 struct OfEvent {
+    run: u64,
     start: f64,
     end: f64,
     joint: usize,
@@ -280,9 +317,10 @@ struct OfJoint {
 }
 
 impl Reply {
-    fn of(robot: &Robot, log: &MotionLog, events: &[Event], errors: &[rne_identify::JointError]) -> Self {
+    fn of(robot: &Robot, log: &MotionLog, events: &[(u64, Event)], errors: &[rne_identify::JointError]) -> Self {
         let finite = |number: f64| number.is_finite().then_some(number);
-        let of_event = |event: &Event| OfEvent {
+        let of_event = |(run, event): &(u64, Event)| OfEvent {
+            run: run + 1,
             start: event.start,
             end: event.end,
             joint: event.joint + 1,
@@ -301,6 +339,7 @@ impl Reply {
             robot: robot.name.clone(),
             log: log.words(),
             low_pass: log.cutoff,
+            read_to: log.read_to,
             events: events.iter().map(of_event).collect(),
             joints: errors.iter().enumerate().map(of_joint).collect(),
         }

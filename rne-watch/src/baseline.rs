@@ -58,7 +58,8 @@ impl Baseline {
         }
         let (mut residual, mut friction, mut external) = (Vec::new(), Vec::new(), Vec::new());
         for joint in 0..signals.dof() {
-            let least = LEAST * signals.measured[joint].iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+            let torques = signals.measured[joint].iter().chain(&signals.residual[joint]);
+            let least = LEAST * torques.fold(0.0_f64, |most, tau| most.max(tau.abs()));
             let least = least.max(f64::MIN_POSITIVE);
             let known = known(signals, joint, quiet.clone());
             let known: Vec<f64> = known.into_iter().map(|(_, number)| number).collect();
@@ -172,14 +173,14 @@ impl Baseline {
 
 /// The residual of a joint where friction leaves nothing open, with the samples.
 pub(crate) fn known(signals: &Signals, joint: usize, samples: Range<usize>) -> Vec<(usize, f64)> {
-    let (residual, open) = (&signals.residual[joint], &signals.open[joint]);
-    samples.filter(|&at| open[at] == 0.0).map(|at| (at, residual[at])).collect()
+    let (residual, creeps) = (&signals.residual[joint], &signals.creeps[joint]);
+    samples.filter(|&at| !creeps[at]).map(|at| (at, residual[at])).collect()
 }
 
 /// The residual of a joint, less its level, in the direction of motion: where it moves, with the samples.
 pub(crate) fn along_motion(signals: &Signals, joint: usize, mean: f64, samples: Range<usize>) -> Vec<(usize, f64)> {
     let (residual, direction) = (&signals.residual[joint], &signals.direction[joint]);
-    let moving = samples.filter(|&at| direction[at] != 0.0 && signals.open[joint][at] == 0.0);
+    let moving = samples.filter(|&at| direction[at] != 0.0 && !signals.creeps[joint][at]);
     moving.map(|at| (at, (residual[at] - mean) * direction[at])).collect()
 }
 

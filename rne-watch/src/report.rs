@@ -34,6 +34,10 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
     if let Some(&found) = lengths.iter().find(|&&length| length != dof) {
         return Err(WatchError::Joints { expected: dof, found });
     }
+    let levels = [&baseline.residual, &baseline.friction, &baseline.external];
+    if levels.into_iter().flatten().any(|level| !(level.deviation > 0.0 && level.mean.is_finite())) {
+        return Err(WatchError::Setting("the deviation of a level"));
+    }
     let held = samples_in(settings.hold, signals.period);
     #[allow(clippy::cast_precision_loss)] // samples of a hold
     let hold = held as f64 * signals.period;

@@ -20,6 +20,13 @@ const FEWEST: usize = 16;
 /// A joint creeps up to so many times the speed at which it is as good as at rest, or its friction changes its sign.
 const CREEPING: f64 = 5.0;
 
+/// rad/s or m/s: of a joint whose friction changes its sign over a displacement, up to `CREEPING` times that it may
+/// stick, however still it stands.
+const SLIPPING: f64 = 0.004;
+
+/// s: so long after a joint crept its residual tells nothing, for what was measured passed a filter.
+const SMEARED: f64 = 0.05;
+
 /// Less of what friction leaves open is nothing.
 const FORGOTTEN: f64 = 0.02;
 
@@ -45,6 +52,8 @@ pub struct Signals {
     /// What friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by anything
     /// between Coulomb's friction of both directions, whatever the file says of its speed.
     pub open: Vec<Vec<f64>>,
+    /// Whether a joint crept a moment ago, so that its residual tells nothing.
+    pub creeps: Vec<Vec<bool>>,
     /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
     pub settled: Vec<bool>,
 }
@@ -69,6 +78,8 @@ impl Signals {
         let (dof, samples) = (arm.dof(), motion.len());
         let lists = || vec![Vec::with_capacity(samples); dof];
         let (mut residual, mut direction, mut external, mut open) = (lists(), lists(), lists(), lists());
+        let mut creeps = vec![Vec::with_capacity(samples); dof];
+        let mut crept = vec![f64::NEG_INFINITY; dof];
         let mut settled = Vec::with_capacity(samples);
         let begun = || -> Vec<Friction> { robot.joints.iter().map(Friction::of).collect() };
         let mut frictions = begun();
@@ -104,10 +115,15 @@ impl Signals {
                 // what the observer has all but forgotten is over
                 let is_over = before < FORGOTTEN * robot.joints[joint].coulomb_span();
                 open[joint].push(if is_over { now } else { now.max(before) });
+                let time = motion.time[sample];
+                if now > 0.0 {
+                    crept[joint] = time;
+                }
+                creeps[joint].push(time - crept[joint] <= SMEARED);
             }
         }
         let (time, measured) = (motion.time.clone(), motion.tau.clone());
-        Ok(Self { time, period, measured, residual, direction, external, open, settled })
+        Ok(Self { time, period, measured, residual, direction, external, open, creeps, settled })
     }
 
     /// One sample of so many: what a picture needs of a long motion.
@@ -116,15 +132,18 @@ impl Signals {
         fn of<T: Clone>(list: &[T], stride: usize) -> Vec<T> {
             list.iter().step_by(stride.max(1)).cloned().collect()
         }
-        let each = |lists: &[Vec<f64>]| lists.iter().map(|list| of(list, stride)).collect();
+        fn each<T: Clone>(lists: &[Vec<T>], stride: usize) -> Vec<Vec<T>> {
+            lists.iter().map(|list| of(list, stride)).collect()
+        }
         Self {
             time: of(&self.time, stride),
             period: self.period,
-            measured: each(&self.measured),
-            residual: each(&self.residual),
-            direction: each(&self.direction),
-            external: each(&self.external),
-            open: each(&self.open),
+            measured: each(&self.measured, stride),
+            residual: each(&self.residual, stride),
+            direction: each(&self.direction, stride),
+            external: each(&self.external, stride),
+            open: each(&self.open, stride),
+            creeps: each(&self.creeps, stride),
             settled: of(&self.settled, stride),
         }
     }
@@ -133,6 +152,7 @@ impl Signals {
     pub fn append(&mut self, next: Self) {
         self.time.extend(next.time);
         self.settled.extend(next.settled);
+        self.creeps.iter_mut().zip(next.creeps).for_each(|(list, next)| list.extend(next));
         let lists = [
             (&mut self.measured, next.measured),
             (&mut self.residual, next.residual),
@@ -168,8 +188,8 @@ impl Signals {
 
 /// What friction leaves open at a speed.
 fn left_open(joint: &Joint, speed: f64, still: f64) -> f64 {
-    let creeping = CREEPING * joint.coulomb_width.unwrap_or(0.0).max(still);
-    if speed.abs() > creeping { 0.0 } else { joint.coulomb_span() }
+    let of_file = joint.coulomb_displacement.map(|_| SLIPPING).or(joint.coulomb_width).unwrap_or(0.0);
+    if speed.abs() > CREEPING * of_file.max(still) { 0.0 } else { joint.coulomb_span() }
 }
 
 /// The speed of each joint below which it is as good as at rest: a fiftieth of its usual largest, the 95th percentile.

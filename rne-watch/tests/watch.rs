@@ -2,7 +2,7 @@
 
 use fastrand::Rng;
 use rne_logs::Motion;
-use rne_model::{Motor, Reader, Robot};
+use rne_model::{Joint, Motor, Reader, Robot};
 use rne_runtime::DynArm;
 use rne_watch::{Baseline, Event, Report, Settings, Signals, Test, WatchError, svg, watch};
 
@@ -166,11 +166,21 @@ fn a_payload_that_is_taken_up_is_found() {
 /// some travel, the model at once. What is beyond that is still seen.
 #[test]
 fn a_joint_that_turns_back_is_no_event() {
+    turning_back(|joint| joint.coulomb_width = Some(0.01));
+}
+
+/// Where the file has a displacement, and a wrong one.
+#[test]
+fn a_joint_that_turns_back_over_a_displacement_is_no_event() {
+    turning_back(|joint| joint.coulomb_displacement = Some(1e-4));
+}
+
+fn turning_back(describe: fn(&mut Joint)) {
     let mut robot = shipped("planar2");
     let motor = Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.3, coulomb: [2.0, -2.0] };
     for joint in &mut robot.joints {
         joint.motor = Some(motor);
-        joint.coulomb_width = Some(0.01);
+        describe(joint);
     }
     // friction of a spring that slides: it lags behind the sign by two milliradians
     let lagging = |robot: &Robot| {
@@ -193,6 +203,7 @@ fn a_joint_that_turns_back_is_no_event() {
     let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
     let mut blind = signals.clone();
     blind.open = vec![vec![0.0; free.len()]; 2];
+    blind.creeps = vec![vec![false; free.len()]; 2];
     assert!(!watch(&blind, &baseline, &settings).expect("two joints").events.is_empty(), "nothing lags");
     assert_eq!(watch(&signals, &baseline, &settings).expect("two joints").events, []);
     let mut knocked = free;
@@ -283,6 +294,7 @@ fn false_alarms_are_as_rare_as_asked_for() {
         signals.time = (0..samples).map(|sample| f64::from(sample) / RATE).collect();
         signals.settled = vec![true; signals.time.len()];
         signals.open = vec![vec![0.0; signals.time.len()]; 2];
+        signals.creeps = vec![vec![false; signals.time.len()]; 2];
         // to and fro, twice in a second
         let direction = |sample: u32| if (sample / 63).is_multiple_of(2) { 1.0 } else { -1.0 };
         signals.direction = vec![(0..samples).map(direction).collect(); 2];
@@ -319,6 +331,38 @@ fn a_gap_is_no_event() {
     assert!(signals.settled[4999] && !signals.settled[5000] && !signals.settled[5005] && signals.settled[5020]);
     let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
     assert_eq!(watch(&signals, &baseline, &settings).expect("of the same robot").events, []);
+}
+
+/// What deviates by nothing has no threshold.
+#[test]
+fn levels_without_a_deviation_are_refused() {
+    let robot = shipped("planar2");
+    let settings = Settings::default();
+    let signals = Signals::new(&robot, &motion(&robot, 24, |_, _, _| {}), settings.gain).expect("a motion");
+    for wrong in [0.0, -1.0, f64::NAN] {
+        let baseline = Baseline::white(&[1.0, wrong], &[1.0, 1.0]);
+        let refused = baseline.clone().silent(&signals, &settings);
+        assert!(matches!(refused, Err(WatchError::Setting(_))), "{wrong}: {refused:?}");
+        assert!(watch(&signals, &baseline, &settings).is_err());
+    }
+}
+
+/// A slow observer blinds itself after a reversal, and nothing else.
+#[test]
+fn the_sums_see_what_a_slow_observer_does_not() {
+    let mut robot = shipped("planar2");
+    for joint in &mut robot.joints {
+        joint.motor = Some(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.3, coulomb: [2.0, -2.0] });
+        joint.coulomb_width = Some(0.01);
+    }
+    let signals = Signals::new(&robot, &motion(&robot, 25, |_, _, _| {}), 0.1).expect("a motion of the robot");
+    let share = |of: usize| {
+        let creeping = signals.creeps[of].iter().filter(|creeps| **creeps).count();
+        #[allow(clippy::cast_precision_loss)]
+        let share = creeping as f64 / signals.time.len() as f64;
+        share
+    };
+    assert!(share(0) > 0.0 && share(0) < 0.2 && share(1) < 0.2, "{} {}", share(0), share(1));
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! `rne watch`: what happens to an arm, and what does not.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use crate::call::{ROOT, fails, fine, folder, rne};
@@ -28,6 +29,71 @@ fn free_motion_has_no_event_and_a_knock_is_one() {
     assert!(reply["joints"][0]["error"].as_f64().is_some_and(|error| error < 0.02), "{reply}");
 }
 
+/// Two logs whose times begin at the same number: events of one are not those of the other.
+#[test]
+fn events_belong_to_their_run() {
+    let folder = folder("watch_runs");
+    let again = folder.join("again.csv");
+    fs::copy(format!("{ROOT}/{KNOCK}"), &again).expect("a copy");
+    let again = again.to_str().expect("UTF-8");
+    let reply = |arguments: &[&str]| -> serde_json::Value {
+        let called = rne(&[&["watch", ARM], arguments, &["--quiet", QUIET, "--json"]].concat());
+        assert_eq!(called.status, 1, "{}", called.err);
+        serde_json::from_str(&called.out).expect("JSON")
+    };
+    let events = |reply: &serde_json::Value, run: u64| -> Vec<serde_json::Value> {
+        let all = reply["events"].as_array().expect("a list").iter();
+        all.filter(|event| event["run"] == run).map(|event| event["peak"].clone()).collect()
+    };
+    let (one, two) = (reply(&[KNOCK]), reply(&[KNOCK, again]));
+    assert!(!events(&one, 1).is_empty());
+    assert_eq!(events(&two, 1), events(&one, 1));
+    assert_eq!(events(&two, 2), events(&one, 1));
+    let text = rne(&["watch", ARM, KNOCK, again, "--quiet", QUIET]).out;
+    assert!(text.contains("run 1: 9.") && text.contains("run 2: 9."), "{text}");
+}
+
+/// Pieces have no border in the account: a log that is longer than one, with a hand where they meet.
+#[test]
+fn a_long_log_is_one() {
+    let folder = folder("watch_long");
+    let (robot, log) = (folder.join("rod.yaml"), folder.join("long.csv"));
+    let file = r"
+format: 1
+name: rod
+source: own
+convention: standard
+gravity: [0, -9.81, 0]
+joints:
+  - type: revolute
+    dh: {theta: 0, d: 0, a: 0.5, alpha: 0}
+    link: {mass: 2, com: [-0.25, 0, 0], inertia: {zz: 0.05}}
+";
+    fs::write(&robot, file).expect("a file");
+    // 2 kg at 0.25 m; 0.05 + 2 (0.25)² kg m² about the hinge
+    let mut text = "time,q1,qd1,tau1\n".to_owned();
+    for state in 0..70_000_u32 {
+        let time = f64::from(state) * 0.002;
+        let (q, qd, qdd) = ((0.7 * time).sin(), 0.7 * (0.7 * time).cos(), -0.49 * (0.7 * time).sin());
+        let ripple = 0.02 * f64::from(state.wrapping_mul(2_654_435_761) >> 16) / 65_536.0;
+        // the piece ends at 131 s
+        let hand = if (130.8..131.4).contains(&time) { 1.0 } else { 0.0 };
+        let tau = 0.175 * qdd + 2.0 * 9.81 * 0.25 * q.cos() + ripple + hand;
+        writeln!(text, "{time:.3},{q:.6},{qd:.6},{tau:.5}").expect("a text grows");
+    }
+    fs::write(&log, text).expect("a file");
+    let path = |path: &std::path::Path| path.to_str().expect("UTF-8").to_owned();
+    let called = rne(&["watch", &path(&robot), &path(&log), "--json"]);
+    assert_eq!(called.status, 1, "{}", called.err);
+    let reply: serde_json::Value = serde_json::from_str(&called.out).expect("JSON");
+    let events = reply["events"].as_array().expect("a list");
+    let external: Vec<_> = events.iter().filter(|event| event["test"] == "external").collect();
+    assert_eq!(external.len(), 1, "{reply}");
+    let number = |key: &str| external[0][key].as_f64().expect("a number");
+    assert!((130.7..130.9).contains(&number("start")) && (131.3..131.6).contains(&number("end")), "{reply}");
+    assert!((number("peak") + 1.0).abs() < 0.15, "{reply}");
+}
+
 #[test]
 fn the_picture_has_the_events() {
     let folder = folder("watch_picture");
@@ -41,6 +107,18 @@ fn the_picture_has_the_events() {
     assert_eq!(rne(&["watch", ARM, KNOCK, "--plot", path]).status, 1);
     fails(2, &["watch", ARM, QUIET, "--plot", path], &["--force"]);
     assert_eq!(fs::read_to_string(&picture).expect("a picture"), svg);
+}
+
+/// A model that explains nothing is no quiet arm.
+#[test]
+fn another_arm_is_not_in_order() {
+    let folder = folder("watch_other");
+    let other = folder.join("other.yaml");
+    let file = fs::read_to_string(format!("{ROOT}/docs/desk_arm.yaml")).expect("a file");
+    fs::write(&other, file.replace("[0, 0, -9.81]", "[9.81, 0, 0]")).expect("a file");
+    let called = rne(&["watch", other.to_str().expect("UTF-8"), QUIET]);
+    assert_eq!(called.status, 1, "{}", called.out);
+    assert!(called.err.contains("warning") && called.err.contains("shoulder"), "{}", called.err);
 }
 
 #[test]
