@@ -1,6 +1,6 @@
 //! numpy's arrays as the arguments and results of the machine.
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -135,9 +135,12 @@ fn not_contiguous() -> PyErr {
 
 /// Whether it may be a column or a table of Polars or PyArrow.
 fn is_arrow(value: &Bound<'_, PyAny>) -> bool {
-    ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"]
-        .iter()
-        .any(|name| value.hasattr(name).unwrap_or(false))
+    // an attribute that an array lacks is looked for in vain at 0.4 us
+    let is_array = value.cast::<PyUntypedArray>().is_ok();
+    !is_array
+        && ["__arrow_c_stream__", "__arrow_c_array__", "collect_schema"]
+            .iter()
+            .any(|name| value.hasattr(name).unwrap_or(false))
 }
 
 /// What `rne.columns` sees of a column or a table; `None` of all else.
