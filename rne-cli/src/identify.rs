@@ -263,8 +263,8 @@ pub(crate) fn errors_table(
     let lines = columns(&align, &cells);
     let about = format!(
         "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
-         unfiltered: as the log is read, up to {:.1} Hz; left: by speed, too",
-        log.cutoff, log.read_to
+         unfiltered: efforts as the log has them; left: by speed, too",
+        log.cutoff
     );
     let about = wrap(&about, WIDTH, "");
     let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);

@@ -216,7 +216,7 @@ fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) ->
         if states == 0 {
             writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
         }
-        let Motion { time, q, qd, qdd, tau } = &piece.motion;
+        let Motion { time, q, qd, qdd, tau, .. } = &piece.motion;
         for (i, time) in time.iter().enumerate() {
             line.clear();
             let _ = write!(line, "{time}");

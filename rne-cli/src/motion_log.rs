@@ -186,6 +186,7 @@ fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
         qd: of(&motion.qd),
         qdd: of(&motion.qdd),
         tau: of(&motion.tau),
+        recorded: of(&motion.recorded),
     }
 }
 

@@ -194,7 +194,7 @@ fn plausible(structure: &Structure) -> DVector<f64> {
 pub(crate) fn states(motion: &Fourier, grid: &Grid) -> Motion {
     #[allow(clippy::cast_precision_loss)] // some hundreds
     let time = (0..grid.points()).map(|point| motion.period() * point as f64 / grid.points() as f64).collect();
-    let mut states = Motion { time, q: Vec::new(), qd: Vec::new(), qdd: Vec::new(), tau: Vec::new() };
+    let mut states = Motion { time, q: Vec::new(), qd: Vec::new(), qdd: Vec::new(), ..Motion::default() };
     for series in motion.joints() {
         let of_joint = series.on(grid, motion.period());
         states.q.push(of_joint.iter().map(|state| series.centre + state[0]).collect());

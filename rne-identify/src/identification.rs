@@ -99,7 +99,7 @@ impl JointReport {
     /// Whether the logs tell its torque from noise.
     #[must_use]
     pub fn is_excited(&self) -> bool {
-        self.error.unfiltered < NOISE
+        self.error.as_read < NOISE
     }
 }
 

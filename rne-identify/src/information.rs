@@ -108,6 +108,10 @@ pub(crate) fn checked(dof: usize, motion: &Motion) -> Result<(), MotionError> {
     if let Some(list) = lists.iter().find(|list| list.len() != dof) {
         return Err(MotionError::Joints { expected: dof, found: list.len() });
     }
+    if !motion.recorded.is_empty() && motion.recorded.len() != dof {
+        return Err(MotionError::Joints { expected: dof, found: motion.recorded.len() });
+    }
+    let lists = [&lists[..], &[&motion.recorded]].concat();
     let mut columns = lists.iter().flat_map(|list| list.iter());
     if columns.any(|column| column.len() != motion.len()) {
         return Err(MotionError::Lengths);

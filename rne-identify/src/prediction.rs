@@ -29,8 +29,11 @@ pub struct JointError {
     /// Root mean square of measured minus predicted, both behind the same low-pass, over the deviation of the measured
     /// effort: of the states about which the log has the whole kernel of the low-pass, unless it is shorter than that.
     pub error: f64,
-    /// The same at every instant, without the low-pass.
+    /// Root mean square of recorded minus predicted over the deviation of the recorded effort: at every instant, and
+    /// efforts as the log has them, before any filter.
     pub unfiltered: f64,
+    /// The same of efforts as the log is read, behind its own filter, which is wider than the low-pass.
+    pub as_read: f64,
     /// Root mean square of measured minus predicted behind the low-pass, N m or N.
     pub residual: f64,
     /// Deviation of the measured effort, N m or N.
@@ -44,12 +47,21 @@ pub struct JointError {
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     states: u64,
-    mean: f64,
-    squares: f64,
+    measured: Deviation,
+    recorded: Deviation,
     unfiltered: f64,
+    as_read: f64,
     inner: u64,
     filtered: f64,
     by_speed: [(u64, f64); 4],
+}
+
+/// Of numbers that pass by.
+#[derive(Clone, Copy, Debug, Default)]
+struct Deviation {
+    mean: f64,
+    /// Of differences from the mean.
+    squares: f64,
 }
 
 /// Measured and predicted torques behind the low-pass, by joint, and the speed.
@@ -121,10 +133,10 @@ impl Prediction {
         let predicted = self.torques(motion)?;
         let pairs = self.smoothed(motion, &predicted);
         let inner = self.inner(&motion.time);
+        let recorded = if motion.recorded.is_empty() { &motion.tau } else { &motion.recorded };
         for (joint, sums) in self.sums.iter_mut().enumerate() {
             for (at, (measured, of)) in pairs[joint].iter().enumerate() {
-                let tau = motion.tau[joint][at];
-                sums.take(tau, tau - predicted[joint][at]);
+                sums.take(motion.tau[joint][at], recorded[joint][at], predicted[joint][at]);
                 if inner.contains(&at) {
                     sums.take_filtered(measured - of, motion.qd[joint][at].abs());
                 }
@@ -166,14 +178,23 @@ pub fn prediction_errors<'a>(
     Ok(prediction.errors())
 }
 
-impl Sums {
+impl Deviation {
+    /// The number of so many, by B. P. Welford, Technometrics 4, 1962.
     #[allow(clippy::cast_precision_loss)] // fewer than 2⁵³ states
-    fn take(&mut self, tau: f64, unfiltered: f64) {
+    fn take(&mut self, number: f64, count: u64) {
+        let from = number - self.mean;
+        self.mean += from / count as f64;
+        self.squares += from * (number - self.mean);
+    }
+}
+
+impl Sums {
+    fn take(&mut self, tau: f64, recorded: f64, predicted: f64) {
         self.states += 1;
-        let from = tau - self.mean;
-        self.mean += from / self.states as f64;
-        self.squares += from * (tau - self.mean);
-        self.unfiltered += unfiltered * unfiltered;
+        self.measured.take(tau, self.states);
+        self.recorded.take(recorded, self.states);
+        self.unfiltered += (recorded - predicted).powi(2);
+        self.as_read += (tau - predicted).powi(2);
     }
 
     fn take_filtered(&mut self, filtered: f64, speed: f64) {
@@ -187,11 +208,12 @@ impl Sums {
     #[allow(clippy::cast_precision_loss)]
     fn error(&self) -> JointError {
         let root = |sum: f64, states: u64| (sum / states as f64).sqrt();
-        let deviation = root(self.squares, self.states);
+        let deviation = root(self.measured.squares, self.states);
         let residual = root(self.filtered, self.inner);
         JointError {
             error: residual / deviation,
-            unfiltered: root(self.unfiltered, self.states) / deviation,
+            unfiltered: root(self.unfiltered, self.states) / root(self.recorded.squares, self.states),
+            as_read: root(self.as_read, self.states) / deviation,
             residual,
             deviation,
             by_speed: self.by_speed.map(|(states, squares)| root(squares, states)),

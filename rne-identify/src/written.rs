@@ -102,7 +102,7 @@ fn of_link(identification: &Identification, report: &JointReport, joint: usize) 
     if report.is_excited() {
         format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
     } else {
-        format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.unfiltered)
+        format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.as_read)
     }
 }
 

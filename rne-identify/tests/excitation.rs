@@ -246,7 +246,7 @@ fn gaussian(rng: &mut Rng) -> f64 {
 fn log(robot: &Robot, motion: &Fourier, seconds: f64, rate: f64, rng: &mut Rng) -> Motion {
     let arm = DynArm::from_robot(robot);
     let empty = || vec![Vec::new(); robot.dof()];
-    let mut log = Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty() };
+    let mut log = Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty(), ..Motion::default() };
     for sample in 0_u32.. {
         let time = f64::from(sample) / rate;
         if time > seconds {

@@ -37,6 +37,7 @@ fn part(motion: &Motion, range: std::ops::Range<usize>) -> Motion {
         qd: of(&motion.qd),
         qdd: of(&motion.qdd),
         tau: of(&motion.tau),
+        recorded: of(&motion.recorded),
     }
 }
 

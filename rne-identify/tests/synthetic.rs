@@ -86,7 +86,7 @@ fn log(robot: &Robot, sines: &Sines, start: f64, count: usize, rate: f64, spoilt
     let arm = DynArm::from_robot(robot);
     let dof = robot.dof();
     let empty = || vec![Vec::with_capacity(count); dof];
-    let mut motion = Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty() };
+    let mut motion = Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty(), ..Motion::default() };
     for k in 0..count {
         let time = start + f64::from(u32::try_from(k).unwrap()) / rate;
         let [q, qd, qdd] = sines.at(time);
@@ -270,6 +270,7 @@ fn joined(parts: &[Motion]) -> Motion {
         qd: join(|part| &part.qd),
         qdd: join(|part| &part.qdd),
         tau: join(|part| &part.tau),
+        ..Motion::default()
     }
 }
 
@@ -399,6 +400,7 @@ fn motions_of_another_arm_are_refused() {
         qd: vec![vec![0.0]; 3],
         qdd: vec![vec![0.0]; 3],
         tau: vec![vec![0.0]; 3],
+        ..Motion::default()
     };
     let refused = |motion: &Motion| prediction_errors(&robot, [motion], None).unwrap_err();
     assert!(matches!(refused(&three), MotionError::Joints { expected: 2, found: 3 }));
@@ -408,14 +410,17 @@ fn motions_of_another_arm_are_refused() {
         qd: vec![vec![0.0]; 2],
         qdd: vec![vec![0.0]; 2],
         tau: vec![vec![0.0]; 2],
+        ..Motion::default()
     };
     assert!(matches!(refused(&two(f64::NAN)), MotionError::NotFinite(0)));
     let mut short = two(0.0);
     short.tau[1].clear();
     assert!(matches!(refused(&short), MotionError::Lengths));
+    let short = Motion { recorded: vec![vec![]; 2], ..two(0.0) };
+    assert!(matches!(refused(&short), MotionError::Lengths));
     // nothing is known of a log without states, and that is said
-    let empty =
-        Motion { time: vec![], q: vec![vec![]; 2], qd: vec![vec![]; 2], qdd: vec![vec![]; 2], tau: vec![vec![]; 2] };
+    let none = || vec![vec![]; 2];
+    let empty = Motion { q: none(), qd: none(), qdd: none(), tau: none(), ..Motion::default() };
     let found = identify(&robot, Options::default(), 1.0, |take| take(&empty)).unwrap();
     assert!(found.bases.iter().all(|base| !base.is_excited()));
 }

@@ -156,6 +156,7 @@ impl<'a> Motions<'a> {
         let qdd = each(Kernel::differentiate, &qd);
         let efforts = if layout.has_efforts { self.rows.len() - joints } else { self.rows.len() };
         let tau: Vec<Vec<f64>> = self.rows[efforts..].iter().map(smooth).collect();
+        let recorded = self.rows[efforts..].iter().map(|rows| rows[self.dropped..self.dropped + count].to_vec());
         let begin = self.log.seconds(self.begin);
         let time = |i: u64| begin + (self.first + self.dropped as u64 + i) as f64 * layout.step;
         let motion = Motion {
@@ -164,6 +165,7 @@ impl<'a> Motions<'a> {
             qd: qd.iter().map(inner).collect(),
             qdd: qdd.iter().map(inner).collect(),
             tau: tau.iter().map(inner).collect(),
+            recorded: recorded.collect(),
         };
         self.rows.iter_mut().for_each(|rows| drop(rows.drain(..count)));
         self.first += count as u64;

@@ -28,6 +28,7 @@
 //!     qdd: vec![still(0.0), still(0.0)],
 //!     tau: vec![ripple(weight[0]), ripple(weight[1])],
 //!     time,
+//!     ..Motion::default()
 //! };
 //! let settings = Settings::default();
 //! let signals = Signals::new(&robot, &motion, settings.gain)?;

@@ -32,7 +32,7 @@ fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64]))
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let samples = (RATE * SECONDS) as usize;
     let lists = || vec![Vec::with_capacity(samples); dof];
-    let mut motion = Motion { time: Vec::new(), q: lists(), qd: lists(), qdd: lists(), tau: lists() };
+    let mut motion = Motion { time: Vec::new(), q: lists(), qd: lists(), qdd: lists(), tau: lists(), ..Motion::default() };
     for sample in 0..samples {
         #[allow(clippy::cast_precision_loss)]
         let time = sample as f64 / RATE;
@@ -396,7 +396,7 @@ fn what_cannot_be_watched_is_said() {
             qd: vec![vec![]; 2],
             qdd: vec![vec![]; 2],
             tau: vec![vec![]; 2],
-            time: vec![]
+            ..Motion::default()
         }),
         WatchError::TooFew { found: 0, needed: 16 }
     );

@@ -42,7 +42,7 @@ fn filtered_extracts_are_those_of_numpy() {
             let mut last = 0.0;
             for line in text.lines().filter(|line| line.starts_with(&format!("{name},{}", u8::from(measured)))) {
                 let numbers: Vec<f64> = line.split(',').skip(2).map(|cell| cell.parse().unwrap()).collect();
-                let Motion { time, q, qd, qdd, tau } = motion;
+                let Motion { time, q, qd, qdd, tau, .. } = motion;
                 let i = time.iter().position(|time| (time - numbers[0]).abs() < 1e-6).unwrap();
                 let joint = numbers[1] as usize;
                 let found = [q[joint][i], qd[joint][i], qdd[joint][i], tau[joint][i]];

@@ -61,6 +61,12 @@ fn noise_above_the_cutoff_is_stopped() {
     for (q, tau) in motion.q[0].iter().zip(&motion.tau[0]) {
         assert!((q - 1.0).abs() < 0.05 * 1e-3 && tau.abs() < 5.0 * 1.1e-3, "{q} {tau}");
     }
+    // and is in what was recorded
+    assert_eq!(motion.recorded[0].len(), motion.len());
+    for (time, recorded) in motion.time.iter().zip(&motion.recorded[0]) {
+        let written = 5.0 * (2.0 * PI * 60.0 * time).sin();
+        assert!((recorded - written).abs() < 1e-6, "{time}: {recorded} {written}");
+    }
 }
 
 #[test]

@@ -68,6 +68,7 @@ pub(crate) fn runs(paths: &[PathBuf], options: Options, length: usize) -> Result
                     (&mut motion.qd, piece.motion.qd),
                     (&mut motion.qdd, piece.motion.qdd),
                     (&mut motion.tau, piece.motion.tau),
+                    (&mut motion.recorded, piece.motion.recorded),
                 ];
                 for (all, more) in lists {
                     all.iter_mut().zip(more).for_each(|(all, more)| all.extend(more));
