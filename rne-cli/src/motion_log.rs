@@ -4,7 +4,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_logs::{Log, LogError, Motion, Options, Survey};
+use rne_logs::{Log, LogError, Motion, Motions, Options, Survey};
 use rne_model::{Robot, one_line};
 
 use crate::outcome::Failure;
@@ -146,9 +146,28 @@ impl MotionLog {
         self.pass_runs(part, &mut |_, motion| take(motion))
     }
 
+    /// The same with the ends of runs, of which the filter sees one side alone.
+    pub(crate) fn pass_with_ends<E: Display>(
+        &self,
+        part: Part,
+        take: &mut dyn FnMut(&Motion) -> Result<(), E>,
+    ) -> Result<(), Failure> {
+        let motions = self.log.motions(&self.survey).map_err(failure)?.with_ends();
+        self.hand_on(motions, part, &mut |_, motion| take(motion))
+    }
+
     /// Hands the motions of a part to what takes them, each with the number of its run, from 0.
     pub(crate) fn pass_runs<E: Display>(
         &self,
+        part: Part,
+        take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
+    ) -> Result<(), Failure> {
+        self.hand_on(self.log.motions(&self.survey).map_err(failure)?, part, take)
+    }
+
+    fn hand_on<E: Display>(
+        &self,
+        motions: Motions<'_>,
         part: Part,
         take: &mut dyn FnMut(u64, &Motion) -> Result<(), E>,
     ) -> Result<(), Failure> {
@@ -159,7 +178,7 @@ impl MotionLog {
             // of runs that are not listed nothing is known: they are behind
             runs.get(run).map_or(f64::NEG_INFINITY, |run| run.start + edge * total - before)
         };
-        for piece in self.log.motions(&self.survey).map_err(failure)?.with_length(PIECE) {
+        for piece in motions.with_length(PIECE) {
             let piece = piece.map_err(failure)?;
             let run = usize::try_from(piece.run).unwrap_or(usize::MAX);
             let motion = match part {

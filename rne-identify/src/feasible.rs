@@ -127,7 +127,7 @@ impl Problem {
         for joint in 0..of_friction / FRICTION {
             let (row, column) = (rank + FRICTION * joint, inertial + of_rotors + FRICTION * joint);
             map[(row, column)] = 1.0;
-            // forward p and backward n: ½ (p + n) s + ½ (p - n) s²
+            // forward p and backward n: ½ (p + n) s + ½ (p - n)
             for (row, signs) in [(row + 1, [0.5, 0.5]), (row + 2, [0.5, -0.5])] {
                 map[(row, column + 1)] = signs[0];
                 map[(row, column + 2)] = signs[1];

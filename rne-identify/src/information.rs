@@ -419,8 +419,7 @@ pub(crate) fn plain_columns(
             for mut sign in walk.signs[joint].iter().copied() {
                 let states_of = q[joint].iter().zip(&qd[joint]);
                 let odd = DVector::from_iterator(states, states_of.map(|(q, qd)| sign.next(*q, *qd)));
-                let even = odd.map(|sign| sign * sign);
-                columns.extend([odd, even]);
+                columns.extend([odd, DVector::from_element(states, 1.0)]);
             }
         }
         DMatrix::from_columns(&columns)

@@ -56,7 +56,7 @@ pub struct Structure {
     pub(crate) felt: Vec<Vec<usize>>,
 }
 
-/// Unknowns of the friction of one joint: viscous, odd and even part of Coulomb friction.
+/// Unknowns of the friction of one joint: viscous, Coulomb's, and the offset.
 pub(crate) const FRICTION: usize = 3;
 
 impl Structure {
@@ -100,8 +100,8 @@ impl Structure {
         self.robot.dof()
     }
 
-    /// Columns of the rows of a joint: base parameters; viscous friction, then odd and even part of Coulomb friction
-    /// by each reversal; the torque's slope; the torque.
+    /// Columns of the rows of a joint: base parameters; viscous friction, then Coulomb's and the offset by
+    /// each reversal; the torque's slope; the torque.
     pub(crate) fn columns(&self, joint: usize) -> usize {
         self.felt[joint].len() + self.own_columns() + 1
     }

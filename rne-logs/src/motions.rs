@@ -19,7 +19,8 @@ pub struct Piece {
 }
 
 /// The runs of a log, filtered, in pieces that follow each other without a gap: joined they are the same numbers, bit
-/// for bit, as a run filtered at once. The ends of a run, where the filter would reach beyond it, are dropped.
+/// for bit, as a run filtered at once. The ends of a run, where the filter would reach beyond it, are dropped, unless
+/// they are [asked for](Motions::with_ends).
 ///
 /// Torques are filtered as positions and velocities are, so that both sides of the equations of motion see the same
 /// filter. Velocities are those of the log, filtered, where it has them: a controller measures them at a higher rate
@@ -34,7 +35,10 @@ pub struct Motions<'a> {
     /// How many runs have begun.
     begun: u64,
     grid: Option<Grid>,
-    /// Rows of the run by column, from the row `first` on.
+    /// Whether the ends are kept, and whether that of this run's beginning was made.
+    with_ends: bool,
+    has_begun: bool,
+    /// Rows of the run by column, of which `first` have been handed on: those that the filter still reaches stay.
     rows: Vec<Vec<f64>>,
     first: u64,
     /// ns, of the run's first row.
@@ -70,6 +74,8 @@ impl<'a> Motions<'a> {
             log,
             begun: 0,
             grid: None,
+            with_ends: false,
+            has_begun: false,
             rows: vec![Vec::new(); columns],
             first: 0,
             begin: 0,
@@ -90,6 +96,14 @@ impl<'a> Motions<'a> {
         self
     }
 
+    /// Keeps the ends of runs: beyond them a run goes on as the point reflection of itself in its last state, whose
+    /// slope is that of the run. A run that is shorter than what is made anew is left out.
+    #[must_use]
+    pub fn with_ends(mut self) -> Self {
+        self.with_ends = true;
+        self
+    }
+
     /// How much of the log was read, 0 to 1.
     #[must_use]
     pub fn progress(&self) -> f64 {
@@ -99,7 +113,7 @@ impl<'a> Motions<'a> {
     /// Reads until a piece is there or its run ends; whether it ended.
     fn fill(&mut self) -> Result<bool, LogError> {
         if let Some((time, numbers)) = self.next.take() {
-            (self.begin, self.first) = (time, 0);
+            (self.begin, self.first, self.has_begun) = (time, 0, false);
             self.begun += 1;
             let mut grid = Grid::new(self.log.layout.step * 1e9, time);
             grid.push(time, &numbers, &mut |row| append(&mut self.rows, row));
@@ -120,11 +134,44 @@ impl<'a> Motions<'a> {
                     }
                     self.next = other.map(|(state, _)| (state.time, state.numbers.clone()));
                     self.ended = self.next.is_none();
+                    if self.with_ends {
+                        self.begin_earlier();
+                        self.end_later();
+                    }
                     return Ok(true);
                 }
             }
         }
+        if self.with_ends {
+            self.begin_earlier();
+        }
         Ok(false)
+    }
+
+    /// Continues the run before its first row.
+    fn begin_earlier(&mut self) {
+        let more = self.dropped;
+        if self.has_begun || self.rows.first().is_none_or(|rows| rows.len() <= more) {
+            return;
+        }
+        for rows in &mut self.rows {
+            let reflected: Vec<f64> = (1..=more).rev().map(|k| 2.0 * rows[0] - rows[k]).collect();
+            rows.splice(..0, reflected);
+        }
+        self.has_begun = true;
+    }
+
+    /// Continues it behind its last one.
+    fn end_later(&mut self) {
+        if !self.has_begun {
+            return;
+        }
+        for rows in &mut self.rows {
+            let last = rows.len() - 1;
+            for k in 1..=self.dropped {
+                rows.push(2.0 * rows[last] - rows[last - k]);
+            }
+        }
     }
 
     /// The states whose neighbours are all there, at most a piece of them.
@@ -158,7 +205,8 @@ impl<'a> Motions<'a> {
         let tau: Vec<Vec<f64>> = self.rows[efforts..].iter().map(smooth).collect();
         let recorded = self.rows[efforts..].iter().map(|rows| rows[self.dropped..self.dropped + count].to_vec());
         let begin = self.log.seconds(self.begin);
-        let time = |i: u64| begin + (self.first + self.dropped as u64 + i) as f64 * layout.step;
+        let before = if self.has_begun { 0 } else { self.dropped as u64 };
+        let time = |i: u64| begin + (self.first + before + i) as f64 * layout.step;
         let motion = Motion {
             time: (0..count as u64).map(time).collect(),
             q: q.iter().map(inner).collect(),

@@ -1,10 +1,13 @@
 //! Friction of a joint: viscous, and Coulomb's, that changes its sign about a speed or over a displacement.
 //!
 //! ```text
-//! f_v q̇ + ½ (f⁺ + f⁻) s + ½ (f⁺ - f⁻) s²
+//! f_v q̇ + ½ (f⁺ + f⁻) s + ½ (f⁺ - f⁻)
 //! about a speed w:          s = q̇ / √(q̇² + w²)
 //! over a displacement ℓ:    ds = (sgn dq - s) |dq| / ℓ
 //! ```
+//!
+//! From -f⁻ to f⁺ it goes in proportion to s: half their difference is an offset, of a current or a sensor, that is there
+//! at rest, too. A sign that changes at once has no friction at rest.
 //!
 //! The second s remembers where the joint turned: bristles, teeth and belts give way before they slip, so that a joint
 //! that sticks or creeps has any friction between f⁺ and -f⁻. It is Dahl's model, of exponent one (P. R. Dahl, A solid
@@ -37,7 +40,7 @@ impl Reversal {
 /// The friction of a joint on its way from state to state.
 #[derive(Clone, Copy, Debug)]
 pub struct Friction {
-    /// N m s/rad, N m: at the joint; viscous, odd and even part of Coulomb friction.
+    /// N m s/rad, N m: at the joint; viscous, Coulomb's, offset.
     parts: [f64; 3],
     sign: ReversalSign,
 }
@@ -66,9 +69,10 @@ impl Friction {
 
     /// The friction at the next state, N m or N: a position and a speed.
     pub fn next(&mut self, position: f64, speed: f64) -> f64 {
-        let [viscous, odd, even] = self.parts;
+        let [viscous, coulomb, offset] = self.parts;
         let sign = self.sign.next(position, speed);
-        viscous * speed + odd * sign + even * sign * sign
+        let is_nowhere = speed == 0.0 && self.sign.reversal == Reversal::Width(0.0);
+        viscous * speed + coulomb * sign + if is_nowhere { 0.0 } else { offset }
     }
 }
 
@@ -131,6 +135,34 @@ mod tests {
             assert!((last - (1.0 - 2.0 * (-2.0_f64).exp())).abs() < 1e-9, "{last}");
         }
     }
+
+    /// Between its limits friction goes in proportion, and a sharp sign has none at rest.
+    #[test]
+    fn friction_is_between_its_limits() {
+        let mut joint = crate::Robot::from_yaml(ONE).unwrap().joints.remove(0);
+        for (speed, wanted) in [(-1e9, -1.0), (-0.3, 1.0 - 2.0 * 0.6), (0.0, 1.0), (0.3, 1.0 + 2.0 * 0.6), (1e9, 3.0)] {
+            assert!((Friction::of(&joint).next(0.0, speed) - wanted).abs() < 1e-12, "{speed}");
+        }
+        joint.coulomb_width = None;
+        for (speed, wanted) in [(-0.1, -1.0), (0.0, 0.0), (0.1, 3.0)] {
+            assert_eq!(Friction::of(&joint).next(0.0, speed), wanted);
+        }
+    }
+
+    /// Coulomb's 3 N m forward and 1 backward, about 0.4 rad/s.
+    const ONE: &str = "\
+format: 1
+name: one
+source: made for this test
+convention: standard
+gravity: [0, 0, -9.81]
+joints:
+  - name: a
+    type: revolute
+    dh: {theta: 0, d: 0, a: 0, alpha: 0}
+    link: {mass: 1}
+    motor: {coulomb: [3, -1], coulomb_width: 0.4}
+";
 
     #[test]
     fn what_stands_still_keeps_its_friction() {

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use rne_logs::{Cutoff, Options};
 
-use crate::written::{SINES, csv, file, runs, survey};
+use crate::written::{SINES, csv, file, runs, survey, whole_runs};
 
 fn times(count: u32, rate: f64) -> Vec<f64> {
     (0..count).map(|i| f64::from(i) / rate).collect()
@@ -113,6 +113,45 @@ fn pieces_joined_are_the_whole() {
     assert_eq!(whole.len(), 5);
     for length in [1, 7, 64, 500, 651] {
         assert_eq!(runs(std::slice::from_ref(&path), options.clone(), length).unwrap(), whole, "{length}");
+    }
+}
+
+/// With their ends runs have all their states: the inner ones as they were, and at the ends what the run's own point
+/// reflection makes of them: the last state itself, and its slope.
+#[test]
+fn ends_are_kept_where_they_are_asked_for() {
+    let rate = 100.0;
+    let mut stamps = times(800, rate);
+    // a run that is shorter than the filter, and another
+    stamps.extend((0..20).map(|i| 10.0 + f64::from(i) / rate));
+    stamps.extend((0..400).map(|i| 20.0 + f64::from(i) / rate));
+    let (_folder, path) = file("ends.csv", csv(&stamps));
+    let options = Options { cutoff: Some(8.0), ..Options::default() };
+    let inner = runs(std::slice::from_ref(&path), options.clone(), 100_000).unwrap();
+    let whole = whole_runs(std::slice::from_ref(&path), options.clone(), 100_000).unwrap();
+    assert_eq!(whole.iter().map(|(run, motion)| (*run, motion.len())).collect::<Vec<_>>(), [(0, 800), (2, 400)]);
+    for length in [1, 7, 64, 500, 799] {
+        assert_eq!(whole_runs(std::slice::from_ref(&path), options.clone(), length).unwrap(), whole, "{length}");
+    }
+    for ((_, inner), (_, whole)) in inner.iter().zip(&whole) {
+        let dropped = (whole.len() - inner.len()) / 2;
+        let same = dropped..whole.len() - dropped;
+        assert!((inner.time[0] - whole.time[dropped]).abs() < 1e-9);
+        assert_eq!((&inner.q[1], &inner.qdd[1]), (&whole.q[1][same.clone()].to_vec(), &whole.qdd[1][same].to_vec()));
+        for (joint, sine) in SINES.iter().enumerate() {
+            for at in [0, whole.len() - 1] {
+                let [q, qd, _] = sine.at(whole.time[at]);
+                let found = [whole.q[joint][at], whole.qd[joint][at], whole.tau[joint][at]];
+                for (found, wanted) in found.iter().zip([q, qd, 3.0 * q + 2.0]) {
+                    assert!((found - wanted).abs() < 1e-6, "joint {joint}, state {at}: {found} {wanted}");
+                }
+            }
+            // between the end and the inner ones the slope is near
+            let w = 2.0 * PI * sine.frequency;
+            for (time, qdd) in whole.time.iter().zip(&whole.qdd[joint]) {
+                assert!((qdd - sine.at(*time)[2]).abs() < 0.5 * sine.amplitude.abs() * w * w, "{time}: {qdd}");
+            }
+        }
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::PathBuf;
 
-use rne_logs::{Log, LogError, Motion, Options, Survey};
+use rne_logs::{Log, LogError, Motion, Motions, Options, Survey};
 use tempfile::TempDir;
 
 /// A file with this content, and the folder that goes with it.
@@ -57,8 +57,18 @@ pub(crate) fn survey(paths: &[PathBuf], options: Options) -> Result<(Log, Survey
 /// Every run, its pieces joined.
 pub(crate) fn runs(paths: &[PathBuf], options: Options, length: usize) -> Result<Vec<(u64, Motion)>, LogError> {
     let (log, survey) = survey(paths, options)?;
+    joined(log.motions(&survey)?.with_length(length))
+}
+
+/// The same with the ends of runs.
+pub(crate) fn whole_runs(paths: &[PathBuf], options: Options, length: usize) -> Result<Vec<(u64, Motion)>, LogError> {
+    let (log, survey) = survey(paths, options)?;
+    joined(log.motions(&survey)?.with_length(length).with_ends())
+}
+
+fn joined(pieces: Motions<'_>) -> Result<Vec<(u64, Motion)>, LogError> {
     let mut runs: Vec<(u64, Motion)> = Vec::new();
-    for piece in log.motions(&survey)?.with_length(length) {
+    for piece in pieces {
         let piece = piece?;
         match runs.last_mut() {
             Some((run, motion)) if *run == piece.run => {
