@@ -221,7 +221,7 @@ fn judged(robot: &Robot, log: &MotionLog, part: Part, unknown: &[bool], title: &
 /// How far the torques of a robot are from those of a part of a log, by joint.
 pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<Vec<JointError>, Failure> {
     let mut prediction = Prediction::new(robot, Some(log.cutoff));
-    log.pass_with_ends(part, &mut |motion| prediction.absorb(motion))?;
+    log.pass(part, &mut |motion| prediction.absorb(motion))?;
     Ok(prediction.errors())
 }
 

@@ -137,17 +137,9 @@ impl MotionLog {
         self.survey.run_count
     }
 
-    /// Hands the motions of a part to what takes them.
+    /// Hands the motions of a part to what takes them, to the ends of runs: of these the log's own filter sees one side
+    /// alone, but the low-pass reaches farther than it.
     pub(crate) fn pass<E: Display>(
-        &self,
-        part: Part,
-        take: &mut dyn FnMut(&Motion) -> Result<(), E>,
-    ) -> Result<(), Failure> {
-        self.pass_runs(part, &mut |_, motion| take(motion))
-    }
-
-    /// The same with the ends of runs, of which the filter sees one side alone.
-    pub(crate) fn pass_with_ends<E: Display>(
         &self,
         part: Part,
         take: &mut dyn FnMut(&Motion) -> Result<(), E>,
@@ -156,7 +148,7 @@ impl MotionLog {
         self.hand_on(motions, part, &mut |_, motion| take(motion))
     }
 
-    /// Hands the motions of a part to what takes them, each with the number of its run, from 0.
+    /// The same without the ends, each motion with the number of its run, from 0.
     pub(crate) fn pass_runs<E: Display>(
         &self,
         part: Part,

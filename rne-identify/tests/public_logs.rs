@@ -17,12 +17,12 @@ fn file(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/logs").join(name)
 }
 
-/// A log of one run, filtered.
+/// A log of one run, filtered, to its ends.
 fn motion(name: &str) -> Motion {
     let options = rne_logs::Options { cutoff: Some(WIDER * CUTOFF), ..rne_logs::Options::default() };
     let log = Log::open(&[file(name)], options).unwrap();
     let survey = log.survey(|_| ()).unwrap();
-    let mut pieces = log.motions(&survey).unwrap().with_length(1 << 20);
+    let mut pieces = log.motions(&survey).unwrap().with_length(1 << 20).with_ends();
     let motion = pieces.next().unwrap().unwrap().motion;
     assert!(pieces.next().is_none());
     motion
@@ -46,9 +46,8 @@ fn held_out(arm: &str) -> (Vec<JointError>, Vec<bool>) {
     let robot = std::fs::read_to_string(file(&format!("{arm}_log.yaml"))).unwrap();
     let robot = Robot::from_yaml(&robot).unwrap_or_else(|report| panic!("{report}"));
     let motion = motion(&format!("{arm}.csv"));
-    let whole = motion.time.len();
-    // of the log, whose ends the filter drops: as much at both
-    let until = motion.time.partition_point(|time| *time < PART * (motion.time[0] + motion.time[whole - 1]));
+    let whole = motion.len();
+    let until = motion.time.partition_point(|time| *time < PART * motion.time[whole - 1]);
     let mut options = Options::default();
     options.cutoff = Some(CUTOFF);
     let training = part(&motion, 0..until);
@@ -74,9 +73,11 @@ fn public_logs_are_predicted_better_than_by_a_textbook() {
         let filtered: Vec<f64> = errors.iter().map(|error| 100.0 * error.error).collect();
         let unfiltered: Vec<f64> = errors.iter().map(|error| 100.0 * error.unfiltered).collect();
         println!("{arm} error {filtered:.1?} unfiltered {unfiltered:.1?} excited {excited:?} baseline {baseline:?}");
-        for (joint, ((error, of), excited)) in filtered.iter().zip(baseline).zip(excited).enumerate() {
-            // the elbow of the UR10 is as good as the baseline, to half a percent of its effort
-            assert!(!excited || *error <= of + 0.5, "{arm}, joint {}: {error} {of}", joint + 1);
+        for joint in (0..baseline.len()).filter(|joint| excited[*joint]) {
+            let [error, raw, of] = [filtered[joint], unfiltered[joint], baseline[joint]];
+            assert!(error <= of, "{arm}, joint {}: {error} {of}", joint + 1);
+            // noise and all; the elbow of the UR10 and joint 5 of the Panda are somewhat worse
+            assert!(raw <= 1.1 * of, "{arm}, joint {}: {raw} {of}", joint + 1);
         }
         assert!(median(filtered) < 0.75 * median(baseline.to_vec()));
         assert!(median(unfiltered) < median(baseline.to_vec()));
