@@ -37,6 +37,7 @@ mod motion;
 mod motions;
 mod npy;
 mod npy_array;
+mod number;
 mod options;
 #[cfg(feature = "parquet")]
 mod parquet_table;
@@ -44,6 +45,7 @@ mod pass;
 mod sample;
 mod spectrum;
 mod spelling;
+mod spikes;
 #[cfg(feature = "rosbag")]
 mod sqlite_bag;
 mod survey;
@@ -58,5 +60,7 @@ pub use crate::motion::Motion;
 pub use crate::motions::{Motions, Piece};
 pub use crate::npy::Npy;
 pub use crate::options::{Angles, Options};
+pub use crate::pass::Unusable;
+pub use crate::spikes::Spike;
 pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::time_unit::TimeUnit;
