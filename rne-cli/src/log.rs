@@ -11,6 +11,7 @@ use rne_logs::{Angles, Cutoff, Log, LogError, Motion, Options, Survey, TimeUnit}
 
 use crate::input_file::is_standard_input;
 use crate::log_report::{self, Reply};
+use crate::motion_log::check_units;
 use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
@@ -61,9 +62,9 @@ pub(crate) struct Arguments {
     /// Take times of recording, not those of messages
     #[arg(long)]
     recorded: bool,
-    /// Of a table's times
-    #[arg(long, value_name = "UNIT", default_value = "s", value_parser = time_unit())]
-    time_unit: TimeUnit,
+    /// Of a table's times; s, unless their name says another
+    #[arg(long, value_name = "UNIT", value_parser = time_unit())]
+    time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times
     #[arg(long, value_name = "HZ")]
     rate: Option<f64>,
@@ -128,11 +129,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         check_new(path, None, &sources, arguments.force)?;
     }
     let log = Log::open(&arguments.files, options).map_err(|error| failure(&error))?;
+    if let Some(file) = &arguments.robot {
+        check_units(&robot_file::robot(file)?, log.layout())?;
+    }
     let bar = progress("read", is_result_shown);
     let survey = log.survey(|share| bar.set_position(thousandths(share)));
     bar.finish_and_clear();
     let survey = survey.map_err(|error| failure(&error))?;
-    let at_fault = survey.may_be_degrees(&log).is_some() || survey.cutoff == Cutoff::Unknown;
+    let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+    let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
         String::new()
     } else if arguments.json {

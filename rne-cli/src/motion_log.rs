@@ -4,8 +4,8 @@ use std::fmt::Display;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_logs::{Log, LogError, Motion, Options, Survey};
-use rne_model::{Robot, one_line};
+use rne_logs::{Dimension, JointUnits, Layout, Log, LogError, Motion, Options, Survey};
+use rne_model::{JointKind, Robot, one_line};
 
 use crate::outcome::Failure;
 use crate::terminal::TYPED;
@@ -96,6 +96,7 @@ impl MotionLog {
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
+        check_units(robot, log.layout())?;
         if !log.layout().has_efforts {
             return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
         }
@@ -207,6 +208,37 @@ fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<String>) -> Resul
         names.len(),
         shown.join(",")
     )))
+}
+
+/// Units that names of columns say are those of the robot's joints: what turns has no position in mm.
+pub(crate) fn check_units(robot: &Robot, layout: &Layout) -> Result<(), Failure> {
+    for ((joint, logged), units) in robot.joints.iter().zip(&layout.joints).zip(&layout.units) {
+        let JointUnits { position, velocity, effort, .. } = *units;
+        let kind = joint.row.kind;
+        let (motion, force) = match kind {
+            JointKind::Revolute => (Dimension::Angle, Dimension::Torque),
+            JointKind::Prismatic => (Dimension::Length, Dimension::Force),
+        };
+        let is_other =
+            |said: Option<Dimension>, own| said.is_some_and(|said| said != own && said != Dimension::Current);
+        let quantity = if is_other(position, motion) {
+            "positions"
+        } else if is_other(velocity, motion) {
+            "velocities"
+        } else if is_other(effort, force) {
+            "efforts"
+        } else {
+            continue;
+        };
+        let does = if kind == JointKind::Revolute { "turns" } else { "slides" };
+        return Err(Failure::usage(format_args!(
+            "the joint {} of the robot {does}, and by the names of the log's columns the {quantity} of its {} are not \
+             of one that does",
+            one_line(&joint.name),
+            one_line(logged)
+        )));
+    }
+    Ok(())
 }
 
 /// A log that cannot be read, or a request that it cannot serve.

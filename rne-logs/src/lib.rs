@@ -19,6 +19,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod column_checks;
+mod column_name;
 mod columns;
 mod csv_table;
 mod error;
@@ -30,6 +32,8 @@ mod guard;
 mod joint_state;
 mod joints;
 mod kernel;
+#[cfg(feature = "parquet")]
+mod list_columns;
 mod log;
 #[cfg(feature = "rosbag")]
 mod mcap_bag;
@@ -50,6 +54,7 @@ mod survey;
 mod time_unit;
 #[cfg(feature = "rosbag")]
 mod topic;
+mod unit;
 
 pub use crate::error::LogError;
 pub use crate::format::Format;
@@ -60,3 +65,4 @@ pub use crate::npy::Npy;
 pub use crate::options::{Angles, Options};
 pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::time_unit::TimeUnit;
+pub use crate::unit::{Dimension, JointUnits};
