@@ -37,6 +37,7 @@ mod list_columns;
 mod log;
 #[cfg(feature = "rosbag")]
 mod mcap_bag;
+mod median;
 mod motion;
 mod motions;
 mod npy;
@@ -59,6 +60,7 @@ mod unit;
 pub use crate::error::LogError;
 pub use crate::format::Format;
 pub use crate::log::{Layout, Log};
+pub use crate::median::median;
 pub use crate::motion::Motion;
 pub use crate::motions::{Motions, Piece};
 pub use crate::npy::Npy;

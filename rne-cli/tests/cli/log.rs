@@ -1,5 +1,6 @@
 //! `rne log`: what logs have, their motions, and what is wrong with them.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use crate::call::{fails, fine, folder, rne};
@@ -101,16 +102,16 @@ fn desk_log(path: &std::path::Path, order: [usize; 3], name: impl Fn(usize, usiz
     let mut written = String::from("time");
     for quantity in 0..3 {
         for joint in order {
-            written += &format!(",{}", name(quantity, joint));
+            let _ = write!(written, ",{}", name(quantity, joint));
         }
     }
     for line in text.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
-        written += &format!("\n{}", cells[0]);
+        let _ = write!(written, "\n{}", cells[0]);
         for (quantity, unit) in units.iter().enumerate() {
             for joint in order {
                 let number: f64 = cells[1 + 3 * quantity + joint].parse().expect("a number");
-                written += &format!(",{}", number / unit);
+                let _ = write!(written, ",{}", number / unit);
             }
         }
     }
