@@ -505,6 +505,29 @@ fn guides_name_what_is_there() {
 }
 
 /// The Rust files of the repository, from its root, whose text says one of these words.
+/// The rows of the crates stand in such an order that each uses only what stands above it.
+#[test]
+fn crates_use_what_stands_above_them() {
+    let guide = read(&root().join("ARCHITECTURE.md"));
+    let mut above: Vec<&str> = Vec::new();
+    for row in guide.lines().filter(|line| line.starts_with("| `")) {
+        let cells: Vec<&str> = row.split('`').collect();
+        let (folder, name) = (cells[1], cells[3]);
+        let manifest = root().join(if folder == "src/" { "" } else { folder }).join("Cargo.toml");
+        let Some(manifest) = std::fs::read_to_string(manifest).ok().filter(|_| name.starts_with("rne")) else {
+            continue;
+        };
+        let (_, dependencies) = manifest.split_once("\n[dependencies]\n").expect("dependencies");
+        let dependencies = dependencies.split("\n[").next().unwrap_or_default();
+        for line in dependencies.lines().filter(|line| line.starts_with("rne")) {
+            let used = line.split(['.', ' ', '=']).next().unwrap_or_default();
+            assert!(above.contains(&used), "ARCHITECTURE.md: {name} stands above {used}, which it uses");
+        }
+        above.push(name);
+    }
+    assert!(above.len() > 15 && above.contains(&"rne-cli"), "{above:?}");
+}
+
 fn files_that_say(words: &[&str]) -> Vec<String> {
     let mut sources = Vec::new();
     files_below(root(), ".rs", &mut sources);

@@ -64,12 +64,18 @@ def test_memory_is_that_of_the_columns():
     polars, pyarrow = pytest.importorskip("polars"), pytest.importorskip("pyarrow")
     lists = polars.Series(q, dtype=polars.Array(polars.Float64, 6))
     assert addresses(views(lists, 6, "q")) == [lists.to_arrow().flatten().buffers()[1].address]
+    lists = polars.Series(q.tolist(), dtype=polars.List(polars.Float64))
+    start = lists.to_arrow().flatten().buffers()[1].address
+    assert addresses(views(lists, 6, "q")) == [start]
+    assert addresses(views(lists[3:], 6, "q")) == [start + 3 * 48]
     table = polars.DataFrame({f"q{joint}": q[:, joint] for joint in range(6)})
     assert addresses(views(table, 6, "q")) == [c.to_arrow().buffers()[1].address for c in table.get_columns()]
     numbers = pyarrow.array(q.ravel())
     lists = pyarrow.FixedSizeListArray.from_arrays(numbers, 6)
     assert addresses(views(lists, 6, "q")) == [numbers.buffers()[1].address]
     assert addresses(views(lists.slice(3), 6, "q")) == [numbers.buffers()[1].address + 3 * 48]
+    lists = pyarrow.array(q.tolist())
+    assert addresses(views(lists, 6, "q")) == [lists.values.buffers()[1].address]
 
 
 def test_what_is_refused():

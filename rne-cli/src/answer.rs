@@ -108,8 +108,7 @@ pub(crate) fn list(values: &[f64; 3]) -> String {
 
 const fn unit(kind: JointKind, acceleration: bool) -> &'static str {
     match (kind, acceleration) {
-        (JointKind::Revolute, false) => "N m",
-        (JointKind::Prismatic, false) => "N",
+        (kind, false) => kind.effort_unit(),
         (JointKind::Revolute, true) => "rad/s²",
         (JointKind::Prismatic, true) => "m/s²",
     }

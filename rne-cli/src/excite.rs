@@ -10,7 +10,7 @@ use rne_identify::{
     AskedLimits, Excitation, ExcitationError, ExcitationOptions, ExcitationProgress, Fourier, JointUse, MotionLimits,
     excite,
 };
-use rne_model::{JointKind, Robot, one_line};
+use rne_model::{Robot, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
 use crate::layout::{Align, push_table, shortened, wrap};
@@ -239,7 +239,7 @@ fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
     let percent = |used: f64, limit: f64| format!("{:.0} %", 100.0 * used / limit);
     for (joint, used) in robot.joints.iter().zip(&found.joints) {
         let JointUse { limits, start, extent, effort, .. } = used;
-        let unit = if joint.row.kind == JointKind::Revolute { "rad" } else { "m" };
+        let unit = joint.row.kind.position_unit();
         let (lower, upper) = limits.position;
         cells.push([
             format!("  {}", shortened(&one_line(&joint.name), 14)),
@@ -300,7 +300,7 @@ fn picture(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
         .collect();
     let positions: Vec<Vec<f64>> = (0..robot.dof()).map(|joint| states.iter().map(|q| q[joint]).collect()).collect();
     let of_joint = robot.joints.iter().zip(&found.joints).zip(&positions).map(|((joint, used), values)| Panel {
-        title: format!("{}, {}", joint.name, if joint.row.kind == JointKind::Revolute { "rad" } else { "m" }),
+        title: format!("{}, {}", joint.name, joint.row.kind.position_unit()),
         note: format!("starts at {}", rounded(used.start, 3)),
         curves: vec![PanelCurve { name: "position", values }],
         limits: vec![used.limits.position.0, used.limits.position.1],

@@ -7,7 +7,7 @@ use clap::Args;
 use rne_identify::{
     Identification, JointError, MotionError, Options, Prediction, SPEEDS, identify, not_excited, written,
 };
-use rne_logs::Motion;
+use rne_logs::{Motion, median};
 use rne_model::{JointKind, Reversal, Robot, one_line};
 use rne_plot::comparison_svg;
 
@@ -249,7 +249,7 @@ fn friction(text: &mut String, found: &Identification) {
 
 /// The speed or the displacement in which friction changes its sign.
 fn turns(reversal: Reversal, kind: JointKind) -> String {
-    let unit = if kind == JointKind::Revolute { "rad" } else { "m" };
+    let unit = kind.position_unit();
     match reversal {
         Reversal::Width(width) => format!("{width} {unit}/s"),
         Reversal::Displacement(length) => format!("{length} {unit}"),
@@ -298,7 +298,7 @@ pub(crate) fn errors_table(
     };
     let (mut filtered, mut unfiltered) = (Vec::new(), Vec::new());
     for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
-        let unit = if joint.row.kind == JointKind::Revolute { "N m" } else { "N" };
+        let unit = joint.row.kind.effort_unit();
         let mut line = vec![
             format!("  {}", shortened(&one_line(&joint.name), 14)),
             percent(error.error),
@@ -337,13 +337,6 @@ pub(crate) fn errors_table(
         let _ = writeln!(text, "{marked}");
     }
     text
-}
-
-/// Of one number at least.
-fn median(mut of: Vec<f64>) -> f64 {
-    of.sort_by(f64::total_cmp);
-    let middle = of.len() / 2;
-    if of.len().is_multiple_of(2) { 0.5 * (of[middle - 1] + of[middle]) } else { of[middle] }
 }
 
 /// Draws a part of the log.

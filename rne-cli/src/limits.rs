@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_model::{JointKind, Robot};
+use rne_model::Robot;
 
 use crate::numbers::exact;
 
@@ -17,10 +17,7 @@ pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
         if lower - rounding <= q && q <= upper + rounding {
             continue;
         }
-        let unit = match joint.row.kind {
-            JointKind::Revolute => "rad",
-            JointKind::Prismatic => "m",
-        };
+        let unit = joint.row.kind.position_unit();
         let [q, lower, upper] = [q, lower, upper].map(shown);
         let _ = writeln!(
             text,

@@ -11,6 +11,7 @@ use rne_logs::{Cutoff, Log, LogError, Motion, Options, Survey};
 use crate::input_file::is_standard_input;
 use crate::log_arguments::{LogArguments, failure};
 use crate::log_report::{self, Reply};
+use crate::motion_log::check_units;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::robot_file;
@@ -69,11 +70,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         check_new(path, None, &sources, arguments.force)?;
     }
     let log = Log::open(&arguments.files, options).map_err(|error| failure(&error))?;
+    if let Some(file) = &arguments.robot {
+        check_units(&robot_file::robot(file)?, log.layout())?;
+    }
     let bar = progress("read", is_result_shown);
     let survey = log.survey(|share| bar.set_position(thousandths(share)));
     bar.finish_and_clear();
     let survey = survey.map_err(|error| failure(&error))?;
-    let at_fault = survey.may_be_degrees(&log).is_some() || survey.cutoff == Cutoff::Unknown;
+    let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+    let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
         String::new()
     } else if arguments.json {

@@ -247,7 +247,14 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let mut notes = notes_of_motion(log, survey);
     if !layout.has_efforts {
         notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
-    } else if !log.has_torque_constants() {
+    } else if let Some(joint) = log.unsaid_currents() {
+        let what = format!(
+            "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
+             torques of them",
+            layout.joints[joint]
+        );
+        notes.push((what, true));
+    } else if !log.has_torque_constants() && layout.units.iter().any(|units| units.effort.is_none()) {
         let what =
             "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
         notes.push((what.to_owned(), false));

@@ -4,8 +4,8 @@ use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
 use rne_identify::reach;
-use rne_logs::{Log, LogError, Motion, Motions, Options, Survey};
-use rne_model::{Robot, one_line};
+use rne_logs::{Dimension, JointUnits, Layout, Log, LogError, Motion, Motions, Options, Survey};
+use rne_model::{JointKind, Robot, one_line};
 
 use crate::layout::wrap;
 use crate::log_arguments::{self, LogArguments};
@@ -75,6 +75,7 @@ impl MotionLog {
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
         check_efforts(&log)?;
+        check_units(robot, log.layout())?;
         let survey = log.survey(|_| ()).map_err(failure)?;
         if let (true, Err(error)) = (survey.may_be_degrees(&log).is_some(), log.motions(&survey)) {
             return Err(failure(error));
@@ -281,4 +282,35 @@ fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) 
         names.len(),
         shown.join(",")
     )))
+}
+
+/// Units that names of columns say are those of the robot's joints: what turns has no position in mm.
+pub(crate) fn check_units(robot: &Robot, layout: &Layout) -> Result<(), Failure> {
+    for ((joint, logged), units) in robot.joints.iter().zip(&layout.joints).zip(&layout.units) {
+        let JointUnits { position, velocity, effort, .. } = *units;
+        let kind = joint.row.kind;
+        let (motion, force) = match kind {
+            JointKind::Revolute => (Dimension::Angle, Dimension::Torque),
+            JointKind::Prismatic => (Dimension::Length, Dimension::Force),
+        };
+        let is_other =
+            |said: Option<Dimension>, own| said.is_some_and(|said| said != own && said != Dimension::Current);
+        let quantity = if is_other(position, motion) {
+            "positions"
+        } else if is_other(velocity, motion) {
+            "velocities"
+        } else if is_other(effort, force) {
+            "efforts"
+        } else {
+            continue;
+        };
+        let does = if kind == JointKind::Revolute { "turns" } else { "slides" };
+        return Err(Failure::usage(format_args!(
+            "the joint {} of the robot {does}, and by the names of the log's columns the {quantity} of its {} are not \
+             of one that does",
+            one_line(&joint.name),
+            one_line(logged)
+        )));
+    }
+    Ok(())
 }

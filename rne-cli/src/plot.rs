@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_model::{JointKind, Robot};
+use rne_model::Robot;
 use rne_plot::{TorqueHistory, Trajectory, svg};
 
 use crate::arm::{ChosenArm, Setting};
@@ -146,7 +146,7 @@ fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), 
 fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
     let mut cells = vec![["  joint", "peak", "", "at", "velocity terms"].map(str::to_owned)];
     for (joint, peak) in robot.joints.iter().zip(&history.peaks) {
-        let unit = if joint.row.kind == JointKind::Revolute { "N m" } else { "N" };
+        let unit = joint.row.kind.effort_unit();
         cells.push([
             format!("  {}", joint.name),
             rounded(peak.tau, 3),

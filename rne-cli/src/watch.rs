@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use rne_identify::not_excited;
-use rne_model::{JointKind, Robot, one_line};
+use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
 use serde::Serialize;
 
@@ -246,13 +246,6 @@ impl Watched {
 /// s: events that are closer are one, such as those on both sides of the border of two pieces.
 const JOINED: f64 = 0.25;
 
-const fn unit(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "N m",
-        JointKind::Prismatic => "N",
-    }
-}
-
 fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> String {
     if events.is_empty() {
         return format!("\n{GOOD}no events{GOOD:#}\n");
@@ -266,7 +259,7 @@ fn events_table(robot: &Robot, events: &[(u64, Event)], has_runs: bool) -> Strin
             shortened(&one_line(&joint.name), 20),
             event.test.name().to_owned(),
             rounded(event.peak, 3),
-            unit(joint.row.kind).to_owned(),
+            joint.row.kind.effort_unit().to_owned(),
             event.test.meaning().to_owned(),
         ]);
     }
@@ -326,7 +319,7 @@ impl Reply {
             name: robot.joints[event.joint].name.clone(),
             test: event.test.name(),
             peak: event.peak,
-            unit: unit(robot.joints[event.joint].row.kind),
+            unit: robot.joints[event.joint].row.kind.effort_unit(),
         };
         let of_joint = |(at, error): (usize, &rne_identify::JointError)| OfJoint {
             joint: at + 1,

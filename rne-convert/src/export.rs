@@ -3,7 +3,7 @@
 use std::error::Error;
 use std::fmt::{self, Write as _};
 
-use rne_model::{Motor, Robot, one_line};
+use rne_model::{Joint, Motor, Robot, one_line};
 
 use crate::body::Body;
 use crate::chain::ChainJoint;
@@ -112,6 +112,15 @@ fn of_motors(robot: &Robot) -> Vec<String> {
     if let Some(names) = named(|motor| motor.coulomb[0] != -motor.coulomb[1]) {
         remarks.push(format!(
             "Coulomb friction that differs with the direction is written as its mean, for a URDF has one: {names}"
+        ));
+    }
+    let has_reversal = |joint: &&Joint| joint.coulomb_width.is_some() || joint.coulomb_displacement.is_some();
+    let reversals: Vec<String> = robot.joints.iter().filter(has_reversal).map(|joint| one_line(&joint.name)).collect();
+    if !reversals.is_empty() {
+        remarks.push(format!(
+            "how Coulomb friction changes its sign, `coulomb_width` and `coulomb_displacement`, is left out, for in a \
+             URDF it jumps: {}",
+            reversals.join(", ")
         ));
     }
     if let Some(names) = named(|motor| Friction::at_joint(motor).is_none()) {

@@ -464,6 +464,14 @@ fn friction_goes_through_the_gear_to_the_joint() {
     assert_eq!(direct.remarks, [""; 0]);
     let back = plain(&direct.text).robot.joints[0].motor.expect("friction");
     assert_eq!((back.viscous, back.coulomb, back.gear_ratio, back.inertia), (0.1, [0.3, -0.3], 1.0, 0.0));
+    for key in ["coulomb_width: 0.02", "coulomb_displacement: 0.003"] {
+        let smooth = exported(&format!("{{coulomb: [0.3, -0.3], {key}}}"));
+        assert!(
+            smooth.remarks[0].contains("changes its sign") && smooth.remarks[0].ends_with(": joint1"),
+            "{smooth:?}"
+        );
+        assert!(smooth.remarks.len() == 1 && smooth.text.contains("<!-- how Coulomb friction"), "{}", smooth.text);
+    }
     let rotor = exported("{inertia: 1e-4, gear_ratio: 50}");
     assert!(!rotor.text.contains("dynamics") && rotor.remarks.len() == 1, "{rotor:?}");
     let huge = exported("{inertia: 1e-4, gear_ratio: 1e160, viscous: 1}");

@@ -214,6 +214,16 @@ pub struct OnePass {
 }
 
 impl OnePass {
+    /// Whether the rows tell the friction of a joint: of the two deviations of its Coulomb friction the lesser one is
+    /// below half of its efforts, root mean square. Viscous friction is told by the same rows: in its own unit it has
+    /// no effort to be held against.
+    #[must_use]
+    pub fn is_friction_excited(&self, joint: usize) -> bool {
+        let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
+        let least = deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation));
+        self.efforts.get(joint).is_some_and(|effort| least < UNKNOWN * effort)
+    }
+
     /// Of what was gathered. `pull` is γ of [`Feasible`].
     #[must_use]
     pub fn new(structure: &Structure, information: &Information, pull: f64) -> Self {

@@ -98,7 +98,7 @@ fn head(identification: &Identification) -> String {
 }
 
 fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
-    let unit = unit(identification.robot.joints[joint].row.kind);
+    let unit = identification.robot.joints[joint].row.kind.effort_unit();
     if report.is_excited() {
         format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
     } else if report.error.as_read < 10.0 {
@@ -113,20 +113,13 @@ fn of_motor(report: &JointReport, kind: JointKind) -> Option<String> {
     if !report.is_friction_excited() {
         return Some("friction not excited".to_owned());
     }
-    let unit = unit(kind);
+    let unit = kind.effort_unit();
     Some(format!(
         "deviations at the joint: viscous {}, Coulomb {} and {} {unit}",
         short(viscous.1),
         short(forward.1),
         short(backward.1)
     ))
-}
-
-fn unit(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "N m",
-        JointKind::Prismatic => "N",
-    }
 }
 
 /// Four digits.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use rne_identify::{JointError, MotionError, Options, Prediction, identify};
-use rne_logs::{Log, Motion};
+use rne_logs::{Log, Motion, median};
 use rne_model::Robot;
 
 /// Hz: both sides of the equations, and the log's own filter, as `rne identify` chooses them.
@@ -55,11 +55,6 @@ fn held_out(arm: &str) -> (Vec<JointError>, Vec<bool>) {
     let mut prediction = Prediction::new(&found.robot, Some(CUTOFF));
     prediction.absorb(&part(&motion, until..whole)).unwrap();
     (prediction.errors(), found.joints.iter().map(rne_identify::JointReport::is_excited).collect())
-}
-
-fn median(mut of: Vec<f64>) -> f64 {
-    of.sort_by(f64::total_cmp);
-    0.5 * (of[(of.len() - 1) / 2] + of[of.len() / 2])
 }
 
 /// What `logs/baseline.py` prints, in percent.

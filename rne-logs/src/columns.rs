@@ -1,168 +1,255 @@
-//! What the columns of a table are, by their names.
+//! The columns of a table that are read, by their names.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::LogError;
+use crate::column_name::{Meaning, Named, Quantity, meaning, time};
 use crate::spelling::listed;
+use crate::unit::{Dimension, FileUnits, JointUnits, Unit};
+use crate::{LogError, Options, TimeUnit};
 
-/// What a column has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quantity {
-    Position,
-    Velocity,
-    Effort,
+/// A column of numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Column {
+    /// Where it stands in a row.
+    pub(crate) place: usize,
+    /// What its numbers are multiplied by, of a unit that its name says.
+    pub(crate) factor: f64,
 }
-
-/// The words by which columns are known: at the end of a name or at its beginning, and before the number of a joint.
-const WORDS: [(Quantity, &[&str]); 3] = [
-    (Quantity::Position, &["q", "position", "positions", "pos", "angle", "angles"]),
-    (Quantity::Velocity, &["qd", "dq", "velocity", "velocities", "vel", "speed"]),
-    (Quantity::Effort, &["tau", "effort", "efforts", "torque", "torques", "current", "currents"]),
-];
-
-const TIMES: [&str; 8] = ["time", "t", "timestamp", "stamp", "__time", "time_s", "seconds", "time_from_start"];
 
 /// The columns of a table that are read, by their places.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Columns {
-    pub(crate) time: Option<usize>,
-    /// Joints that have a position, in the order of these columns.
+    /// The place, and the unit that the name says.
+    pub(crate) time: Option<(usize, Option<TimeUnit>)>,
+    /// Joints that have a position: those with numbers by them, then the others in the order of their columns.
     pub(crate) names: Vec<String>,
-    pub(crate) position: Vec<usize>,
+    pub(crate) position: Vec<Column>,
     /// By joint; empty where no joint has one.
-    pub(crate) velocity: Vec<Option<usize>>,
-    pub(crate) effort: Vec<Option<usize>>,
+    pub(crate) velocity: Vec<Option<Column>>,
+    pub(crate) effort: Vec<Option<Column>>,
+    pub(crate) units: FileUnits,
     /// Remarks for the reader of a survey.
     pub(crate) notes: Vec<String>,
 }
 
 impl Columns {
-    /// Finds out what columns are. With `prefix` those alone are joints' that begin with it.
-    pub(crate) fn of(path: &Path, header: &[String], prefix: Option<&str>) -> Result<Self, LogError> {
-        let mut columns = Self::default();
-        let mut velocity = Vec::new();
-        let mut effort = Vec::new();
-        let mut currents = false;
-        for (place, name) in header.iter().enumerate() {
+    /// Finds out what columns are. With a prefix, the options' topic, those alone are joints' that begin with it.
+    pub(crate) fn of(path: &Path, header: &[String], options: &Options) -> Result<Self, LogError> {
+        let named = Header::read(path, header, options)?;
+        let [positions, velocities, efforts] =
+            [Quantity::Position, Quantity::Velocity, Quantity::Effort].map(|quantity| named.of(quantity));
+        if positions.is_empty() {
+            return Err(named.without_positions());
+        }
+        let efforts = torques_or_currents(&efforts, !options.torque_constants.is_empty());
+        for found in [&positions, &velocities, &efforts] {
+            named.check_once(found)?;
+        }
+        named.check_numbers(&positions, &[&velocities, &efforts], options)?;
+        named.check_units(&positions, &velocities, &efforts, options)?;
+        let mut joints = positions;
+        joints.sort_by_key(|found| found.named.number.unwrap_or(u32::MAX));
+        let mut columns = Self {
+            time: named.time(options)?,
+            names: joints.iter().map(|found| found.named.joint.clone()).collect(),
+            position: joints.iter().map(|found| found.column()).collect(),
+            notes: named.notes(&joints, &velocities, &efforts),
+            ..Self::default()
+        };
+        let of_joint = |found: &[&Found], joint: &String| -> Option<Found> {
+            found.iter().find(|found| found.named.joint == *joint).map(|found| (*found).clone())
+        };
+        for (joint, position) in columns.names.iter().zip(&joints) {
+            let [velocity, effort] = [&velocities, &efforts].map(|found| of_joint(found, joint));
+            let dimension = |found: &Option<Found>| found.as_ref().and_then(Found::dimension);
+            let units = JointUnits {
+                position: position.dimension(),
+                velocity: dimension(&velocity),
+                effort: dimension(&effort),
+            };
+            columns.units.joints.push((joint.clone(), units));
+            columns.velocity.push(velocity.as_ref().map(Found::column));
+            columns.effort.push(effort.as_ref().map(Found::column));
+        }
+        for list in [&mut columns.velocity, &mut columns.effort] {
+            if list.iter().all(Option::is_none) {
+                list.clear();
+            }
+        }
+        Ok(columns)
+    }
+}
+
+/// Of joints that have both, currents where the options have torque constants, else torques.
+fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'f Found> {
+    let is_current = |found: &Found| found.dimension() == Some(Dimension::Current);
+    let has_other = |found: &Found| {
+        efforts.iter().any(|other| other.named.joint == found.named.joint && is_current(other) != is_current(found))
+    };
+    let is_meant = |found: &&&Found| !has_other(found) || is_current(found) == has_constants;
+    efforts.iter().filter(is_meant).copied().collect()
+}
+
+/// A column of a joint, and where it stands.
+#[derive(Clone, Debug)]
+pub(crate) struct Found {
+    pub(crate) named: Named,
+    pub(crate) place: usize,
+}
+
+impl Found {
+    fn column(&self) -> Column {
+        Column { place: self.place, factor: self.named.unit.map_or(1.0, |unit| unit.factor) }
+    }
+
+    /// What its name says that its numbers are.
+    pub(crate) fn dimension(&self) -> Option<Dimension> {
+        let of_word = self.named.is_current.then_some(Dimension::Current);
+        self.named.unit.map(|unit| unit.dimension).or(of_word)
+    }
+}
+
+/// A header, each name understood.
+pub(crate) struct Header<'a> {
+    pub(crate) path: &'a Path,
+    names: &'a [String],
+    prefix: Option<&'a str>,
+    found: Vec<Found>,
+    times: Vec<(usize, Option<TimeUnit>)>,
+    /// Columns like those of joints.
+    unread: Vec<usize>,
+}
+
+impl<'a> Header<'a> {
+    fn read(path: &'a Path, names: &'a [String], options: &'a Options) -> Result<Self, LogError> {
+        let prefix = options.topic.as_deref();
+        let mut header = Self { path, names, prefix, found: Vec::new(), times: Vec::new(), unread: Vec::new() };
+        for (place, name) in names.iter().enumerate() {
             let inner = match prefix {
                 Some(prefix) => name.trim_start_matches('/').strip_prefix(prefix.trim_matches('/')),
                 None => Some(name.as_str()),
             };
-            if is_time(name) || inner.is_some_and(is_time) {
-                columns.time = columns.time.or(Some(place));
+            if let Some(unit) = time(name).or_else(|| inner.and_then(time)) {
+                let unit = unit.map_err(|text| {
+                    let what = format!("the column {name} has times in {text}, which is none of s, ms, us, ns");
+                    LogError::file(path, what)
+                })?;
+                header.times.push((place, unit));
                 continue;
             }
-            let Some((quantity, word, joint)) = inner.and_then(meaning) else { continue };
-            match quantity {
-                Quantity::Position => {
-                    if let Some(other) = columns.names.iter().position(|name| *name == joint) {
-                        let other = &header[columns.position[other]];
-                        let what = format!(
-                            "the columns {other} and {name} are both positions of {joint}; say how the names of those \
-                             that are meant begin, as in --topic actual"
-                        );
-                        return Err(LogError::request(path, what));
-                    }
-                    columns.names.push(joint);
-                    columns.position.push(place);
+            match inner.map_or(Meaning::Nothing, meaning) {
+                Meaning::Joint(named) => header.found.push(Found { named, place }),
+                Meaning::Unknown { quantity, unit } => {
+                    let what = format!(
+                        "the column {name} has {} in {unit}, which is no unit of them that is known: {}",
+                        quantity.plural(),
+                        Unit::known(quantity)
+                    );
+                    return Err(LogError::file(path, what));
                 }
-                Quantity::Velocity => velocity.push((joint, place)),
-                Quantity::Effort => {
-                    currents |= word.starts_with("current");
-                    effort.push((joint, place));
-                }
+                Meaning::Like => header.unread.push(place),
+                Meaning::Nothing => {}
             }
         }
-        if columns.names.is_empty() {
-            let all = listed(header.iter().map(String::as_str));
-            let of_prefix = prefix.map_or(String::new(), |prefix| format!(" that begins with {prefix}"));
-            return Err(LogError::file(
-                path,
-                format_args!(
-                    "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the \
-                     joint, as in elbow/position, position.elbow, elbow_position; there is {all}"
-                ),
-            ));
+        Ok(header)
+    }
+
+    fn of(&self, quantity: Quantity) -> Vec<&Found> {
+        self.found.iter().filter(|found| found.named.quantity == quantity).collect()
+    }
+
+    pub(crate) fn name(&self, found: &Found) -> &'a str {
+        &self.names[found.place]
+    }
+
+    fn without_positions(&self) -> LogError {
+        let all = listed(self.names.iter().map(String::as_str));
+        let of_prefix = self.prefix.map_or(String::new(), |prefix| format!(" that begins with {prefix}"));
+        LogError::file(
+            self.path,
+            format_args!(
+                "no column{of_prefix} is the position of a joint: names are q1, q2, … or position and the joint, as \
+                 in elbow/position, position.elbow, elbow_position; there is {all}"
+            ),
+        )
+    }
+
+    /// The column of times, the first of them.
+    fn time(&self, options: &Options) -> Result<Option<(usize, Option<TimeUnit>)>, LogError> {
+        let Some(&(place, unit)) = self.times.first() else { return Ok(None) };
+        let name = &self.names[place];
+        if let (Some(said), Some(asked)) = (unit, options.time_unit)
+            && said != asked
+        {
+            let what = format!("the column {name} has times in {}, and --time-unit says {}", said.name(), asked.name());
+            return Err(LogError::request(self.path, what));
         }
-        columns.velocity = columns.by_joint(&velocity);
-        columns.effort = columns.by_joint(&effort);
-        if currents {
-            columns
-                .notes
-                .push("efforts are from columns named current: --torque-constant makes torques of them".into());
+        // stamp_sec and stamp_nanosec are one time in two columns
+        let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);
+        let other = self.times[1..].iter().find(|(other, of_other)| {
+            unit.is_some() && of_other.is_some() && *of_other != unit && stem(&self.names[*other]) == stem(name)
+        });
+        if let Some((other, _)) = other {
+            let what = format!(
+                "the columns {name} and {} are both times: if they are two parts of one, make one column of them, else \
+                 take one away",
+                self.names[*other]
+            );
+            return Err(LogError::file(self.path, what));
         }
-        Ok(columns)
+        Ok(Some((place, unit)))
     }
 
-    fn by_joint(&self, found: &[(String, usize)]) -> Vec<Option<usize>> {
-        let place = |name: &String| found.iter().find(|(joint, _)| joint == name).map(|(_, place)| *place);
-        let places: Vec<_> = self.names.iter().map(place).collect();
-        if places.iter().all(Option::is_none) { Vec::new() } else { places }
+    /// What a reader should know: what is not read, and what is in which unit.
+    fn notes(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
+        let mut notes = Vec::new();
+        let mut note = |what: &str, names: &mut dyn Iterator<Item = &str>| {
+            let names = listed(names);
+            if !names.is_empty() {
+                notes.push(format!("{what}: {names}"));
+            }
+        };
+        let name = |found: &&Found| self.names[found.place].as_str();
+        let read = [joints, velocities, efforts].concat();
+        let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
+        note("numbers are converted from the units of columns' names", &mut read.iter().filter(is_other).map(name));
+        let has_position = |found: &Found| joints.iter().any(|joint| joint.named.joint == found.named.joint);
+        let is_read = |found: &Found| read.iter().any(|read| read.place == found.place) && has_position(found);
+        let unread = self.found.iter().filter(|found| !is_read(found)).map(|found| found.place);
+        let mut unread: Vec<usize> = unread.chain(self.unread.iter().copied()).collect();
+        unread.sort_unstable();
+        note("columns that are not read", &mut unread.iter().map(|place| self.names[*place].as_str()));
+        note(
+            "other times that are not read",
+            &mut self.times.iter().skip(1).map(|(place, _)| self.names[*place].as_str()),
+        );
+        for found in [velocities, efforts] {
+            let has = |joint: &&&Found| found.iter().any(|found| found.named.joint == joint.named.joint);
+            if let Some(one) = found.first().filter(|_| joints.iter().any(|joint| has(&joint))) {
+                let without: Vec<&str> =
+                    joints.iter().filter(|joint| !has(joint)).map(|joint| joint.named.joint.as_str()).collect();
+                let mut what = String::new();
+                let _ = write!(what, "joints without a column of {}", one.named.quantity.plural());
+                note(&what, &mut without.into_iter());
+            }
+        }
+        notes
     }
-}
-
-pub(crate) fn is_time(name: &str) -> bool {
-    let name = without_unit(name).to_lowercase();
-    let last = name.rsplit(['/', '.']).next().unwrap_or_default();
-    TIMES.contains(&last) || TIMES.contains(&name.trim_start_matches('/'))
-}
-
-/// What a list of numbers has, by the last word of its name.
-#[cfg(feature = "parquet")]
-pub(crate) fn list(name: &str) -> Option<Quantity> {
-    let last = name.rsplit(['/', '.', '_']).next().unwrap_or_default().to_lowercase();
-    // observation.state: what collections for learning have
-    let is_state = last == "state" && name.starts_with("observation");
-    let of_word = WORDS.iter().find(|(_, words)| words.contains(&last.as_str())).map(|(quantity, _)| *quantity);
-    of_word.or(is_state.then_some(Quantity::Position))
-}
-
-/// What a column has, the word that says so, and the joint's name.
-fn meaning(name: &str) -> Option<(Quantity, String, String)> {
-    const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
-    let name = without_unit(name).trim_matches(SEPARATORS);
-    let quantity = |word: &str| {
-        let word = word.to_lowercase();
-        WORDS.iter().find(|(_, words)| words.contains(&word.as_str())).map(|(quantity, _)| (*quantity, word))
-    };
-    // q1, qd_2, actual_q_3
-    let bare = name.trim_end_matches(|c: char| c.is_ascii_digit());
-    let number = &name[bare.len()..];
-    let bare = bare.trim_end_matches(SEPARATORS);
-    if !number.is_empty()
-        && let Some((quantity, word)) = quantity(bare.rsplit(SEPARATORS).next().unwrap_or_default())
-    {
-        return Some((quantity, word, number.to_owned()));
-    }
-    // elbow/position
-    if let Some((joint, last)) = name.rsplit_once(SEPARATORS)
-        && let Some((quantity, word)) = quantity(last)
-    {
-        let joint = joint.trim_end_matches(SEPARATORS).rsplit('/').next().unwrap_or_default();
-        return Some((quantity, word, joint.to_owned()));
-    }
-    // position.elbow
-    let (first, joint) = name.split_once(SEPARATORS)?;
-    let (quantity, word) = quantity(first)?;
-    Some((quantity, word, joint.to_owned()))
-}
-
-/// A name without the unit behind it, as in `q1 [rad]`, `time (s)`.
-fn without_unit(name: &str) -> &str {
-    let name = name.trim();
-    let Some(begin) = name.rfind(['[', '(']) else { return name };
-    let inner = &name[begin + 1..];
-    let is_unit = inner.ends_with([']', ')']) && inner.chars().any(char::is_alphabetic);
-    if is_unit { name[..begin].trim_end() } else { name }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::options::Angles;
 
-    fn columns(header: &[&str], prefix: Option<&str>) -> Result<Columns, LogError> {
+    fn columns(header: &[&str], options: &Options) -> Result<Columns, LogError> {
         let header: Vec<String> = header.iter().map(|name| (*name).to_owned()).collect();
-        Columns::of(Path::new("log.csv"), &header, prefix)
+        Columns::of(Path::new("log.csv"), &header, options)
+    }
+
+    fn places(columns: &[Option<Column>]) -> Vec<Option<usize>> {
+        columns.iter().map(|column| column.map(|column| column.place)).collect()
     }
 
     #[test]
@@ -199,28 +286,135 @@ mod tests {
                 ["elbow", "wrist"],
             ),
         ] {
-            let columns = columns(&header, None).unwrap();
-            assert_eq!(columns.time, Some(0), "{header:?}");
+            let columns = columns(&header, &Options::default()).unwrap();
+            assert_eq!(columns.time.map(|(place, _)| place), Some(0), "{header:?}");
             assert_eq!(columns.names, names, "{header:?}");
-            assert_eq!(columns.position, [1, 2]);
-            assert_eq!(columns.velocity, [Some(3), Some(4)]);
-            assert_eq!(columns.effort, [Some(5), Some(6)]);
+            assert_eq!(columns.position.iter().map(|column| column.place).collect::<Vec<_>>(), [1, 2]);
+            assert_eq!(places(&columns.velocity), [Some(3), Some(4)]);
+            assert_eq!(places(&columns.effort), [Some(5), Some(6)]);
         }
     }
 
     #[test]
     fn one_of_two_groups_is_named() {
         let header = ["timestamp", "target_q_0", "actual_q_0", "actual_current_0"];
-        let error = columns(&header, None).unwrap_err();
-        assert!(error.is_of_request() && error.to_string().contains("target_q_0 and actual_q_0"), "{error}");
-        let columns = columns(&header, Some("actual")).unwrap();
-        assert_eq!((columns.position, columns.effort), (vec![2], vec![Some(3)]));
-        assert!(columns.notes[0].contains("--torque-constant"));
+        let error = columns(&header, &Options::default()).unwrap_err();
+        assert!(error.is_of_request() && error.to_string().contains("target_q_0 and actual_q_0, 2 and 3"), "{error}");
+        let options = Options { topic: Some("actual".into()), ..Options::default() };
+        let columns = columns(&header, &options).unwrap();
+        assert_eq!((columns.position[0].place, places(&columns.effort)), (2, vec![Some(3)]));
+        assert_eq!(columns.units.of("0").effort, Some(Dimension::Current));
     }
 
     #[test]
     fn a_table_without_positions_says_what_it_has() {
-        let error = columns(&["a", "b"], None).unwrap_err();
+        let error = columns(&["a", "b"], &Options::default()).unwrap_err();
         assert!(error.to_string().ends_with("there is a, b"), "{error}");
+    }
+
+    #[test]
+    fn numbers_are_joints_in_any_order() {
+        let mut header = vec!["time".to_owned()];
+        for quantity in ["q", "position_", "qd", "tau"] {
+            // as texts are sorted: 1, 10, 11, 2, …
+            let mut names: Vec<String> = (1..=11).map(|joint| format!("{quantity}{joint}")).collect();
+            names.sort();
+            header.extend(names.into_iter().filter(|_| quantity != "position_"));
+        }
+        let columns = Columns::of(Path::new("log.csv"), &header, &Options::default()).unwrap();
+        for joint in 0..11 {
+            let number = joint + 1;
+            assert_eq!(columns.names[joint], number.to_string());
+            assert_eq!(header[columns.position[joint].place], format!("q{number}"));
+            assert_eq!(header[columns.velocity[joint].unwrap().place], format!("qd{number}"));
+            assert_eq!(header[columns.effort[joint].unwrap().place], format!("tau{number}"));
+        }
+    }
+
+    /// What is refused, and a part of what is said.
+    #[test]
+    fn what_is_not_clear_is_refused() {
+        let degrees = Options { angles: Angles::Degrees, ..Options::default() };
+        let radians = Options { angles: Angles::Radians, ..Options::default() };
+        let currents = Options { torque_constants: vec![0.1], ..Options::default() };
+        let milliseconds = Options { time_unit: Some(TimeUnit::Milliseconds), ..Options::default() };
+        let two = Options { joints: Some(vec!["3".into(), "1".into()]), ..Options::default() };
+        let unsaid = Options::default();
+        for (header, options, wanted) in [
+            (&["t", "q1", "q3"][..], &unsaid, Some("and 2 is missing; if only these are meant, say --joints 1,3")),
+            (&["t", "q1", "q3"], &two, None),
+            (&["t", "q2", "q3"], &unsaid, Some("and 1 is missing")),
+            (&["t", "q0", "q1"], &unsaid, None),
+            (&["t", "q1", "q2", "tau1"], &unsaid, Some("the position of joint 2 and not its effort")),
+            (&["t", "q1", "q2", "tau0", "tau1"], &unsaid, Some("the position of joint 2 and not its effort")),
+            (&["t", "q1", "q2", "tau1", "tau2", "tau3"], &unsaid, Some("the effort of joint 3 and not its position")),
+            (
+                &["t", "q1", "q01"],
+                &unsaid,
+                Some("the columns q1 and q01, 2 and 3 of the table, are both positions of 1"),
+            ),
+            (&["t", "q1", "tau1", "tau1"], &unsaid, Some("tau1 and tau1, 3 and 4 of the table, are both efforts of 1")),
+            (&["t", "q1", "tau1", "torque_1"], &unsaid, Some("tau1 and torque_1, 3 and 4 of the table")),
+            (&["t", "q1", "qd1", "dq1"], &unsaid, Some("qd1 and dq1, 3 and 4 of the table, are both velocities")),
+            (
+                &["t", "q1 [furlong]"],
+                &unsaid,
+                Some("positions in furlong, which is no unit of them that is known: rad"),
+            ),
+            (&["t", "q1 [deg]", "q2"], &unsaid, Some("q1 [deg] says its unit and q2 does not: --degrees")),
+            (&["t", "q1 [deg]", "qd1"], &unsaid, Some("q1 [deg] says its unit and qd1 does not: --degrees")),
+            (&["t", "q1 [deg]", "qd1"], &degrees, None),
+            (&["t", "q1 [deg]", "qd1"], &radians, None),
+            (&["t", "q1 [deg]"], &degrees, None),
+            (&["t", "q1 [deg]"], &radians, Some("so do all others: --radians is not needed")),
+            (&["t", "q1 [rad]"], &degrees, Some("so do all others: --degrees is not needed")),
+            (
+                &["t", "q1 [mm]", "qd1"],
+                &degrees,
+                Some("q1 [mm], qd1 are of one joint, which either turns or slides, and --degrees is of"),
+            ),
+            (&["t", "q1", "qd1 [m/s]"], &degrees, Some("q1, qd1 [m/s] are of one joint")),
+            (&["t", "q1 [mm]", "qd1 [deg/s]"], &unsaid, Some("which either turns or slides")),
+            (&["t", "q1 [rad]", "tau1 [N]"], &unsaid, Some("which either turns or slides")),
+            (&["t", "q1", "q2", "tau1 [mNm]", "tau2"], &unsaid, Some("tau1 [mNm] says its unit and tau2 does not")),
+            (&["t", "q1", "tau1 [Nm]"], &currents, Some("tau1 [Nm] has no current")),
+            (&["t", "q1", "i1 [A]"], &currents, None),
+            (&["t [s]", "q1"], &milliseconds, Some("the column t [s] has times in s, and --time-unit says ms")),
+            (&["t [min]", "q1"], &unsaid, Some("times in min, which is none of s, ms, us, ns")),
+            (&["stamp_sec", "stamp_nanosec", "q1"], &unsaid, Some("stamp_sec and stamp_nanosec are both times")),
+        ] {
+            match (columns(header, options), wanted) {
+                (Err(error), Some(wanted)) => assert!(error.to_string().contains(wanted), "{header:?}: {error}"),
+                (Ok(_), None) => {}
+                (found, wanted) => panic!("{header:?}: {found:?} and not {wanted:?}"),
+            }
+        }
+    }
+
+    #[test]
+    fn torques_and_currents_of_one_joint_are_told_apart() {
+        let header = ["t", "q1", "tau1", "current1"];
+        let torques = columns(&header, &Options::default()).unwrap();
+        assert_eq!((places(&torques.effort), torques.units.of("1").effort), (vec![Some(2)], None));
+        assert!(torques.notes.contains(&"columns that are not read: current1".to_owned()), "{:?}", torques.notes);
+        let currents = columns(&header, &Options { torque_constants: vec![0.1], ..Options::default() }).unwrap();
+        assert_eq!(
+            (places(&currents.effort), currents.units.of("1").effort),
+            (vec![Some(3)], Some(Dimension::Current))
+        );
+    }
+
+    #[test]
+    fn what_is_not_read_is_said() {
+        let header = ["t", "stamp", "q1 [deg]", "q1_ref", "wrist_effort", "tau1"];
+        let notes = columns(&header, &Options::default()).unwrap().notes;
+        assert_eq!(
+            notes,
+            [
+                "numbers are converted from the units of columns' names: q1 [deg]",
+                "columns that are not read: q1_ref, wrist_effort",
+                "other times that are not read: stamp",
+            ]
+        );
     }
 }

@@ -5,8 +5,9 @@ use std::io::{self, BufRead as _, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Options;
-use crate::columns::Columns;
+use crate::columns::{Column, Columns};
 use crate::sample::{Sample, Source};
+use crate::unit::FileUnits;
 use crate::{LogError, TimeUnit};
 
 /// The longest line, bytes.
@@ -86,13 +87,19 @@ impl CsvTable {
                 "the file is empty; its first line has the columns' names, as in time,q1,tau1",
             ));
         }
+        if let [only] = header.as_slice()
+            && only.split_whitespace().count() > 2
+        {
+            let what = "cells of the first line are separated by blanks: separate those of all lines by commas";
+            return Err(LogError::file(path, what));
+        }
         if header.iter().all(|cell| cell.parse::<f64>().is_ok()) {
             let what = "the first line has numbers; it must have the columns' names, as in time,q1,qd1,tau1";
             return Err(LogError::file(path, what));
         }
-        let columns = Columns::of(path, &header, options.topic.as_deref())?;
+        let columns = Columns::of(path, &header, options)?;
         let clock = match (columns.time, options.rate) {
-            (Some(place), _) => Clock::Column(place, options.time_unit),
+            (Some((place, said)), _) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => return Err(no_time(path)),
         };
@@ -105,19 +112,22 @@ impl CsvTable {
         LogError::file(&self.path, format_args!("line {line}: {what}"))
     }
 
-    fn number(&self, place: usize) -> Result<f64, LogError> {
+    fn number(&self, Column { place, factor }: Column) -> Result<f64, LogError> {
         let cell = inner(self.record.get(place).unwrap_or_default());
         if cell.is_empty() {
             return Ok(f64::NAN);
         }
-        let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
-        number.ok_or_else(|| self.wrong(format_args!("{:?} is no number", String::from_utf8_lossy(cell))))
+        let number: Option<f64> = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
+        number.map(|number| number * factor).ok_or_else(|| {
+            let what = format!("{:?} is no number{}", String::from_utf8_lossy(cell), of_comma(cell));
+            self.wrong(what)
+        })
     }
 
-    fn numbers(&self, places: &[Option<usize>], numbers: &mut Vec<f64>) -> Result<(), LogError> {
+    fn numbers(&self, columns: &[Option<Column>], numbers: &mut Vec<f64>) -> Result<(), LogError> {
         numbers.clear();
-        for place in places {
-            numbers.push(place.map_or(Ok(f64::NAN), |place| self.number(place))?);
+        for column in columns {
+            numbers.push(column.map_or(Ok(f64::NAN), |column| self.number(column))?);
         }
         Ok(())
     }
@@ -134,7 +144,7 @@ impl Source for CsvTable {
             Clock::Column(place, unit) => {
                 let cell = inner(self.record.get(place).unwrap_or_default());
                 let cell = std::str::from_utf8(cell).unwrap_or_default();
-                unit.parse(cell).ok_or_else(|| self.wrong(unit.refusal(cell)))?
+                unit.parse(cell).ok_or_else(|| self.wrong(unit.refusal(cell) + of_comma(cell.as_bytes())))?
             }
             Clock::Step(step) => TimeUnit::step(self.row, step),
         };
@@ -144,8 +154,8 @@ impl Source for CsvTable {
             sample.names.clone_from(&self.columns.names);
         }
         sample.position.clear();
-        for place in &self.columns.position {
-            sample.position.push(self.number(*place)?);
+        for column in &self.columns.position {
+            sample.position.push(self.number(*column)?);
         }
         self.numbers(&self.columns.velocity, &mut sample.velocity)?;
         self.numbers(&self.columns.effort, &mut sample.effort)?;
@@ -160,12 +170,22 @@ impl Source for CsvTable {
     fn notes(&self) -> Vec<String> {
         self.columns.notes.clone()
     }
+
+    fn units(&self) -> FileUnits {
+        self.columns.units.clone()
+    }
 }
 
 /// What is said of a table that has no times.
 pub(crate) fn no_time(path: &Path) -> LogError {
     let what = "no column has times: its name is time, t, stamp or timestamp; --rate HZ says how fast rows follow";
     LogError::request(path, what)
+}
+
+/// What is said of a decimal comma.
+fn of_comma(cell: &[u8]) -> &'static str {
+    let is_like = cell.contains(&b',') && cell.iter().all(|byte| byte.is_ascii_digit() || b"+-,eE".contains(byte));
+    if is_like { ": numbers have a decimal point, no decimal comma" } else { "" }
 }
 
 /// A cell without blanks and quotes.

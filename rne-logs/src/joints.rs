@@ -34,7 +34,7 @@ impl Joints {
             if let Some(twice) = twice(&names) {
                 return Err(LogError::file(path, format_args!("the log has the joint {twice} twice in one message")));
             }
-            return Ok(Self { names, ..Self::default() });
+            return Ok(Self { names: by_number(names), ..Self::default() });
         };
         if let Some(twice) = twice(wanted) {
             return Err(LogError::request(path, format_args!("the joint {twice} is asked for twice")));
@@ -87,12 +87,32 @@ impl Joints {
         }
     }
 
+    /// Whether there is a number for each joint of a sample, finite for those that were found.
+    pub(crate) fn are_whole(&self, numbers: &[f64], sample: &Sample) -> bool {
+        let is_finite = |place: &usize| numbers.get(*place).is_some_and(|number| number.is_finite());
+        numbers.len() == sample.names.len() && self.places.as_ref().is_some_and(|places| places.iter().all(is_finite))
+    }
+
     /// The numbers of the joints that were found, appended.
     pub(crate) fn take(&self, numbers: &[f64], factor: impl Fn(usize) -> f64, row: &mut Vec<f64>) {
         for (joint, place) in self.places.iter().flatten().enumerate() {
             row.push(numbers.get(*place).copied().unwrap_or(f64::NAN) * factor(joint));
         }
     }
+}
+
+/// Names that are one word and different numbers, in the order of these: what sorts names puts `joint_10` before
+/// `joint_2`. Others as they are.
+fn by_number(mut names: Vec<String>) -> Vec<String> {
+    fn parts(name: &str) -> Option<(&str, u32)> {
+        let word = name.trim_end_matches(|c: char| c.is_ascii_digit());
+        Some((word, name[word.len()..].parse().ok()?))
+    }
+    let words: Option<Vec<&str>> = names.iter().map(|name| Some(parts(name)?.0)).collect();
+    if words.is_some_and(|words| words.windows(2).all(|pair| pair[0] == pair[1])) {
+        names.sort_by_key(|name| parts(name).map(|(_, number)| number));
+    }
+    names
 }
 
 fn twice(names: &[String]) -> Option<&String> {

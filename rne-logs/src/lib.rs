@@ -19,6 +19,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod column_checks;
+mod column_name;
 mod columns;
 mod csv_table;
 mod error;
@@ -30,9 +32,12 @@ mod guard;
 mod joint_state;
 mod joints;
 mod kernel;
+#[cfg(feature = "parquet")]
+mod list_columns;
 mod log;
 #[cfg(feature = "rosbag")]
 mod mcap_bag;
+mod median;
 mod motion;
 mod motions;
 mod npy;
@@ -52,10 +57,12 @@ mod survey;
 mod time_unit;
 #[cfg(feature = "rosbag")]
 mod topic;
+mod unit;
 
 pub use crate::error::LogError;
 pub use crate::format::Format;
 pub use crate::log::{Layout, Log};
+pub use crate::median::median;
 pub use crate::motion::Motion;
 pub use crate::motions::{Motions, Piece};
 pub use crate::npy::Npy;
@@ -64,3 +71,4 @@ pub use crate::pass::Unusable;
 pub use crate::spikes::Spike;
 pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::time_unit::TimeUnit;
+pub use crate::unit::{Dimension, JointUnits};

@@ -12,6 +12,7 @@ use crate::options::{Angles, Options};
 use crate::pass::Pass;
 use crate::sample::{Sample, Source};
 use crate::survey::Survey;
+use crate::unit::{Dimension, FileUnits, JointUnits};
 
 /// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
 const HEAD: usize = 1024;
@@ -53,6 +54,8 @@ pub struct Layout {
     pub step: f64,
     /// The time of the log's first state, ns, which times are since; 0 where the log's own times begin near zero.
     pub origin: i64,
+    /// The units that names of columns say, by joint.
+    pub units: Vec<JointUnits>,
     /// Remarks on what the file is.
     pub notes: Vec<String>,
 }
@@ -70,13 +73,15 @@ impl Log {
         };
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
+        // the first messages may be of several files
+        let (topic, notes) = (chain.source.topic().map(str::to_owned), chain.source.notes());
         let mut head: Vec<Sample> = Vec::new();
         let mut sample = Sample::default();
         while head.len() < HEAD && chain.read(&mut sample)? {
             head.push(sample.clone());
         }
         if head.is_empty() {
-            let of_topic = chain.source.topic().map_or(String::new(), |topic| format!(" on {topic}"));
+            let of_topic = topic.map_or(String::new(), |topic| format!(" on {topic}"));
             return Err(LogError::file(path, format_args!("there are no joint states{of_topic}")));
         }
         let mut joints = Joints::of(path, &head, options.joints.as_deref())?;
@@ -89,17 +94,23 @@ impl Log {
                 format!("{constants} torque constants for {} joints; give one, or one per joint", joints.names.len());
             return Err(LogError::request(path, what));
         }
-        let states: Vec<&Sample> =
-            head.iter().filter(|sample| joints.find(sample) == crate::joints::Presence::All).collect();
-        let positions = states.iter().filter(|sample| is_whole(&sample.position, sample)).count();
+        let mut states: Vec<&Sample> = Vec::new();
+        let mut whole = [0; 3];
+        for sample in &head {
+            if joints.find(sample) == crate::joints::Presence::All {
+                states.push(sample);
+                for (count, numbers) in whole.iter_mut().zip([&sample.position, &sample.velocity, &sample.effort]) {
+                    *count += usize::from(joints.are_whole(numbers, sample));
+                }
+            }
+        }
+        let [positions, velocities, efforts] = whole;
         if positions == 0 {
             let what =
                 format!("none of the first {} messages has positions of {}", head.len(), joints.names.join(", "));
             return Err(LogError::file(path, what));
         }
-        let has = |numbers: fn(&Sample) -> &Vec<f64>| {
-            2 * states.iter().filter(|sample| is_whole(numbers(sample), sample)).count() > states.len()
-        };
+        let has = |count: usize| 2 * count > states.len();
         let same = states.windows(2).all(|pair| pair[0].measured == pair[1].measured);
         let recorded = options.recorded || same && states.len() > 1;
         let time = |sample: &&Sample| if recorded { sample.recorded } else { sample.measured };
@@ -113,16 +124,17 @@ impl Log {
         }
         let layout = Layout {
             format: chain.format,
-            topic: chain.source.topic().map(str::to_owned),
+            topic,
             ignored: joints.others(&head),
             joints: joints.names.clone(),
             recorded,
-            has_velocities: has(|sample| &sample.velocity) && !options.derive_velocities,
-            has_efforts: has(|sample| &sample.effort),
+            has_velocities: has(velocities) && !options.derive_velocities,
+            has_efforts: has(efforts),
             without_efforts: without_efforts(&mut joints.clone(), &states),
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
-            notes: chain.source.notes(),
+            units: joints.names.iter().map(|name| chain.units.of(name)).collect(),
+            notes,
         };
         Ok(Self { files, options, joints, layout })
     }
@@ -183,13 +195,26 @@ impl Log {
         LogError::request(&self.files[0], what)
     }
 
-    /// What positions and velocities are multiplied by.
-    pub(crate) fn of_angle(&self) -> f64 {
-        if self.options.angles == Angles::Degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
+    /// The first joint whose efforts are currents by the names of columns, where there are no torque constants: such a
+    /// log is not filtered.
+    #[must_use]
+    pub fn unsaid_currents(&self) -> Option<usize> {
+        let is_current = |units: &JointUnits| units.effort == Some(Dimension::Current);
+        let first = self.layout.units.iter().position(is_current)?;
+        (self.layout.has_efforts && self.options.torque_constants.is_empty()).then_some(first)
+    }
+
+    /// What positions and velocities are multiplied by; `said` is what a name says that they are.
+    pub(crate) fn of_angle(&self, said: Option<Dimension>) -> f64 {
+        let is_degrees = self.options.angles == Angles::Degrees && said.is_none();
+        if is_degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
     }
 
     /// What the effort of a joint is multiplied by.
     pub(crate) fn torque_constant(&self, joint: usize) -> f64 {
+        if matches!(self.layout.units[joint].effort, Some(Dimension::Torque | Dimension::Force)) {
+            return 1.0;
+        }
         match self.options.torque_constants[..] {
             [] => 1.0,
             [one] => one,
@@ -205,6 +230,8 @@ pub(crate) struct Chain<'a> {
     options: &'a Options,
     source: Box<dyn Source>,
     format: Format,
+    /// Of the first file.
+    units: FileUnits,
 }
 
 impl<'a> Chain<'a> {
@@ -214,13 +241,20 @@ impl<'a> Chain<'a> {
             return Err(LogError::request(Path::new("log"), "no file is named"));
         };
         let format = Format::of(first)?;
-        Ok(Self { others, count: files.len(), options, source: format.open(first, options)?, format })
+        let source = format.open(first, options)?;
+        Ok(Self { others, count: files.len(), options, units: source.units(), source, format })
     }
 
     pub(crate) fn read(&mut self, sample: &mut Sample) -> Result<bool, LogError> {
         while !self.source.read(sample)? {
             let Some(next) = self.others.pop_front() else { return Ok(false) };
             self.source = Format::of(next)?.open(next, self.options)?;
+            let units = self.source.units();
+            let differ = |(joint, units): &&(String, JointUnits)| self.units.of(joint) != *units;
+            if let Some((joint, _)) = units.joints.iter().find(differ) {
+                let what = format!("the names of its columns say other units of {joint} than the first file says");
+                return Err(LogError::file(next, what));
+            }
         }
         Ok(true)
     }
@@ -230,11 +264,6 @@ impl<'a> Chain<'a> {
         let done = self.count - self.others.len() - 1;
         (done as f64 + self.source.progress()) / self.count as f64
     }
-}
-
-/// Whether there is a number for each joint.
-fn is_whole(numbers: &[f64], sample: &Sample) -> bool {
-    numbers.len() == sample.names.len() && numbers.iter().all(|number| number.is_finite())
 }
 
 /// The joints that have no effort in any of these samples.

@@ -59,6 +59,14 @@ impl<'a> Motions<'a> {
             );
             return Err(log.request(what));
         }
+        if let Some(joint) = log.unsaid_currents() {
+            let what = format!(
+                "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
+                 torques of them",
+                log.layout.joints[joint]
+            );
+            return Err(log.request(what));
+        }
         let Some(hertz) = survey.cutoff.hertz() else {
             let what =
                 "no run is long enough for a spectrum, a second and 64 states, to choose the filter: say --cutoff HZ";

@@ -41,7 +41,7 @@ impl NpyArray {
             row: Vec::new(),
             rows,
             read: 0,
-            unit: options.time_unit,
+            unit: options.time_unit.unwrap_or_default(),
             step: options.rate.map(|rate| 1.0 / rate),
             places,
             names: (1..=joints).map(|joint| joint.to_string()).collect(),

@@ -12,9 +12,9 @@ pub struct Options {
     /// The topic of a bag, or how the columns' names of a table begin.
     pub topic: Option<String>,
     /// What efforts are multiplied by, N m/A or N/A where they are currents: one number for all joints or one per
-    /// joint. Empty: efforts are torques.
+    /// joint; efforts of which a column's name says that they are torques or forces stay. Empty: efforts are torques.
     pub torque_constants: Vec<f64>,
-    /// The unit of positions and velocities.
+    /// The unit of positions and velocities, of a table those whose columns' names say none.
     pub angles: Angles,
     /// An interval of more than so many steps is a gap; 3.5 where nobody says: three samples that were lost are none.
     pub gap: f64,
@@ -26,8 +26,8 @@ pub struct Options {
     pub derive_velocities: bool,
     /// Times are those of recording, also where messages have their own.
     pub recorded: bool,
-    /// The unit of a column of times.
-    pub time_unit: TimeUnit,
+    /// The unit of a column of times, or of an array's; without it what the column's name or type says, else s.
+    pub time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times.
     pub rate: Option<f64>,
     /// What the columns of an array are, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
@@ -58,7 +58,7 @@ impl Default for Options {
             leave_out_spikes: false,
             derive_velocities: false,
             recorded: false,
-            time_unit: TimeUnit::Seconds,
+            time_unit: None,
             rate: None,
             columns: ["time", "q", "qd", "tau"].map(str::to_owned).to_vec(),
         }

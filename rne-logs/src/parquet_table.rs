@@ -10,11 +10,14 @@ use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
-use crate::columns::{Columns, Quantity, is_time, list};
+use crate::column_name::time;
+use crate::columns::Columns;
 use crate::csv_table::no_time;
 use crate::guard::guarded;
+use crate::list_columns::ListColumns;
 use crate::sample::{Sample, Source};
-use crate::{LogError, Options, TimeUnit};
+use crate::unit::FileUnits;
+use crate::{LogError, Options, TimeUnit, columns};
 
 /// Rows that are taken from a column at once.
 const BATCH: usize = 1024;
@@ -38,6 +41,7 @@ pub(crate) struct ParquetTable {
     read: u64,
     all: u64,
     names: Vec<String>,
+    units: FileUnits,
     notes: Vec<String>,
 }
 
@@ -48,6 +52,8 @@ struct Column {
     /// The level of definition that a number has.
     defined: i16,
     is_list: bool,
+    /// What its numbers are multiplied by, of a unit that its name says.
+    factor: f64,
     reader: Option<ColumnReader>,
     /// The numbers of this batch, as numbers and as the integers of stamps.
     numbers: Vec<f64>,
@@ -90,6 +96,7 @@ impl ParquetTable {
             read: 0,
             all: file.metadata().row_groups().iter().map(|group| u64::try_from(group.num_rows()).unwrap_or(0)).sum(),
             names: Vec::new(),
+            units: FileUnits::default(),
             notes: Vec::new(),
             file,
         };
@@ -100,77 +107,82 @@ impl ParquetTable {
     /// Finds out what columns are: lists where there is one of positions, else single columns.
     fn assign(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
         let prefix = options.topic.as_deref().map(|prefix| prefix.trim_matches('/'));
-        let lists = |wanted: Quantity| {
-            let mut found = leaves.iter().enumerate().filter(|(_, leaf)| {
-                leaf.is_list
-                    && leaf.kind.is_number()
-                    && prefix.is_none_or(|prefix| leaf.name.starts_with(prefix))
-                    && list(&leaf.name) == Some(wanted)
-            });
-            found.next().map(|(place, _)| place)
+        let is_list = |leaf: &Leaf| {
+            leaf.is_list && leaf.kind.is_number() && prefix.is_none_or(|prefix| leaf.name.starts_with(prefix))
         };
-        if let Some(position) = lists(Quantity::Position) {
+        let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
+        let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
+        if let Some((position, factor)) = lists.position {
             let is_names = |leaf: &Leaf| leaf.is_list && leaf.kind == Kind::Text && leaf.name.ends_with("name");
             let names = leaves.iter().position(is_names);
             self.roles = Roles::Lists {
-                names: names.map(|leaf| self.column(leaves, leaf)),
-                position: self.column(leaves, position),
-                velocity: lists(Quantity::Velocity).map(|leaf| self.column(leaves, leaf)),
-                effort: lists(Quantity::Effort).map(|leaf| self.column(leaves, leaf)),
+                names: names.map(|leaf| self.column(leaves, leaf, 1.0)),
+                position: self.column(leaves, position, factor),
+                velocity: lists.velocity.map(|(leaf, factor)| self.column(leaves, leaf, factor)),
+                effort: lists.effort.map(|(leaf, factor)| self.column(leaves, leaf, factor)),
             };
-            let time = leaves.iter().position(|leaf| !leaf.is_list && is_time(&leaf.name));
+            self.units.others = lists.units;
+            let of_leaf = |leaf: &Leaf| time(&leaf.name).filter(|_| !leaf.is_list);
+            let time = leaves.iter().enumerate().find_map(|(place, leaf)| Some((place, of_leaf(leaf)?.ok()?)));
             return self.tell_time(leaves, time, options);
         }
         let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
         let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
-        let columns = Columns::of(&self.path, &header, options.topic.as_deref())?;
-        let mut column = |place: usize| -> Result<usize, LogError> {
-            let leaf = &leaves[scalars[place]];
+        let columns = Columns::of(&self.path, &header, options)?;
+        let mut column = |column: columns::Column| -> Result<usize, LogError> {
+            let leaf = &leaves[scalars[column.place]];
             if leaf.kind.is_number() {
-                return Ok(self.column(leaves, scalars[place]));
+                return Ok(self.column(leaves, scalars[column.place], column.factor));
             }
             let what = format!("the column {} has {}, not numbers", leaf.name, leaf.words);
             Err(LogError::file(&self.path, what))
         };
         let position = columns.position.iter().map(|place| column(*place)).collect::<Result<_, _>>()?;
-        let mut optional = |places: &[Option<usize>]| -> Result<Vec<Option<usize>>, LogError> {
-            places.iter().map(|place| place.map(&mut column).transpose()).collect()
+        let mut optional = |found: &[Option<columns::Column>]| -> Result<Vec<Option<usize>>, LogError> {
+            found.iter().map(|found| found.map(&mut column).transpose()).collect()
         };
         let velocity = optional(&columns.velocity)?;
         let effort = optional(&columns.effort)?;
         self.roles = Roles::Scalars { position, velocity, effort };
-        (self.names, self.notes) = (columns.names, columns.notes);
-        self.tell_time(leaves, columns.time.map(|place| scalars[place]), options)
+        (self.names, self.units, self.notes) = (columns.names, columns.units, columns.notes);
+        self.tell_time(leaves, columns.time.map(|(place, unit)| (scalars[place], unit)), options)
     }
 
-    fn tell_time(&mut self, leaves: &[Leaf], time: Option<usize>, options: &Options) -> Result<(), LogError> {
+    /// Which column has times, with the unit that its name says: what the type says is surer.
+    fn tell_time(
+        &mut self,
+        leaves: &[Leaf],
+        time: Option<(usize, Option<TimeUnit>)>,
+        options: &Options,
+    ) -> Result<(), LogError> {
         self.clock = match (time, options.rate) {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => return Err(no_time(&self.path)),
-            (Some(leaf), _) => {
+            (Some((leaf, said)), _) => {
                 let unit = match leaves[leaf].kind {
                     Kind::Stamp(unit) => unit,
-                    Kind::Real | Kind::Integer => options.time_unit,
+                    Kind::Real | Kind::Integer => said.or(options.time_unit).unwrap_or_default(),
                     Kind::Text | Kind::Other => {
                         let Leaf { name, words, .. } = &leaves[leaf];
                         let what = format!("the column {name} has {words}, not times");
                         return Err(LogError::file(&self.path, what));
                     }
                 };
-                Clock::Column(self.column(leaves, leaf), unit)
+                Clock::Column(self.column(leaves, leaf, 1.0), unit)
             }
         };
         Ok(())
     }
 
     /// Adds a column to those that are read; its place among them.
-    fn column(&mut self, leaves: &[Leaf], leaf: usize) -> usize {
+    fn column(&mut self, leaves: &[Leaf], leaf: usize, factor: f64) -> usize {
         let Leaf { name, defined, is_list, .. } = &leaves[leaf];
         self.columns.push(Column {
             leaf,
             name: name.clone(),
             defined: *defined,
             is_list: *is_list,
+            factor,
             reader: None,
             numbers: Vec::new(),
             integers: Vec::new(),
@@ -276,6 +288,10 @@ impl Source for ParquetTable {
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
     }
+
+    fn units(&self) -> FileUnits {
+        self.units.clone()
+    }
 }
 
 impl Column {
@@ -287,7 +303,7 @@ impl Column {
         self.ends.clear();
         let Some(reader) = &mut self.reader else { return Ok(()) };
         let levels = (self.defined, self.is_list, &mut self.ends);
-        match reader {
+        let filled = match reader {
             ColumnReader::DoubleColumnReader(reader) => {
                 take(reader, rows, levels, |number| self.numbers.push(number.copied().unwrap_or(f64::NAN)))
             }
@@ -308,7 +324,9 @@ impl Column {
                 self.texts.push(text.to_owned());
             }),
             _ => Err(ParquetError::General(format!("the column {} has no numbers", self.name))),
-        }
+        };
+        self.numbers.iter_mut().for_each(|number| *number *= self.factor);
+        filled
     }
 
     /// How many rows were taken.

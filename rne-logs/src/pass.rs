@@ -137,10 +137,10 @@ impl<'a> Pass<'a> {
         state.message = counts.messages;
         state.time = if layout.recorded { sample.recorded } else { sample.measured };
         state.numbers.clear();
-        let of_angle = log.of_angle();
-        self.joints.take(&sample.position, |_| of_angle, &mut state.numbers);
+        let units = &layout.units;
+        self.joints.take(&sample.position, |joint| log.of_angle(units[joint].position), &mut state.numbers);
         if layout.has_velocities {
-            self.joints.take(&sample.velocity, |_| of_angle, &mut state.numbers);
+            self.joints.take(&sample.velocity, |joint| log.of_angle(units[joint].velocity), &mut state.numbers);
         }
         if layout.has_efforts {
             self.joints.take(&sample.effort, |joint| log.torque_constant(joint), &mut state.numbers);

@@ -1,6 +1,7 @@
 //! What every format is read into: one message, or one row.
 
 use crate::LogError;
+use crate::unit::FileUnits;
 
 /// What a log says of one instant: the joints that a message or a row names, in its order.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -11,7 +12,7 @@ pub(crate) struct Sample {
     pub(crate) recorded: i64,
     /// The joints' names.
     pub(crate) names: Vec<String>,
-    /// Positions by joint; empty where the message has none. Units are the file's.
+    /// Positions by joint; empty where the message has none. Units are the file's, or of SI where it says them.
     pub(crate) position: Vec<f64>,
     /// Velocities by joint; empty where the message has none.
     pub(crate) velocity: Vec<f64>,
@@ -30,6 +31,11 @@ pub(crate) trait Source {
     /// Remarks on what was found.
     fn notes(&self) -> Vec<String> {
         Vec::new()
+    }
+
+    /// The units that the file says; its numbers are in SI units there.
+    fn units(&self) -> FileUnits {
+        FileUnits::default()
     }
 
     /// The topic that is read, where the format has topics.

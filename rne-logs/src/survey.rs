@@ -260,7 +260,8 @@ impl Survey {
             return None;
         }
         let ranges = self.positions.iter().map(|(least, most)| most - least).enumerate();
-        ranges.filter(|(_, range)| *range > WIDEST).max_by(|a, b| a.1.total_cmp(&b.1))
+        let is_unsaid = |joint: usize| log.layout.units[joint].position.is_none();
+        ranges.filter(|(joint, range)| *range > WIDEST && is_unsaid(*joint)).max_by(|a, b| a.1.total_cmp(&b.1))
     }
 }
 

@@ -289,6 +289,17 @@ pub(crate) fn position_limits(cx: &Context, position: &Node, kind: JointKind, li
     }
 }
 
+/// A speed about which friction changes its sign, beside a displacement over which it does.
+pub(crate) fn width_beside_displacement(cx: &Context, width: &Node) {
+    let message = "`coulomb_width` counts for nothing beside `coulomb_displacement`: friction changes its sign over \
+                   the displacement, and not about the speed";
+    cx.report(
+        Diagnostic::lint(width.head(), message)
+            .label("not used")
+            .help("keep one of the two: what identification writes has one"),
+    );
+}
+
 /// Parameters that no number uses; of a run-time parameter that is an error.
 pub(crate) fn unused_parameters(cx: &Context) {
     for (name, parameter) in cx.parameters.borrow().iter().filter(|(_, parameter)| !parameter.used.get()) {

@@ -434,6 +434,9 @@ fn motor(cx: &Context, node: &Node, joint: usize) -> Option<(Motor, [Option<f64>
         width: optional "coulomb_width" not_negative("width", fixed("the width")),
         displacement: optional "coulomb_displacement" not_negative("displacement", fixed("the displacement")),
     });
+    if let (Some(of_width), Some(_)) = (node.get("coulomb_width"), node.get("coulomb_displacement")) {
+        lint::width_beside_displacement(cx, of_width);
+    }
     Some((Motor { inertia, gear_ratio, viscous, coulomb }, [width, displacement]))
 }
 

@@ -1,4 +1,4 @@
-//! The plain types of the table: no strings, no allocation, the same on a workstation and on a microcontroller.
+//! The plain types of the table: no owned strings, no allocation, the same on a workstation and on a microcontroller.
 
 use crate::Angle;
 
@@ -19,6 +19,26 @@ pub enum JointKind {
     Revolute,
     /// Slides: the joint variable (m) is added to `d`.
     Prismatic,
+}
+
+impl JointKind {
+    /// The unit of its position: rad or m. Per second it is that of its velocity.
+    #[must_use]
+    pub const fn position_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "rad",
+            Self::Prismatic => "m",
+        }
+    }
+
+    /// The unit of what its actuator gives, of a torque or a force: N m or N.
+    #[must_use]
+    pub const fn effort_unit(self) -> &'static str {
+        match self {
+            Self::Revolute => "N m",
+            Self::Prismatic => "N",
+        }
+    }
 }
 
 /// The joint whose link carries `joint`, both counted from 0; `None` for the base. Every robot is a chain: each joint

@@ -9,6 +9,14 @@ use rne_model::{Reader, Severity};
 fn lints() {
     for (old, new, line, column, message, help) in [
         (
+            "coulomb: [0.395, -0.435]",
+            "coulomb_width: 0.02, coulomb_displacement: 0.003",
+            18,
+            81,
+            "`coulomb_width` counts for nothing beside `coulomb_displacement`",
+            "keep one of the two",
+        ),
+        (
             "alpha: pi/2",
             "alpha: 1.5708",
             11,

@@ -8,7 +8,7 @@ use std::io;
 
 use quick_xml::Writer;
 use quick_xml::events::{BytesEnd, BytesStart, BytesText, Event};
-use rne_model::{JointKind, Robot, one_line};
+use rne_model::{Robot, one_line};
 
 use crate::history::{Peak, TorqueHistory};
 use crate::parts::TorqueParts;
@@ -119,10 +119,7 @@ fn torque_panel(
         .zip(values)
         .map(|(&(name, colour, dash, width), values)| Curve { name, colour, dash, width, values })
         .collect();
-    let unit = match robot.joints[joint].row.kind {
-        JointKind::Revolute => "N m",
-        JointKind::Prismatic => "N",
-    };
+    let unit = robot.joints[joint].row.kind.effort_unit();
     let name = shortened(&robot.joints[joint].name, 18);
     let axes = panel(svg, place, &format!("τ{} {name}, {unit}", subscript(joint + 1)), &trajectory.time, &curves);
     if let Some(peak) = history.peaks.get(joint) {

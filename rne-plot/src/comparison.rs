@@ -1,6 +1,6 @@
 //! The picture of a model beside what was measured: a panel for each joint with both torques and what is left.
 
-use rne_model::{JointKind, Robot};
+use rne_model::Robot;
 
 use crate::chart::subscript;
 use crate::panels::{Panel, PanelCurve, panels};
@@ -21,10 +21,7 @@ pub fn comparison_svg(
     };
     let left: Vec<Vec<f64>> = measured.iter().zip(predicted).map(left).collect();
     let panel = |joint: usize| {
-        let unit = match robot.joints[joint].row.kind {
-            JointKind::Revolute => "N m",
-            JointKind::Prismatic => "N",
-        };
+        let unit = robot.joints[joint].row.kind.effort_unit();
         Panel {
             title: format!("τ{} {}, {unit}", subscript(joint + 1), robot.joints[joint].name),
             note: String::new(),

@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use rne_logs::median;
+
 use crate::{Settings, Signals, Test, WatchError, watch};
 
 /// By so much deviations are raised at a time.
@@ -220,16 +222,6 @@ fn spread(numbers: &[f64], independent: usize, least: f64) -> (f64, f64) {
     #[allow(clippy::cast_precision_loss)] // a length of a list
     let error = 1.167 / (independent.max(1) as f64).sqrt();
     (mean, (deviation * (1.0 + 2.0 * error)).max(least))
-}
-
-fn median(mut numbers: Vec<f64>) -> f64 {
-    numbers.sort_unstable_by(f64::total_cmp);
-    let middle = numbers.len() / 2;
-    match numbers.len() {
-        0 => 0.0,
-        length if length % 2 == 1 => numbers[middle],
-        _ => 0.5 * (numbers[middle - 1] + numbers[middle]),
-    }
 }
 
 /// For how many samples noise is correlated: 1 + 2 Σ ρ, over the lags until it is forgotten.

@@ -1,6 +1,6 @@
 //! The picture of what was watched.
 
-use rne_model::{JointKind, Robot};
+use rne_model::Robot;
 use rne_plot::{Band, Panel, PanelCurve, panels};
 
 use crate::{Baseline, Report, Signals};
@@ -11,10 +11,7 @@ use crate::{Baseline, Report, Signals};
 pub fn svg(robot: &Robot, signals: &Signals, baseline: &Baseline, report: &Report, about: &str) -> String {
     let joints = robot.joints.iter().enumerate().take(signals.dof());
     let panel = |(joint, row): (usize, &rne_model::Joint)| {
-        let unit = match row.row.kind {
-            JointKind::Revolute => "N m",
-            JointKind::Prismatic => "N",
-        };
+        let unit = row.row.kind.effort_unit();
         let curves = vec![
             PanelCurve { name: "residual: measured less model", values: &signals.residual[joint] },
             PanelCurve { name: "external torque, by the observer", values: &signals.external[joint] },

@@ -94,8 +94,8 @@ impl Fleet {
         for address in [&self.scheduler].into_iter().chain(&self.addresses) {
             let mut tries = 0..LOOKS;
             while TcpStream::connect(address).is_err() {
-                assert!(tries.next().is_some(), "nobody answers at {address}");
-                tokio::time::sleep(Duration::from_millis(50)).await;
+                assert!(tries.next().is_some(), "nobody answers at {address} within {:?}", LOOKS * LOOK);
+                tokio::time::sleep(LOOK).await;
             }
         }
         session(Some(&self.scheduler), log, like).await
@@ -278,8 +278,12 @@ enum Like {
     Sent,
 }
 
-/// Looks whether a process answers or a query has ended, at most; some time passes between them.
-const LOOKS: usize = 6000;
+/// Between two looks whether a process answers or a query has ended.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// Looks at most: with what lies between them a limit of five minutes, which a slow machine may need and a query that
+/// waits for ever exceeds.
+const LOOKS: u32 = 6000;
 
 async fn an_executor_dies(loss: Loss, like: Like) -> Result<()> {
     let folder = tempfile::tempdir().expect("a folder");
@@ -300,9 +304,9 @@ async fn an_executor_dies(loss: Loss, like: Like) -> Result<()> {
         if query.is_finished() {
             break;
         }
-        tokio::time::sleep(Duration::from_millis(50)).await;
+        tokio::time::sleep(LOOK).await;
     }
-    assert!(query.is_finished(), "{loss:?}: the query waits without an end");
+    assert!(query.is_finished(), "{loss:?}: the query has not ended within {:?}, the limit of this test", LOOKS * LOOK);
     same_sums(&query.await.expect("no panic")?, &expected);
     Ok(())
 }

@@ -26,9 +26,6 @@ const ARGUMENTS: [&str; 4] = ["q", "qd", "qdd", "tau"];
 /// How strongly links are pulled to those of the file, as `rne identify` does unasked.
 const PULL: f64 = 1.0;
 
-/// A friction is not excited where its deviation is larger than this part of the joint's efforts, root mean square.
-const UNKNOWN: f64 = 0.5;
-
 const SUMMARY: &str = "Links and friction from states with measured torques, by least squares row by row.";
 
 /// The aggregate, with the robots that it may be asked for.
@@ -210,17 +207,19 @@ fn unknowns(structure: &Structure, found: &OnePass) -> Vec<Unknown> {
         unit: unit(base.kept).to_owned(),
         is_excited: report.is_excited(),
     });
-    let joints = structure.robot().joints.iter().zip(&found.friction).zip(&found.efforts).enumerate();
-    let friction = joints.flat_map(|(at, ((joint, friction), effort))| {
-        let force =
-            if joint.row.kind == rne::model::JointKind::Revolute { ["N m s/rad", "N m"] } else { ["N s/m", "N"] };
-        let names = [("viscous", force[0]), ("coulomb_forward", force[1]), ("coulomb_backward", force[1])];
+    let joints = structure.robot().joints.iter().zip(&found.friction).enumerate();
+    let friction = joints.flat_map(|(at, (joint, friction))| {
+        let kind = joint.row.kind;
+        let viscous = if kind == rne::model::JointKind::Revolute { "N m s/rad" } else { "N s/m" };
+        let coulomb = kind.effort_unit();
+        let names = [("viscous", viscous), ("coulomb_forward", coulomb), ("coulomb_backward", coulomb)];
+        let is_excited = found.is_friction_excited(at);
         names.into_iter().zip(friction).map(move |((name, unit), &(value, deviation))| Unknown {
             name: format!("{name}{}", at + 1),
             value,
             deviation,
             unit: unit.to_owned(),
-            is_excited: deviation < UNKNOWN * effort,
+            is_excited,
         })
     });
     bases.chain(friction).collect()

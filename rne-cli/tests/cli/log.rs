@@ -1,5 +1,6 @@
 //! `rne log`: what logs have, their motions, and what is wrong with them.
 
+use std::fmt::Write as _;
 use std::fs;
 
 use crate::call::{fails, fine, folder, rne};
@@ -93,4 +94,73 @@ fn degrees_are_asked_for() {
     fails(2, &["log", path, "--cutoff", "5", "-o", "-"], &["more than 4π", "--degrees", "--radians"]);
     let said = fine(&["log", path, "--cutoff", "5", "--degrees"]);
     assert!(said.contains("-1.047 … 1.047"), "{said}");
+}
+
+/// The desk arm's log with other names of columns, in this order of joints and with numbers divided by these units.
+fn desk_log(path: &std::path::Path, order: [usize; 3], name: impl Fn(usize, usize) -> String, units: [f64; 3]) {
+    let text = fs::read_to_string(format!("{}/docs/desk_arm_log.csv", crate::call::ROOT)).expect("the log");
+    let mut written = String::from("time");
+    for quantity in 0..3 {
+        for joint in order {
+            let _ = write!(written, ",{}", name(quantity, joint));
+        }
+    }
+    for line in text.lines().skip(1) {
+        let cells: Vec<&str> = line.split(',').collect();
+        let _ = write!(written, "\n{}", cells[0]);
+        for (quantity, unit) in units.iter().enumerate() {
+            for joint in order {
+                let number: f64 = cells[1 + 3 * quantity + joint].parse().expect("a number");
+                let _ = write!(written, ",{}", number / unit);
+            }
+        }
+    }
+    fs::write(path, written + "\n").expect("a file");
+}
+
+/// Whatever the order of columns and their units, the arm is the same one.
+#[test]
+fn columns_are_joints_by_number_and_say_their_units() {
+    let folder = folder("log_columns");
+    let path = folder.join("log.csv");
+    let log = path.to_str().expect("UTF-8");
+    let judged = |arguments: &[&str]| {
+        let called = rne(&[&["identify", "docs/desk_arm.yaml", log, "--judge"], arguments].concat());
+        assert_eq!(called.status, 0, "{}", called.err);
+        called.out
+    };
+    let plain = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1);
+    desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
+    let expected = judged(&[]);
+    desk_log(&path, [2, 0, 1], plain, [1.0; 3]);
+    assert_eq!(judged(&[]), expected);
+    let degree = std::f64::consts::PI / 180.0;
+    let said = |quantity: usize, joint: usize| {
+        format!("{}{}{}", ["q", "qd", "tau"][quantity], joint + 1, [" [deg]", " [deg/s]", "[mNm]"][quantity])
+    };
+    desk_log(&path, [2, 0, 1], said, [degree, degree, 1e-3]);
+    assert_eq!(judged(&[]), expected);
+    let noted = fine(&["log", log]);
+    assert!(noted.contains("converted from the units of columns' names: q1 [deg], q2 [deg]"), "{noted}");
+    assert!(!noted.contains("--torque-constant"), "{noted}");
+    fine(&["log", log, "--robot", "docs/desk_arm.yaml"]);
+    // a joint that turns has no millimetres
+    let of_slide = |quantity: usize, joint: usize| {
+        format!("{}{} [{}]", ["q", "qd", "tau"][quantity], joint + 1, ["mm", "mm/s", "N"][quantity])
+    };
+    desk_log(&path, [0, 1, 2], of_slide, [1e-3, 1e-3, 1.0]);
+    let turns = "the joint waist of the robot turns";
+    fails(2, &["log", log, "--robot", "docs/desk_arm.yaml"], &[turns, "positions"]);
+    fails(2, &["identify", "docs/desk_arm.yaml", log, "--judge"], &[turns]);
+    // currents are none of its torques
+    let currents = |quantity: usize, joint: usize| {
+        format!("{}{}{}", ["q", "qd", "i"][quantity], joint + 1, ["", "", " [A]"][quantity])
+    };
+    desk_log(&path, [0, 1, 2], currents, [1.0; 3]);
+    let asked = ["efforts of 1 are currents", "--torque-constant"];
+    fails(2, &["identify", "docs/desk_arm.yaml", log, "--judge"], &asked);
+    let called = rne(&["log", log]);
+    assert!(called.status == 1 && asked.iter().all(|part| called.out.contains(part)), "{called:?}");
+    fails(2, &["log", log, "-o", "-"], &asked);
+    fine(&["log", log, "--torque-constant", "1"]);
 }

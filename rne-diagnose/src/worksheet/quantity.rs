@@ -211,20 +211,20 @@ impl Quantity {
     pub const fn unit(self, kind: JointKind) -> &'static str {
         let turns = matches!(kind, JointKind::Revolute);
         match self {
-            Self::Q if turns => "rad",
+            Self::Q => kind.position_unit(),
             Self::Qd if turns => "rad/s",
             Self::Qdd if turns => "rad/s²",
-            Self::Tau if turns => "N m",
+            Self::Tau => kind.effort_unit(),
             Self::Theta => "rad",
             Self::Mass => "kg",
             Self::Rotation | Self::Orientation | Self::Axis => "1",
-            Self::Q | Self::Offset | Self::D | Self::R => "m",
+            Self::Offset | Self::D | Self::R => "m",
             Self::Inertia => "kg m²",
             Self::Omega => "rad/s",
             Self::OmegaDot => "rad/s²",
             Self::Qd | Self::Velocity => "m/s",
             Self::Qdd | Self::Acceleration | Self::Gravity => "m/s²",
-            Self::Tau | Self::InertiaForce | Self::NextForce | Self::JointForce => "N",
+            Self::InertiaForce | Self::NextForce | Self::JointForce => "N",
             Self::InertiaMoment | Self::NextMoment | Self::JointMoment => "N m",
         }
     }

@@ -242,6 +242,33 @@ fn every_format_has_the_same_motion() {
     }
 }
 
+/// Units and numbers in the names of Parquet's columns are those of CSV.
+#[test]
+fn names_of_parquet_say_numbers_and_units() {
+    type Number<'a> = &'a dyn Fn(&(f64, [[f64; 2]; 3])) -> f64;
+    let times = times();
+    let rows = rows(&times);
+    let degrees = |radians: f64| radians / (std::f64::consts::PI / 180.0);
+    let table = |schema: &str, columns: &[Number<'_>]| {
+        parquet(schema, WriterProperties::builder().build(), 1, |_, writer| {
+            for column in columns {
+                doubles(writer, &rows.iter().map(column).collect::<Vec<_>>(), None);
+            }
+        })
+    };
+    let plain = table(
+        "message log { REQUIRED DOUBLE time; REQUIRED DOUBLE q1; REQUIRED DOUBLE q2; }",
+        &[&|row| row.0, &|row| degrees(row.1[0][0]), &|row| degrees(row.1[0][1])],
+    );
+    let turned = table(
+        "message log { REQUIRED DOUBLE q2_deg; REQUIRED DOUBLE q1_deg; REQUIRED DOUBLE time_s; }",
+        &[&|row| degrees(row.1[0][1]), &|row| degrees(row.1[0][0]), &|row| row.0],
+    );
+    let asked = Options { angles: rne_logs::Angles::Degrees, ..options() };
+    let expected = of("log.parquet", plain, Format::Parquet, asked);
+    assert_eq!(of("log.parquet", turned, Format::Parquet, options()), expected);
+}
+
 #[test]
 fn names_of_lists_and_bags_are_the_joints() {
     for (name, bytes) in [

@@ -10,6 +10,7 @@
 )]
 
 mod bags;
+mod columns;
 mod corrupt;
 mod filtered;
 mod formats;

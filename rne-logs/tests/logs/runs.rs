@@ -186,7 +186,8 @@ fn times_in_other_units_are_asked_for() {
     let (_folder, path) = file("ns.csv", nanoseconds);
     let error = survey(std::slice::from_ref(&path), Options::default()).err().unwrap();
     assert!(error.to_string().contains("--time-unit"), "{error}");
-    let (log, found) = survey(&[path], Options { time_unit: TimeUnit::Nanoseconds, ..Options::default() }).unwrap();
+    let (log, found) =
+        survey(&[path], Options { time_unit: Some(TimeUnit::Nanoseconds), ..Options::default() }).unwrap();
     assert!((log.layout().step - 0.01).abs() < 1e-6);
     // times are since the first
     assert_eq!(found.runs[0].start, 0.0);

@@ -1,0 +1,175 @@
+//! What names of columns must say, so that nothing is guessed.
+
+use std::collections::BTreeSet;
+
+use crate::column_name::Quantity;
+use crate::columns::{Found, Header};
+use crate::options::Angles;
+use crate::spelling::listed;
+use crate::unit::{Dimension, Unit};
+use crate::{LogError, Options};
+
+impl<'a> Header<'a> {
+    /// No joint has two columns of one quantity.
+    pub(crate) fn check_once(&self, found: &[&Found]) -> Result<(), LogError> {
+        for (at, second) in found.iter().enumerate() {
+            let Some(first) = found[..at].iter().find(|first| first.named.joint == second.named.joint) else {
+                continue;
+            };
+            let what = format!(
+                "the columns {} and {}, {} and {} of the table, are both {} of {}; say how the names of those that \
+                 are meant begin, as in --topic actual, or take one away",
+                self.name(first),
+                self.name(second),
+                first.place + 1,
+                second.place + 1,
+                second.named.quantity.plural(),
+                second.named.joint
+            );
+            return Err(LogError::request(self.path, what));
+        }
+        Ok(())
+    }
+
+    /// Joints with numbers are all there, from 0 or 1 on, and each has what others have; of joints that are asked for
+    /// by their numbers, these.
+    pub(crate) fn check_numbers(
+        &self,
+        positions: &[&Found],
+        others: &[&[&Found]; 2],
+        options: &Options,
+    ) -> Result<(), LogError> {
+        let asked: Option<BTreeSet<u32>> = options
+            .joints
+            .as_ref()
+            .and_then(|names| names.iter().map(|name| name.parse().ok()).collect::<Option<BTreeSet<u32>>>());
+        let numbers = |found: &[&Found]| -> BTreeSet<u32> {
+            let all = found.iter().filter_map(|found| found.named.number);
+            all.filter(|number| asked.as_ref().is_none_or(|asked| asked.contains(number))).collect()
+        };
+        let there = numbers(positions);
+        let (Some(least), Some(most)) = (there.first(), there.last()) else { return Ok(()) };
+        let first = *least.min(&1);
+        if asked.is_none()
+            && let Some(missing) = (first..=*most).find(|number| !there.contains(number))
+        {
+            let all = there.iter().map(u32::to_string).collect::<Vec<_>>();
+            let what = format!(
+                "the columns {} are positions of joints by their numbers, and {missing} is missing; if only these are \
+                 meant, say --joints {}",
+                self.listed(positions),
+                all.join(",")
+            );
+            return Err(LogError::request(self.path, what));
+        }
+        for found in others {
+            let have = numbers(found);
+            let is_derived = |found: &&Found| found.named.quantity == Quantity::Velocity && options.derive_velocities;
+            let Some(one) = found.first().filter(|one| !have.is_empty() && !is_derived(one)) else { continue };
+            let quantity = one.named.quantity;
+            let missing = there.difference(&have).next();
+            let other = have.difference(&there).next();
+            let what = match (missing, other) {
+                (Some(missing), _) => format!("the position of joint {missing} and not its {}", quantity.word()),
+                (None, Some(other)) => format!("the {} of joint {other} and not its position", quantity.word()),
+                (None, None) => continue,
+            };
+            let what = format!(
+                "the columns have {what}: {} are {}, {} positions",
+                self.listed(found),
+                quantity.plural(),
+                self.listed(positions)
+            );
+            return Err(LogError::request(self.path, what));
+        }
+        Ok(())
+    }
+
+    /// The names of columns.
+    fn listed(&self, found: &[&Found]) -> String {
+        listed(found.iter().map(|found| self.name(found)))
+    }
+
+    /// Units fit each other; where a name says one that is not of SI, those that say none are not guessed.
+    pub(crate) fn check_units(
+        &self,
+        positions: &[&Found],
+        velocities: &[&Found],
+        efforts: &[&Found],
+        options: &Options,
+    ) -> Result<(), LogError> {
+        for position in positions {
+            let of_joint = |found: &&&Found| found.named.joint == position.named.joint;
+            let others = [velocities, efforts].into_iter().filter_map(|found| found.iter().find(of_joint));
+            let all: Vec<&Found> = [position].into_iter().chain(others).copied().collect();
+            let says = |wanted: [Dimension; 2]| {
+                all.iter().any(|found| found.dimension().is_some_and(|dimension| wanted.contains(&dimension)))
+            };
+            let is_in_degrees = |found: &&Found| {
+                let is_effort = found.named.quantity == Quantity::Effort;
+                options.angles == Angles::Degrees && !is_effort && found.dimension().is_none()
+            };
+            let turns = says([Dimension::Angle, Dimension::Torque]) || all.iter().any(is_in_degrees);
+            if turns && says([Dimension::Length, Dimension::Force]) {
+                let degrees =
+                    if all.iter().any(is_in_degrees) { ", and --degrees is of all that say no unit" } else { "" };
+                let what = format!(
+                    "the columns {} are of one joint, which either turns or slides{degrees}",
+                    self.listed(&all)
+                );
+                return Err(LogError::file(self.path, what));
+            }
+        }
+        let velocities = if options.derive_velocities { &[] } else { velocities };
+        let motions: Vec<&Found> = positions.iter().chain(velocities).copied().collect();
+        let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
+        let is_unsaid = |found: &&&Found| found.dimension().is_none();
+        let name = |found: &&Found| self.name(found);
+        let both = |found: &[&Found]| -> Option<(&'a str, &'a str)> {
+            Some((name(found.iter().find(is_other)?), name(found.iter().find(is_unsaid)?)))
+        };
+        if let Some((said, unsaid)) = both(&motions).filter(|_| options.angles == Angles::Unsaid) {
+            let what = format!(
+                "the column {said} says its unit and {unsaid} does not: --degrees if it and all that say none are in \
+                 degrees, --radians if they are in radians or metres"
+            );
+            return Err(LogError::request(self.path, what));
+        }
+        if let Some((said, unsaid)) = both(efforts) {
+            let what = format!(
+                "the column {said} says its unit and {unsaid} does not: write it into the name, as in tau1 [Nm]"
+            );
+            return Err(LogError::file(self.path, what));
+        }
+        self.check_options(&motions, efforts, options)
+    }
+
+    /// What the options say of units is not what all names say otherwise.
+    fn check_options(&self, motions: &[&Found], efforts: &[&Found], options: &Options) -> Result<(), LogError> {
+        let (option, is_contrary): (_, fn(&Unit) -> bool) = match options.angles {
+            Angles::Degrees => ("--degrees is", |unit| unit.dimension == Dimension::Length || unit.is_si()),
+            Angles::Radians => ("--radians is", |unit| unit.dimension == Dimension::Angle && !unit.is_si()),
+            Angles::Unsaid => ("", |_| false),
+        };
+        let all_say = motions.iter().all(|found| found.named.unit.is_some());
+        if let Some(found) = motions.iter().find(|found| found.named.unit.is_some_and(|unit| is_contrary(&unit)))
+            && all_say
+        {
+            let what =
+                format!("the column {} says its unit, and so do all others: {option} not needed", self.name(found));
+            return Err(LogError::request(self.path, what));
+        }
+        let is_torque = |found: &&Found| matches!(found.dimension(), Some(Dimension::Torque | Dimension::Force));
+        if let Some(found) = efforts.first()
+            && !options.torque_constants.is_empty()
+            && efforts.iter().all(is_torque)
+        {
+            let what = format!(
+                "the column {} has no current, and no other has: take --torque-constant away",
+                self.name(found)
+            );
+            return Err(LogError::request(self.path, what));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,99 @@
+//! The columns of a table that are lists, a number of each joint in a row, by their names.
+
+use std::path::Path;
+
+use crate::column_name::{Quantity, list};
+use crate::options::Angles;
+use crate::unit::{Dimension, JointUnits, Unit};
+use crate::{LogError, Options};
+
+/// Lists that are read: their places, and what their numbers are multiplied by.
+#[derive(Debug, Default)]
+pub(crate) struct ListColumns {
+    pub(crate) position: Option<(usize, f64)>,
+    pub(crate) velocity: Option<(usize, f64)>,
+    pub(crate) effort: Option<(usize, f64)>,
+    /// Of every joint.
+    pub(crate) units: JointUnits,
+}
+
+impl ListColumns {
+    /// The lists among columns of numbers, by their places and names.
+    pub(crate) fn of<'a>(
+        path: &Path,
+        columns: impl Iterator<Item = (usize, &'a str)>,
+        options: &Options,
+    ) -> Result<Self, LogError> {
+        let mut lists = Self::default();
+        // by quantity: the name and the unit
+        let mut found: Vec<(Quantity, &str, Option<Unit>)> = Vec::new();
+        for (place, name) in columns {
+            let Some((quantity, is_current, unit)) = list(name) else { continue };
+            let unit = unit.map_err(|text| {
+                let (quantities, known) = (quantity.plural(), Unit::known(quantity));
+                let what = format!(
+                    "the column {name} has {quantities} in {text}, which is no unit of them that is known: {known}"
+                );
+                LogError::file(path, what)
+            })?;
+            if let Some((_, first, _)) = found.iter().find(|(other, ..)| *other == quantity) {
+                let what = format!(
+                    "the columns {first} and {name} are both {}; say how the names of those that are meant begin, as \
+                     in --topic actual, or take one away",
+                    quantity.plural()
+                );
+                return Err(LogError::request(path, what));
+            }
+            found.push((quantity, name, unit));
+            let (list, said) = match quantity {
+                Quantity::Position => (&mut lists.position, &mut lists.units.position),
+                Quantity::Velocity => (&mut lists.velocity, &mut lists.units.velocity),
+                Quantity::Effort => (&mut lists.effort, &mut lists.units.effort),
+            };
+            *list = Some((place, unit.map_or(1.0, |unit| unit.factor)));
+            *said = unit.map(|unit| unit.dimension).or(is_current.then_some(Dimension::Current));
+        }
+        let motions = || found.iter().filter(|(quantity, ..)| *quantity != Quantity::Effort);
+        let said = motions().find(|(.., unit)| unit.is_some_and(|unit| !unit.is_si()));
+        let unsaid = motions().find(|(.., unit)| unit.is_none());
+        if let (Some((_, said, _)), Some((_, unsaid, _)), Angles::Unsaid) = (said, unsaid, options.angles) {
+            let what = format!(
+                "the column {said} says its unit and {unsaid} does not: --degrees if it is in degrees, --radians if it \
+                 is in radians or metres"
+            );
+            return Err(LogError::request(path, what));
+        }
+        Ok(lists)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lists(names: &[&str]) -> Result<ListColumns, LogError> {
+        ListColumns::of(Path::new("log.parquet"), names.iter().copied().enumerate(), &Options::default())
+    }
+
+    #[test]
+    fn lists_say_units() {
+        let found = lists(&["position_deg", "velocity [deg/s]", "current", "image"]).unwrap();
+        let degree = std::f64::consts::PI / 180.0;
+        assert_eq!(
+            (found.position, found.velocity, found.effort),
+            (Some((0, degree)), Some((1, degree)), Some((2, 1.0)))
+        );
+        assert_eq!(found.units.position, Some(Dimension::Angle));
+        assert_eq!(found.units.effort, Some(Dimension::Current));
+        let found = lists(&["observation.state", "observation.environment_state"]).unwrap();
+        assert_eq!(found.position, Some((0, 1.0)));
+        for (names, wanted) in [
+            (["actual.q", "target.q"], "actual.q and target.q are both positions"),
+            (["position_deg", "velocity"], "position_deg says its unit and velocity does not"),
+            (["position [gon]", "velocity"], "positions in gon, which is no unit"),
+        ] {
+            let error = lists(&names).unwrap_err().to_string();
+            assert!(error.contains(wanted), "{error}");
+        }
+    }
+}
