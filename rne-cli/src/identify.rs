@@ -12,10 +12,11 @@ use rne_model::{JointKind, Reversal, Robot, one_line};
 use rne_plot::comparison_svg;
 
 use crate::layout::{Align, columns, push_table, shortened, wrap};
-use crate::motion_log::{LogArguments, MotionLog, Part};
+use crate::log_arguments::LogArguments;
+use crate::motion_log::{MotionLog, Part};
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file;
+use crate::output_file::{self, check_place, is_same, is_standard_output};
 use crate::robot_file;
 use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
 
@@ -40,15 +41,13 @@ pub(crate) struct Arguments {
     /// Logs: bags of ROS 2, MCAP, Parquet, CSV, npy
     #[arg(value_name = "LOG", required = true)]
     logs: Vec<PathBuf>,
-    #[command(flatten)]
-    reading: LogArguments,
     /// Inertia of the motors' rotors, too
     #[arg(long)]
     rotors: bool,
-    /// No friction
+    /// No friction, also none of FILE in what is predicted
     #[arg(long)]
     no_friction: bool,
-    /// Pull to the links of FILE, or to plausible ones
+    /// Pull to FILE's links, or to plausible ones
     #[arg(long, value_name = "G", default_value_t = 1.0, value_parser = pull)]
     pull: f64,
     /// Judge on this last part of the logs: 0.3
@@ -60,12 +59,14 @@ pub(crate) struct Arguments {
     /// Draw measured and predicted torques, as SVG
     #[arg(long, value_name = "SVG")]
     plot: Option<PathBuf>,
-    /// The robot file that is written
+    /// The robot file that is written; `-`: standard output
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Overwrite files that are there
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    reading: LogArguments,
 }
 
 fn pull(text: &str) -> Result<f64, String> {
@@ -79,15 +80,15 @@ fn part(text: &str) -> Result<f64, String> {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
+    check_places(arguments, &sources)?;
     let robot = robot_file::robot(&arguments.file)?;
-    let log = MotionLog::open(&arguments.logs, &robot, &arguments.reading)?;
-    let mut remark = String::new();
-    for line in &log.remarks {
-        let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {}", wrap(line, WIDTH - 6, "      "));
-    }
+    // a file is judged by all that the log has
+    let open = if arguments.judge { MotionLog::open_wide } else { MotionLog::open };
+    let log = open(&arguments.logs, &robot, &arguments.reading)?;
+    let mut remark = log.remark(WIDTH);
     let about = format!("{} from {}, low-pass {:.1} Hz", one_line(&robot.name), log.words(), log.cutoff);
     let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, WIDTH, "  "));
-    let sources: Vec<&Path> = arguments.logs.iter().map(PathBuf::as_path).chain([arguments.file.as_path()]).collect();
     if arguments.judge {
         text += &judged(&robot, &log, Part::All, &not_excited(&robot), "prediction of the log")?;
         draw(arguments, &robot, &log, Part::All, &sources, &mut remark)?;
@@ -104,11 +105,54 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text += &judged(&found.robot, &log, part, &unknown(&found), "held-out part of the log")?;
     }
     draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
+    if !found.is_anything_excited() {
+        let not_written = match &arguments.output {
+            Some(path) => format!(", and {} is not written", one_line(&path.display().to_string())),
+            None => String::new(),
+        };
+        let what = format!("nothing is excited: the log tells no link and no friction of this arm{not_written}");
+        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
+        return Ok(Outcome { text, remark, at_fault: true });
+    }
     if let Some(path) = &arguments.output {
         let file = written(&found, &log.words());
+        if is_standard_output(path) {
+            // what is not the file is a remark then
+            return Ok(Outcome { text: file, remark: remark + &text, ..Outcome::default() });
+        }
         remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
     }
     Ok(Outcome { text, remark, ..Outcome::default() })
+}
+
+/// Whether what is written can be: nobody should wait for an identification whose result has no place.
+fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure> {
+    let output = arguments.output.as_deref().filter(|path| !is_standard_output(path));
+    let plot = arguments.plot.as_deref();
+    if let (Some(output), Some(plot)) = (output, plot)
+        && (output == plot || is_same(output, plot) || is_one_name(output, plot))
+    {
+        let shown = one_line(&plot.display().to_string());
+        return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
+    }
+    if plot.is_some_and(is_standard_output) {
+        return Err(Failure::usage("a picture goes into a file; name one behind --plot"));
+    }
+    for (path, begins) in [(output, "# Identified"), (plot, "<svg")] {
+        if let Some(path) = path {
+            check_place(path, begins, sources, arguments.force)?;
+        }
+    }
+    Ok(())
+}
+
+/// Whether two paths, of which a file may not be there yet, have one name in one folder.
+fn is_one_name(one: &Path, other: &Path) -> bool {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        folder.canonicalize().ok()
+    };
+    one.file_name() == other.file_name() && folder(one).is_some_and(|of_one| Some(of_one) == folder(other))
 }
 
 fn options(arguments: &Arguments, cutoff: f64) -> Options {
@@ -137,8 +181,8 @@ fn account(found: &Identification, log: &MotionLog) -> String {
     };
     let _ = writeln!(
         text,
-        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition {:.0}",
-        found.fit.condition
+        "{of_links} base parameters of the links{rotors}, {excited} of them excited; condition {}",
+        rounded(found.fit.condition, 0)
     );
     let certificate = &found.feasible.certificate;
     let _ = writeln!(
@@ -181,13 +225,22 @@ fn friction(text: &mut String, found: &Identification) {
     let mut cells = vec![heading];
     for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
         let Some(friction) = report.friction else { return };
-        let with = |(value, deviation): (f64, f64)| format!("{} ± {}", rounded(value, 3), rounded(deviation, 3));
+        let with = |(value, deviation): (f64, f64)| {
+            if report.is_friction_excited() {
+                format!("{} ± {}", rounded(value, 3), rounded(deviation, 3))
+            } else {
+                "not excited".to_owned()
+            }
+        };
         cells.push([
             format!("  {}", shortened(&one_line(&joint.name), 14)),
             with(friction[0]),
             with(friction[1]),
             with(friction[2]),
-            report.reversal.map_or_else(String::new, |reversal| turns(reversal, joint.row.kind)),
+            report
+                .reversal
+                .filter(|_| report.is_friction_excited())
+                .map_or_else(String::new, |reversal| turns(reversal, joint.row.kind)),
         ]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
@@ -237,7 +290,12 @@ pub(crate) fn errors_table(
     heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
     heading.push("faster".to_owned());
     let mut cells = vec![heading];
-    let percent = |part: f64| format!("{:.1} %", 100.0 * part);
+    // of an effort that does not change there is no part
+    let percent = |part: f64| match 100.0 * part {
+        percent if percent.is_nan() => "-".to_owned(),
+        percent if percent < 1000.0 => format!("{percent:.1} %"),
+        _ => "> 999 %".to_owned(),
+    };
     let (mut filtered, mut unfiltered) = (Vec::new(), Vec::new());
     for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
         let unit = joint.row.kind.effort_unit();
@@ -263,8 +321,11 @@ pub(crate) fn errors_table(
     let lines = columns(&align, &cells);
     let about = format!(
         "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
-         unfiltered: as the log is read, up to {:.1} Hz; left: by speed, too",
-        log.cutoff, log.read_to
+         unfiltered: as the log is read, up to {:.1} Hz, {} of {} states; left: by speed, too",
+        log.cutoff,
+        log.read_to,
+        errors.iter().map(|error| error.states).max().unwrap_or_default(),
+        log.states()
     );
     let about = wrap(&about, WIDTH, "");
     let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);

@@ -5,14 +5,13 @@ use std::io::{self, BufWriter, IsTerminal as _, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser as _};
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_logs::{Angles, Cutoff, Log, LogError, Motion, Options, Survey, TimeUnit};
+use rne_logs::{Cutoff, Log, LogError, Motion, Options, Survey};
 
 use crate::input_file::is_standard_input;
+use crate::log_arguments::{LogArguments, failure};
 use crate::log_report::{self, Reply};
 use crate::motion_log::check_units;
-use crate::numbers::List;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::robot_file;
@@ -35,42 +34,6 @@ pub(crate) struct Arguments {
     /// The joints of this robot file, by name
     #[arg(long, value_name = "FILE", conflicts_with = "joints")]
     robot: Option<PathBuf>,
-    /// The log's names of the joints, base to tip
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    joints: Option<Vec<String>>,
-    /// The topic of a bag; of a table, how names of columns begin
-    #[arg(long, value_name = "T")]
-    topic: Option<String>,
-    /// Efforts are currents: N m/A, one number or one per joint
-    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
-    torque_constant: Option<List>,
-    /// Positions and velocities are in degrees
-    #[arg(long, conflicts_with = "radians")]
-    degrees: bool,
-    /// They are not, however far they range
-    #[arg(long)]
-    radians: bool,
-    /// Of the filter; the spectrum chooses it, unless given
-    #[arg(long, value_name = "HZ")]
-    cutoff: Option<f64>,
-    /// A longer interval splits a run
-    #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
-    gap: f64,
-    /// Derive velocities from positions, measured or not
-    #[arg(long)]
-    derive_velocities: bool,
-    /// Take times of recording, not those of messages
-    #[arg(long)]
-    recorded: bool,
-    /// Of a table's times; s, unless their name says another
-    #[arg(long, value_name = "UNIT", value_parser = time_unit())]
-    time_unit: Option<TimeUnit>,
-    /// Rows per second of a table without times
-    #[arg(long, value_name = "HZ")]
-    rate: Option<f64>,
-    /// Of an array, in order
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "time,q,qd,tau")]
-    columns: Vec<String>,
     /// Write the filtered motion as CSV; `-`: standard output
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -80,39 +43,17 @@ pub(crate) struct Arguments {
     /// What the log has, as JSON
     #[arg(long)]
     json: bool,
-}
-
-fn time_unit() -> impl clap::builder::TypedValueParser<Value = TimeUnit> {
-    let units = [TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds];
-    PossibleValuesParser::new(units.map(TimeUnit::name))
-        .map(move |name| units.into_iter().find(|unit| unit.name() == name).unwrap_or_default())
+    #[command(flatten)]
+    reading: LogArguments,
 }
 
 impl Arguments {
     fn options(&self) -> Result<Options, Failure> {
-        let joints = match (&self.joints, &self.robot) {
-            (Some(joints), _) => Some(joints.clone()),
-            (None, Some(file)) => Some(robot_file::robot(file)?.joints.into_iter().map(|joint| joint.name).collect()),
-            (None, None) => None,
-        };
-        let angles = match (self.degrees, self.radians) {
-            (true, _) => Angles::Degrees,
-            (_, true) => Angles::Radians,
-            _ => Angles::Unsaid,
-        };
-        Ok(Options {
-            joints,
-            topic: self.topic.clone(),
-            torque_constants: self.torque_constant.as_ref().map(|List(list)| list.clone()).unwrap_or_default(),
-            angles,
-            gap: self.gap,
-            cutoff: self.cutoff,
-            derive_velocities: self.derive_velocities,
-            recorded: self.recorded,
-            time_unit: self.time_unit,
-            rate: self.rate,
-            columns: self.columns.clone(),
-        })
+        let mut options = self.reading.options();
+        if let Some(file) = &self.robot {
+            options.joints = Some(robot_file::robot(file)?.joints.into_iter().map(|joint| joint.name).collect());
+        }
+        Ok(options)
     }
 }
 
@@ -162,12 +103,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         write_file(&log, &survey, path)?
     };
     if states == 0 {
-        let what = format!(
-            "{}: no run is longer than the two ends that the filter drops, {} states each; a higher --cutoff drops \
-             less",
-            arguments.files[0].display(),
-            survey.dropped
-        );
+        let what = format!("{}: nothing is left behind the filter", arguments.files[0].display());
         return Err(Failure::input(what));
     }
     let remark = if is_result_shown {
@@ -233,11 +169,6 @@ fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) ->
         states += time.len() as u64;
     }
     Ok(states)
-}
-
-/// An error of a log: of the file, or of what was asked of it.
-fn failure(error: &LogError) -> Failure {
-    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 0 to 1")]

@@ -2,7 +2,8 @@
 
 use std::fmt::Write as _;
 
-use rne_logs::{Counts, Cutoff, Log, Run, Survey};
+use rne_logs::{Counts, Cutoff, Log, Run, Survey, Unusable};
+use rne_model::one_line;
 use serde::Serialize;
 
 use crate::layout::{Align, columns, wrap};
@@ -49,7 +50,7 @@ struct OfJoint {
 
 #[derive(Serialize)]
 struct LeftOut {
-    why: &'static str,
+    why: String,
     messages: u64,
 }
 
@@ -95,7 +96,7 @@ impl Reply {
             ignored_joints: layout.ignored.clone(),
             messages: survey.counts.messages,
             states: survey.counts.states,
-            left_out: left_out(&survey.counts).map(|(messages, why)| LeftOut { why, messages }).collect(),
+            left_out: left_out(log, survey).map(|(messages, why)| LeftOut { why, messages }).collect(),
             run_count: survey.run_count,
             runs: survey.runs.iter().map(run).collect(),
             cutoff: survey.cutoff.hertz(),
@@ -131,7 +132,7 @@ pub(crate) fn text(log: &Log, survey: &Survey) -> String {
     text += &runs(survey);
     text.push('\n');
     text += &filter(log, survey);
-    for (messages, why) in left_out(counts) {
+    for (messages, why) in left_out(log, survey) {
         let _ = writeln!(text, "{WARNING}left out{WARNING:#}: {messages} messages {why}");
     }
     for (note, is_warning) in notes(log, survey) {
@@ -220,21 +221,47 @@ fn filter(log: &Log, survey: &Survey) -> String {
 }
 
 /// What was left out, and why.
-fn left_out(counts: &Counts) -> impl Iterator<Item = (u64, &'static str)> {
+pub(crate) fn left_out(log: &Log, survey: &Survey) -> impl Iterator<Item = (u64, String)> {
+    let counts: &Counts = &survey.counts;
+    let first = survey.unusable.map_or(String::new(), |first| {
+        let joint = one_line(&log.layout().joints[first.joint]);
+        let Unusable { message, time, quantity, value, .. } = first;
+        format!("; the first is message {message} at {time:.3} s, {quantity} of {joint}: {}", short(value))
+    });
     let all = [
         (counts.of_others, "of other joints"),
         (counts.without_joints, "without some of the joints"),
         (counts.without_positions, "without positions, or with another number of them"),
         (counts.without_velocities, "without velocities, which others have"),
         (counts.without_efforts, "without efforts, which others have"),
-        (counts.not_finite, "with a number that is none (NaN, infinite, empty)"),
         (counts.repeats, "that repeat the one before, with its time"),
     ];
-    all.into_iter().filter(|(count, _)| *count > 0)
+    let all = all.map(|(count, why)| (count, why.to_owned()));
+    let not_finite = format!("with a number that is none (NaN, infinite, empty, beyond 1e12){first}");
+    all.into_iter().chain([(counts.not_finite, not_finite)]).filter(|(count, _)| *count > 0)
 }
 
 /// Remarks, and whether they are warnings.
 fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
+    let layout = log.layout();
+    let mut notes = notes_of_motion(log, survey);
+    if !layout.has_efforts {
+        notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
+    } else if log.unsaid_currents().is_none() && takes_torques(log) {
+        let what =
+            "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
+        notes.push((what.to_owned(), false));
+    }
+    notes
+}
+
+/// Whether efforts are torques because nobody said otherwise.
+fn takes_torques(log: &Log) -> bool {
+    !log.has_torque_constants() && log.layout().units.iter().any(|units| units.effort.is_none())
+}
+
+/// Remarks on everything but what efforts are, and whether they are warnings.
+pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let layout = log.layout();
     let mut notes: Vec<(String, bool)> = layout.notes.iter().map(|note| (note.clone(), false)).collect();
     if let Some((joint, range)) = survey.may_be_degrees(log) {
@@ -261,19 +288,27 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     if !layout.has_velocities {
         notes.push(("velocities are derived from positions".to_owned(), false));
     }
-    if !layout.has_efforts {
-        notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
-    } else if let Some(joint) = log.unsaid_currents() {
+    if let Some(joint) = log.unsaid_currents() {
         let what = format!(
             "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
              torques of them",
             layout.joints[joint]
         );
         notes.push((what, true));
-    } else if !log.has_torque_constants() && layout.units.iter().any(|units| units.effort.is_none()) {
-        let what =
-            "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
-        notes.push((what.to_owned(), false));
+    }
+    if let Some(first) = survey.spikes.first() {
+        let count = survey.spikes.len();
+        let what = format!(
+            "{count} {} far out of those about {} for a sample or two, as no arm's {}: the first is {} of {} at {:.3} \
+             s; rne identify leaves such samples out",
+            if count == 1 { "effort stands" } else { "efforts stand" },
+            if count == 1 { "it" } else { "them" },
+            if count == 1 { "does" } else { "do" },
+            short(first.effort),
+            layout.joints[first.joint],
+            first.time
+        );
+        notes.push((what, true));
     }
     notes
 }

@@ -36,6 +36,8 @@ mod list;
 #[cfg(feature = "logs")]
 mod log;
 #[cfg(feature = "logs")]
+mod log_arguments;
+#[cfg(feature = "logs")]
 mod log_report;
 mod mistyped;
 #[cfg(feature = "logs")]

@@ -1,14 +1,18 @@
 //! Logs of an arm, by the joints of its robot file.
 
-use std::fmt::Display;
+use std::fmt::{Display, Write as _};
 use std::path::PathBuf;
 
-use clap::Args;
+use rne_identify::reach;
 use rne_logs::{Dimension, JointUnits, Layout, Log, LogError, Motion, Options, Survey};
 use rne_model::{JointKind, Robot, one_line};
 
+use crate::layout::wrap;
+use crate::log_arguments::{self, LogArguments};
+use crate::log_report::{left_out, notes_of_motion};
+use crate::numbers::rounded;
 use crate::outcome::Failure;
-use crate::terminal::TYPED;
+use crate::terminal::{TITLE, TYPED, WARNING};
 
 /// States that are read at once: memory is this by the number of joints.
 const PIECE: usize = 65_536;
@@ -22,35 +26,6 @@ const PART: f64 = 0.5;
 /// Of the rate: no filter of the log may be wider.
 const HIGHEST: f64 = 0.3;
 
-/// How a log is read.
-#[derive(Args, Clone)]
-pub(crate) struct LogArguments {
-    /// Joints of the log, base to tip
-    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
-    joints: Vec<String>,
-    /// The topic of a bag
-    #[arg(long, value_name = "TOPIC")]
-    topic: Option<String>,
-    /// N m/A of each joint or of all: efforts are currents
-    #[arg(long, value_name = "NUMBERS", value_delimiter = ',')]
-    torque_constants: Vec<f64>,
-    /// The low-pass; by the spectrum, unless given
-    #[arg(long, value_name = "HZ", value_parser = hertz)]
-    cutoff: Option<f64>,
-}
-
-impl LogArguments {
-    /// The same with this low-pass, Hz.
-    pub(crate) fn with_cutoff(&self, cutoff: f64) -> Self {
-        Self { cutoff: Some(cutoff), ..self.clone() }
-    }
-}
-
-fn hertz(text: &str) -> Result<f64, String> {
-    let hertz = text.parse().ok().filter(|hertz: &f64| hertz.is_finite() && *hertz > 0.0);
-    hertz.ok_or_else(|| "a cut-off is a number of Hz above 0, such as 2".to_owned())
-}
-
 /// Logs that were opened and surveyed.
 pub(crate) struct MotionLog {
     log: Log,
@@ -59,8 +34,8 @@ pub(crate) struct MotionLog {
     pub(crate) cutoff: f64,
     /// Hz: the log's own filter.
     pub(crate) read_to: f64,
-    /// What a reader should know of it.
-    pub(crate) remarks: Vec<String>,
+    /// What a reader should know of it, and whether it is a warning.
+    remarks: Vec<(String, bool)>,
 }
 
 /// Which part of the logs, by time.
@@ -73,23 +48,21 @@ pub(crate) enum Part {
 }
 
 impl MotionLog {
-    /// Opens logs of a robot; the log's own filter passes what a motion may have.
+    /// Opens logs of a robot; the log's own filter passes what a motion may have, and efforts that no arm has had are
+    /// left out.
     pub(crate) fn open(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments) -> Result<Self, Failure> {
-        Self::open_with(paths, robot, arguments, WIDER)
+        let options = Options { leave_out_spikes: true, ..arguments.options() };
+        Self::open_with(paths, robot, options, WIDER)
     }
 
     /// Opens logs of a robot; the log's own filter passes all that it may, for what is sudden.
     pub(crate) fn open_wide(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments) -> Result<Self, Failure> {
-        Self::open_with(paths, robot, arguments, f64::INFINITY)
+        Self::open_with(paths, robot, arguments.options(), f64::INFINITY)
     }
 
-    fn open_with(paths: &[PathBuf], robot: &Robot, arguments: &LogArguments, wider: f64) -> Result<Self, Failure> {
-        let mut options = Options {
-            topic: arguments.topic.clone(),
-            torque_constants: arguments.torque_constants.clone(),
-            joints: (!arguments.joints.is_empty()).then(|| arguments.joints.clone()),
-            ..Options::default()
-        };
+    fn open_with(paths: &[PathBuf], robot: &Robot, mut options: Options, wider: f64) -> Result<Self, Failure> {
+        // the log's own filter is chosen here
+        let asked = options.cutoff.take();
         let mut remarks = Vec::new();
         if options.joints.is_none() {
             let log = Log::open(paths, Options { torque_constants: Vec::new(), ..options.clone() }).map_err(failure)?;
@@ -97,20 +70,53 @@ impl MotionLog {
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
         check_units(robot, log.layout())?;
-        if !log.layout().has_efforts {
-            return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
-        }
+        check_efforts(&log)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
+        let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+        if let (true, Err(error)) = (is_unsaid, log.motions(&survey)) {
+            return Err(failure(error));
+        }
+        if survey.counts.states == 0 {
+            let why: Vec<String> = left_out(&log, &survey).map(|(count, why)| format!("{count} {why}")).collect();
+            let what = format_args!("no message of the log is a state of the arm: {}", why.join("; ")).to_string();
+            return Err(Failure::input(one_line(&what)));
+        }
         let of_motion = || survey.cutoff.hertz().map(|hertz| PART * hertz);
-        let cutoff = arguments.cutoff.or_else(of_motion).ok_or_else(|| {
+        let cutoff = asked.or_else(of_motion).ok_or_else(|| {
             Failure::input(format_args!("no run is long enough to choose a low-pass; say {TYPED}--cutoff HZ{TYPED:#}"))
         })?;
-        let rate = 1.0 / log.layout().step;
-        let read_to = (wider * cutoff).min(HIGHEST * rate);
+        let highest = HIGHEST / log.layout().step;
+        let longest = survey.runs.iter().map(|run| run.duration).fold(0.0, f64::max);
+        check_cutoff(&log, cutoff, longest, |cutoff| {
+            // who reads all that there is may go to the ends of runs
+            if wider.is_finite() { log.left(&survey, (wider * cutoff).min(highest)) } else { longest }
+        })?;
+        let read_to = (wider * cutoff).min(highest);
         let log = Log::open(paths, Options { cutoff: Some(read_to), ..options }).map_err(failure)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
-        remarks.extend(log.layout().notes.iter().map(|note| one_line(note)));
+        remarks.extend(notes_of_motion(&log, &survey));
+        for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {
+            if least == greatest {
+                let what = format!("efforts of {joint} are {} throughout: are they measured?", rounded(*least, 3));
+                remarks.push((what, true));
+            }
+        }
+        for (messages, why) in left_out(&log, &survey) {
+            remarks.push((format!("left out: {messages} messages {why}"), true));
+        }
         Ok(Self { log, survey, cutoff, read_to, remarks })
+    }
+
+    /// What a reader should know of it, in lines of a width.
+    pub(crate) fn remark(&self, width: usize) -> String {
+        let mut text = String::new();
+        for (line, is_warning) in &self.remarks {
+            let (word, style) = if *is_warning { ("warning", WARNING) } else { ("note", TITLE) };
+            let indent = " ".repeat(word.len() + 2);
+            let wrapped = wrap(&one_line(line), width - indent.len(), &indent);
+            let _ = writeln!(text, "{style}{word}{style:#}: {wrapped}");
+        }
+        text
     }
 
     /// What was read, in words.
@@ -190,15 +196,67 @@ fn cut(motion: &Motion, is_in: impl Fn(f64) -> bool) -> Motion {
     }
 }
 
+#[expect(clippy::needless_pass_by_value, reason = "it is what errors are mapped by")]
+fn failure(error: LogError) -> Failure {
+    log_arguments::failure(&error)
+}
+
+/// Refuses a log without efforts of all joints.
+fn check_efforts(log: &Log) -> Result<(), Failure> {
+    let layout = log.layout();
+    if layout.has_efforts {
+        return Ok(());
+    }
+    let missing: Vec<String> = layout.without_efforts.iter().map(|name| one_line(name)).collect();
+    if missing.is_empty() || missing.len() == layout.joints.len() {
+        return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
+    }
+    Err(Failure::input(format_args!(
+        "the log has no efforts of {}, and torques of every joint are what a model is held against",
+        missing.join(", ")
+    )))
+}
+
+/// Refuses a low-pass that samples are too far apart for, or that the longest run, s, has no room for: what is `left`
+/// of it beside a low-pass.
+fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64) -> Result<(), Failure> {
+    let rate = 1.0 / log.layout().step;
+    let highest = HIGHEST * rate;
+    let is_left = |cutoff: f64| left(cutoff) > 2.0 * reach(cutoff);
+    if cutoff <= highest && is_left(cutoff) {
+        return Ok(());
+    }
+    // what is left grows with the low-pass
+    let (mut too_low, mut lowest) = (0.0, highest);
+    while lowest - too_low > 1e-3 * lowest {
+        let middle = f64::midpoint(too_low, lowest);
+        *(if is_left(middle) { &mut lowest } else { &mut too_low }) = middle;
+    }
+    let said = format!(
+        "{} Hz is no low-pass for samples at {rate:.4} Hz in runs of {} s at most",
+        rounded(cutoff, 3),
+        rounded(longest, 2)
+    );
+    if is_left(highest) {
+        return Err(Failure::usage(format_args!(
+            "{said}; {TYPED}--cutoff{TYPED:#} is from {} to {} Hz here, and the lower, the more of the ends of runs is \
+             lost",
+            rounded((lowest * 1e3).ceil() * 1e-3, 3),
+            rounded((highest * 1e3).floor() * 1e-3, 3)
+        )));
+    }
+    Err(Failure::input(format_args!("{said}, and no other is: runs are too short")))
+}
+
 /// The joints of the log that are those of the robot, base to tip.
-fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<String>) -> Result<Vec<String>, Failure> {
+fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) -> Result<Vec<String>, Failure> {
     let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     if names.iter().all(|name| logged.contains(name)) {
         return Ok(names);
     }
     if logged.len() == names.len() {
         let logged: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
-        remarks.push(format!("joints of the log by their order: {}", logged.join(", ")));
+        remarks.push((format!("joints of the log by their order: {}", logged.join(", ")), false));
         return Ok(logged);
     }
     let shown: Vec<String> = logged.iter().take(16).map(|name| one_line(name)).collect();
@@ -239,9 +297,4 @@ pub(crate) fn check_units(robot: &Robot, layout: &Layout) -> Result<(), Failure>
         )));
     }
     Ok(())
-}
-
-/// A log that cannot be read, or a request that it cannot serve.
-pub(crate) fn failure(error: LogError) -> Failure {
-    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
 }

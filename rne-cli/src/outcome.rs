@@ -74,6 +74,14 @@ impl Failure {
     }
 }
 
+/// What a log says nothing by.
+#[cfg(feature = "logs")]
+impl From<rne_identify::MotionError> for Failure {
+    fn from(error: rne_identify::MotionError) -> Self {
+        Self::input(error)
+    }
+}
+
 /// Errors of a robot file, as the compiler shows them too.
 impl From<&Report> for Failure {
     fn from(report: &Report) -> Self {

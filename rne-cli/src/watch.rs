@@ -11,7 +11,8 @@ use serde::Serialize;
 
 use crate::identify::{errors_table, prediction};
 use crate::layout::{Align, columns, shortened, wrap};
-use crate::motion_log::{LogArguments, MotionLog, Part};
+use crate::log_arguments::LogArguments;
+use crate::motion_log::{MotionLog, Part};
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
@@ -45,8 +46,6 @@ pub(crate) struct Arguments {
     /// A log in which nothing happens: what is usual
     #[arg(long, value_name = "LOG")]
     quiet: Vec<PathBuf>,
-    #[command(flatten)]
-    reading: LogArguments,
     /// Of the momentum observer, Hz
     #[arg(long, value_name = "HZ", default_value_t = 20.0, value_parser = above_zero)]
     gain: f64,
@@ -65,6 +64,8 @@ pub(crate) struct Arguments {
     /// Events and errors as JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: LogArguments,
 }
 
 fn above_zero(text: &str) -> Result<f64, String> {
@@ -89,10 +90,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         [] => None,
         logs => Some(MotionLog::open_wide(logs, &robot, &arguments.reading.with_cutoff(log.cutoff))?),
     };
-    let mut remark = String::new();
-    for line in log.remarks.iter().chain(quiet.iter().flat_map(|quiet| &quiet.remarks)) {
-        let _ = writeln!(remark, "{TITLE}note{TITLE:#}: {}", wrap(line, WIDTH - 6, "      "));
-    }
+    let mut remark = log.remark(WIDTH);
+    remark += &quiet.as_ref().map_or_else(String::new, |quiet| quiet.remark(WIDTH));
     let baseline = match &quiet {
         Some(quiet) => silent(&robot, quiet, &settings)?,
         None => typical(&robot, &log, &settings)?,

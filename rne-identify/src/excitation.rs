@@ -74,7 +74,9 @@ pub struct ExcitationProgress {
 pub struct Excitation {
     /// The motion, a period of it.
     pub motion: Fourier,
-    /// The condition number of the first motion within the effort limits: a random one.
+    /// The condition number of the first motion that was tried and has one, that is, within the effort limits: the
+    /// first random start, or, where that was beyond them, whichever came first. The search computes it of products of
+    /// the columns, exact to half the digits.
     pub first_condition: f64,
     /// That of the motion: largest over smallest singular value of the columns, each of length one, of base parameters
     /// and friction. Rows of a joint are divided by its effort limit where every joint has one.

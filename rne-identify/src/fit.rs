@@ -12,6 +12,8 @@ const ROUNDS: usize = 12;
 /// Rounds before the reversals of friction are chosen, and in which they are.
 const FIRST: usize = 3;
 const CHOOSING: usize = 2;
+/// N m or N: no joint's noise is less, so that efforts that are zero throughout divide nothing by nothing.
+const LEAST_NOISE: f64 = 1e-12;
 
 /// What least squares say of the unknowns.
 #[derive(Clone, Debug)]
@@ -49,7 +51,7 @@ impl Fit {
             // the torque itself, to begin with
             let target = factor.columns() - 1;
             let power = factor.triangle().column(target).norm_squared() / factor.weight().max(1.0);
-            *noise = if power > 0.0 { power.sqrt() } else { 1.0 };
+            *noise = if power > 0.0 { power.sqrt().max(LEAST_NOISE) } else { 1.0 };
         }
         for round in 0..ROUNDS {
             if (FIRST..FIRST + CHOOSING).contains(&round) && structure.options.friction {
@@ -197,7 +199,7 @@ impl State<'_> {
             let taken = (design * &inverse).norm_squared();
             let left = (factor.weight() - taken).max(1.0);
             let power = factor.triangle().column(factor.columns() - 1).norm_squared() / factor.weight().max(1.0);
-            self.noise[joint] = (residual / left).sqrt().max(1e-9 * power.sqrt()).max(f64::MIN_POSITIVE);
+            self.noise[joint] = (residual / left).sqrt().max(1e-9 * power.sqrt()).max(LEAST_NOISE);
         }
     }
 
@@ -269,7 +271,19 @@ impl State<'_> {
         #[allow(clippy::cast_precision_loss)]
         let length = rows as f64 / number;
         let across = if self.structure.options.cutoff.is_some() { ACROSS / length.max(2.0 * ACROSS) } else { 0.0 };
-        &inverse * (sum * ((number - 1.0) / number / (1.0 - across))) * inverse.transpose()
+        let of_rows = &inverse * (sum * ((number - 1.0) / number / (1.0 - across))) * inverse.transpose();
+        of_rows + self.of_ridge(&inverse)
+    }
+
+    /// What the ridge adds: it draws unknowns to zero, and they may be as far from there as it supposes. Of what the
+    /// rows tell it is nothing beside their own covariance; what they do not tell is as unknown as before, although it
+    /// is zero whatever stretch is left out.
+    fn of_ridge(&self, inverse: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut drawn = inverse * inverse.transpose();
+        for (mut column, ridge) in drawn.column_iter_mut().zip(self.ridge().iter()) {
+            column *= *ridge;
+        }
+        &drawn * drawn.transpose()
     }
 }
 
@@ -292,6 +306,10 @@ pub(crate) fn condition(triangle: &RFactor, count: usize, ridge: &DVector<f64>) 
     let kept: Vec<usize> = (0..count).filter(|&at| square.column(at).norm() > 2.0 * ridge[at]).collect();
     if kept.is_empty() {
         return 1.0;
+    }
+    // of what is no number the singular values would be looked for without end
+    if square.iter().any(|x| !x.is_finite()) {
+        return f64::INFINITY;
     }
     let mut columns = square.clone_owned().select_columns(&kept);
     for mut column in columns.column_iter_mut() {

@@ -2,15 +2,16 @@
 
 use nalgebra::Matrix4;
 use rne_logs::Motion;
-use rne_model::{Inertia, InertiaReference, Link, Motor, Reversal, Robot};
+use rne_model::{Inertia, InertiaReference, Joint, Link, Motor, Reversal, Robot};
 
 use crate::feasible::Feasible;
 use crate::fit::Fit;
 use crate::information::{Information, MotionError, Weighting};
-use crate::parameters::{PER_LINK, name};
+use crate::parameters::{PER_LINK, Parameters, name};
 use crate::prediction::{JointError, Prediction};
 use crate::prior::Scales;
 use crate::pseudo_inertia;
+use crate::r_factor::RFactor;
 use crate::structure::{FRICTION, Options, Structure};
 
 /// Passes over the logs: one to begin with, and two in which rows that are far off count less.
@@ -21,6 +22,9 @@ pub(crate) const UNKNOWN: f64 = 0.5;
 
 /// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
 const NOISE: f64 = 0.5;
+
+/// N m or N: efforts of which none is larger are no torques.
+const LEAST_EFFORT: f64 = 1e-9;
 
 /// Digits of what is written.
 const DIGITS: i32 = 8;
@@ -67,7 +71,8 @@ pub struct BaseReport {
     pub written: f64,
     /// Half the width of its interval of 95 %, by Student's t of the stretches of time.
     pub half_interval: f64,
-    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited.
+    /// Its deviation over what plausible links would give it: below 0.5 it counts as excited. Infinite where the logs
+    /// excite no joint that feels it: what none of their torques is told from noise by, they do not tell.
     pub uncertainty: f64,
 }
 
@@ -89,6 +94,9 @@ pub struct JointReport {
     pub error: JointError,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
     pub friction: Option<[(f64, f64); FRICTION]>,
+    /// The lesser deviation of the two of Coulomb friction over the joint's effort, root mean square: below 0.5
+    /// friction counts as excited; else the robot has that of the file. Infinite without friction.
+    pub friction_uncertainty: f64,
     /// How Coulomb friction changes its sign.
     pub reversal: Option<Reversal>,
     /// kg m² at the joint.
@@ -101,14 +109,29 @@ impl JointReport {
     pub fn is_excited(&self) -> bool {
         self.error.unfiltered < NOISE
     }
+
+    /// Whether the logs tell its friction.
+    #[must_use]
+    pub fn is_friction_excited(&self) -> bool {
+        self.friction_uncertainty < UNKNOWN
+    }
+}
+
+impl Identification {
+    /// Whether the logs tell anything at all: a base parameter or the friction of a joint.
+    #[must_use]
+    pub fn is_anything_excited(&self) -> bool {
+        self.bases.iter().any(BaseReport::is_excited) || self.joints.iter().any(JointReport::is_friction_excited)
+    }
 }
 
 /// Identifies a robot. `pass` hands every motion of the logs to what it is given, each time it is called; the motions
 /// may be parts of logs. `pull` is γ of [`Feasible`].
 ///
 /// # Errors
-/// When a motion is of another robot, or what `pass` fails with.
-pub fn identify<E>(
+/// When a motion is of another robot; when all of them make fewer rows than deviations need, or have no efforts; when
+/// what is found is not finite; or what `pass` fails with.
+pub fn identify<E: From<MotionError>>(
     robot: &Robot,
     options: Options,
     pull: f64,
@@ -117,7 +140,18 @@ pub fn identify<E>(
     let structure = Structure::new(robot, options);
     let mut one = |weighting: Option<&Weighting>| -> Result<(Information, Scales, Fit), E> {
         let mut information = Information::new(&structure);
-        pass(&mut |motion| information.absorb(&structure, motion, weighting))?;
+        let mut largest = 0.0_f64;
+        pass(&mut |motion| {
+            largest = motion.tau.iter().flatten().fold(largest, |most, tau| most.max(tau.abs()));
+            information.absorb(&structure, motion, weighting)
+        })?;
+        if information.stretches.len() < 2 {
+            let (rows, needed, duration) = (information.rows(), information.needed(), information.duration());
+            return Err(MotionError::TooFew { rows, needed, duration }.into());
+        }
+        if largest <= LEAST_EFFORT {
+            return Err(MotionError::NoEfforts.into());
+        }
         let scales = scales(&structure, &information);
         let fit = Fit::of(&structure, &information, &scales);
         Ok((information, scales, fit))
@@ -127,10 +161,20 @@ pub fn identify<E>(
         found = one(Some(&found.2.weighting(&structure)))?;
     }
     let (information, scales, fit) = found;
-    let OnePass { robot: identified, fit, feasible, bases, .. } = OnePass::of_fit(&structure, fit, &scales, pull);
-    let mut prediction = Prediction::new(&identified, structure.options.cutoff);
+    let one = OnePass::of_fit(&structure, fit, &scales, pull);
+    if let Some(joint) = not_finite(&one.robot) {
+        return Err(MotionError::NotANumber(joint).into());
+    }
+    let mut prediction = Prediction::new(&one.robot, structure.options.cutoff);
     pass(&mut |motion| prediction.absorb(motion))?;
-    let joints = joints(&structure, &fit, &feasible, &prediction.errors());
+    let joints = joints(&structure, &one, &prediction.errors());
+    let OnePass { robot: identified, fit, feasible, mut bases, .. } = one;
+    for (base, report) in structure.parameters.bases.iter().zip(&mut bases) {
+        let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(base, *joint));
+        if !felt.any(|(_, joint)| joint.is_excited()) {
+            report.uncertainty = f64::INFINITY;
+        }
+    }
     // what the last pass found beyond what its rows were shifted by
     let delay = structure.options.delay.then(|| {
         let at = fit.solution.len() - 1;
@@ -175,9 +219,7 @@ impl OnePass {
     /// no effort to be held against.
     #[must_use]
     pub fn is_friction_excited(&self, joint: usize) -> bool {
-        let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
-        let least = deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation));
-        self.efforts.get(joint).is_some_and(|effort| least < UNKNOWN * effort)
+        joint < self.friction.len() && self.friction_uncertainty(joint) < UNKNOWN
     }
 
     /// Of what was gathered. `pull` is γ of [`Feasible`].
@@ -189,26 +231,41 @@ impl OnePass {
 
     fn of_fit(structure: &Structure, fit: Fit, scales: &Scales, pull: f64) -> Self {
         let feasible = Feasible::of(structure, &fit, scales, pull);
-        let robot = robot_of(structure, &fit, &feasible);
-        let bases = bases(structure, &fit, scales, &robot);
         let joints = if structure.options.friction { structure.dof() } else { 0 };
         let friction = (0..joints).map(|joint| friction(structure, &fit, &feasible, joint)).collect();
-        Self { robot, bases, friction, efforts: scales.friction.clone(), fit, feasible }
+        let mut one = Self {
+            robot: structure.robot.clone(),
+            bases: Vec::new(),
+            friction,
+            efforts: scales.friction.clone(),
+            fit,
+            feasible,
+        };
+        one.robot = robot_of(structure, &one);
+        one.bases = bases(structure, &one.fit, scales, &one.robot);
+        one
+    }
+
+    /// Of the Coulomb friction of a joint the lesser deviation over the joint's effort; what is no number is not known.
+    fn friction_uncertainty(&self, joint: usize) -> f64 {
+        let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
+        deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation)) / self.efforts[joint]
     }
 }
 
 /// How large unknowns are, where efforts are as large as in the logs.
 #[must_use]
 pub fn scales(structure: &Structure, information: &Information) -> Scales {
-    let efforts: Vec<f64> = information
-        .total(structure)
-        .iter()
-        .map(|factor| {
-            let power = factor.triangle().column(factor.columns() - 1).norm_squared();
-            (power / factor.weight().max(1.0)).sqrt()
-        })
-        .collect();
-    Scales::of(&structure.robot, &structure.parameters, &efforts)
+    Scales::of(&structure.robot, &structure.parameters, &efforts(structure, information))
+}
+
+/// Of each joint's efforts, root mean square, N m or N.
+fn efforts(structure: &Structure, information: &Information) -> Vec<f64> {
+    let of_joint = |factor: &RFactor| {
+        let power = factor.triangle().column(factor.columns() - 1).norm_squared();
+        (power / factor.weight().max(1.0)).sqrt()
+    };
+    information.total(structure).iter().map(of_joint).collect()
 }
 
 fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
@@ -234,19 +291,36 @@ fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize)
     [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
 }
 
-fn joints(structure: &Structure, fit: &Fit, feasible: &Feasible, errors: &[JointError]) -> Vec<JointReport> {
+fn joints(structure: &Structure, one: &OnePass, errors: &[JointError]) -> Vec<JointReport> {
     let each = errors.iter().enumerate().map(|(joint, error)| JointReport {
-        noise: fit.noise[joint],
+        noise: one.fit.noise[joint],
         error: *error,
-        friction: structure.options.friction.then(|| friction(structure, fit, feasible, joint)),
-        reversal: structure.options.friction.then(|| structure.reversals[fit.reversals[joint]]),
-        rotor: structure.options.rotors.then(|| feasible.rotors[joint]),
+        friction: one.friction.get(joint).copied(),
+        friction_uncertainty: one.friction_uncertainty(joint),
+        reversal: structure.options.friction.then(|| structure.reversals[one.fit.reversals[joint]]),
+        rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),
     });
     each.collect()
 }
 
-/// The robot with these links and motors.
-fn robot_of(structure: &Structure, fit: &Fit, feasible: &Feasible) -> Robot {
+/// The first joint of which a number is not finite.
+fn not_finite(robot: &Robot) -> Option<usize> {
+    let is_finite = |joint: &Joint| {
+        let Link { mass, com, inertia, .. } = joint.row.link;
+        let Inertia { xx, yy, zz, xy, xz, yz } = inertia;
+        let of_motor =
+            joint.motor.map_or([0.0; 4], |Motor { inertia, viscous, coulomb: [forward, backward], .. }| {
+                [inertia, viscous, forward, backward]
+            });
+        [mass, xx, yy, zz, xy, xz, yz].iter().chain(&com).chain(&of_motor).all(|x| x.is_finite())
+    };
+    robot.joints.iter().position(|joint| !is_finite(joint))
+}
+
+/// The robot with these links and motors: its friction is what was identified, that of the file where the logs do not
+/// tell, and none where nobody asked for friction.
+fn robot_of(structure: &Structure, one: &OnePass) -> Robot {
+    let OnePass { fit, feasible, .. } = one;
     let mut robot = structure.robot.clone();
     for (at, joint) in robot.joints.iter_mut().enumerate() {
         joint.row.link = link(&feasible.links[at]);
@@ -257,7 +331,10 @@ fn robot_of(structure: &Structure, fit: &Fit, feasible: &Feasible) -> Robot {
         if structure.options.rotors {
             motor.inertia = rounded(feasible.rotors[at] / (ratio * ratio));
         }
-        if structure.options.friction {
+        if !structure.options.friction {
+            (motor.viscous, motor.coulomb) = (0.0, [0.0; 2]);
+            (joint.coulomb_width, joint.coulomb_displacement) = (None, None);
+        } else if one.is_friction_excited(at) {
             let [viscous, forward, backward] = feasible.friction[at];
             motor.viscous = rounded(viscous / (ratio * ratio));
             motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];
@@ -266,8 +343,12 @@ fn robot_of(structure: &Structure, fit: &Fit, feasible: &Feasible) -> Robot {
                 Reversal::Displacement(length) => (None, Some(length)),
             };
         }
-        if structure.options.rotors || structure.options.friction {
+        let is_nothing = motor.inertia == 0.0 && motor.viscous == 0.0 && motor.coulomb == [0.0; 2];
+        // a gear that the file has stays
+        if joint.motor.is_some_and(|motor| motor.gear_ratio != 1.0) || !is_nothing {
             joint.motor = Some(motor);
+        } else {
+            joint.motor = None;
         }
     }
     robot

@@ -80,6 +80,19 @@ pub enum MotionError {
     NotFinite(usize),
     /// The regressor cannot be computed.
     Evaluation(EvaluationError),
+    /// All motions together make fewer rows than deviations need.
+    TooFew {
+        /// Rows of each joint.
+        rows: u64,
+        /// How many are needed.
+        needed: u64,
+        /// s, of the motions together.
+        duration: f64,
+    },
+    /// The efforts of all joints are zero throughout.
+    NoEfforts,
+    /// What was found of a joint is no number: its place, from 0.
+    NotANumber(usize),
 }
 
 impl fmt::Display for MotionError {
@@ -91,6 +104,20 @@ impl fmt::Display for MotionError {
             Self::Lengths => f.write_str("positions, rates, accelerations and torques are not as many as times"),
             Self::NotFinite(state) => write!(f, "state {state} has a number that is not finite"),
             Self::Evaluation(error) => error.fmt(f),
+            Self::TooFew { rows, needed, duration } => write!(
+                f,
+                "logs of {duration:.2} s behind the filter make {rows} rows of each joint, and {needed} are needed to \
+                 tell how far off they are: more of the log, a longer one, or a higher cut-off"
+            ),
+            Self::NoEfforts => f.write_str(
+                "the efforts of all joints are zero throughout, or less than any sensor measures: they are no torques",
+            ),
+            Self::NotANumber(joint) => write!(
+                f,
+                "no finite link, friction or rotor of joint {} explains the log: are its efforts torques in N m, its \
+                 positions radians, and are links of the robot file as large as those of an arm?",
+                joint + 1
+            ),
         }
     }
 }
@@ -137,6 +164,11 @@ impl Information {
     #[must_use]
     pub fn unordered(structure: &Structure) -> Self {
         Self { length: UNORDERED, ..Self::new(structure) }
+    }
+
+    /// Rows of each joint that are needed for deviations by leaving out stretches: two of these.
+    pub(crate) fn needed(&self) -> u64 {
+        self.length + 1
     }
 
     /// Whether its rows have no order: deviations suppose then that errors of rows are independent.
@@ -263,15 +295,22 @@ fn add(total: &mut Stretch, stretch: &Stretch) {
 }
 
 /// Where rows are made: at every state without filter, else as densely as what has passed it can tell apart, and where
-/// the whole kernel finds samples.
+/// the whole kernel finds samples; where those are farther apart, at every state, too. None are so near to the ends
+/// that the torque that answers would be beyond.
 fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
-    let Some(cutoff) = structure.options.cutoff else { return time.to_vec() };
-    let kernel = Kernel::of_cutoff(cutoff);
+    let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
     let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
-    let (first, last) = (first + kernel.reach() + delay.abs(), last - kernel.reach() - delay.abs());
+    let duration = last - first;
+    let reach = kernel.map_or(0.0, Kernel::reach) + delay.abs();
+    let (first, last) = (first + reach, last - reach);
     if first > last {
         return Vec::new();
     }
+    #[allow(clippy::cast_precision_loss)] // states of a piece
+    let is_wide = |kernel: &Kernel| kernel.width() * (time.len() - 1) as f64 >= duration;
+    let Some(kernel) = kernel.filter(is_wide) else {
+        return time.iter().copied().filter(|time| (first..=last).contains(time)).collect();
+    };
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // as many as a log has states, or fewer
     let count = ((last - first) / kernel.width()) as u64;
     #[allow(clippy::cast_precision_loss)]
@@ -324,6 +363,8 @@ fn rows(
     let time = &motion.time[from..to];
     walk.advance(motion, from);
     let plain = plain_columns(structure, motion, from..to, walk)?;
+    // without filter instants are states, which follow each other
+    let place = time.partition_point(|time| time < start);
     let weights: Vec<Weights> = match kernel {
         Some(kernel) => instants.iter().map(|instant| kernel.about(time, *instant)).collect(),
         None => Vec::new(),
@@ -339,13 +380,19 @@ fn rows(
         let columns = structure.columns(joint);
         let inner = columns - 1 - usize::from(has_delay);
         let tau = &motion.tau[joint][from..to];
+        let (rotor, qdd) = (structure.known_rotor(joint), &motion.qdd[joint][from..to]);
+        let known = |row: usize| match kernel {
+            _ if rotor == 0.0 => 0.0,
+            Some(_) => rotor * weights[row].of(qdd),
+            None => rotor * qdd[place + row],
+        };
         DMatrix::from_fn(instants.len(), columns, |row, column| match (kernel.is_some(), column) {
             (true, column) if column < inner => weights[row].of(plain[joint].column(column).as_slice()),
             (true, column) if column + 1 < columns => -late[row].slope_of(tau),
-            (true, _) => late[row].of(tau),
-            (false, column) if column < inner => plain[joint][(row, column)],
-            (false, column) if column + 1 < columns => -slope(time, tau, row),
-            (false, _) => tau[row],
+            (true, _) => late[row].of(tau) - known(row),
+            (false, column) if column < inner => plain[joint][(place + row, column)],
+            (false, column) if column + 1 < columns => -between(time, place + row, delay, |at| slope(time, tau, at)),
+            (false, _) => between(time, place + row, delay, |at| tau[at]) - known(row),
         })
     };
     let mut all: Vec<DMatrix<f64>> = (0..structure.dof()).map(of_joint).collect();
@@ -367,6 +414,18 @@ fn rows(
         pieces.push((rows, weights));
     }
     Ok(pieces)
+}
+
+/// What samples have some time behind one of them, on the straight line between its neighbours.
+fn between(time: &[f64], at: usize, behind: f64, of: impl Fn(usize) -> f64) -> f64 {
+    if behind == 0.0 {
+        return of(at);
+    }
+    let instant = time[at] + behind;
+    let next = time.partition_point(|time| *time <= instant).clamp(1, time.len() - 1);
+    let elapsed = time[next] - time[next - 1];
+    let part = if elapsed > 0.0 { ((instant - time[next - 1]) / elapsed).clamp(0.0, 1.0) } else { 0.0 };
+    (1.0 - part) * of(next - 1) + part * of(next)
 }
 
 /// The slope of samples about one of them.

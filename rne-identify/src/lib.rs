@@ -34,5 +34,6 @@ pub use parameters::{Base, Parameters, name, unit};
 pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};
 pub use r_factor::{RFactor, WrongColumns};
 pub use rne_codegen::Parameter;
+pub use smoothing::reach;
 pub use structure::{Options, Structure};
 pub use written::{not_excited, written, written_robot};

@@ -42,7 +42,7 @@ pub fn links(robot: &Robot) -> Vec<PriorLink> {
             }
             // thin rods and point masses have room to become bodies
             let thick = written + guess * 1e-2;
-            let is_positive = thick.symmetric_eigenvalues().min() > 0.0;
+            let is_positive = pseudo_inertia::margin(&thick) > 0.0;
             let pseudo_inertia = if is_positive { thick } else { guess };
             PriorLink { pseudo_inertia, is_of_file: is_positive }
         })

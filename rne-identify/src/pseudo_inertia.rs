@@ -56,6 +56,10 @@ pub fn units() -> [Matrix4<f64>; PER_LINK] {
 /// The smallest eigenvalue over the largest: above zero for every body that is not flat.
 #[must_use]
 pub fn margin(pseudo: &Matrix4<f64>) -> f64 {
+    // of what is no number they would be looked for without end
+    if pseudo.iter().any(|x| !x.is_finite()) {
+        return f64::NEG_INFINITY;
+    }
     let values = SymmetricEigen::new(*pseudo).eigenvalues;
     let largest = values.max();
     if largest > 0.0 { values.min() / largest } else { f64::NEG_INFINITY }

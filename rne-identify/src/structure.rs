@@ -9,9 +9,11 @@ use crate::parameters::Parameters;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Viscous and Coulomb friction, the latter for each direction of its own.
+    /// Viscous and Coulomb friction, the latter for each direction of its own. Without, the arm has none, whatever its
+    /// file says.
     pub friction: bool,
-    /// Inertia of rotors behind their gears.
+    /// Inertia of rotors behind their gears. Without, the rotors of the file are known, and their torque is not that of
+    /// links.
     pub rotors: bool,
     /// How much the torques lag behind the positions.
     pub delay: bool,
@@ -136,6 +138,14 @@ impl Structure {
             unknowns.push(self.count() - 1);
         }
         unknowns
+    }
+
+    /// G² Jm of a joint, kg m² or kg, where the file has it and nobody asked for it: its torque is known.
+    pub(crate) fn known_rotor(&self, joint: usize) -> f64 {
+        match self.robot.joints.get(joint).and_then(|joint| joint.motor) {
+            Some(motor) if !self.options.rotors => motor.gear_ratio * motor.gear_ratio * motor.inertia,
+            _ => 0.0,
+        }
     }
 
     /// How many unknowns there are: base parameters, friction joint by joint, the delay.

@@ -101,13 +101,18 @@ fn of_link(identification: &Identification, report: &JointReport, joint: usize) 
     let unit = identification.robot.joints[joint].row.kind.effort_unit();
     if report.is_excited() {
         format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
-    } else {
+    } else if report.error.unfiltered < 10.0 {
         format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.unfiltered)
+    } else {
+        "joint not excited: its effort does not change but by noise".to_owned()
     }
 }
 
 fn of_motor(report: &JointReport, kind: JointKind) -> Option<String> {
     let [viscous, forward, backward] = report.friction?;
+    if !report.is_friction_excited() {
+        return Some("friction not excited".to_owned());
+    }
     let unit = kind.effort_unit();
     Some(format!(
         "deviations at the joint: viscous {}, Coulomb {} and {} {unit}",

@@ -20,6 +20,9 @@ pub(crate) struct Grid {
 }
 
 impl Grid {
+    /// Steps by which the last sample of a run may be before a row that has it: stamps are rounded.
+    pub(crate) const CLOSE: f64 = 1e-3;
+
     /// A grid of a step, ns, for a run that begins at a time, ns.
     pub(crate) fn new(step: f64, begin: i64) -> Self {
         Self { step, begin, near: VecDeque::with_capacity(4), row: 0, count: 0 }
@@ -54,8 +57,8 @@ impl Grid {
     #[expect(clippy::cast_precision_loss, reason = "rows are fewer than 2^53")]
     fn emit(&mut self, first: usize, last: bool, emit: &mut impl FnMut(&[f64])) {
         let (begin, end) = (self.near[first].0, self.near[first + 1].0);
-        // stamps are rounded, and the last sample is one of the grid
-        let end = if last { end + 1e-3 * self.step } else { end };
+        // the last sample is one of the grid
+        let end = if last { end + Self::CLOSE * self.step } else { end };
         let is_cubic = first == 1
             && self.near.len() == 4
             && (0..3).all(|i| self.near[i + 1].0 - self.near[i].0 >= 0.5 * self.step);

@@ -36,12 +36,11 @@ pub(crate) const PASSED: f64 = 1.0 - HALF_TRANSITION;
 
 impl Kernel {
     /// The low-pass of a cut-off, Hz, at a step, s.
-    #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
+    #[expect(clippy::cast_precision_loss, reason = "weights of a filter that is shorter than a run")]
     pub(crate) fn low_pass(cutoff: f64, step: f64) -> Self {
         use std::f64::consts::PI;
         let beta = 0.1102 * (ATTENUATION - 8.7);
-        let transition = 2.0 * PI * cutoff * step * 2.0 * HALF_TRANSITION;
-        let half = ((ATTENUATION - 8.0) / (2.285 * transition) / 2.0).ceil() as usize;
+        let half = Self::half_of(cutoff, step);
         let at = |k: usize| {
             let x = 2.0 * cutoff * step * k as f64;
             let sinc = if k == 0 { 1.0 } else { (PI * x).sin() / (PI * x) };
@@ -52,6 +51,20 @@ impl Kernel {
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
         let weights = weights.into_iter().map(|weight| weight / sum).collect();
         Self { weights, step }
+    }
+
+    /// How many numbers on each side the low-pass of a cut-off, Hz, at a step, s, needs: told before it is made, for a
+    /// low cut-off may need more than there are, or than any memory has.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "it ends at the largest number")]
+    pub(crate) fn half_of(cutoff: f64, step: f64) -> usize {
+        let transition = 2.0 * std::f64::consts::PI * cutoff * step * 2.0 * HALF_TRANSITION;
+        ((ATTENUATION - 8.0) / (2.285 * transition) / 2.0).ceil() as usize
+    }
+
+    /// The lowest cut-off, Hz, at a step, s, whose low-pass needs so many numbers on each side at most.
+    #[expect(clippy::cast_precision_loss, reason = "states of a run")]
+    pub(crate) fn lowest_of(half: usize, step: f64) -> f64 {
+        (ATTENUATION - 8.0) / (2.285 * 2.0 * half as f64) / (2.0 * std::f64::consts::PI * step * 2.0 * HALF_TRANSITION)
     }
 
     /// How many numbers on each side the low-pass needs.
@@ -123,6 +136,19 @@ mod tests {
             }
             assert!((gain(&kernel, cutoff) - 0.5).abs() < 0.01, "{}", gain(&kernel, cutoff));
         }
+    }
+
+    #[test]
+    fn how_long_a_filter_is_is_known_before_it_is_made() {
+        for (cutoff, step) in [(2.0, 0.01), (0.37, 0.008), (11.0, 0.04)] {
+            let half = Kernel::half_of(cutoff, step);
+            assert_eq!(Kernel::low_pass(cutoff, step).half(), half);
+            let lowest = Kernel::lowest_of(half, step);
+            assert!(lowest <= cutoff && Kernel::half_of(lowest * 1.001, step) <= half, "{lowest} {cutoff}");
+            assert!(Kernel::half_of(lowest * 0.999, step) > half);
+        }
+        assert_eq!(Kernel::half_of(1e-300, 0.01), usize::MAX);
+        assert_eq!(Kernel::lowest_of(0, 0.01), f64::INFINITY);
     }
 
     #[test]

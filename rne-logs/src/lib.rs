@@ -42,6 +42,7 @@ mod motion;
 mod motions;
 mod npy;
 mod npy_array;
+mod number;
 mod options;
 #[cfg(feature = "parquet")]
 mod parquet_table;
@@ -49,6 +50,7 @@ mod pass;
 mod sample;
 mod spectrum;
 mod spelling;
+mod spikes;
 #[cfg(feature = "rosbag")]
 mod sqlite_bag;
 mod survey;
@@ -65,6 +67,8 @@ pub use crate::motion::Motion;
 pub use crate::motions::{Motions, Piece};
 pub use crate::npy::Npy;
 pub use crate::options::{Angles, Options};
+pub use crate::pass::Unusable;
+pub use crate::spikes::Spike;
 pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::time_unit::TimeUnit;
 pub use crate::unit::{Dimension, JointUnits};

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use crate::LogError;
 use crate::format::{self, Format};
 use crate::joints::Joints;
+use crate::kernel::Kernel;
 use crate::motions::Motions;
 use crate::options::{Angles, Options};
 use crate::pass::Pass;
@@ -47,6 +48,8 @@ pub struct Layout {
     pub has_velocities: bool,
     /// Whether the log has efforts; states without them are left out then.
     pub has_efforts: bool,
+    /// Where it has none: the joints none of whose efforts is a number, of the first thousand messages.
+    pub without_efforts: Vec<String>,
     /// The median interval, s.
     pub step: f64,
     /// The time of the log's first state, ns, which times are since; 0 where the log's own times begin near zero.
@@ -127,6 +130,7 @@ impl Log {
             recorded,
             has_velocities: has(velocities) && !options.derive_velocities,
             has_efforts: has(efforts),
+            without_efforts: without_efforts(&mut joints.clone(), &states),
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
             units: joints.names.iter().map(|name| chain.units.of(name)).collect(),
@@ -145,6 +149,15 @@ impl Log {
     #[must_use]
     pub fn has_torque_constants(&self) -> bool {
         !self.options.torque_constants.is_empty()
+    }
+
+    /// How much of the longest run a filter of a cut-off, Hz, leaves, s: zero, where it drops all of it. The survey is
+    /// of this log, by whatever filter.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "states of a run")]
+    pub fn left(&self, survey: &Survey, cutoff: f64) -> f64 {
+        let dropped = self.dropped(Kernel::half_of(cutoff, self.layout.step)).saturating_mul(2);
+        survey.longest.saturating_sub((dropped as u64).saturating_add(1)) as f64 * self.layout.step
     }
 
     /// The files, in the order in which they are read.
@@ -167,7 +180,8 @@ impl Log {
     ///
     /// # Errors
     ///
-    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow.
+    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow, or
+    /// that leaves nothing of any run.
     pub fn motions(&self, survey: &Survey) -> Result<Motions<'_>, LogError> {
         Motions::of(self, survey)
     }
@@ -250,6 +264,22 @@ impl<'a> Chain<'a> {
         let done = self.count - self.others.len() - 1;
         (done as f64 + self.source.progress()) / self.count as f64
     }
+}
+
+/// The joints that have no effort in any of these samples.
+fn without_efforts(joints: &mut Joints, samples: &[&Sample]) -> Vec<String> {
+    let mut is_there = vec![false; joints.names.len()];
+    let mut efforts = Vec::new();
+    for sample in samples {
+        joints.find(sample);
+        efforts.clear();
+        joints.take(&sample.effort, |_| 1.0, &mut efforts);
+        for (is_there, effort) in is_there.iter_mut().zip(&efforts) {
+            *is_there |= effort.is_finite();
+        }
+    }
+    let missing = joints.names.iter().zip(is_there).filter(|(_, is_there)| !is_there);
+    missing.map(|(name, _)| name.clone()).collect()
 }
 
 /// The median of the intervals between times that grow, s.

@@ -1,7 +1,8 @@
 //! The runs of a log, filtered, in pieces.
 
 use crate::grid::Grid;
-use crate::kernel::Kernel;
+use crate::kernel::{HIGHEST, Kernel};
+use crate::number::short;
 use crate::pass::Pass;
 use crate::survey::Survey;
 use crate::{Log, LogError, Motion};
@@ -67,12 +68,17 @@ impl<'a> Motions<'a> {
                 "no run is long enough for a spectrum, a second and 64 states, to choose the filter: say --cutoff HZ";
             return Err(log.request(what));
         };
+        if survey.longest <= survey.dropped.saturating_mul(2) as u64 {
+            return Err(too_low(log, survey, hertz));
+        }
         let kernel = Kernel::low_pass(hertz, log.layout.step);
         let layout = &log.layout;
+        let pass = log.pass()?;
+        let pass = if log.options.leave_out_spikes { pass.without(&survey.spikes) } else { pass };
         let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
         let mut motions = Self {
-            pass: log.pass()?,
-            dropped: log.dropped(&kernel),
+            pass,
+            dropped: log.dropped(kernel.half()),
             length: PIECE,
             kernel,
             log,
@@ -176,6 +182,27 @@ impl<'a> Motions<'a> {
         self.rows.iter_mut().for_each(|rows| drop(rows.drain(..count)));
         self.first += count as u64;
         motion
+    }
+}
+
+/// Why a cut-off leaves nothing of any run: of the request, where another one would leave something.
+fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
+    let (longest, step) = (usize::try_from(survey.longest).unwrap_or(usize::MAX), log.layout.step);
+    let half = (longest.saturating_sub(1) / 2).saturating_sub(log.of_differences());
+    let lowest = Kernel::lowest_of(half, step);
+    let what = format!(
+        "no run is longer than the two ends that the filter drops: at {} Hz a cut-off of {} Hz drops {} states each, \
+         and the longest run has {longest}",
+        short(1.0 / step),
+        short(hertz),
+        survey.dropped
+    );
+    if lowest <= HIGHEST / step {
+        // rounded up
+        let lowest = (lowest * 1e3).ceil() / 1e3;
+        log.request(format_args!("{what}; a higher --cutoff drops less, from {lowest} Hz on something is left"))
+    } else {
+        LogError::file(&log.files[0], format_args!("{what}; no cut-off that the rate allows leaves anything"))
     }
 }
 

@@ -20,6 +20,8 @@ pub struct Options {
     pub gap: f64,
     /// The cut-off of the filter, Hz; without it the spectrum chooses.
     pub cutoff: Option<f64>,
+    /// States with an effort that stands far out of those about it are left out: [`Survey::spikes`](crate::Survey).
+    pub leave_out_spikes: bool,
     /// Velocities are the derivative of positions, also where the log has measured ones.
     pub derive_velocities: bool,
     /// Times are those of recording, also where messages have their own.
@@ -53,6 +55,7 @@ impl Default for Options {
             angles: Angles::Unsaid,
             gap: 3.5,
             cutoff: None,
+            leave_out_spikes: false,
             derive_velocities: false,
             recorded: false,
             time_unit: None,

@@ -3,19 +3,41 @@
 use crate::joints::{Joints, Presence};
 use crate::log::Chain;
 use crate::sample::Sample;
+use crate::spikes::Spike;
 use crate::survey::{Counts, Interruption};
 use crate::{Log, LogError};
 
 /// A position that moves faster than this, rad/s or m/s, was set and not reached.
 const FASTEST: f64 = 30.0;
 
+/// A number beyond this, of whatever unit, was not measured; and its square has room for many more.
+const LARGEST: f64 = 1e12;
+
 /// A state as the log has it, in SI units.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct State {
+    /// The number of its message, from 1.
+    pub(crate) message: u64,
     /// ns
     pub(crate) time: i64,
     /// Positions of the joints, then velocities and efforts where the log has them.
     pub(crate) numbers: Vec<f64>,
+}
+
+/// A number that makes a message unusable: it is none, infinite, or so large that nobody measured it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Unusable {
+    /// The number of the message or row, from 1, header and comments not counted.
+    pub message: u64,
+    /// s
+    pub time: f64,
+    /// The joint's place among those that are read, from 0.
+    pub joint: usize,
+    /// `position`, `velocity` or `effort`
+    pub quantity: &'static str,
+    /// As the log has it, in SI units.
+    pub value: f64,
 }
 
 /// One reading of a log.
@@ -27,6 +49,9 @@ pub(crate) struct Pass<'a> {
     state: State,
     previous: Option<State>,
     pub(crate) counts: Counts,
+    pub(crate) unusable: Option<Unusable>,
+    /// Messages that are left out, by their numbers, in order.
+    without: Vec<u64>,
 }
 
 impl<'a> Pass<'a> {
@@ -39,7 +64,14 @@ impl<'a> Pass<'a> {
             state: State::default(),
             previous: None,
             counts: Counts::default(),
+            unusable: None,
+            without: Vec::new(),
         })
+    }
+
+    /// Without the messages that have a spike.
+    pub(crate) fn without(self, spikes: &[Spike]) -> Self {
+        Self { without: spikes.iter().map(|spike| spike.message).collect(), ..self }
     }
 
     /// How much of the log was read, 0 to 1.
@@ -54,7 +86,7 @@ impl<'a> Pass<'a> {
                 return Ok(None);
             }
             self.counts.messages += 1;
-            if !self.take() {
+            if !self.take() || self.without.binary_search(&self.counts.messages).is_ok() {
                 continue;
             }
             let begins = match &self.previous {
@@ -67,6 +99,7 @@ impl<'a> Pass<'a> {
             };
             self.counts.states += 1;
             let previous = self.previous.get_or_insert_default();
+            previous.message = self.state.message;
             previous.time = self.state.time;
             previous.numbers.clone_from(&self.state.numbers);
             return Ok(Some((&self.state, begins)));
@@ -101,6 +134,7 @@ impl<'a> Pass<'a> {
             counts.without_efforts += 1;
             return false;
         }
+        state.message = counts.messages;
         state.time = if layout.recorded { sample.recorded } else { sample.measured };
         state.numbers.clear();
         let units = &layout.units;
@@ -111,8 +145,21 @@ impl<'a> Pass<'a> {
         if layout.has_efforts {
             self.joints.take(&sample.effort, |joint| log.torque_constant(joint), &mut state.numbers);
         }
-        if state.numbers.iter().any(|number| !number.is_finite()) {
+        if let Some(at) = state.numbers.iter().position(|number| number.is_nan() || number.abs() > LARGEST) {
             counts.not_finite += 1;
+            let joints = self.joints.names.len();
+            let quantity = match at / joints {
+                0 => "position",
+                1 if layout.has_velocities => "velocity",
+                _ => "effort",
+            };
+            self.unusable.get_or_insert(Unusable {
+                message: counts.messages,
+                time: log.seconds(state.time),
+                joint: at % joints,
+                quantity,
+                value: state.numbers[at],
+            });
             return false;
         }
         true

@@ -4,8 +4,11 @@ use std::fmt;
 
 use crate::grid::Grid;
 use crate::kernel::{HIGHEST, Kernel, PASSED};
+use crate::number::short;
 use crate::options::Angles;
+use crate::pass::Unusable;
 use crate::spectrum::Spectrum;
+use crate::spikes::{Spike, Spikes};
 use crate::{Log, LogError};
 
 /// Runs that are listed; of others only the number is kept.
@@ -33,6 +36,13 @@ pub struct Survey {
     pub runs: Vec<Run>,
     /// How many runs there are.
     pub run_count: u64,
+    /// States of the longest run on an even grid, as the filter takes them.
+    pub longest: u64,
+    /// Efforts that stand far out of those about them for a sample or two, the first thousand of each joint; they are
+    /// in the motions, unless [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
+    pub spikes: Vec<Spike>,
+    /// The first number that made a message unusable, of those that [`Counts::not_finite`] counts.
+    pub unusable: Option<Unusable>,
     /// By joint: the least and the greatest position, rad or m.
     pub positions: Vec<(f64, f64)>,
     /// By joint: the least and the greatest velocity, rad/s or m/s; empty where the log has none.
@@ -65,7 +75,7 @@ pub struct Counts {
     pub without_velocities: u64,
     /// Messages without efforts, or with another number of them, where the log has efforts.
     pub without_efforts: u64,
-    /// Messages with a number that is none, or infinite.
+    /// Messages with a number that is none, infinite, or beyond 10¹² of its unit.
     pub not_finite: u64,
     /// Messages that say the same as the one before, at the same time.
     pub repeats: u64,
@@ -167,6 +177,7 @@ impl Survey {
         let columns = joints * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
         let mut spectra = SEGMENTS.map(|seconds| Spectrum::new(joints, rate, seconds));
         let mut ranges = vec![(f64::INFINITY, f64::NEG_INFINITY); columns];
+        let mut spikes = Spikes::new(if layout.has_efforts { joints } else { 0 });
         let mut agreement = Agreement::new(if layout.has_velocities { joints } else { 0 });
         let mut runs = Runs::default();
         let mut grid: Option<Grid> = None;
@@ -178,6 +189,7 @@ impl Survey {
                 progress(pass.progress());
             }
             let Some((state, begins)) = pass.next()? else { break };
+            let message = state.message;
             for (range, number) in ranges.iter_mut().zip(&state.numbers) {
                 *range = (range.0.min(*number), range.1.max(*number));
             }
@@ -186,12 +198,15 @@ impl Survey {
                     grid.finish(&mut |row| push(&mut spectra, row));
                 }
                 spectra.iter_mut().for_each(Spectrum::end_run);
+                spikes.end_run();
                 runs.begin(log.seconds(state.time), begins);
                 agreement.previous = None;
             } else {
                 runs.push(log.seconds(state.time), layout.step);
             }
             agreement.push(state.time, &state.numbers);
+            let efforts = columns - if layout.has_efforts { joints } else { 0 };
+            spikes.push(message, log.seconds(state.time), &state.numbers[efforts..]);
             let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
             grid.push(state.time, &state.numbers, &mut |row| {
                 push(&mut spectra, row);
@@ -205,19 +220,36 @@ impl Survey {
             Some(hertz) if hertz <= HIGHEST * rate => Cutoff::Given { hertz },
             Some(hertz) => {
                 let what = format!(
-                    "a cut-off of {hertz} Hz is too high for samples at {rate:.4} Hz: at most {:.4} Hz",
+                    "a cut-off of {} Hz is too high for samples at {rate:.4} Hz: at most {:.4} Hz",
+                    short(hertz),
                     HIGHEST * rate
                 );
                 return Err(log.request(what));
             }
             None => spectra.iter().find_map(Spectrum::ends).map_or(Cutoff::Unknown, |ends| chosen(ends, rate)),
         };
-        let dropped = cutoff.hertz().map_or(0, |hertz| log.dropped(&Kernel::low_pass(hertz, layout.step)));
+        let dropped = cutoff.hertz().map_or(0, |hertz| log.dropped(Kernel::half_of(hertz, layout.step)));
+        let unusable = pass.unusable.take();
+        let spikes = spikes.end(counts.states);
+        let longest = runs.longest(layout.step);
         let (run_count, runs) = runs.end();
         let efforts = ranges.split_off(columns - if layout.has_efforts { joints } else { 0 });
         let velocities = ranges.split_off(joints);
         let disagreement = agreement.end();
-        Ok(Self { counts, runs, run_count, positions: ranges, velocities, efforts, disagreement, cutoff, dropped })
+        Ok(Self {
+            counts,
+            runs,
+            run_count,
+            longest,
+            spikes,
+            unusable,
+            positions: ranges,
+            velocities,
+            efforts,
+            disagreement,
+            cutoff,
+            dropped,
+        })
     }
 
     /// The joint whose positions may be degrees, and their range: nobody said that they are radians, and they range
@@ -240,10 +272,14 @@ impl Log {
         time.saturating_sub(self.layout.origin) as f64 * 1e-9
     }
 
-    /// States at each end of a run that a filter drops.
-    pub(crate) fn dropped(&self, kernel: &Kernel) -> usize {
-        let differences = if self.layout.has_velocities { 1 } else { 2 };
-        kernel.half() + differences * Kernel::of_difference()
+    /// States at each end of a run that a filter drops which needs so many numbers on each side.
+    pub(crate) fn dropped(&self, half: usize) -> usize {
+        half.saturating_add(self.of_differences())
+    }
+
+    /// States at each end of a run that differences drop.
+    pub(crate) fn of_differences(&self) -> usize {
+        if self.layout.has_velocities { Kernel::of_difference() } else { 2 * Kernel::of_difference() }
     }
 }
 
@@ -307,6 +343,8 @@ impl Agreement {
 struct Runs {
     ended: Vec<Run>,
     count: u64,
+    /// s
+    longest: f64,
     last: Option<Run>,
     time: f64,
     squares: f64,
@@ -334,9 +372,17 @@ impl Runs {
     fn end_run(&mut self) {
         let Some(mut run) = self.last.take() else { return };
         run.jitter = (self.squares / (run.states - 1).max(1) as f64).sqrt();
+        self.longest = self.longest.max(run.duration);
         if self.ended.len() < LISTED {
             self.ended.push(run);
         }
+    }
+
+    /// Of the longest run, the rows of a grid of this step, s.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "rows of a run")]
+    fn longest(&mut self, step: f64) -> u64 {
+        self.end_run();
+        if self.count == 0 { 0 } else { (self.longest / step + Grid::CLOSE).floor() as u64 + 1 }
     }
 
     fn end(mut self) -> (u64, Vec<Run>) {

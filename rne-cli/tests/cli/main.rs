@@ -15,6 +15,7 @@ mod firmware;
 mod help;
 #[cfg(unix)]
 mod hostile;
+mod identify;
 mod import;
 mod log;
 mod plans;

@@ -124,3 +124,56 @@ fn the_spectrum_chooses_a_cutoff_above_the_motion() {
     assert!(ends[0] > 0.7 && ends[0] < 2.5 && ends[1] > 1.9 && ends[1] < 3.8, "{ends:?}");
     assert!(!bounded && (hertz - 1.5 * ends[1]).abs() < 1e-12);
 }
+
+/// A cut-off that needs more states than a run has, or than any memory: said, with the lowest that leaves something.
+#[test]
+fn a_cutoff_that_leaves_nothing_is_refused() {
+    let (_folder, path) = file("short.csv", csv(&times(400, 100.0)));
+    let of = |cutoff: f64| {
+        let options = Options { cutoff: Some(cutoff), ..Options::default() };
+        runs(std::slice::from_ref(&path), options, 100_000)
+    };
+    for cutoff in [1.5, 0.01, 1e-9, 1e-300] {
+        let error = of(cutoff).unwrap_err();
+        let said = error.to_string();
+        assert!(error.is_of_request() && said.contains("at 100 Hz a cut-off of"), "{said}");
+        let lowest = said.rsplit_once("from ").unwrap().1.split(' ').next().unwrap();
+        let lowest: f64 = lowest.parse().unwrap();
+        assert!((1.5..1.8).contains(&lowest), "{said}");
+        assert!(!of(lowest).unwrap().is_empty());
+        assert!(of(lowest * 0.99).is_err());
+    }
+    let error = of(1e300).unwrap_err();
+    assert!(error.to_string().contains("1.000e300 Hz is too high for samples at 100.0000 Hz"), "{error}");
+    // no cut-off helps five states
+    let (_folder, path) = file("five.csv", csv(&times(5, 100.0)));
+    let options = Options { cutoff: Some(10.0), ..Options::default() };
+    let error = runs(&[path], options, 100_000).unwrap_err();
+    assert!(!error.is_of_request() && error.to_string().contains("no cut-off"), "{error}");
+}
+
+/// A spike is found before a filter spreads it; left out, the motion is that of the log without it.
+#[test]
+fn a_spike_is_found_and_left_out_where_that_is_asked_for() {
+    let clean = csv(&times(1200, 100.0));
+    let mut lines: Vec<String> = clean.lines().map(str::to_owned).collect();
+    let (before, effort) = lines[701].rsplit_once(',').unwrap();
+    let (before, effort) = (before.to_owned(), effort.parse::<f64>().unwrap());
+    lines[701] = format!("{before},{}", effort + 1e4);
+    let (_folder, path) = file("spike.csv", lines.join("\n"));
+    let (_other, clean) = file("clean.csv", clean);
+    let options = Options { cutoff: Some(8.0), ..Options::default() };
+    let (_, found) = survey(std::slice::from_ref(&path), options.clone()).unwrap();
+    let [spike] = found.spikes[..] else { panic!("{:?}", found.spikes) };
+    assert_eq!((spike.message, spike.joint, spike.time), (701, 1, 7.0));
+    assert!((spike.effort - effort - 1e4).abs() < 1e-9);
+    let motion = |path, options| runs(&[path], options, 100_000).unwrap().remove(0).1;
+    let (spoilt, clean) = (motion(path.clone(), options.clone()), motion(clean, options.clone()));
+    let without = motion(path, Options { leave_out_spikes: true, ..options });
+    let off = |motion: &rne_logs::Motion| {
+        let pairs = motion.tau[1].iter().zip(&clean.tau[1]);
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    };
+    assert_eq!(without.len(), clean.len());
+    assert!(off(&spoilt) > 1e3 && off(&without) < 1e-3, "{} {}", off(&spoilt), off(&without));
+}

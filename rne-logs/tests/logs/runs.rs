@@ -75,9 +75,27 @@ fn numbers_that_are_none_are_counted_and_left_out() {
     let (_folder, path) = file("nan.csv", lines.join("\n"));
     let (_, survey) = survey(&[path], Options::default()).unwrap();
     assert_eq!((survey.counts.not_finite, survey.counts.states, survey.counts.messages), (3, 497, 500));
+    let unusable = survey.unusable.unwrap();
+    assert_eq!((unusable.message, unusable.joint, unusable.quantity), (50, 0, "position"));
     // two steps are missing: not yet a gap
     assert_eq!(survey.run_count, 1);
     assert!((survey.runs[0].longest - 0.03).abs() < 1e-9);
+}
+
+/// What overflows where it is squared is no number that was measured.
+#[test]
+fn numbers_that_nobody_measured_are_left_out() {
+    let text = csv(&even(0.0, 500));
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    let (before, _) = lines[91].rsplit_once(',').unwrap();
+    lines[91] = format!("{before},-1e300");
+    let (_folder, path) = file("huge.csv", lines.join("\n"));
+    let (_, survey) = survey(&[path], Options::default()).unwrap();
+    assert_eq!((survey.counts.not_finite, survey.counts.states), (1, 499));
+    let unusable = survey.unusable.unwrap();
+    assert_eq!((unusable.message, unusable.joint, unusable.quantity, unusable.value), (91, 1, "effort", -1e300));
+    assert!((unusable.time - 0.9).abs() < 1e-9);
+    assert!(survey.efforts[1].0 > -100.0);
 }
 
 #[test]
