@@ -67,6 +67,29 @@ fn one_wrong_effort_spoils_nothing() {
     }
 }
 
+/// A push, or a sensor that fails for a while, spoils nothing either.
+#[test]
+fn what_is_of_no_free_motion_does_not_count() {
+    let folder = folder("identify_push");
+    let failed = changed(&folder.join("log.csv"), |row, cells| {
+        if (200..205).contains(&row) {
+            cells[8] = "300".to_owned();
+        }
+    });
+    for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.27 s"), (&failed, "the first at 7.79 s")] {
+        let called = rne(&["identify", ARM, log]);
+        let err = called.err.replace("\n         ", " ");
+        let warned = err.contains("rows of shoulder are far from all others and do not count") && err.contains(said);
+        assert!(called.status == 0 && warned, "{called:?}");
+        let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
+        for (found, truth) in [(viscous, 0.6), (forward, 0.8), (backward, 0.8)] {
+            assert!((found - truth).abs() < 0.03, "{log}: {found} {truth}");
+        }
+        assert!(called.out.contains("15 of them excited") && !called.out.contains("not excited"), "{}", called.out);
+    }
+    assert!(!rne(&["identify", ARM, LOG]).err.contains("far from all others"));
+}
+
 /// An arm that stands still: nothing is excited, and no file is written of it.
 #[test]
 fn nothing_is_excited_by_an_arm_that_stands_still() {
