@@ -48,8 +48,8 @@ fn friction(account: &str) -> Vec<f64> {
 fn one_wrong_effort_spoils_nothing() {
     let folder = folder("identify_spike");
     for (effort, said) in [
-        ("10000", ["10000 of shoulder at 8.000", "rne identify leaves such samples out"]),
-        ("-60", ["-60 of shoulder at 8.000", "rne identify leaves such samples out"]),
+        ("10000", ["10000 of shoulder at 8.000", "an identification leaves such samples out"]),
+        ("-60", ["-60 of shoulder at 8.000", "an identification leaves such samples out"]),
         ("1e300", ["message 201 at 8.000 s", "effort of shoulder: 1.00e300"]),
         ("1e155", ["message 201 at 8.000 s", "effort of shoulder: 1.00e155"]),
         ("inf", ["message 201 at 8.000 s", "left out: 1 messages"]),
