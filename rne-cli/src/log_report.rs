@@ -300,7 +300,7 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
         let count = survey.spikes.len();
         let what = format!(
             "{count} {} far out of those about {} for a sample or two, as no arm's {}: the first is {} of {} at {:.3} \
-             s; rne identify leaves such samples out",
+             s; an identification leaves such samples out",
             if count == 1 { "effort stands" } else { "efforts stand" },
             if count == 1 { "it" } else { "them" },
             if count == 1 { "does" } else { "do" },
