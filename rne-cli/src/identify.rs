@@ -105,6 +105,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text += &judged(&found.robot, &log, part, &unknown(&found), "held-out part of the log")?;
     }
     draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
+    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+        let Some(rejected) = report.rejected else { continue };
+        let what = format!(
+            "{} of {} rows of {} are far from all others and do not count, the first at {:.2} s: did somebody push the \
+             arm, or did a sensor fail?",
+            rejected.rows,
+            found.rows,
+            one_line(&joint.name),
+            rejected.time
+        );
+        let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
+    }
     if !found.is_anything_excited() {
         let not_written = match &arguments.output {
             Some(path) => format!(", and {} is not written", one_line(&path.display().to_string())),

@@ -40,7 +40,7 @@ pub(crate) struct LogArguments {
     /// Take times of recording, not those of messages
     #[arg(long)]
     recorded: bool,
-    /// Of a table's times: s, ms, us, ns; as named, or s
+    /// Of a table's times: s, ms, us, ns
     #[arg(long, value_name = "UNIT", value_parser = time_unit(), hide_possible_values = true)]
     time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times

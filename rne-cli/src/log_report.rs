@@ -247,19 +247,17 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let mut notes = notes_of_motion(log, survey);
     if !layout.has_efforts {
         notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
-    } else if let Some(joint) = log.unsaid_currents() {
-        let what = format!(
-            "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
-             torques of them",
-            layout.joints[joint]
-        );
-        notes.push((what, true));
-    } else if !log.has_torque_constants() && layout.units.iter().any(|units| units.effort.is_none()) {
+    } else if log.unsaid_currents().is_none() && takes_torques(log) {
         let what =
             "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
         notes.push((what.to_owned(), false));
     }
     notes
+}
+
+/// Whether efforts are torques because nobody said otherwise.
+fn takes_torques(log: &Log) -> bool {
+    !log.has_torque_constants() && log.layout().units.iter().any(|units| units.effort.is_none())
 }
 
 /// Remarks on everything but what efforts are, and whether they are warnings.
@@ -290,11 +288,19 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     if !layout.has_velocities {
         notes.push(("velocities are derived from positions".to_owned(), false));
     }
+    if let Some(joint) = log.unsaid_currents() {
+        let what = format!(
+            "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
+             torques of them",
+            layout.joints[joint]
+        );
+        notes.push((what, true));
+    }
     if let Some(first) = survey.spikes.first() {
         let count = survey.spikes.len();
         let what = format!(
             "{count} {} far out of those about {} for a sample or two, as no arm's {}: the first is {} of {} at {:.3} \
-             s; rne identify leaves such samples out",
+             s; an identification leaves such samples out",
             if count == 1 { "effort stands" } else { "efforts stand" },
             if count == 1 { "it" } else { "them" },
             if count == 1 { "does" } else { "do" },

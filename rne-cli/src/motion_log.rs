@@ -74,10 +74,11 @@ impl MotionLog {
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
-        check_efforts(&log)?;
         check_units(robot, log.layout())?;
+        check_efforts(&log)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
-        if let (true, Err(error)) = (survey.may_be_degrees(&log).is_some(), log.motions(&survey)) {
+        let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+        if let (true, Err(error)) = (is_unsaid, log.motions(&survey)) {
             return Err(failure(error));
         }
         if survey.counts.states == 0 {

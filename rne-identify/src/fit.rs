@@ -97,6 +97,7 @@ impl Fit {
             used: (0..dof).map(|joint| structure.used(joint, self.reversals[joint])).collect(),
             noise: self.noise.clone(),
             delay,
+            far: f64::INFINITY,
         }
     }
 

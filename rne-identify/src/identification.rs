@@ -6,16 +6,20 @@ use rne_model::{Inertia, InertiaReference, Joint, Link, Motor, Reversal, Robot};
 
 use crate::feasible::Feasible;
 use crate::fit::Fit;
-use crate::information::{Information, MotionError, Weighting};
+use crate::information::{Information, MotionError, Rejected, Weighting};
 use crate::parameters::{PER_LINK, Parameters, name};
 use crate::prediction::{JointError, Prediction};
 use crate::prior::Scales;
 use crate::pseudo_inertia;
 use crate::r_factor::RFactor;
+use crate::steady::steady;
 use crate::structure::{FRICTION, Options, Structure};
 
 /// Passes over the logs: one to begin with, and two in which rows that are far off count less.
 const PASSES: usize = 3;
+
+/// Deviations beyond which a row is of no free motion, where some stretches of the logs are not.
+const FAR: f64 = 30.0;
 
 /// A base parameter is not excited where its deviation is larger than this part of what plausible links would give it.
 pub(crate) const UNKNOWN: f64 = 0.5;
@@ -90,6 +94,10 @@ impl BaseReport {
 pub struct JointReport {
     /// Noise behind the filter, N m or N.
     pub noise: f64,
+    /// Effort behind the filter, root mean square, N m or N; at least 1e-6.
+    pub effort: f64,
+    /// Rows so far from all others that they do not count: of a push, of a sensor that failed.
+    pub rejected: Option<Rejected>,
     /// Over the logs that it was identified from.
     pub error: JointError,
     /// Viscous friction, N m s/rad, Coulomb friction forward and backward, N m, with deviations, at the joint.
@@ -107,7 +115,11 @@ impl JointReport {
     /// Whether the logs tell its torque from noise.
     #[must_use]
     pub fn is_excited(&self) -> bool {
-        self.error.as_read < NOISE
+        match self.rejected {
+            None => self.error.as_read < NOISE,
+            // errors are of what does not count, too
+            Some(_) => self.noise < NOISE * self.effort,
+        }
     }
 
     /// Whether the logs tell its friction.
@@ -157,8 +169,11 @@ pub fn identify<E: From<MotionError>>(
         Ok((information, scales, fit))
     };
     let mut found = one(None)?;
+    let steady = steady(&structure, &found.0, &found.2);
+    let far = if steady.is_some() { FAR } else { f64::INFINITY };
+    found.2 = steady.unwrap_or(found.2);
     for _ in 1..PASSES {
-        found = one(Some(&found.2.weighting(&structure)))?;
+        found = one(Some(&Weighting { far, ..found.2.weighting(&structure) }))?;
     }
     let (information, scales, fit) = found;
     let one = OnePass::of_fit(&structure, fit, &scales, pull);
@@ -167,7 +182,7 @@ pub fn identify<E: From<MotionError>>(
     }
     let mut prediction = Prediction::new(&one.robot, structure.options.cutoff);
     pass(&mut |motion| prediction.absorb(motion))?;
-    let joints = joints(&structure, &one, &prediction.errors());
+    let joints = joints(&structure, &one, &prediction.errors(), &information.rejected);
     let OnePass { robot: identified, fit, feasible, mut bases, .. } = one;
     for (base, report) in structure.parameters.bases.iter().zip(&mut bases) {
         let mut felt = joints.iter().enumerate().filter(|(joint, _)| Parameters::is_felt(base, *joint));
@@ -219,9 +234,7 @@ impl OnePass {
     /// no effort to be held against.
     #[must_use]
     pub fn is_friction_excited(&self, joint: usize) -> bool {
-        let deviations = self.friction.get(joint).into_iter().flat_map(|[_, coulomb @ ..]| coulomb);
-        let least = deviations.fold(f64::INFINITY, |least, (_, deviation)| least.min(*deviation));
-        self.efforts.get(joint).is_some_and(|effort| least < UNKNOWN * effort)
+        joint < self.friction.len() && self.friction_uncertainty(joint) < UNKNOWN
     }
 
     /// Of what was gathered. `pull` is γ of [`Feasible`].
@@ -293,9 +306,16 @@ fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize)
     [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
 }
 
-fn joints(structure: &Structure, one: &OnePass, errors: &[JointError]) -> Vec<JointReport> {
-    let each = errors.iter().enumerate().map(|(joint, error)| JointReport {
+fn joints(
+    structure: &Structure,
+    one: &OnePass,
+    errors: &[JointError],
+    rejected: &[Option<Rejected>],
+) -> Vec<JointReport> {
+    let each = errors.iter().zip(rejected).enumerate().map(|(joint, (error, rejected))| JointReport {
         noise: one.fit.noise[joint],
+        effort: one.efforts[joint],
+        rejected: *rejected,
         error: *error,
         friction: one.friction.get(joint).copied(),
         friction_uncertainty: one.friction_uncertainty(joint),
@@ -336,7 +356,7 @@ fn robot_of(structure: &Structure, one: &OnePass) -> Robot {
         if !structure.options.friction {
             (motor.viscous, motor.coulomb) = (0.0, [0.0; 2]);
             (joint.coulomb_width, joint.coulomb_displacement) = (None, None);
-        } else if one.friction_uncertainty(at) < UNKNOWN {
+        } else if one.is_friction_excited(at) {
             let [viscous, forward, backward] = feasible.friction[at];
             motor.viscous = rounded(viscous / (ratio * ratio));
             motor.coulomb = [rounded(forward / ratio), -rounded(backward / ratio)];

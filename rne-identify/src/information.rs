@@ -1,6 +1,8 @@
 //! What logs say of the unknowns: triangles of the weighted rows, in memory that does not grow with the logs.
 
+mod instants;
 mod numbers;
+mod weighting;
 
 use std::fmt;
 
@@ -14,7 +16,10 @@ use crate::r_factor::RFactor;
 use crate::smoothing::{Kernel, Weights};
 use crate::structure::Structure;
 
+use instants::{between, instants, slope};
+
 pub use numbers::WrongNumbers;
+pub use weighting::{Rejected, Weighting};
 
 /// States that are computed at once.
 const WINDOW: usize = 2048;
@@ -28,22 +33,6 @@ const STATES_UNFILTERED: u64 = 64;
 
 /// The length of the one stretch of rows that have no order.
 const UNORDERED: u64 = u64::MAX;
-
-/// A row that is off by more deviations than that counts less: Huber's function.
-const HUBER: f64 = 2.5;
-
-/// What the fit before says of each row: by it rows are weighted.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Weighting {
-    /// Unknowns of each joint's columns.
-    pub(crate) solutions: Vec<DVector<f64>>,
-    /// Columns of each joint that they belong to.
-    pub(crate) used: Vec<Vec<usize>>,
-    /// Deviation of each joint's noise, N m or N.
-    pub(crate) noise: Vec<f64>,
-    /// s
-    pub(crate) delay: f64,
-}
 
 /// The triangles of every joint's rows over a stretch of time.
 pub(crate) type Stretch = Vec<RFactor>;
@@ -61,6 +50,8 @@ pub struct Information {
     pub(crate) duration: f64,
     /// s: how much later torques were taken.
     pub(crate) shift: f64,
+    /// Of each joint, rows that do not count.
+    pub(crate) rejected: Vec<Option<Rejected>>,
 }
 
 /// Why a motion says nothing of a robot.
@@ -160,7 +151,8 @@ impl Information {
             Some(_) => LENGTH as u64,
             None => STATES_UNFILTERED,
         };
-        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0 }
+        let rejected = vec![None; structure.dof()];
+        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, rejected }
     }
 
     /// Of no rows, and of rows that have no order, as those of a table: no stretches are kept apart, so that memory is
@@ -224,9 +216,11 @@ impl Information {
         let instants = instants(structure, &motion.time, delay);
         let mut walk = Walk::new(structure);
         for instants in instants.chunks(WINDOW) {
-            for (rows, weights) in rows(structure, motion, instants, weighting, delay, &mut walk)? {
+            let (pieces, rejected) = rows(structure, motion, instants, weighting, delay, &mut walk)?;
+            for (rows, weights) in pieces {
                 self.take(rows, weights);
             }
+            self.reject(&rejected);
         }
         Ok(())
     }
@@ -238,7 +232,28 @@ impl Information {
         self.shift = other.shift;
         self.duration += other.duration;
         self.stretches.extend(other.stretches);
+        self.reject(&other.rejected);
         self.compress();
+    }
+
+    /// The same, with the rows of each joint and stretch weighted.
+    pub(crate) fn weighted(&self, weights: &[Vec<f64>]) -> Self {
+        let mut weighted = self.clone();
+        for (at, stretch) in weighted.stretches.iter_mut().enumerate() {
+            for (factor, weights) in stretch.iter_mut().zip(weights) {
+                *factor = factor.weighted(weights[at]);
+            }
+        }
+        weighted
+    }
+
+    fn reject(&mut self, rejected: &[Option<Rejected>]) {
+        for (all, more) in self.rejected.iter_mut().zip(rejected) {
+            *all = match (*all, *more) {
+                (Some(all), Some(more)) => Some(Rejected { rows: all.rows + more.rows, time: all.time }),
+                (all, more) => all.or(more),
+            };
+        }
     }
 
     /// Of each joint the triangle of all its rows.
@@ -298,29 +313,6 @@ fn add(total: &mut Stretch, stretch: &Stretch) {
     }
 }
 
-/// Where rows are made: at every state without filter, else as densely as what has passed it can tell apart, and where
-/// the whole kernel finds samples; where those are farther apart, at every state, too. None are so near to the ends
-/// that the torque that answers would be beyond.
-fn instants(structure: &Structure, time: &[f64], delay: f64) -> Vec<f64> {
-    let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
-    let (Some(first), Some(last)) = (time.first(), time.last()) else { return Vec::new() };
-    let duration = last - first;
-    let reach = kernel.map_or(0.0, Kernel::reach) + delay.abs();
-    let (first, last) = (first + reach, last - reach);
-    if first > last {
-        return Vec::new();
-    }
-    #[allow(clippy::cast_precision_loss)] // states of a piece
-    let is_wide = |kernel: &Kernel| kernel.width() * (time.len() - 1) as f64 >= duration;
-    let Some(kernel) = kernel.filter(is_wide) else {
-        return time.iter().copied().filter(|time| (first..=last).contains(time)).collect();
-    };
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // as many as a log has states, or fewer
-    let count = ((last - first) / kernel.width()) as u64;
-    #[allow(clippy::cast_precision_loss)]
-    (0..=count).map(|k| first + k as f64 * kernel.width()).collect()
-}
-
 /// The signs of friction of every joint by every reversal, on their way through a motion: some remember.
 pub(crate) struct Walk {
     /// The state that comes next.
@@ -351,6 +343,7 @@ impl Walk {
 type Rows = (Vec<DMatrix<f64>>, Vec<f64>);
 
 /// The rows of every joint at some instants, weighted, with the sums of their weights; in pieces of a stretch's length.
+/// And those that do not count, of each joint.
 fn rows(
     structure: &Structure,
     motion: &Motion,
@@ -358,8 +351,8 @@ fn rows(
     weighting: Option<&Weighting>,
     delay: f64,
     walk: &mut Walk,
-) -> Result<Vec<Rows>, MotionError> {
-    let (Some(start), Some(end)) = (instants.first(), instants.last()) else { return Ok(Vec::new()) };
+) -> Result<(Vec<Rows>, Vec<Option<Rejected>>), MotionError> {
+    let (Some(start), Some(end)) = (instants.first(), instants.last()) else { return Ok((Vec::new(), Vec::new())) };
     let kernel = structure.options.cutoff.map(Kernel::of_cutoff);
     let reach = kernel.map_or(0.0, Kernel::reach) + delay.abs();
     let from = motion.time.partition_point(|time| *time < start - reach);
@@ -401,11 +394,14 @@ fn rows(
     };
     let mut all: Vec<DMatrix<f64>> = (0..structure.dof()).map(of_joint).collect();
     let mut row_weights: Vec<Vec<f64>> = Vec::with_capacity(all.len());
+    let mut rejected = Vec::with_capacity(all.len());
     for (joint, rows) in all.iter_mut().enumerate() {
         let weights = weighting.map_or_else(|| vec![1.0; rows.nrows()], |weighting| weighting.of(joint, rows));
         for (mut row, weight) in rows.row_iter_mut().zip(&weights) {
             row *= weight.sqrt();
         }
+        let mut none = weights.iter().zip(instants).filter(|(weight, _)| **weight == 0.0);
+        rejected.push(none.next().map(|(_, time)| Rejected { rows: 1 + none.count() as u64, time: *time }));
         row_weights.push(weights);
     }
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -417,26 +413,7 @@ fn rows(
         let weights = row_weights.iter().map(|weights| weights[start..start + count].iter().sum()).collect();
         pieces.push((rows, weights));
     }
-    Ok(pieces)
-}
-
-/// What samples have some time behind one of them, on the straight line between its neighbours.
-fn between(time: &[f64], at: usize, behind: f64, of: impl Fn(usize) -> f64) -> f64 {
-    if behind == 0.0 {
-        return of(at);
-    }
-    let instant = time[at] + behind;
-    let next = time.partition_point(|time| *time <= instant).clamp(1, time.len() - 1);
-    let elapsed = time[next] - time[next - 1];
-    let part = if elapsed > 0.0 { ((instant - time[next - 1]) / elapsed).clamp(0.0, 1.0) } else { 0.0 };
-    (1.0 - part) * of(next - 1) + part * of(next)
-}
-
-/// The slope of samples about one of them.
-fn slope(time: &[f64], values: &[f64], at: usize) -> f64 {
-    let (before, after) = (at.saturating_sub(1), (at + 1).min(values.len() - 1));
-    let elapsed = time[after] - time[before];
-    if elapsed > 0.0 { (values[after] - values[before]) / elapsed } else { 0.0 }
+    Ok((pieces, rejected))
 }
 
 /// The columns of every joint's rows at every state, but for those of the torque.
@@ -484,23 +461,4 @@ pub(crate) fn plain_columns(
         DMatrix::from_columns(&columns)
     };
     Ok((0..dof).map(of_joint).collect())
-}
-
-impl Weighting {
-    /// Huber's weights of a joint's rows.
-    fn of(&self, joint: usize, rows: &DMatrix<f64>) -> Vec<f64> {
-        let (used, solution) = (&self.used[joint], &self.solutions[joint]);
-        let noise = self.noise[joint];
-        rows.row_iter()
-            .map(|row| {
-                let mut residual = used.last().map_or(0.0, |&target| row[target]);
-                for (&column, value) in used.iter().zip(solution.iter()) {
-                    residual -= row[column] * value;
-                }
-                let off = residual.abs() / noise;
-                // what is no number counts as it is
-                if off > HUBER { HUBER / off } else { 1.0 }
-            })
-            .collect()
-    }
 }

@@ -19,6 +19,7 @@ pub mod pseudo_inertia;
 mod r_factor;
 mod random;
 mod smoothing;
+mod steady;
 mod structure;
 mod written;
 
@@ -28,7 +29,7 @@ pub use feasible::{Certificate, Feasible};
 pub use fit::Fit;
 pub use fourier::{Extent, Fourier, Series};
 pub use identification::{BaseReport, Identification, JointReport, OnePass, identify, scales};
-pub use information::{Information, MotionError, Weighting, WrongNumbers};
+pub use information::{Information, MotionError, Rejected, Weighting, WrongNumbers};
 pub use motion_limits::{AskedLimits, MotionLimits};
 pub use parameters::{Base, Parameters, name, unit};
 pub use prediction::{JointError, Prediction, SPEEDS, prediction_errors};

@@ -119,6 +119,11 @@ impl RFactor {
         selected
     }
 
+    /// The same rows, each with this weight times its own.
+    pub(crate) fn weighted(&self, weight: f64) -> Self {
+        Self { triangle: &self.triangle * weight.sqrt(), rows: self.rows, weight: self.weight * weight }
+    }
+
     fn fits(&self, found: usize) -> Result<(), WrongColumns> {
         let expected = self.columns();
         if found == expected { Ok(()) } else { Err(WrongColumns { expected, found }) }

@@ -101,7 +101,7 @@ fn of_link(identification: &Identification, report: &JointReport, joint: usize) 
     let unit = identification.robot.joints[joint].row.kind.effort_unit();
     if report.is_excited() {
         format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
-    } else if report.error.as_read < 10.0 {
+    } else if report.rejected.is_none() && report.error.as_read < 10.0 {
         format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.as_read)
     } else {
         "joint not excited: its effort does not change but by noise".to_owned()

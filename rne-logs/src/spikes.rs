@@ -17,7 +17,7 @@ const SIDE: usize = 2;
 const FAR: f64 = 30.0;
 
 /// Candidates of a joint that are kept while the log is read.
-const KEPT: usize = 1000;
+const KEPT: usize = 10_000;
 
 /// Spikes are rare: where more than this part of the states has one, efforts are so.
 const RARE: f64 = 0.02;

@@ -48,8 +48,8 @@ fn friction(account: &str) -> Vec<f64> {
 fn one_wrong_effort_spoils_nothing() {
     let folder = folder("identify_spike");
     for (effort, said) in [
-        ("10000", ["10000 of shoulder at 8.000", "rne identify leaves such samples out"]),
-        ("-60", ["-60 of shoulder at 8.000", "rne identify leaves such samples out"]),
+        ("10000", ["10000 of shoulder at 8.000", "an identification leaves such samples out"]),
+        ("-60", ["-60 of shoulder at 8.000", "an identification leaves such samples out"]),
         ("1e300", ["message 201 at 8.000 s", "effort of shoulder: 1.00e300"]),
         ("1e155", ["message 201 at 8.000 s", "effort of shoulder: 1.00e155"]),
         ("inf", ["message 201 at 8.000 s", "left out: 1 messages"]),
@@ -65,6 +65,29 @@ fn one_wrong_effort_spoils_nothing() {
         assert!(called.out.contains("15 of them excited"), "{}", called.out);
         assert!(called.out.lines().chain(called.err.lines()).all(|line| line.len() < 120), "{called:?}");
     }
+}
+
+/// A push, or a sensor that fails for a while, spoils nothing either.
+#[test]
+fn what_is_of_no_free_motion_does_not_count() {
+    let folder = folder("identify_push");
+    let failed = changed(&folder.join("log.csv"), |row, cells| {
+        if (200..205).contains(&row) {
+            cells[8] = "300".to_owned();
+        }
+    });
+    for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.27 s"), (&failed, "the first at 7.79 s")] {
+        let called = rne(&["identify", ARM, log]);
+        let err = called.err.replace("\n         ", " ");
+        let warned = err.contains("rows of shoulder are far from all others and do not count") && err.contains(said);
+        assert!(called.status == 0 && warned, "{called:?}");
+        let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
+        for (found, truth) in [(viscous, 0.6), (forward, 0.8), (backward, 0.8)] {
+            assert!((found - truth).abs() < 0.03, "{log}: {found} {truth}");
+        }
+        assert!(called.out.contains("15 of them excited") && !called.out.contains("not excited"), "{}", called.out);
+    }
+    assert!(!rne(&["identify", ARM, LOG]).err.contains("far from all others"));
 }
 
 /// An arm that stands still: nothing is excited, and no file is written of it.
