@@ -154,6 +154,18 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
     Ok(())
 }
 
+/// Whether a file can be written, before there is anything to write: where it cannot, nobody should wait for the work
+/// that makes it. A text of the same kind, that `begins` as the new one will, may be the same: [`write_new`] knows.
+pub(crate) fn check_place(path: &Path, begins: &str, sources: &[&Path], force: bool) -> Result<(), Failure> {
+    let alike = match existing(path) {
+        Existing::Text(text) if text.starts_with(begins) => Some(text),
+        _ => None,
+    };
+    check_new(path, alike.as_deref(), sources, force)?;
+    // a file beside it, which is gone at once
+    Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
+}
+
 /// Why a file cannot be written: its folder is missing, or what the system says; not of the temporary file beside it.
 pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
