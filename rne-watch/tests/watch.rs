@@ -471,7 +471,9 @@ fn numbers_that_are_wrong_by_little_are_no_event() {
             assert_eq!(watch(&free, &baseline, &settings).expect("two joints").events, [], "{seed}");
         }
         let mut blind = [free, other];
-        blind.iter_mut().for_each(|signals| signals.terms = vec![vec![0.0; signals.time.len()]; 2]);
+        for signals in &mut blind {
+            signals.terms = vec![vec![0.0; signals.time.len()]; 2];
+        }
         for baseline in [own(&blind[0]), quiet(&blind[1])] {
             blind_alarms += watch(&blind[0], &baseline, &settings).expect("two joints").events.len();
         }
