@@ -51,8 +51,8 @@ pub struct ModelError {
 }
 
 impl ModelError {
-    /// The deviation of the observer at a sample, by its deviation where the motion is as usual. Noise and errors of the
-    /// model know nothing of each other: their squares add up.
+    /// The deviation of the observer at a sample, by its deviation where the motion is as usual. Noise and errors of
+    /// the model know nothing of each other: their squares add up.
     pub(crate) fn deviation(&self, usual: f64, terms: f64, inertia: f64) -> f64 {
         let noise = if self.inertia > 0.0 { usual * (inertia / self.inertia).max(1.0) } else { usual };
         let more = (terms * terms - self.terms * self.terms).max(0.0);
@@ -190,8 +190,8 @@ impl Baseline {
         Some(Self { residual, friction, external, model })
     }
 
-    /// Raises the deviations of what would be an event in a stretch in which nothing happens, until nothing is: a
-    /// model's errors in motion are no noise that is normal.
+    /// Takes the largest error of the model in a stretch in which nothing happens for three of its deviations, and raises
+    /// the deviations of what would be an event there, until nothing is: a model's errors are no noise that is normal.
     ///
     /// # Errors
     /// Those of [`watch`].

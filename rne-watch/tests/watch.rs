@@ -453,8 +453,8 @@ fn wrong(robot: &Robot, part: f64, seed: u64) -> Robot {
     robot
 }
 
-/// What the numbers of a model get wrong is no event, whether what is usual is learnt from the log itself or from one of
-/// other postures; and a collision is still one.
+/// What the numbers of a model get wrong is no event, whether what is usual is learnt from the log itself or from one
+/// of other postures; and a collision is still one.
 #[test]
 fn numbers_that_are_wrong_by_little_are_no_event() {
     let robot = shipped("planar2");
