@@ -190,8 +190,9 @@ impl Baseline {
         Some(Self { residual, friction, external, model })
     }
 
-    /// Takes the largest error of the model in a stretch in which nothing happens for three of its deviations, and raises
-    /// the deviations of what would be an event there, until nothing is: a model's errors are no noise that is normal.
+    /// Takes the largest error of the model in a stretch in which nothing happens for three of its deviations, and
+    /// raises the deviations of what would be an event there, until nothing is: a model's errors are no noise that is
+    /// normal.
     ///
     /// # Errors
     /// Those of [`watch`].
