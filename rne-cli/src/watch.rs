@@ -83,6 +83,11 @@ fn unless_too_short<T>(found: Result<T, WatchError>) -> Result<Option<T>, WatchE
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let inputs = arguments.logs.iter().chain(&arguments.quiet).chain([&arguments.file]);
+    let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+    if let Some(path) = &arguments.plot {
+        output_file::check_place(path, "<svg", &sources, arguments.force)?;
+    }
     let robot = robot_file::robot(&arguments.file)?;
     let log = MotionLog::open_wide(&arguments.logs, &robot, &arguments.reading)?;
     let settings = Settings { gain: arguments.gain, hold: arguments.hold, false_alarms: arguments.false_alarms };
@@ -98,8 +103,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let watched = Watched::of(&robot, &log, &baseline, &settings, arguments.plot.is_some())?;
     if let (Some(path), Some((signals, report))) = (&arguments.plot, &watched.drawn) {
-        let inputs = arguments.logs.iter().chain(&arguments.quiet).chain([&arguments.file]);
-        let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
         let picture = svg(&robot, signals, &baseline, report, &log.words());
         remark += &output_file::write_new(path, &picture, &sources, arguments.force)?;
         if watched.is_cut {
@@ -107,14 +110,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     }
     let errors = prediction(&robot, &log, Part::All)?;
-    let unexplained = unexplained(&robot, &errors);
-    if !unexplained.is_empty() {
-        let names = unexplained.join(", ");
-        let what =
-            format!("the model explains nothing of the torques of {names}: is FILE of this arm, with its friction?");
+    let mut is_explained = true;
+    let mut warn = |names: &[String], where_: &str| {
+        if names.is_empty() {
+            return;
+        }
+        is_explained = false;
+        let what = format!("the model explains nothing of the torques of {}{where_}", names.join(", "));
         let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
+    };
+    warn(&unexplained(&robot, &errors), ": is FILE of this arm, with its friction?");
+    if let Some(quiet) = &quiet {
+        let names = unexplained(&robot, &prediction(&robot, quiet, Part::All)?);
+        warn(&names, " in the log of --quiet, which tells what is usual: is it of this arm?");
     }
-    let at_fault = !(watched.events.is_empty() && unexplained.is_empty());
+    let at_fault = !(watched.events.is_empty() && is_explained);
     if arguments.json {
         let reply = Reply::of(&robot, &log, &watched.events, &errors);
         return Ok(Outcome { remark, at_fault, ..Outcome::json(&reply)? });
@@ -172,11 +182,12 @@ fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Basel
         baseline = baseline.clone().silent(&signals, settings)?;
         Ok(Some(()))
     })?;
-    Ok(baseline.widened(ELSEWHERE))
+    Ok(baseline.widened(ELSEWHERE[0], ELSEWHERE[1]))
 }
 
-/// A model is worse where it has not been before: levels of another log are so many times as wide.
-const ELSEWHERE: f64 = 1.5;
+/// A model is worse where it has not been before: deviations of another log are so many times as large, and the error
+/// of the model's terms, which may have any sign there, is twice what it is here.
+const ELSEWHERE: [f64; 2] = [1.5, 2.0];
 
 /// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
 /// that nothing is known.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use rne_logs::median;
 
+use crate::report::BOUND;
 use crate::{Settings, Signals, Test, WatchError, watch};
 
 /// By so much deviations are raised at a time.
@@ -14,6 +15,12 @@ const BLOCKS: usize = 20;
 
 /// An autocorrelation below this is none.
 const FORGOTTEN: f64 = 0.05;
+
+/// s: in such a time the error of a model does not change.
+const HALF: f64 = 0.1;
+
+/// The median of the square of a normal number of deviation 1.
+const MEDIAN: f64 = 0.4549;
 
 /// Products of an autocorrelation are counted up to here.
 const LONGEST: usize = 20_000;
@@ -32,6 +39,29 @@ pub struct Level {
     pub block: f64,
 }
 
+/// How wrong the model of a joint is, and what was usual along the motion that the levels are of: where a motion is not
+/// as usual, the levels are others.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModelError {
+    /// The deviation of its error, as a part of its [terms](Signals::terms): where they are larger the torque is wrong
+    /// by more.
+    pub part: f64,
+    /// The median of the terms, N m or N.
+    pub terms: f64,
+    /// The median of the [inertia](Signals::inertia), kg m² or kg: where it is larger noise of the velocities is.
+    pub inertia: f64,
+}
+
+impl ModelError {
+    /// The deviation of the observer at a sample, by its deviation where the motion is as usual. Noise and errors of
+    /// the model know nothing of each other: their squares add up.
+    pub(crate) fn deviation(&self, usual: f64, terms: f64, inertia: f64) -> f64 {
+        let noise = if self.inertia > 0.0 { usual * (inertia / self.inertia).max(1.0) } else { usual };
+        let more = (terms * terms - self.terms * self.terms).max(0.0);
+        (noise * noise + self.part * self.part * more).sqrt()
+    }
+}
+
 /// The levels of the signals of every joint, base to tip.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
@@ -42,6 +72,8 @@ pub struct Baseline {
     pub friction: Vec<Level>,
     /// Of the observer, sample by sample.
     pub external: Vec<Level>,
+    /// Of the model.
+    pub model: Vec<ModelError>,
 }
 
 impl Baseline {
@@ -59,6 +91,7 @@ impl Baseline {
             return Err(WatchError::TooFew { found: quiet.len(), needed: BLOCKS });
         }
         let (mut residual, mut friction, mut external) = (Vec::new(), Vec::new(), Vec::new());
+        let mut model = Vec::new();
         for joint in 0..signals.dof() {
             let torques = signals.measured[joint].iter().chain(&signals.residual[joint]);
             let least = LEAST * torques.fold(0.0_f64, |most, tau| most.max(tau.abs()));
@@ -77,6 +110,12 @@ impl Baseline {
                 let found = self::level(&moving, signals.period, least);
                 Level { deviation: found.deviation.max(scaled(&level, &found)), ..found }
             });
+            let usual = |lists: &[Vec<f64>]| median(lists[joint][quiet.clone()].to_vec());
+            model.push(ModelError {
+                part: WrongParts::new(signals, joint, level.mean, quiet.clone()).deviation(),
+                terms: usual(&signals.terms),
+                inertia: usual(&signals.inertia),
+            });
             residual.push(level);
             let settled: Vec<usize> = quiet.clone().filter(|&at| signals.settled[at]).collect();
             if settled.len() < BLOCKS {
@@ -90,14 +129,18 @@ impl Baseline {
             let (mean, deviation) = spread(&seen, alone, least);
             external.push(Level { mean, deviation, block: 0.0 });
         }
-        Ok(Self { residual, friction, external })
+        Ok(Self { residual, friction, external, model })
     }
 
     /// What several stretches have in common: the medians of their levels, which a stretch in which something happens
     /// does not change. `None` of none.
     #[must_use]
     pub fn typical(baselines: &[Self]) -> Option<Self> {
-        Self::of_levels(baselines, |levels| {
+        let of_model = |all: &[ModelError]| {
+            let of = |each: fn(&ModelError) -> f64| median(all.iter().map(each).collect());
+            ModelError { part: of(|of| of.part), terms: of(|of| of.terms), inertia: of(|of| of.inertia) }
+        };
+        Self::of_levels(baselines, of_model, |levels| {
             let of = |each: fn(&Level) -> f64| median(levels.iter().map(each).collect());
             Level {
                 mean: of(|level| level.mean),
@@ -111,7 +154,12 @@ impl Baseline {
     /// deviation or block is larger. `None` of none.
     #[must_use]
     pub fn covering(baselines: &[Self]) -> Option<Self> {
-        Self::of_levels(baselines, |levels| {
+        let of_model = |all: &[ModelError]| {
+            let least = |of: fn(&ModelError) -> f64| all.iter().map(of).fold(f64::INFINITY, f64::min);
+            let part = -least(|of| -of.part);
+            ModelError { part, terms: least(|of| of.terms), inertia: least(|of| of.inertia) }
+        };
+        Self::of_levels(baselines, of_model, |levels| {
             let most = |of: fn(&Level) -> f64| levels.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
             let (low, high) = (-most(|level| -level.mean), most(|level| level.mean));
             let deviation = most(|level| level.deviation) + 0.5 * (high - low);
@@ -119,29 +167,43 @@ impl Baseline {
         })
     }
 
-    /// Deviations that are so many times as large.
+    /// Deviations of the levels that are so many times as large, and so many times those of the model's error.
     #[must_use]
-    pub fn widened(mut self, times: f64) -> Self {
+    pub fn widened(mut self, levels: f64, model: f64) -> Self {
         for level in [&mut self.residual, &mut self.friction, &mut self.external].into_iter().flatten() {
-            level.deviation *= times;
+            level.deviation *= levels;
         }
+        self.model.iter_mut().for_each(|of| of.part *= model);
         self
     }
 
-    fn of_levels(baselines: &[Self], one: impl Fn(&[Level]) -> Level) -> Option<Self> {
+    fn of_levels(
+        baselines: &[Self],
+        error: impl Fn(&[ModelError]) -> ModelError,
+        one: impl Fn(&[Level]) -> Level,
+    ) -> Option<Self> {
         let dof = baselines.iter().map(|baseline| baseline.residual.len()).min()?;
         let of = |levels: fn(&Self) -> &[Level]| -> Vec<Level> {
             (0..dof).map(|joint| one(&baselines.iter().map(|of| levels(of)[joint]).collect::<Vec<_>>())).collect()
         };
-        Some(Self { residual: of(|of| &of.residual), friction: of(|of| &of.friction), external: of(|of| &of.external) })
+        let errors = |joint: usize| baselines.iter().map(|of| of.model[joint]).collect::<Vec<_>>();
+        let model = (0..dof).map(|joint| error(&errors(joint))).collect();
+        let [residual, friction, external] = [of(|of| &of.residual), of(|of| &of.friction), of(|of| &of.external)];
+        Some(Self { residual, friction, external, model })
     }
 
-    /// Raises the deviations of what would be an event in a stretch in which nothing happens, until nothing is: a
-    /// model's errors in motion are no noise that is normal.
+    /// Takes the largest error of the model in a stretch in which nothing happens for three of its deviations, and
+    /// raises the deviations of what would be an event there, until nothing is: a model's errors are no noise that is
+    /// normal.
     ///
     /// # Errors
     /// Those of [`watch`].
     pub fn silent(mut self, signals: &Signals, settings: &Settings) -> Result<Self, WatchError> {
+        for joint in 0..signals.dof().min(self.model.len()) {
+            let parts = WrongParts::new(signals, joint, self.residual[joint].mean, 0..signals.time.len());
+            let part = &mut self.model[joint].part;
+            *part = part.max(parts.largest() / BOUND);
+        }
         loop {
             let report = watch(signals, &self, settings)?;
             if report.events.is_empty() {
@@ -157,6 +219,7 @@ impl Baseline {
                     Test::Friction => &mut self.friction,
                 };
                 levels[joint].deviation *= RAISE;
+                self.model[joint].part *= RAISE;
             }
         }
     }
@@ -169,7 +232,8 @@ impl Baseline {
             let level = |&deviation: &f64| Level { mean: 0.0, deviation, block: 0.0 };
             deviations.iter().map(level).collect()
         };
-        Self { residual: of(efforts), friction: of(efforts), external: of(external) }
+        let model = vec![ModelError::default(); efforts.len()];
+        Self { residual: of(efforts), friction: of(efforts), external: of(external), model }
     }
 }
 
@@ -184,6 +248,64 @@ pub(crate) fn along_motion(signals: &Signals, joint: usize, mean: f64, samples: 
     let (residual, direction) = (&signals.residual[joint], &signals.direction[joint]);
     let moving = samples.filter(|&at| direction[at] != 0.0 && !signals.creeps[joint][at]);
     moving.map(|at| (at, (residual[at] - mean) * direction[at])).collect()
+}
+
+/// By which parts of its terms a model is wrong.
+struct WrongParts {
+    /// Squares, growing: of means of the residual over stretches that are so short that the model's error does not
+    /// change. Each is the product of its two halves, whose noise is not the same: of noise alone half are negative.
+    squares: Vec<f64>,
+    /// So many of them know nothing of each other.
+    alone: usize,
+}
+
+impl WrongParts {
+    fn new(signals: &Signals, joint: usize, mean: f64, samples: Range<usize>) -> Self {
+        let known = known(signals, joint, samples);
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // it saturates
+        let half = ((HALF / signals.period) as usize).max(2);
+        let of = |samples: &[(usize, f64)], each: &dyn Fn(&(usize, f64)) -> f64| {
+            #[allow(clippy::cast_precision_loss)] // a length of a list
+            let count = samples.len() as f64;
+            samples.iter().map(each).sum::<f64>() / count
+        };
+        let (mut squares, mut signed) = (Vec::new(), Vec::new());
+        for stretch in known.chunks_exact(2 * half) {
+            let off = |(_, residual): &(usize, f64)| residual - mean;
+            let (a, b) = (of(&stretch[..half], &off), of(&stretch[half..], &off));
+            let terms = of(stretch, &|(at, _)| signals.terms[joint][*at]);
+            if terms > 0.0 {
+                squares.push(a * b / (terms * terms));
+                signed.push(0.5 * (a + b) / terms);
+            }
+        }
+        squares.sort_unstable_by(f64::total_cmp);
+        let alone = squares.len() / remembered(&signed).max(1);
+        Self { squares, alone }
+    }
+
+    /// The square that so many percent are below, less what noise makes of it.
+    fn square(&self, percent: usize) -> f64 {
+        let Some(last) = self.squares.len().checked_sub(1) else { return 0.0 };
+        let at = last * percent / 100;
+        (self.squares[at] + self.squares[last - at].min(0.0)).max(0.0)
+    }
+
+    /// The deviation, by the median, which what happens for less than half of the time does not change; raised by two
+    /// of its own standard errors.
+    fn deviation(&self) -> f64 {
+        if self.squares.len() < BLOCKS {
+            return 0.0;
+        }
+        #[allow(clippy::cast_precision_loss)] // a length of a list
+        let error = 1.167 / (self.alone.max(1) as f64).sqrt();
+        (self.square(50) / MEDIAN).sqrt() * (1.0 + 2.0 * error)
+    }
+
+    /// The largest, but for one in a hundred.
+    fn largest(&self) -> f64 {
+        self.square(99).sqrt()
+    }
 }
 
 /// The deviation of a level for blocks of another one: of white noise, it falls with the root of their length.

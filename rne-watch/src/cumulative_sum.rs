@@ -5,8 +5,10 @@ use crate::threshold::ALLOWANCE;
 /// A stretch in which a sum was above its threshold, in indices of the numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Alarm {
-    /// Where the sum began to grow: the change is there.
+    /// Where the sum began to grow: the change is there, or behind it.
     pub(crate) start: usize,
+    /// Where it came to its threshold.
+    pub(crate) raised: usize,
     /// The last one at which the sum was at its threshold.
     pub(crate) end: usize,
 }
@@ -34,7 +36,7 @@ fn of_sign(numbers: &[f64], h: f64, sign: f64) -> Vec<Alarm> {
         }
         sum = grown.min(h);
         if grown >= h {
-            let alarm = open.get_or_insert(Alarm { start, end: index });
+            let alarm = open.get_or_insert(Alarm { start, raised: index, end: index });
             alarm.end = index;
         }
     }
@@ -49,8 +51,8 @@ mod tests {
     #[test]
     fn a_step_is_found_where_it_is() {
         let numbers: Vec<f64> = (0..300).map(|i| if (100..150).contains(&i) { -2.0 } else { 0.0 }).collect();
-        assert_eq!(alarms(&numbers, 8.0), [Alarm { start: 100, end: 149 }]);
-        assert_eq!(alarms(&numbers[..148], 8.0), [Alarm { start: 100, end: 147 }]);
+        assert_eq!(alarms(&numbers, 8.0), [Alarm { start: 100, raised: 105, end: 149 }]);
+        assert_eq!(alarms(&numbers[..148], 8.0), [Alarm { start: 100, raised: 105, end: 147 }]);
         assert!(alarms(&numbers[..103], 8.0).is_empty());
     }
 }

@@ -58,8 +58,9 @@ pub struct Event {
     pub start: f64,
     /// Where it ends, s: the end of the motion where it lasts.
     pub end: f64,
-    /// Its largest deviation from the baseline, N m or N: of the observer (torque of the environment on the arm), or of
-    /// the residual's mean over a block (measured less model; in the direction of motion for friction).
+    /// Its largest deviation from the baseline, N m or N: of the observer, less what friction leaves open (torque of
+    /// the environment on the arm, at least), or of the residual's means over half a second, or over all of it where it
+    /// is shorter (measured less model; in the direction of motion for friction).
     pub peak: f64,
 }
 

@@ -41,6 +41,7 @@
 #![warn(missing_debug_implementations)]
 
 mod baseline;
+mod change_point;
 mod cumulative_sum;
 mod error;
 mod event;
@@ -50,7 +51,7 @@ mod settings;
 mod signals;
 mod threshold;
 
-pub use crate::baseline::{Baseline, Level};
+pub use crate::baseline::{Baseline, Level, ModelError};
 pub use crate::error::WatchError;
 pub use crate::event::{Event, Test};
 pub use crate::picture::svg;

@@ -1,8 +1,9 @@
 //! The tests.
 
 use crate::baseline::{along_motion, known, means};
+use crate::change_point::change_point;
 use crate::cumulative_sum::{Alarm, alarms};
-use crate::{Baseline, Event, Level, Settings, Signals, Test, Thresholds, WatchError};
+use crate::{Baseline, Event, Level, ModelError, Settings, Signals, Test, Thresholds, WatchError};
 
 /// What is found in a motion.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,9 +17,11 @@ pub struct Report {
     pub errors: Vec<Option<f64>>,
 }
 
-/// A number, with the samples that it is of.
+/// The mean of numbers, by their indices.
 struct Block {
     value: f64,
+    /// What the model leaves open.
+    open: f64,
     first: usize,
     last: usize,
 }
@@ -51,10 +54,12 @@ pub fn watch(signals: &Signals, baseline: &Baseline, settings: &Settings) -> Res
         let whole = known(signals, joint, 0..signals.time.len());
         let moving = along_motion(signals, joint, levels[0].mean, 0..signals.time.len());
         for (index, (test, numbers)) in [(Test::Offset, whole), (Test::Friction, moving)].into_iter().enumerate() {
-            let blocks = blocks(&numbers, samples_in(levels[index].block, signals.period));
-            events.extend(of_sums(signals, joint, test, &blocks, &levels[index], thresholds.sums[index]));
+            let open = Open { terms: &signals.terms[joint], wrong: baseline.model[joint] };
+            let blocks = blocks(&numbers, &open, samples_in(levels[index].block, signals.period));
+            events.extend(of_sums(signals, (joint, test), &numbers, &blocks, &levels[index], thresholds.sums[index]));
         }
-        events.extend(of_observer(signals, joint, &baseline.external[joint], thresholds.external, held));
+        let (level, wrong) = (&baseline.external[joint], &baseline.model[joint]);
+        events.extend(of_observer(signals, joint, level, wrong, thresholds.external, held));
         all.push(thresholds);
     }
     events.sort_by(|a, b| a.start.total_cmp(&b.start).then((a.joint, a.test).cmp(&(b.joint, b.test))));
@@ -69,31 +74,97 @@ fn samples_in(time: f64, period: f64) -> usize {
     samples.max(1)
 }
 
-fn blocks(numbers: &[(usize, f64)], length: usize) -> Vec<Block> {
-    let values: Vec<f64> = numbers.iter().map(|(_, number)| *number).collect();
-    let of = |(index, value): (usize, f64)| {
-        let (first, last) = (index * length, (index + 1) * length - 1);
-        Block { value, first: numbers[first].0, last: numbers[last].0 }
-    };
-    means(&values, length).into_iter().enumerate().map(of).collect()
+/// What the model of a joint leaves open, as it may be wrong.
+#[derive(Clone, Copy)]
+struct Open<'a> {
+    terms: &'a [f64],
+    wrong: ModelError,
 }
 
-/// Events of a cumulative sum.
-fn of_sums(signals: &Signals, joint: usize, test: Test, blocks: &[Block], level: &Level, h: f64) -> Vec<Event> {
-    let numbers: Vec<f64> = blocks.iter().map(|block| (block.value - level.mean) / level.deviation).collect();
-    let event = |Alarm { start, end }| {
-        let peak = blocks[start..=end].iter().map(|block| block.value - level.mean).fold(0.0, farther);
-        Event { joint, test, start: signals.time[blocks[start].first], end: signals.time[blocks[end].last], peak }
-    };
-    alarms(&numbers, h).into_iter().map(event).collect()
+impl Open<'_> {
+    fn at(&self, sample: usize) -> f64 {
+        BOUND * self.wrong.part * self.terms[sample]
+    }
 }
+
+/// Deviations of the model's error that are no change of a mean.
+pub(crate) const BOUND: f64 = 3.0;
+
+fn blocks(numbers: &[(usize, f64)], open: &Open<'_>, length: usize) -> Vec<Block> {
+    let means = |of: &dyn Fn(&(usize, f64)) -> f64| means(&numbers.iter().map(of).collect::<Vec<_>>(), length);
+    let (values, open) = (means(&|(_, number)| *number), means(&|(at, _)| open.at(*at)));
+    let of = |(index, (value, open)): (usize, (f64, f64))| {
+        let (first, last) = (index * length, (index + 1) * length - 1);
+        Block { value, open, first, last }
+    };
+    values.into_iter().zip(open).enumerate().map(of).collect()
+}
+
+/// Events of a cumulative sum over blocks of numbers, which have their samples with them.
+fn of_sums(
+    signals: &Signals,
+    (joint, test): (usize, Test),
+    numbers: &[(usize, f64)],
+    blocks: &[Block],
+    level: &Level,
+    h: f64,
+) -> Vec<Event> {
+    // what the model leaves open is no change
+    let beyond = |block: &Block| {
+        let off = block.value - level.mean;
+        off.signum() * (off.abs() - block.open).max(0.0) / level.deviation
+    };
+    let event = |alarm: Alarm| {
+        let (first, last) = bounds(numbers, blocks, alarm, level.mean);
+        let peak = largest_mean(&numbers[first..=last], level.mean, signals.period);
+        let [start, end] = [first, last].map(|index| signals.time[numbers[index].0]);
+        Event { joint, test, start, end, peak }
+    };
+    let beyond: Vec<f64> = blocks.iter().map(beyond).collect();
+    alarms(&beyond, h).into_iter().map(event).collect()
+}
+
+/// The first and the last number of a change. A sum wanders before it grows for good, and knows of blocks alone: so the
+/// mean is looked for that begins between the block before and the one behind where the sum passed its threshold, and
+/// the one that ends about its end.
+fn bounds(numbers: &[(usize, f64)], blocks: &[Block], alarm: Alarm, mean: f64) -> (usize, usize) {
+    let off = |range: &mut dyn Iterator<Item = usize>| -> Vec<f64> { range.map(|at| numbers[at].1 - mean).collect() };
+    let block = |index: usize| &blocks[index.min(blocks.len() - 1)];
+    let length = block(0).last + 1;
+    let (from, to) = (block(alarm.start.saturating_sub(1)).first, block((alarm.raised + 1).min(alarm.end)).last);
+    let first = from + change_point(&off(&mut (from..=to)), length.div_ceil(4));
+    let (from, to) = (first.max(block(alarm.end.saturating_sub(2)).first), block(alarm.end + 1).last);
+    let last = to - change_point(&off(&mut (from..=to).rev()), length.div_ceil(4));
+    (first, last.max(first))
+}
+
+/// The mean, less another, that is the largest of stretches of half a second, or of all where they are shorter.
+fn largest_mean(numbers: &[(usize, f64)], mean: f64, period: f64) -> f64 {
+    let values: Vec<f64> = numbers.iter().map(|(_, number)| number - mean).collect();
+    let length = samples_in(STRETCH, period).min(values.len());
+    means(&values, length).into_iter().fold(0.0, farther)
+}
+
+/// s: a change lasts as long, or is no change of the mean.
+const STRETCH: f64 = 0.5;
 
 /// Events of the observer: beyond the threshold for so many samples, and until it is within half of it.
-fn of_observer(signals: &Signals, joint: usize, level: &Level, threshold: f64, held: usize) -> Vec<Event> {
-    let limit = threshold * level.deviation;
+fn of_observer(
+    signals: &Signals,
+    joint: usize,
+    level: &Level,
+    wrong: &ModelError,
+    threshold: f64,
+    held: usize,
+) -> Vec<Event> {
     let mut found = Vec::new();
     let mut open: Option<Event> = None;
     let mut beyond = 0;
+    // what friction may be is no torque of the environment
+    let sure = |at: usize| {
+        let off = signals.external[joint][at] - level.mean;
+        off.signum() * (off.abs() - signals.open[joint][at]).max(0.0)
+    };
     for (at, seen) in signals.external[joint].iter().enumerate() {
         let off = seen - level.mean;
         if !signals.settled[at] {
@@ -107,17 +178,18 @@ fn of_observer(signals: &Signals, joint: usize, level: &Level, threshold: f64, h
             continue;
         }
         let sign_stays = beyond == 0 || off * (signals.external[joint][at - 1] - level.mean) > 0.0;
-        let limit = limit + signals.open[joint][at];
+        let (terms, inertia) = (signals.terms[joint][at], signals.inertia[joint][at]);
+        let limit = threshold * wrong.deviation(level.deviation, terms, inertia) + signals.open[joint][at];
         beyond = if off.abs() > limit { if sign_stays { beyond + 1 } else { 1 } } else { 0 };
         if let Some(event) = &mut open {
-            event.peak = farther(event.peak, off);
+            event.peak = farther(event.peak, sure(at));
             event.end = signals.time[at];
             if off.abs() < 0.5 * limit {
                 found.extend(open.take());
             }
         } else if beyond >= held {
             let first = at + 1 - held;
-            let peak = signals.external[joint][first..=at].iter().map(|seen| seen - level.mean).fold(0.0, farther);
+            let peak = (first..=at).map(sure).fold(0.0, farther);
             let (start, end) = (signals.time[first], signals.time[at]);
             open = Some(Event { joint, test: Test::External, start, end, peak });
         }

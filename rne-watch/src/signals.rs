@@ -24,8 +24,14 @@ const CREEPING: f64 = 5.0;
 /// stick, however still it stands.
 const SLIPPING: f64 = 0.004;
 
-/// s: so long after a joint crept its residual tells nothing, for what was measured passed a filter.
+/// s: so long before and after a joint crept its residual tells nothing, for what was measured passed a filter.
 const SMEARED: f64 = 0.05;
+
+/// Samples on both sides over which the filter of a log spreads what is sudden.
+const SPREAD: usize = 3;
+
+/// s: in so short a time the terms of a torque stay as large as they are.
+const COUNTED: f64 = 0.05;
 
 /// Less of what friction leaves open is nothing.
 const FORGOTTEN: f64 = 0.02;
@@ -52,8 +58,13 @@ pub struct Signals {
     /// What friction leaves open, N m or N, 0 or more: a joint that creeps or turns back may be held by anything
     /// between Coulomb's friction of both directions, whatever the file says of its speed.
     pub open: Vec<Vec<f64>>,
-    /// Whether a joint crept a moment ago, so that its residual tells nothing.
+    /// Whether a joint creeps, or does so within a moment, so that its residual tells nothing.
     pub creeps: Vec<Vec<bool>>,
+    /// The sum of the magnitudes of the terms that the model's torque is made of, N m or N, 0 or more: parameters that
+    /// are wrong by a part of themselves change the torque by that part of it at most.
+    pub terms: Vec<Vec<f64>>,
+    /// How large the joint's row of the mass matrix is, kg m² or kg: so noise of the velocities shows in the observer.
+    pub inertia: Vec<Vec<f64>>,
     /// Whether the observer has settled: not for three time constants behind the beginning and behind each gap.
     pub settled: Vec<bool>,
 }
@@ -77,9 +88,10 @@ impl Signals {
     fn along(robot: &Robot, arm: &DynArm, motion: &Motion, gain: f64, period: f64) -> Result<Self, WrongLength> {
         let (dof, samples) = (arm.dof(), motion.len());
         let lists = || vec![Vec::with_capacity(samples); dof];
-        let (mut residual, mut direction, mut external, mut open) = (lists(), lists(), lists(), lists());
-        let mut creeps = vec![Vec::with_capacity(samples); dof];
-        let mut crept = vec![f64::NEG_INFINITY; dof];
+        let (mut residual, mut direction, mut external) = (lists(), lists(), lists());
+        let (mut terms, mut inertia) = (lists(), lists());
+        let (parameters, mut counted) = (arm.inertial_parameters(), 0.0);
+        let (mut magnitudes, mut rows) = (Vec::new(), Vec::new());
         let mut settled = Vec::with_capacity(samples);
         let begun = || -> Vec<Friction> { robot.joints.iter().map(Friction::of).collect() };
         let mut frictions = begun();
@@ -98,11 +110,16 @@ impl Signals {
             } else {
                 since += step;
             }
-            let fade = (-std::f64::consts::TAU * gain * step).exp();
             let states = q.iter().zip(&qd);
             let friction = frictions.iter_mut().zip(states).map(|(friction, (q, qd))| friction.next(*q, *qd));
+            let friction: Vec<f64> = friction.collect();
             let model = arm.inverse_dynamics(&q, &qd, &qdd)?;
-            let net: Vec<f64> = tau.iter().zip(friction).map(|(tau, friction)| tau - friction).collect();
+            if sample == 0 || motion.time[sample] - counted >= COUNTED {
+                counted = motion.time[sample];
+                magnitudes = magnitudes_of_terms(&arm.regressor(&q, &qd, &qdd)?, &parameters, &model);
+                rows = arm.mass_matrix(&q)?.iter().map(|row| norm(row)).collect();
+            }
+            let net: Vec<f64> = tau.iter().zip(&friction).map(|(tau, friction)| tau - friction).collect();
             let seen = observer.update(arm, &q, &qd, &net)?;
             settled.push(since > wait);
             for joint in 0..dof {
@@ -110,20 +127,18 @@ impl Signals {
                 external[joint].push(seen[joint]);
                 let moves = qd[joint].abs() > still[joint];
                 direction[joint].push(if moves { qd[joint].signum() } else { 0.0 });
-                let now = left_open(&robot.joints[joint], qd[joint], still[joint]);
-                let before = open[joint].last().map_or(0.0, |open: &f64| open * fade);
-                // what the observer has all but forgotten is over
-                let is_over = before < FORGOTTEN * robot.joints[joint].coulomb_span();
-                open[joint].push(if is_over { now } else { now.max(before) });
-                let time = motion.time[sample];
-                if now > 0.0 {
-                    crept[joint] = time;
-                }
-                creeps[joint].push(time - crept[joint] <= SMEARED);
+                terms[joint].push(magnitudes[joint] + friction[joint].abs());
+                inertia[joint].push(rows[joint]);
             }
         }
+        let (mut open, mut creeps) = (Vec::with_capacity(dof), Vec::with_capacity(dof));
+        for (joint, row) in robot.joints.iter().enumerate() {
+            let now = left_open(row, &motion.qd[joint], still[joint]);
+            creeps.push(creeping(&motion.time, &now));
+            open.push(faded(&motion.time, &now, gain, FORGOTTEN * row.coulomb_span()));
+        }
         let (time, measured) = (motion.time.clone(), motion.tau.clone());
-        Ok(Self { time, period, measured, residual, direction, external, open, creeps, settled })
+        Ok(Self { time, period, measured, residual, direction, external, open, creeps, terms, inertia, settled })
     }
 
     /// One sample of so many: what a picture needs of a long motion.
@@ -144,6 +159,8 @@ impl Signals {
             external: each(&self.external, stride),
             open: each(&self.open, stride),
             creeps: each(&self.creeps, stride),
+            terms: each(&self.terms, stride),
+            inertia: each(&self.inertia, stride),
             settled: of(&self.settled, stride),
         }
     }
@@ -159,6 +176,8 @@ impl Signals {
             (&mut self.direction, next.direction),
             (&mut self.external, next.external),
             (&mut self.open, next.open),
+            (&mut self.terms, next.terms),
+            (&mut self.inertia, next.inertia),
         ];
         for (lists, next) in lists {
             lists.iter_mut().zip(next).for_each(|(list, next)| list.extend(next));
@@ -186,10 +205,71 @@ impl Signals {
     }
 }
 
-/// What friction leaves open at a speed.
-fn left_open(joint: &Joint, speed: f64, still: f64) -> f64 {
+/// The sum of the magnitudes of what each number of each link adds to the torques.
+fn magnitudes_of_terms(regressor: &[Vec<[f64; 10]>], parameters: &[[f64; 10]], model: &[f64]) -> Vec<f64> {
+    let of_joint = |(row, model): (&Vec<[f64; 10]>, &f64)| {
+        let terms = row.iter().flatten().zip(parameters.iter().flatten()).map(|(y, pi)| y * pi);
+        let (links, magnitude) = terms.fold((0.0, 0.0), |(sum, most), term| (sum + term, most + f64::abs(term)));
+        // what the links do not make the rotors do
+        magnitude + (model - links).abs()
+    };
+    regressor.iter().zip(model).map(of_joint).collect()
+}
+
+fn norm(row: &[f64]) -> f64 {
+    row.iter().map(|number| number * number).sum::<f64>().sqrt()
+}
+
+/// What friction leaves open along a motion, sample by sample: where a joint creeps, and where it turns back between
+/// two samples.
+fn left_open(joint: &Joint, qd: &[f64], still: f64) -> Vec<f64> {
     let of_file = joint.coulomb_displacement.map(|_| SLIPPING).or(joint.coulomb_width).unwrap_or(0.0);
-    if speed.abs() > CREEPING * of_file.max(still) { 0.0 } else { joint.coulomb_span() }
+    let slow = CREEPING * of_file.max(still);
+    let turns = |at: usize| {
+        let beside = [at.checked_sub(1), Some(at + 1)].into_iter().flatten().filter_map(|at| qd.get(at));
+        beside.into_iter().any(|other| other * qd[at] < 0.0)
+    };
+    let open = |at: usize| if qd[at].abs() > slow && !turns(at) { 0.0 } else { joint.coulomb_span() };
+    (0..qd.len()).map(open).collect()
+}
+
+/// Whether something is open within a moment.
+fn creeping(time: &[f64], open: &[f64]) -> Vec<bool> {
+    let spread = spread(open);
+    let pass = |order: &mut dyn Iterator<Item = usize>| {
+        let mut last = f64::INFINITY;
+        let mut near = vec![false; time.len()];
+        for at in order {
+            if spread[at] > 0.0 {
+                last = time[at];
+            }
+            near[at] = (time[at] - last).abs() <= SMEARED;
+        }
+        near
+    };
+    let (behind, before) = (pass(&mut (0..time.len())), pass(&mut (0..time.len()).rev()));
+    behind.into_iter().zip(before).map(|(behind, before)| behind || before).collect()
+}
+
+/// The largest within what the filter spreads.
+fn spread(open: &[f64]) -> Vec<f64> {
+    let largest = |at: usize| {
+        let near = &open[at.saturating_sub(SPREAD)..(at + SPREAD + 1).min(open.len())];
+        near.iter().fold(0.0, |most: f64, open| most.max(*open))
+    };
+    (0..open.len()).map(largest).collect()
+}
+
+/// What was open, as an observer forgets it; of less than `over` it is over.
+fn faded(time: &[f64], open: &[f64], gain: f64, over: f64) -> Vec<f64> {
+    let mut open = spread(open);
+    for at in 1..open.len() {
+        let before = open[at - 1] * (-std::f64::consts::TAU * gain * (time[at] - time[at - 1])).exp();
+        if before >= over {
+            open[at] = open[at].max(before);
+        }
+    }
+    open
 }
 
 /// The speed of each joint below which it is as good as at rest: a fiftieth of its usual largest, the 95th percentile.

@@ -1,7 +1,8 @@
 //! From a rate of false alarms to thresholds.
 //!
-//! Every test of every joint gets the same share of the rate. Noise is taken to be normal, as large as the baseline
-//! says.
+//! Every test of every joint gets the same share of the rate: the more joints there are, the higher are the thresholds
+//! of each. Noise is taken to be normal, as large as the baseline says; what a baseline says changes along a motion,
+//! with what the model leaves open: [`ModelError`](crate::ModelError).
 //!
 //! ```text
 //! k deviations for a time of hold      the rate of alarms is at most 2 Q(k) / hold

@@ -24,9 +24,38 @@ fn normal(rng: &mut Rng) -> f64 {
     (-2.0 * u.ln()).sqrt() * (std::f64::consts::TAU * v).cos()
 }
 
-/// A motion in which every joint swings at rates of its own; `disturbed` changes the efforts that the model asks for,
-/// from time, velocities and the efforts.
+/// Position, velocity and acceleration of a joint at a time.
+type Path = fn(usize, f64) -> [f64; 3];
+
+/// Every joint swings at a rate of its own.
+fn swing(joint: usize, time: f64) -> [f64; 3] {
+    #[allow(clippy::cast_precision_loss)]
+    let w = 0.9 + 0.37 * joint as f64;
+    [0.4 * (w * time).sin(), 0.4 * w * (w * time).cos(), -0.4 * w * w * (w * time).sin()]
+}
+
+/// Slowly from posture to posture, where an arm is held for long.
+fn slowly(joint: usize, time: f64) -> [f64; 3] {
+    #[allow(clippy::cast_precision_loss)]
+    let w = 0.31 + 0.12 * joint as f64;
+    [1.2 * (w * time).sin(), 1.2 * w * (w * time).cos(), -1.2 * w * w * (w * time).sin()]
+}
+
+/// Other postures, other rates.
+fn elsewhere(joint: usize, time: f64) -> [f64; 3] {
+    #[allow(clippy::cast_precision_loss)]
+    let (w, middle) = (0.47 - 0.11 * joint as f64, 0.3 - 0.4 * joint as f64);
+    [middle + (w * time).cos(), -w * (w * time).sin(), -w * w * (w * time).cos()]
+}
+
+/// A motion in which every joint swings; `disturbed` changes the efforts that the model asks for, from time, velocities
+/// and the efforts.
 fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64])) -> Motion {
+    along(robot, (seed, NOISE), swing, disturbed)
+}
+
+/// A motion along a path; noise by a seed and its deviation, of the largest effort of each joint.
+fn along(robot: &Robot, (seed, noise): (u64, f64), path: Path, disturbed: impl Fn(f64, &[f64], &mut [f64])) -> Motion {
     let arm = DynArm::from_robot(&robot.clone().with_rotors());
     let (dof, mut rng) = (robot.dof(), Rng::with_seed(seed));
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -36,12 +65,8 @@ fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64]))
     for sample in 0..samples {
         #[allow(clippy::cast_precision_loss)]
         let time = sample as f64 / RATE;
-        #[allow(clippy::cast_precision_loss)]
-        let omega = |joint: usize| 0.9 + 0.37 * joint as f64;
-        let of = |f: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..dof).map(|joint| f(omega(joint))).collect() };
-        let q = of(&|w| 0.4 * (w * time).sin());
-        let qd = of(&|w| 0.4 * w * (w * time).cos());
-        let qdd = of(&|w| -0.4 * w * w * (w * time).sin());
+        let of = |which: usize| -> Vec<f64> { (0..dof).map(|joint| path(joint, time)[which]).collect() };
+        let [q, qd, qdd] = [0, 1, 2].map(of);
         let mut tau = arm.inverse_dynamics(&q, &qd, &qdd).expect("one per joint");
         let friction = arm.actuator_torques(&qd, &qdd).expect("one per joint");
         tau.iter_mut().zip(&friction).for_each(|(tau, friction)| *tau += friction);
@@ -55,7 +80,7 @@ fn motion(robot: &Robot, seed: u64, disturbed: impl Fn(f64, &[f64], &mut [f64]))
         }
     }
     for tau in &mut motion.tau {
-        let deviation = NOISE * tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
+        let deviation = noise * tau.iter().fold(0.0_f64, |most, tau| most.max(tau.abs()));
         for tau in tau {
             *tau += deviation * normal(&mut rng);
         }
@@ -218,7 +243,7 @@ fn turning_back(describe: fn(&mut Joint)) {
 /// Levels of several stretches: the medians know nothing of one that is different, what covers them knows all.
 #[test]
 fn levels_of_several_stretches() {
-    let of = |mean: f64, deviation: f64| Baseline::white(&[deviation], &[deviation]).widened(1.0 + mean);
+    let of = |mean: f64, deviation: f64| Baseline::white(&[deviation], &[deviation]).widened(1.0 + mean, 1.0);
     let typical = Baseline::typical(&[of(0.0, 1.0), of(0.0, 1.2), of(0.0, 50.0)]).expect("three");
     assert!((typical.residual[0].deviation - 1.2).abs() < 1e-12 && typical.external[0].mean == 0.0);
     let mut offset = of(0.0, 1.0);
@@ -294,6 +319,7 @@ fn false_alarms_are_as_rare_as_asked_for() {
         signals.time = (0..samples).map(|sample| f64::from(sample) / RATE).collect();
         signals.settled = vec![true; signals.time.len()];
         signals.open = vec![vec![0.0; signals.time.len()]; 2];
+        (signals.terms, signals.inertia) = (signals.open.clone(), signals.open.clone());
         signals.creeps = vec![vec![false; signals.time.len()]; 2];
         // to and fro, twice in a second
         let direction = |sample: u32| if (sample / 63).is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -409,4 +435,153 @@ fn what_cannot_be_watched_is_said() {
     let settings = Settings { hold: f64::NAN, ..Settings::default() };
     assert_eq!(watch(&signals, &two, &settings), Err(WatchError::Setting("the hold")));
     assert!(WatchError::Sample(3).to_string().starts_with("sample 4 "));
+}
+
+/// A robot whose numbers are wrong by up to so large a part of themselves.
+fn wrong(robot: &Robot, part: f64, seed: u64) -> Robot {
+    let (mut robot, mut rng) = (robot.clone(), Rng::with_seed(seed));
+    let mut times = || 1.0 + part * (2.0 * rng.f64() - 1.0);
+    for joint in &mut robot.joints {
+        let link = &mut joint.row.link;
+        link.mass *= times();
+        link.com.iter_mut().for_each(|number| *number *= times());
+        let inertia = &mut link.inertia;
+        for number in [&mut inertia.xx, &mut inertia.yy, &mut inertia.zz] {
+            *number *= times();
+        }
+    }
+    robot
+}
+
+/// What the numbers of a model get wrong is no event, whether what is usual is learnt from the log itself or from one
+/// of other postures; and a collision is still one.
+#[test]
+fn numbers_that_are_wrong_by_little_are_no_event() {
+    let robot = shipped("planar2");
+    let settings = Settings::default();
+    let mut blind_alarms = 0;
+    for seed in 31..37 {
+        let model = wrong(&robot, 0.05, seed);
+        let signals = |motion: &Motion| Signals::new(&model, motion, settings.gain).expect("a motion of the robot");
+        let own = |signals: &Signals| Baseline::of(signals, 0..signals.time.len()).expect("long enough");
+        let free = signals(&along(&robot, (seed, 0.002), slowly, |_, _, _| {}));
+        let other = signals(&along(&robot, (seed + 100, 0.002), elsewhere, |_, _, _| {}));
+        let quiet = |signals: &Signals| own(signals).silent(signals, &settings).expect("two joints").widened(1.5, 2.0);
+        for baseline in [own(&free), quiet(&other)] {
+            assert_eq!(watch(&free, &baseline, &settings).expect("two joints").events, [], "{seed}");
+        }
+        let mut blind = [free, other];
+        for signals in &mut blind {
+            signals.terms = vec![vec![0.0; signals.time.len()]; 2];
+        }
+        for baseline in [own(&blind[0]), quiet(&blind[1])] {
+            blind_alarms += watch(&blind[0], &baseline, &settings).expect("two joints").events.len();
+        }
+
+        let hit = signals(&along(&robot, (seed, 0.002), slowly, |time, _, tau| {
+            tau[0] += if (20.0..20.2).contains(&time) { 10.0 } else { 0.0 };
+        }));
+        let report = watch(&hit, &own(&hit), &settings).expect("two joints");
+        let events = of(&report, 0, Test::External);
+        assert!(events.len() == 1 && (20.0..20.05).contains(&events[0].start), "{seed}: {:?}", report.events);
+    }
+    println!("events of those who do not know that a model is wrong: {blind_alarms}");
+    assert!(blind_alarms > 0, "nothing is wrong");
+}
+
+/// An elbow that is bent most of the time, and stretched for some of it.
+fn reaching(joint: usize, time: f64) -> [f64; 3] {
+    if joint == 0 {
+        return swing(0, time);
+    }
+    let (w, sine, cosine) = (0.4, (0.4 * time).sin(), (0.4 * time).cos());
+    let bent = |power: [f64; 3]| power.map(|number| -2.8 * number);
+    let [q, qd, qdd] = bent([
+        sine.powi(8),
+        8.0 * w * sine.powi(7) * cosine,
+        8.0 * w * w * (7.0 * sine.powi(6) * cosine * cosine - sine.powi(8)),
+    ]);
+    [2.8 + q, qd, qdd]
+}
+
+/// Noise of the velocities is larger in the torques of an arm that reaches out.
+#[test]
+fn an_arm_that_reaches_out_collides_with_nothing() {
+    let mut robot = shipped("planar2");
+    // a light upper arm: stretched, the first joint feels four times the inertia
+    let upper = &mut robot.joints[0].row.link;
+    (upper.mass, upper.inertia.zz) = (0.1, 0.05 * upper.inertia.zz);
+    let settings = Settings::default();
+    let mut blind_alarms = 0;
+    for seed in 41..45 {
+        let noisy = |disturbed: fn(f64, &[f64], &mut [f64])| {
+            let mut motion = along(&robot, (seed, 0.002), reaching, disturbed);
+            let mut rng = Rng::with_seed(seed + 100);
+            motion.qd.iter_mut().flatten().for_each(|rate| *rate += 0.02 * normal(&mut rng));
+            Signals::new(&robot, &motion, settings.gain).expect("a motion of the robot")
+        };
+        let own = |signals: &Signals| Baseline::of(signals, 0..signals.time.len()).expect("long enough");
+        let external = |signals: &Signals| -> Vec<Event> {
+            let report = watch(signals, &own(signals), &settings).expect("two joints");
+            report.events.into_iter().filter(|event| event.test == Test::External).collect()
+        };
+        let free = noisy(|_, _, _| {});
+        assert_eq!(external(&free), [], "{seed}");
+        let mut blind = free.clone();
+        blind.inertia = vec![vec![0.0; blind.time.len()]; 2];
+        blind_alarms += external(&blind).len();
+        let hit = external(&noisy(|time, _, tau| tau[0] += if (16.0..16.2).contains(&time) { 15.0 } else { 0.0 }));
+        assert!(hit.len() == 1 && (16.0..16.05).contains(&hit[0].start), "{seed}: {hit:?}");
+    }
+    println!("events of those who do not know the inertia: {blind_alarms}");
+    assert!(blind_alarms > 0, "noise is the same everywhere");
+}
+
+/// A change is where it is and as large as it is, though the model is wrong and friction turns back over some travel:
+/// 1.5 N m of friction for eight seconds, and as much of an offset.
+#[test]
+fn a_change_is_where_it_is_and_as_large() {
+    let mut robot = shipped("planar2");
+    for joint in &mut robot.joints {
+        joint.motor = Some(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.3, coulomb: [2.0, -2.0] });
+        joint.coulomb_width = Some(0.01);
+    }
+    let settings = Settings::default();
+    for (test, seed) in [(Test::Friction, 51), (Test::Friction, 52), (Test::Offset, 53), (Test::Offset, 54)] {
+        let changed = motion(&robot, seed, |time, qd, tau| {
+            if (20.0..28.0).contains(&time) {
+                tau[1] += if test == Test::Friction { 1.5 * qd[1].signum() } else { 1.5 };
+            }
+        });
+        let model = wrong(&robot, 0.02, seed);
+        let signals = Signals::new(&model, &changed, settings.gain).expect("a motion of the robot");
+        let baseline = Baseline::of(&signals, 0..signals.time.len()).expect("long enough");
+        let report = watch(&signals, &baseline, &settings).expect("two joints");
+        let events = of(&report, 1, test);
+        let (first, last) = (events.first().expect("an event"), events.last().expect("an event"));
+        assert!((19.9..20.3).contains(&first.start), "{test}: {first:?}");
+        assert!((27.7..28.2).contains(&last.end), "{test}: {last:?}");
+        let peak = events.iter().map(|event| event.peak).fold(0.0, f64::max);
+        assert!((1.4..1.9).contains(&peak), "{test}: {peak}");
+    }
+}
+
+/// What a filter makes of friction that turns back at once: it spreads to both sides.
+#[test]
+fn a_filter_before_the_watch_is_no_event() {
+    let mut robot = shipped("planar2");
+    for joint in &mut robot.joints {
+        joint.motor = Some(Motor { inertia: 0.0, gear_ratio: 1.0, viscous: 0.3, coulomb: [6.0, -6.0] });
+    }
+    let mut free = motion(&robot, 61, |_, _, _| {});
+    for tau in &mut free.tau {
+        let sharp = tau.clone();
+        for at in 2..sharp.len() - 2 {
+            tau[at] = 0.3 * sharp[at] + 0.25 * (sharp[at - 1] + sharp[at + 1]) + 0.1 * (sharp[at - 2] + sharp[at + 2]);
+        }
+    }
+    let settings = Settings::default();
+    let signals = Signals::new(&robot, &free, settings.gain).expect("a motion of the robot");
+    let baseline = Baseline::of(&signals, 0..2500).expect("long enough");
+    assert_eq!(watch(&signals, &baseline, &settings).expect("two joints").events, []);
 }

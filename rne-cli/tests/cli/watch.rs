@@ -121,6 +121,44 @@ fn another_arm_is_not_in_order() {
     assert!(called.err.contains("warning") && called.err.contains("shoulder"), "{}", called.err);
 }
 
+/// What is usual of another arm is not what is usual of this one.
+#[test]
+fn a_quiet_log_of_another_arm_is_not_in_order() {
+    let folder = folder("watch_other_quiet");
+    let log = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
+    // efforts of another sign
+    let turned = log.lines().enumerate().map(|(at, line)| {
+        let sign = |(index, cell): (usize, &str)| match cell.strip_prefix('-') {
+            _ if at == 0 || index < 7 => cell.to_owned(),
+            Some(positive) => positive.to_owned(),
+            None => format!("-{cell}"),
+        };
+        line.split(',').enumerate().map(sign).collect::<Vec<_>>().join(",") + "\n"
+    });
+    let other = folder.join("other.csv");
+    fs::write(&other, turned.collect::<String>()).expect("a file");
+    let called = rne(&["watch", ARM, QUIET, "--quiet", other.to_str().expect("UTF-8")]);
+    assert_eq!(called.status, 1, "{}", called.out);
+    let words = called.err.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("warning") && words.contains("shoulder") && words.contains("--quiet"), "{words}");
+    assert!(!rne(&["watch", ARM, QUIET, "--quiet", QUIET]).err.contains("warning"));
+}
+
+/// A picture that cannot be written is refused before the logs are read.
+#[test]
+fn a_picture_without_a_place_is_refused_at_once() {
+    let folder = folder("watch_no_place");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    fs::write(path("notes.txt"), "not a picture").expect("a file");
+    for (status, name, words) in [(1, "none/knock.svg", "no folder"), (2, ".", "folder"), (2, "notes.txt", "--force")] {
+        fails(status, &["watch", ARM, "there_is_none.csv", "--plot", &path(name)], &[words]);
+    }
+    fails(2, &["watch", ARM, QUIET, "--plot", QUIET], &["is the file that is read"]);
+    // a place is tried, and left as it is
+    fails(1, &["watch", ARM, "there_is_none.csv", "--plot", &path("knock.svg")], &["there_is_none.csv"]);
+    assert_eq!(fs::read_dir(&folder).expect("a folder").count(), 1);
+}
+
 #[test]
 fn what_cannot_be_watched_is_said() {
     let folder = folder("watch_wrong");
