@@ -86,7 +86,8 @@ fn log(robot: &Robot, sines: &Sines, start: f64, count: usize, rate: f64, spoilt
     let arm = DynArm::from_robot(robot);
     let dof = robot.dof();
     let empty = || vec![Vec::with_capacity(count); dof];
-    let mut motion = Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty(), ..Motion::default() };
+    let mut motion =
+        Motion { time: Vec::new(), q: empty(), qd: empty(), qdd: empty(), tau: empty(), ..Motion::default() };
     for k in 0..count {
         let time = start + f64::from(u32::try_from(k).unwrap()) / rate;
         let [q, qd, qdd] = sines.at(time);

@@ -61,7 +61,8 @@ fn along(robot: &Robot, (seed, noise): (u64, f64), path: Path, disturbed: impl F
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let samples = (RATE * SECONDS) as usize;
     let lists = || vec![Vec::with_capacity(samples); dof];
-    let mut motion = Motion { time: Vec::new(), q: lists(), qd: lists(), qdd: lists(), tau: lists(), ..Motion::default() };
+    let mut motion =
+        Motion { time: Vec::new(), q: lists(), qd: lists(), qdd: lists(), tau: lists(), ..Motion::default() };
     for sample in 0..samples {
         #[allow(clippy::cast_precision_loss)]
         let time = sample as f64 / RATE;
