@@ -2,7 +2,8 @@
 //!
 //! An effort is held against the median of five about it, which a step does not move and a spike of two samples does
 //! not either (F. R. Hampel, The influence curve and its role in robust estimation, JASA 69, 1974). It is a spike where
-//! it is off by far more than efforts are elsewhere in the log, and by more than the joint usually takes.
+//! it is off by far more than efforts are elsewhere in the log, and by more than the joint takes but for one of a
+//! hundred samples: what a sensor says that fails more often than that stays.
 //!
 //! A low-pass spreads a spike over all that it reaches, where it looks like a push of some length. So spikes are found
 //! in what was measured, before any filter.
