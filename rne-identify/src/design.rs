@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 use rne_logs::Motion;
 use rne_machine::{Arguments, Array, CompiledArm, Destination, EvaluationError, Form, Function};
-use rne_model::Robot;
+use rne_model::{JointKind, Robot};
 
 use crate::fit::condition;
 use crate::fourier::{Fourier, Grid};
@@ -11,7 +11,7 @@ use crate::information::{Walk, plain_columns};
 use crate::motion_limits::MotionLimits;
 use crate::prior::{self, Scales};
 use crate::r_factor::RFactor;
-use crate::structure::{Options, Structure};
+use crate::structure::{FRICTION, Options, Structure};
 
 /// Rows of a joint per harmonic of a period.
 const ROWS: usize = 20;
@@ -80,8 +80,22 @@ impl Design {
         let rows = self.rows(motion)?;
         let own: Vec<DMatrix<f64>> = rows.iter().map(|rows| rows.tr_mul(rows)).collect();
         let efforts: Vec<f64> = (0..rows.len()).map(|joint| self.effort(joint, &rows[joint])).collect();
-        let condition = condition_of(self.products(&own, &self.weights));
+        let asked = self.asked();
+        let products = self.products(&own, &self.weights).select_rows(&asked).select_columns(&asked);
+        let condition = condition_of(products);
         Ok(Quality { condition, deviations: self.deviations(&own, &efforts) })
+    }
+
+    /// The unknowns that a motion has to tell from each other: all, but for the offset of a joint that slides and has a
+    /// rotor. Along the vertical its mass has q̈ + g, the rotor q̈ and the offset 1, which no motion tells apart.
+    fn asked(&self) -> Vec<usize> {
+        let Structure { options, parameters, robot, .. } = &self.structure;
+        let slides = |joint: usize| robot.joints[joint].row.kind == JointKind::Prismatic;
+        let is_asked = |unknown: &usize| {
+            let friction = unknown.checked_sub(parameters.rank()).filter(|_| options.friction && options.rotors);
+            !friction.is_some_and(|at| at % FRICTION == FRICTION - 1 && slides(at / FRICTION))
+        };
+        (0..self.structure.count()).filter(is_asked).collect()
     }
 
     /// Products of all columns, rows weighted by joint.
@@ -145,7 +159,9 @@ impl Design {
             // of as many columns
             let _ = triangle.absorb(all);
         }
-        Ok(condition(&triangle, count, &DVector::zeros(count)))
+        let mut left_out = DVector::from_element(count, f64::INFINITY);
+        self.asked().iter().for_each(|&unknown| left_out[unknown] = 0.0);
+        Ok(condition(&triangle, count, &left_out))
     }
 }
 
