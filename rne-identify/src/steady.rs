@@ -12,7 +12,7 @@ use crate::r_factor::RFactor;
 use crate::structure::Structure;
 
 /// A stretch stands out where its residual is so many times the median one of its joint.
-const SUSPECT: f64 = 8.0;
+const SUSPECT: f64 = 7.0;
 /// A stretch with more than so many times the median counts less.
 const BEND: f64 = 2.0;
 const ROUNDS: usize = 10;
