@@ -19,7 +19,8 @@ const LEAST_NOISE: f64 = 1e-12;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Fit {
-    /// Base parameters; viscous friction, Coulomb's and the offset of each joint; the delay. Of what logs do not excite at all, 0.
+    /// Base parameters; viscous friction, Coulomb's and the offset of each joint; the delay. Of what logs do not excite
+    /// at all, 0.
     pub solution: DVector<f64>,
     /// Covariance of the unknowns: of errors that depend on each other over time, too.
     pub covariance: DMatrix<f64>,

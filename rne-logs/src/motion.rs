@@ -16,7 +16,8 @@ pub struct Motion {
     pub qdd: Vec<Vec<f64>>,
     /// Torques or forces of the actuators, N m or N. Without any list where the log has no efforts.
     pub tau: Vec<Vec<f64>>,
-    /// The same before the filter of [`Motions`](crate::Motions). Without any list where that is not known, or the same.
+    /// The same before the filter of [`Motions`](crate::Motions). Without any list where that is not known, or the
+    /// same.
     pub recorded: Vec<Vec<f64>>,
 }
 

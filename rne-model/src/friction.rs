@@ -6,8 +6,8 @@
 //! over a displacement ℓ:    ds = (sgn dq - s) |dq| / ℓ
 //! ```
 //!
-//! From -f⁻ to f⁺ it goes in proportion to s: half their difference is an offset, of a current or a sensor, that is there
-//! at rest, too. A sign that changes at once has no friction at rest.
+//! From -f⁻ to f⁺ it goes in proportion to s: half their difference is an offset, of a current or a sensor, that is
+//! there at rest, too. A sign that changes at once has no friction at rest.
 //!
 //! The second s remembers where the joint turned: bristles, teeth and belts give way before they slip, so that a joint
 //! that sticks or creeps has any friction between f⁺ and -f⁻. It is Dahl's model, of exponent one (P. R. Dahl, A solid
