@@ -151,7 +151,7 @@ impl Accumulator for Gathered {
         let Ok([q, qd, qdd, tau]) = <[Vec<Vec<f64>>; 4]>::try_from(lists) else { return Ok(()) };
         // rows of a table have no time: nothing is asked of it but to grow
         let time = (0_u32..).map(f64::from).take(states.len()).collect();
-        let motion = Motion { time, q, qd, qdd, tau };
+        let motion = Motion { time, q, qd, qdd, tau, ..Motion::default() };
         self.information.absorb(&self.structure, &motion, None).map_err(external)
     }
 
