@@ -46,7 +46,7 @@ Examples:
   cargo xtask python              with what is installed there
   cargo xtask python --install    install it first
   cargo xtask python --install --peers --notebooks
-  cargo xtask python --install --sdist    minutes: pip builds it, and gets Rust")]
+  cargo xtask python --install --sdist    minutes: pip builds it from sources")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Python {
     /// Install what is missing, with pip, below target/
@@ -58,7 +58,7 @@ pub(crate) struct Python {
     /// Run the notebooks of python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
-    /// Install the source distribution where no Rust is on PATH; CI_FULL does so too
+    /// Install the source distribution, built by pip with the Rust that is here; CI_FULL does so too
     #[arg(long, requires = "install")]
     pub(crate) sdist: bool,
 }
@@ -183,30 +183,27 @@ impl Place {
         Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
     }
 
-    /// The source distribution as pip builds it where there is a C compiler, which links, and no Rust: maturin asks for
-    /// the package `puccinialin` then, by which pip gets one.
+    /// The source distribution as pip builds it, apart from this folder's own build. Where there is no Rust, maturin asks
+    /// for the package `puccinialin`, which downloads one; here the Rust that is on `PATH` is taken, so that nothing
+    /// depends on a download.
     fn holds_from_sources(&self) -> Result<bool> {
         let (shell, maturin) = (&self.shell, self.maturin(true)?);
         let sources = self.folder.join("sources");
         let _ = fs::remove_dir_all(&sources);
-        cmd!(shell, "{maturin} sdist --quiet --manifest-path python/Cargo.toml --out {sources}").quiet().run()?;
+        cmd!(shell, "{maturin} sdist --manifest-path python/Cargo.toml --out {sources}")
+            .quiet()
+            .ignore_stderr()
+            .run()?;
         let sdist = only_file(&sources)?;
         let _ = fs::remove_dir_all(self.folder.join("built"));
         let python = self.environment("built")?;
-        // programs of the system, without the folders where rustup puts its own
-        let home = self.folder.join("home");
-        fs::create_dir_all(&home)?;
-        let path = format!("{}:/usr/bin:/bin", python.with_file_name("").display());
-        let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {sdist}");
-        let install = ["CARGO", "CARGO_HOME", "CARGO_TARGET_DIR", "RUSTUP_HOME", "RUSTUP_TOOLCHAIN"]
-            .into_iter()
-            .fold(machine::without_flags(install), xshell::Cmd::env_remove);
-        if install.env("PATH", &path).env("XDG_CACHE_HOME", &home).quiet().run().is_err() {
+        let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check --no-cache-dir {sdist}");
+        if machine::without_flags(install).env_remove("CARGO_TARGET_DIR").quiet().run().is_err() {
             return Ok(false);
         }
         let size = fs::metadata(&sdist)?.len() / 1024;
         println!("python, built by pip from {size} KiB of sources:");
-        Ok(cmd!(shell, "{python} -c {FIRST}").env("PATH", &path).quiet().run().is_ok())
+        Ok(cmd!(shell, "{python} -c {FIRST}").quiet().run().is_ok())
     }
 }
 
