@@ -105,16 +105,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text += &judged(&found.robot, &log, part, &unknown(&found), "held-out part of the log")?;
     }
     draw(arguments, &found.robot, &log, held.unwrap_or(Part::All), &sources, &mut remark)?;
-    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
-        let Some(rejected) = report.rejected else { continue };
-        let what = format!(
-            "{} of {} rows of {} are far from all others and do not count, the first at {:.2} s: did somebody push the \
-             arm, or did a sensor fail?",
-            rejected.rows,
-            found.rows,
-            one_line(&joint.name),
-            rejected.time
-        );
+    for what in warnings(&found) {
         let _ = writeln!(remark, "{WARNING}warning{WARNING:#}: {}", wrap(&what, WIDTH - 9, "         "));
     }
     if !found.is_anything_excited() {
@@ -135,6 +126,35 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         remark += &output_file::write_new(path, &file, &sources, arguments.force)?;
     }
     Ok(Outcome { text, remark, ..Outcome::default() })
+}
+
+/// What is strange about a log.
+fn warnings(found: &Identification) -> Vec<String> {
+    let mut said = Vec::new();
+    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+        let (name, unit) = (one_line(&joint.name), joint.row.kind.effort_unit());
+        if let Some(rejected) = report.rejected {
+            said.push(format!(
+                "{} of {} rows of {name} are far from all others and do not count, the first at {:.2} s: did somebody \
+                 push the arm, or did a sensor fail?",
+                rejected.rows, found.rows, rejected.time
+            ));
+        }
+        if report.is_unexplained() {
+            said.push(format!(
+                "no model of the arm explains the efforts of {name}: are they noise, of another sign, or those of \
+                 another joint, and is FILE of this arm?"
+            ));
+        } else if let Some((offset, coulomb)) = report.offset {
+            said.push(format!(
+                "{name} has an offset of {} {unit}, a spring, a counterweight or a sensor: a robot file holds none above \
+                 Coulomb friction, which is {}, so what it predicts is off by the rest",
+                rounded(offset, 3),
+                rounded(coulomb, 3)
+            ));
+        }
+    }
+    said
 }
 
 /// Whether what is written can be: nobody should wait for an identification whose result has no place.
@@ -212,7 +232,7 @@ fn account(found: &Identification, log: &MotionLog) -> String {
     }
     let mut cells = vec![["  parameter", "value", "", "deviation", "", "in the file", "unit"].map(str::to_owned)];
     for (base, report) in found.structure.parameters().bases.iter().zip(&found.bases) {
-        let unit = rne_identify::unit(base.kept).to_owned();
+        let unit = rne_identify::unit(&found.robot, base.kept).to_owned();
         let (value, deviation, percent) = if report.is_excited() {
             let percent = 100.0 * report.deviation / report.value.abs();
             let percent = if percent < 1000.0 { format!("{percent:.1} %") } else { "> 999 %".to_owned() };
@@ -256,7 +276,14 @@ fn friction(text: &mut String, found: &Identification) {
         ]);
     }
     let align = [Align::Left, Align::Right, Align::Right, Align::Right, Align::Right];
-    push_table(text, "friction at the joint, N m s/rad, N m; turns about a speed or over a way", &align, &cells);
+    let kinds: Vec<JointKind> = found.robot.joints.iter().map(|joint| joint.row.kind).collect();
+    let units = match (kinds.contains(&JointKind::Revolute), kinds.contains(&JointKind::Prismatic)) {
+        (_, false) => "N m s/rad, N m",
+        (false, true) => "N s/m, N",
+        (true, true) => "N m s/rad, N m or N s/m, N",
+    };
+    let title = format!("friction at the joint, {units}; turns in a speed or a way");
+    push_table(text, &title, &align, &cells);
 }
 
 /// The speed or the displacement in which friction changes its sign.
@@ -270,12 +297,28 @@ fn turns(reversal: Reversal, kind: JointKind) -> String {
 
 /// The rotors, where they were asked for.
 fn inertia_of_rotors(text: &mut String, found: &Identification) {
-    let mut cells = vec![["  joint", "rotor"].map(str::to_owned)];
-    for (joint, report) in found.robot.joints.iter().zip(&found.joints) {
+    let mut cells = vec![["  joint", "rotor", "", ""].map(str::to_owned)];
+    let bases = || found.structure.parameters().bases.iter().zip(&found.bases);
+    for (at, (joint, report)) in found.robot.joints.iter().zip(&found.joints).enumerate() {
         let Some(rotor) = report.rotor else { return };
-        cells.push([format!("  {}", shortened(&one_line(&joint.name), 14)), rounded(rotor, 4)]);
+        let [unit, link] = match joint.row.kind {
+            JointKind::Revolute => ["kg m²", "inertia"],
+            JointKind::Prismatic => ["kg", "mass"],
+        };
+        let known = bases().find(|(base, _)| base.kept == rne_identify::Parameter::Rotor(at)).map(|(_, of)| of);
+        let said = match known {
+            None => format!("one with {link} of links: any part of their sum"),
+            Some(base) if base.is_excited() => String::new(),
+            Some(_) => "not excited".to_owned(),
+        };
+        cells.push([format!("  {}", shortened(&one_line(&joint.name), 14)), rounded(rotor, 4), unit.to_owned(), said]);
     }
-    push_table(text, "inertia of the rotors at the joint, kg m² or kg", &[Align::Left, Align::Right], &cells);
+    push_table(
+        text,
+        "inertia of the rotors at the joint",
+        &[Align::Left, Align::Right, Align::Left, Align::Left],
+        &cells,
+    );
 }
 
 /// How well a robot predicts a part of a log.

@@ -109,7 +109,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             let _ = writeln!(remark, "{TITLE}note{TITLE:#}: the picture ends where the times of the logs go back");
         }
     }
-    let errors = prediction(&robot, &log, Part::All)?;
+    // behind the filter that `rne identify --judge` has, so that its errors are these
+    let judged = MotionLog::open_all(&arguments.logs, &robot, &arguments.reading)?;
+    let errors = prediction(&robot, &judged, Part::All)?;
     let mut is_explained = true;
     let mut warn = |names: &[String], where_: &str| {
         if names.is_empty() {
@@ -134,7 +136,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let usual = quiet.map_or("the log itself, by medians".to_owned(), |quiet| quiet.words());
     let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(&format!("what is usual: {usual}"), WIDTH, "  "));
     text += &events_table(&robot, &watched.events, log.runs() > 1);
-    text += &errors_table(&robot, &log, &errors, &not_excited(&robot), "prediction of the log");
+    text += &errors_table(&robot, &judged, &errors, &not_excited(&robot), "prediction of the log");
     Ok(Outcome { text, remark, at_fault })
 }
 
@@ -189,13 +191,18 @@ fn silent(robot: &Robot, quiet: &MotionLog, settings: &Settings) -> Result<Basel
 /// of the model's terms, which may have any sign there, is twice what it is here.
 const ELSEWHERE: [f64; 2] = [1.5, 2.0];
 
+/// N m or N: what is left of an effort where nothing is.
+const NOTHING: f64 = 1e-9;
+
 /// The joints whose torques are no better predicted than by their mean, or not at all; but those of which the file says
 /// that nothing is known.
 fn unexplained(robot: &Robot, errors: &[rne_identify::JointError]) -> Vec<String> {
     let each = robot.joints.iter().zip(errors).zip(not_excited(robot));
     // what is no number is no prediction
     let found = each.filter(|((_, error), unknown)| {
-        !unknown && error.deviation != 0.0 && (error.error >= 1.0 || error.error.is_nan())
+        // an effort that does not change, and is what the model says, is explained
+        let is_nothing = error.deviation == 0.0 && error.residual <= NOTHING;
+        !unknown && !is_nothing && (error.error >= 1.0 || error.error.is_nan())
     });
     found.map(|((joint, _), _)| one_line(&joint.name)).collect()
 }

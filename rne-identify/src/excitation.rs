@@ -369,7 +369,7 @@ impl<'a> Problem<'a> {
         let bases = bases.map(|((base, deviation), plausible)| BaseExcitation {
             name: name(base.kept),
             combination: base.combination(),
-            unit: unit(base.kept),
+            unit: unit(self.design.structure().robot(), base.kept),
             deviation,
             plausible: *plausible,
         });

@@ -73,9 +73,10 @@ pub struct Certificate {
 struct Problem {
     /// Unknowns of coordinates.
     map: DMatrix<f64>,
-    /// R and z of the unknowns.
+    /// R and z of the unknowns, and those that explain z best.
     design: DMatrix<f64>,
     target: DVector<f64>,
+    least: DVector<f64>,
     links: usize,
     /// Of each coordinate, its value for 1.
     scale: DVector<f64>,
@@ -108,7 +109,7 @@ impl Feasible {
             }
             weight = (weight * STEP).max(pull);
         }
-        problem.result(structure, fit, &at, pull, decrement)
+        problem.result(structure, &at, pull, decrement)
     }
 }
 
@@ -172,13 +173,24 @@ impl Problem {
             scale[inertial + positive] = 1e-3;
         }
         let triangle = fit.triangle.triangle();
+        let design = triangle.view((0, 0), (count, count)).clone_owned();
+        // what no friction can be is none of the bodies' either
+        let mut least = fit.solution.clone();
+        for joint in 0..dof {
+            let loose = fit.loose_offset(structure, joint, scales.friction[joint]);
+            if let (Some((offset, coulomb)), Some(at)) = (loose, structure.friction_at(joint)) {
+                least[at + 2] = coulomb.copysign(offset);
+            }
+        }
+        let target = triangle.view((0, count), (count, 1)).column(0) - &design * (&fit.solution - &least);
         let inverses = priors.iter().map(|prior| {
             // all of them are positive definite
             prior.pseudo_inertia.try_inverse().unwrap_or_else(Matrix4::identity)
         });
         Self {
-            design: triangle.view((0, 0), (count, count)).clone_owned(),
-            target: triangle.view((0, count), (count, 1)).column(0).clone_owned(),
+            design,
+            target,
+            least,
             links: dof,
             inverses: inverses.collect(),
             units: pseudo_inertia::units(),
@@ -269,21 +281,15 @@ impl Problem {
         decrement / pull.min(1.0)
     }
 
-    fn result(&self, structure: &Structure, fit: &Fit, at: &DVector<f64>, pull: f64, decrement: f64) -> Feasible {
+    fn result(&self, structure: &Structure, at: &DVector<f64>, pull: f64, decrement: f64) -> Feasible {
         let unknowns = &self.map * at;
         let links: Vec<Matrix4<f64>> = (0..self.links).map(|link| self.pseudo_inertia(at, link)).collect();
         let misfit = |unknowns: &DVector<f64>| 0.5 * (&self.design * unknowns - &self.target).norm_squared();
         let margin = links.iter().map(pseudo_inertia::margin).fold(f64::INFINITY, f64::min);
         #[allow(clippy::cast_precision_loss)]
         let gap = pull * (4 * self.links + self.positive) as f64;
-        let certificate = Certificate {
-            pull,
-            misfit: misfit(&unknowns),
-            least_misfit: misfit(&fit.solution),
-            decrement,
-            gap,
-            margin,
-        };
+        let certificate =
+            Certificate { pull, misfit: misfit(&unknowns), least_misfit: misfit(&self.least), decrement, gap, margin };
         let inertial = self.links * PER_LINK;
         let of = |index: usize| at[inertial + index] * self.scale[inertial + index];
         let of_rotors = if structure.options.rotors { self.links } else { 0 };

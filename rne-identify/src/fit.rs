@@ -14,6 +14,15 @@ const FIRST: usize = 3;
 const CHOOSING: usize = 2;
 /// N m or N: no joint's noise is less, so that efforts that are zero throughout divide nothing by nothing.
 const LEAST_NOISE: f64 = 1e-12;
+/// Efforts of which none is more than this part of the largest one of all joints are not measured: by their noise, which
+/// is as small, they would outweigh all other joints.
+const NOT_MEASURED: f64 = 1e-8;
+
+/// Rows of joints tell deviations where there are so many times as many as unknowns.
+const ENOUGH: usize = 2;
+
+/// An offset is larger than Coulomb friction by so many deviations, and by that part of the effort, root mean square.
+const BEYOND: [f64; 2] = [4.0, 0.02];
 
 /// What least squares say of the unknowns.
 #[derive(Clone, Debug)]
@@ -22,9 +31,11 @@ pub struct Fit {
     /// Base parameters; viscous friction, Coulomb's and the offset of each joint; the delay. Of what logs do not excite
     /// at all, 0.
     pub solution: DVector<f64>,
-    /// Covariance of the unknowns: of errors that depend on each other over time, too.
+    /// Covariance of the unknowns: of errors that depend on each other over time, too. Not a number where too few rows
+    /// tell it.
     pub covariance: DMatrix<f64>,
-    /// Deviation of each joint's noise, N m or N.
+    /// Deviation of each joint's noise, N m or N; infinite where efforts are no torques but zeros, so that they do not
+    /// count.
     pub noise: Vec<f64>,
     /// s: how much the torques lag behind the positions, as the rows were shifted and as is left.
     pub delay: f64,
@@ -48,11 +59,11 @@ impl Fit {
         let dof = structure.dof();
         let middle = structure.options.widths.len() / 2;
         let mut state = State { structure, scales, noise: vec![1.0; dof], reversals: vec![middle; dof] };
-        for (noise, factor) in state.noise.iter_mut().zip(&total) {
+        let largest = information.largest.iter().copied().fold(0.0, f64::max);
+        for ((noise, factor), most) in state.noise.iter_mut().zip(&total).zip(&information.largest) {
             // the torque itself, to begin with
-            let target = factor.columns() - 1;
-            let power = factor.triangle().column(target).norm_squared() / factor.weight().max(1.0);
-            *noise = if power > 0.0 { power.sqrt().max(LEAST_NOISE) } else { 1.0 };
+            let is_measured = *most > NOT_MEASURED * largest;
+            *noise = if is_measured { effort(factor).max(LEAST_NOISE) } else { f64::INFINITY };
         }
         for round in 0..ROUNDS {
             if (FIRST..FIRST + CHOOSING).contains(&round) && structure.options.friction {
@@ -62,13 +73,19 @@ impl Fit {
         }
         let triangle = state.stacked(&total);
         let solution = solved(&triangle, state.count());
-        let (covariance, freedom) = if information.is_unordered() {
+        let (mut covariance, freedom) = if information.is_unordered() {
             let left = information.rows().saturating_sub(solution.len() as u64);
             (state.independent(&triangle), usize::try_from(left).unwrap_or(usize::MAX))
         } else {
             let stretches = &information.stretches;
             (state.covariance(stretches, &triangle, &solution), stretches.len().saturating_sub(1))
         };
+        let measured = state.noise.iter().filter(|noise| noise.is_finite()).count();
+        let equations = usize::try_from(information.rows()).unwrap_or(usize::MAX).saturating_mul(measured);
+        // what is left of so few is their number and no noise, and numbers overflow
+        if equations < ENOUGH * solution.len() || solution.iter().any(|value| !value.is_finite()) {
+            covariance.fill(f64::NAN);
+        }
         let condition = condition(&triangle, state.count(), &state.ridge());
         let State { noise, reversals, .. } = state;
         let left = if structure.options.delay { solution[solution.len() - 1] } else { 0.0 };
@@ -109,6 +126,21 @@ impl Fit {
         let design = self.triangle.triangle().view((0, 0), (count, count));
         let target = self.triangle.triangle().view((0, count), (count, 1));
         design.tr_mul(&(design * unknowns - target.column(0)))
+    }
+
+    /// The offset of a joint and its Coulomb friction, N m or N, where the former is larger: a spring, a counterweight, a
+    /// sensor. No robot file holds what is more. `effort` is of the joint, root mean square.
+    #[must_use]
+    pub fn loose_offset(&self, structure: &Structure, joint: usize, effort: f64) -> Option<(f64, f64)> {
+        let at = structure.friction_at(joint)?;
+        let (coulomb, offset) = (self.solution[at + 1], self.solution[at + 2]);
+        let covariance = |row: usize, column: usize| self.covariance[(at + row, at + column)];
+        // of the friction of the direction against which the offset goes
+        let variance = covariance(1, 1) + covariance(2, 2) - 2.0 * offset.signum() * covariance(1, 2);
+        let beyond = offset.abs() - coulomb;
+        let [deviations, part] = BEYOND;
+        let is_larger = beyond > part * effort && beyond > deviations * variance.abs().sqrt();
+        (coulomb > 0.0 && is_larger).then_some((offset, coulomb))
     }
 
     /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree
@@ -195,13 +227,15 @@ impl State<'_> {
         let solution = solved(&triangle, self.count());
         let Some(inverse) = inverse(&triangle, self.count()) else { return };
         for (joint, factor) in total.iter().enumerate() {
+            if self.noise[joint].is_infinite() {
+                continue;
+            }
             let rows = self.rows(joint, self.reversals[joint], factor);
             let (design, target) = (rows.columns(0, self.count()), rows.column(self.count()));
             let residual = (target - design * &solution).norm_squared() * self.noise[joint].powi(2);
             let taken = (design * &inverse).norm_squared();
             let left = (factor.weight() - taken).max(1.0);
-            let power = factor.triangle().column(factor.columns() - 1).norm_squared() / factor.weight().max(1.0);
-            self.noise[joint] = (residual / left).sqrt().max(1e-9 * power.sqrt()).max(LEAST_NOISE);
+            self.noise[joint] = (residual / left).sqrt().max(1e-9 * effort(factor)).max(LEAST_NOISE);
         }
     }
 
@@ -287,6 +321,12 @@ impl State<'_> {
         }
         &drawn * drawn.transpose()
     }
+}
+
+/// Of the efforts of a joint's rows, root mean square, N m or N.
+pub(crate) fn effort(factor: &RFactor) -> f64 {
+    let power = factor.triangle().column(factor.columns() - 1).norm_squared();
+    (power / factor.weight().max(1.0)).sqrt()
 }
 
 /// The unknowns of a triangle whose last column is the torque.

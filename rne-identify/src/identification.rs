@@ -1,17 +1,18 @@
 //! From a geometry and logs to a robot: passes over the logs, the fit, the bodies, and what is said of them.
 
+use std::ops::Range;
+
 use nalgebra::Matrix4;
 use rne_logs::Motion;
 use rne_model::{Inertia, InertiaReference, Joint, Link, Motor, Reversal, Robot};
 
 use crate::feasible::Feasible;
-use crate::fit::Fit;
+use crate::fit::{Fit, effort};
 use crate::information::{Information, MotionError, Rejected, Weighting};
 use crate::parameters::{PER_LINK, Parameters, name};
 use crate::prediction::{JointError, Prediction};
 use crate::prior::Scales;
 use crate::pseudo_inertia;
-use crate::r_factor::RFactor;
 use crate::steady::steady;
 use crate::structure::{FRICTION, Options, Structure};
 
@@ -26,6 +27,9 @@ pub(crate) const UNKNOWN: f64 = 0.5;
 
 /// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
 const NOISE: f64 = 0.5;
+
+/// What is left of a joint, as a part of its effort, where no model explains it; beyond these an effort does not change.
+const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
 /// N m or N: efforts of which none is larger are no torques.
 const LEAST_EFFORT: f64 = 1e-9;
@@ -107,7 +111,10 @@ pub struct JointReport {
     pub friction_uncertainty: f64,
     /// How Coulomb friction changes its sign.
     pub reversal: Option<Reversal>,
-    /// kg m² at the joint.
+    /// An offset that least squares find to be larger than Coulomb friction, and the latter, N m or N: a spring, a
+    /// counterweight, a sensor. A robot file holds as much of it as there is Coulomb friction, and nothing of the rest.
+    pub offset: Option<(f64, f64)>,
+    /// kg m² or kg, at the joint.
     pub rotor: Option<f64>,
 }
 
@@ -115,11 +122,19 @@ impl JointReport {
     /// Whether the logs tell its torque from noise.
     #[must_use]
     pub fn is_excited(&self) -> bool {
-        match self.rejected {
-            None => self.error.as_read < NOISE,
+        if self.rejected.is_none() && self.offset.is_none() {
+            self.error.as_read < NOISE
+        } else {
             // errors are of what does not count, too
-            Some(_) => self.noise < NOISE * self.effort,
+            self.noise < NOISE * self.effort
         }
+    }
+
+    /// Whether no model of the arm explains efforts that do change: they are noise, of another sign, or those of another
+    /// joint.
+    #[must_use]
+    pub fn is_unexplained(&self) -> bool {
+        !self.is_excited() && UNEXPLAINED.contains(&self.error.as_read)
     }
 
     /// Whether the logs tell its friction.
@@ -152,16 +167,12 @@ pub fn identify<E: From<MotionError>>(
     let structure = Structure::new(robot, options);
     let mut one = |weighting: Option<&Weighting>| -> Result<(Information, Scales, Fit), E> {
         let mut information = Information::new(&structure);
-        let mut largest = 0.0_f64;
-        pass(&mut |motion| {
-            largest = motion.tau.iter().flatten().fold(largest, |most, tau| most.max(tau.abs()));
-            information.absorb(&structure, motion, weighting)
-        })?;
+        pass(&mut |motion| information.absorb(&structure, motion, weighting))?;
         if information.stretches.len() < 2 {
             let (rows, needed, duration) = (information.rows(), information.needed(), information.duration());
             return Err(MotionError::TooFew { rows, needed, duration }.into());
         }
-        if largest <= LEAST_EFFORT {
+        if information.largest.iter().all(|most| *most <= LEAST_EFFORT) {
             return Err(MotionError::NoEfforts.into());
         }
         let scales = scales(&structure, &information);
@@ -271,16 +282,8 @@ impl OnePass {
 /// How large unknowns are, where efforts are as large as in the logs.
 #[must_use]
 pub fn scales(structure: &Structure, information: &Information) -> Scales {
-    Scales::of(&structure.robot, &structure.parameters, &efforts(structure, information))
-}
-
-/// Of each joint's efforts, root mean square, N m or N.
-fn efforts(structure: &Structure, information: &Information) -> Vec<f64> {
-    let of_joint = |factor: &RFactor| {
-        let power = factor.triangle().column(factor.columns() - 1).norm_squared();
-        (power / factor.weight().max(1.0)).sqrt()
-    };
-    information.total(structure).iter().map(of_joint).collect()
+    let efforts: Vec<f64> = information.total(structure).iter().map(effort).collect();
+    Scales::of(&structure.robot, &structure.parameters, &efforts)
 }
 
 fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Vec<BaseReport> {
@@ -301,7 +304,11 @@ fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Ve
 fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
     let at = structure.parameters.rank() + FRICTION * joint;
     let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
-    let both = |sign: f64| (covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2)).max(0.0).sqrt();
+    let both = |sign: f64| {
+        let variance = covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2);
+        // what is no number stays none
+        if variance < 0.0 { 0.0 } else { variance.sqrt() }
+    };
     let [viscous, forward, backward] = feasible.friction[joint];
     [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
 }
@@ -320,6 +327,7 @@ fn joints(
         friction: one.friction.get(joint).copied(),
         friction_uncertainty: one.friction_uncertainty(joint),
         reversal: structure.options.friction.then(|| structure.reversals[one.fit.reversals[joint]]),
+        offset: one.fit.loose_offset(structure, joint, one.efforts[joint]),
         rotor: structure.options.rotors.then(|| one.feasible.rotors[joint]),
     });
     each.collect()

@@ -50,6 +50,8 @@ pub struct Information {
     pub(crate) duration: f64,
     /// s: how much later torques were taken.
     pub(crate) shift: f64,
+    /// Of each joint the largest effort, N m or N, either way.
+    pub(crate) largest: Vec<f64>,
     /// Of each joint, rows that do not count.
     pub(crate) rejected: Vec<Option<Rejected>>,
 }
@@ -152,7 +154,8 @@ impl Information {
             None => STATES_UNFILTERED,
         };
         let rejected = vec![None; structure.dof()];
-        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, rejected }
+        let largest = vec![0.0; structure.dof()];
+        Self { stretches: Vec::new(), length, states: 0, duration: 0.0, shift: 0.0, largest, rejected }
     }
 
     /// Of no rows, and of rows that have no order, as those of a table: no stretches are kept apart, so that memory is
@@ -211,6 +214,9 @@ impl Information {
         let (Some(first), Some(last)) = (motion.time.first(), motion.time.last()) else { return Ok(()) };
         self.states += motion.len() as u64;
         self.duration += last - first;
+        for (most, efforts) in self.largest.iter_mut().zip(&motion.tau) {
+            *most = efforts.iter().fold(*most, |most, effort| most.max(effort.abs()));
+        }
         let delay = weighting.map_or(0.0, |weighting| weighting.delay);
         self.shift = delay;
         let instants = instants(structure, &motion.time, delay);
@@ -231,6 +237,9 @@ impl Information {
         self.states += other.states;
         self.shift = other.shift;
         self.duration += other.duration;
+        for (most, of_other) in self.largest.iter_mut().zip(other.largest) {
+            *most = most.max(of_other);
+        }
         self.stretches.extend(other.stretches);
         self.reject(&other.rejected);
         self.compress();

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use nalgebra::{DMatrix, DVector};
 use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
-use rne_model::{Link, Robot};
+use rne_model::{JointKind, Link, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
 use crate::random::Random;
@@ -176,12 +176,14 @@ pub fn name(parameter: Parameter) -> String {
     }
 }
 
-/// The unit of a parameter, of a rotor at a revolute joint.
+/// The unit of a parameter of a robot: a rotor of a joint that slides is as a mass.
 #[must_use]
-pub const fn unit(parameter: Parameter) -> &'static str {
+pub fn unit(robot: &Robot, parameter: Parameter) -> &'static str {
+    let slides = |joint: usize| robot.joints.get(joint).is_some_and(|joint| joint.row.kind == JointKind::Prismatic);
     match parameter {
         Parameter::Link(_, 0) => "kg",
         Parameter::Link(_, 1..=3) => "kg m",
-        _ => "kg m²",
+        Parameter::Rotor(joint) if slides(joint) => "kg",
+        Parameter::Link(..) | Parameter::Rotor(_) => "kg m²",
     }
 }

@@ -140,6 +140,11 @@ impl Structure {
         unknowns
     }
 
+    /// The first unknown of a joint's friction: viscous, then Coulomb's and the offset; none without friction.
+    pub(crate) fn friction_at(&self, joint: usize) -> Option<usize> {
+        (self.options.friction && joint < self.dof()).then(|| self.parameters.rank() + FRICTION * joint)
+    }
+
     /// G² Jm of a joint, kg m² or kg, where the file has it and nobody asked for it: its torque is known.
     pub(crate) fn known_rotor(&self, joint: usize) -> f64 {
         match self.robot.joints.get(joint).and_then(|joint| joint.motor) {

@@ -99,10 +99,12 @@ fn head(identification: &Identification) -> String {
 
 fn of_link(identification: &Identification, report: &JointReport, joint: usize) -> String {
     let unit = identification.robot.joints[joint].row.kind.effort_unit();
-    if report.is_excited() {
+    if let (true, Some((offset, _))) = (report.is_excited(), report.offset) {
+        format!("identified; an offset of {} {unit} is more than its Coulomb friction holds", short(offset))
+    } else if report.is_excited() {
         format!("identified; residual {} {unit}, {:.1} %", short(report.error.residual), 100.0 * report.error.error)
-    } else if report.rejected.is_none() && report.error.as_read < 10.0 {
-        format!("joint not excited: {:.0} % of its effort is noise", 100.0 * report.error.as_read)
+    } else if report.error.as_read < 10.0 {
+        format!("joint not excited: no model explains {:.0} % of its effort", 100.0 * report.error.as_read)
     } else {
         "joint not excited: its effort does not change but by noise".to_owned()
     }

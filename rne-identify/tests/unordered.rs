@@ -102,6 +102,44 @@ fn sixty_four_shuffled_parts_are_the_whole_in_every_respect() {
     assert_eq!(Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}\n{text}")).joints, merged.robot.joints);
 }
 
+/// Rows that are hardly more than the unknowns are met by any, whatever their noise: nothing is excited by them, and
+/// nothing by efforts of zeros, of all joints or of one.
+#[test]
+fn too_few_rows_and_zeros_excite_nothing() {
+    let robot = arm();
+    let structure = structure(&robot);
+    let identified = |motion: &Motion| {
+        let mut information = Information::unordered(&structure);
+        information.absorb(&structure, motion, None).unwrap();
+        OnePass::new(&structure, &information, 1.0)
+    };
+    let excited = |one: &OnePass| {
+        let bases = one.bases.iter().filter(|base| base.is_excited()).count();
+        bases + (0..2).filter(|joint| one.is_friction_excited(*joint)).count()
+    };
+    let mut rng = Rng::with_seed(3);
+    let unknowns = structure.parameters().rank() + 3 * 2;
+    for count in [1, 2, unknowns / 2, unknowns / 2 + 1, unknowns - 1] {
+        assert_eq!(excited(&identified(&states(&robot, count, 0.3, &mut rng))), 0, "{count}");
+    }
+    let many = states(&robot, 400, 0.3, &mut rng);
+    assert_eq!(excited(&identified(&many)), structure.parameters().rank() + 2);
+    let mut zeros = many.clone();
+    zeros.tau[1].fill(0.0);
+    let one = identified(&zeros);
+    assert!(one.is_friction_excited(0) && !one.is_friction_excited(1));
+    for (base, truth) in one.bases.iter().zip(truth(&structure, &robot)) {
+        assert!(!base.is_excited() || (base.value - truth).abs() < 5.0 * base.deviation, "{base:?} {truth}");
+    }
+    zeros.tau[0].fill(0.0);
+    assert_eq!(excited(&identified(&zeros)), 0);
+    // what overflows tells nothing
+    let mut huge = many;
+    huge.tau.iter_mut().flatten().for_each(|tau| *tau *= 1e306);
+    let one = identified(&huge);
+    assert_eq!(excited(&one), 0, "{:?} {:?}", one.bases, one.friction);
+}
+
 /// What the deviations say of white noise is so: of many made-up tables, 95 of a hundred intervals have the truth.
 #[test]
 fn deviations_of_white_noise_are_those_of_many_tables() {

@@ -1,7 +1,7 @@
 //! Logs and options that leave little to identify: what is found is said to be so little, or why nothing is found.
 
 use fastrand::Rng;
-use rne_identify::{Identification, MotionError, Options, identify, prediction_errors, written};
+use rne_identify::{BaseReport, Identification, MotionError, Options, Parameter, identify, prediction_errors, written};
 use rne_logs::Motion;
 use rne_model::Robot;
 use rne_runtime::DynArm;
@@ -122,6 +122,80 @@ fn an_arm_that_stands_still_excites_nothing() {
     }
     let moved = found(&robot, options(), &moving).unwrap();
     assert!(moved.is_anything_excited() && moved.joints.iter().all(rne_identify::JointReport::is_friction_excited));
+}
+
+/// Efforts of a joint that are zeros, or the noise of no sensor, say nothing of it, and nothing false of the others.
+#[test]
+fn a_dead_channel_is_of_no_account() {
+    let robot = arm();
+    let mut rng = Rng::with_seed(4);
+    for noise in [0.0, 1e-9] {
+        let mut motion = log(&robot, 6000, 200.0, 0.0);
+        motion.tau[0].iter_mut().for_each(|tau| *tau += 0.02 * (rng.f64() - 0.5));
+        motion.tau[1].iter_mut().for_each(|tau| *tau = noise * (rng.f64() - 0.5));
+        let found = found(&robot, options(), &motion).unwrap();
+        assert!(found.joints[0].is_excited() && !found.joints[1].is_excited(), "{:?}", found.joints);
+        assert!(found.joints[0].error.error < 0.01, "{:?}", found.joints[0].error);
+        let truth = [1.2, 1.5, 1.1];
+        for ((value, deviation), truth) in found.joints[0].friction.unwrap().into_iter().zip(truth) {
+            assert!((value - truth).abs() < 5.0 * deviation && deviation < 0.1, "{value} ± {deviation}, {truth}");
+        }
+        assert!(!found.joints[1].is_friction_excited());
+        assert_eq!(found.robot.joints[1].motor, robot.joints[1].motor);
+        let parameters = found.structure.parameters();
+        let truth = &parameters.regrouping * parameters.of_robot(&robot);
+        for (base, truth) in found.bases.iter().zip(truth.iter()).filter(|(base, _)| base.is_excited()) {
+            assert!((base.value - truth).abs() < 5.0 * base.deviation + 1e-6, "{noise} {base:?} {truth}");
+        }
+        let text = written(&found, "a log");
+        assert!(text.contains("joint not excited: its effort does not change but by noise"), "{text}");
+    }
+}
+
+/// What no model of the arm explains is said to be so, and what a robot file cannot hold is not passed over.
+#[test]
+fn wrong_signs_and_large_offsets_are_found() {
+    let robot = arm();
+    let right = log(&robot, 6000, 200.0, 0.0);
+    let of_right = found(&robot, options(), &right).unwrap();
+    assert!(of_right.joints.iter().all(|joint| !joint.is_unexplained() && joint.offset.is_none()));
+    let mut wrong = right.clone();
+    wrong.tau[0].iter_mut().for_each(|tau| *tau = -*tau);
+    let of_wrong = found(&robot, options(), &wrong).unwrap();
+    assert!(of_wrong.joints[0].is_unexplained() && !of_wrong.joints[0].is_excited());
+    assert!(!of_wrong.joints[1].is_unexplained());
+    assert!(written(&of_wrong, "a log").contains("joint not excited: no model explains 1"));
+    // Coulomb friction is 1.3, its offset 0.2
+    for (more, said) in [(0.5, None), (-1.3, None), (2.0, Some(2.2)), (-3.0, Some(-2.8))] {
+        let mut motion = right.clone();
+        motion.tau[0].iter_mut().for_each(|tau| *tau += more);
+        let found = found(&robot, options(), &motion).unwrap();
+        let offset = found.joints[0].offset;
+        // links and Coulomb friction are those of the arm, whatever a file can hold
+        assert!(found.joints[0].is_excited() && found.bases.iter().all(BaseReport::is_excited));
+        for (base, of_right) in found.bases.iter().zip(&of_right.bases) {
+            assert!((base.written - of_right.written).abs() < 1e-3, "{more}: {base:?} {of_right:?}");
+        }
+        let [(viscous, _), (forward, _), (backward, _)] = found.joints[0].friction.unwrap();
+        assert!((viscous - 1.2).abs() < 0.01 && (0.5 * (forward + backward) - 1.3).abs() < 0.01);
+        assert_eq!(offset.is_some(), said.is_some(), "{more}: {offset:?}");
+        if let (Some((offset, coulomb)), Some(said)) = (offset, said) {
+            assert!((offset - said).abs() < 0.02 && (coulomb - 1.3).abs() < 0.02, "{offset} {coulomb}");
+        }
+    }
+}
+
+/// A rotor of a joint that slides is as a mass.
+#[test]
+fn units_are_those_of_the_joint() {
+    let slides = Robot::from_yaml(&ARM.replacen("revolute", "prismatic", 1));
+    let slides = slides.unwrap_or_else(|report| panic!("{report}"));
+    for (robot, units) in [(arm(), ["kg m²", "kg m²"]), (slides, ["kg", "kg m²"])] {
+        for (joint, unit) in units.into_iter().enumerate() {
+            assert_eq!(rne_identify::unit(&robot, Parameter::Rotor(joint)), unit);
+        }
+        assert_eq!(rne_identify::unit(&robot, Parameter::Link(0, 9)), "kg m²");
+    }
 }
 
 /// Without friction the arm has none, whatever its file says: neither in what is written nor in what is predicted.

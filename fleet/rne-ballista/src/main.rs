@@ -90,13 +90,32 @@ impl Query {
         let mut batches = session.sql(&self.sql).await?.execute_stream().await?;
         let mut out = std::io::stdout().lock();
         while let Some(batch) = batches.next().await {
-            // a pipe that was closed wants no more
-            if writeln!(out, "{}", pretty_format_batches(&[batch?])?).is_err() {
+            if !is_taken(writeln!(out, "{}", pretty_format_batches(&[batch?])?))? {
                 break;
             }
         }
         Ok(())
     }
+}
+
+/// Whether there is somebody who reads on: a pipe that was closed wants no more.
+fn is_taken(written: std::io::Result<()>) -> Result<bool> {
+    match written {
+        Ok(()) => Ok(true),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(false),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// The names of robots with their hashes, a line each.
+fn list(files: &Files) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    for key in files.read()?.keys() {
+        if !is_taken(writeln!(out, "{key}"))? {
+            break;
+        }
+    }
+    Ok(())
 }
 
 /// How tasks come to executors.
@@ -160,7 +179,7 @@ async fn main() -> ExitCode {
             Ok(robots) => executor(listen, scheduler, cores, policy.of_tasks(), work.as_deref(), &robots).await,
             Err(error) => Err(error),
         },
-        Command::Robots(files) => files.read().map(|robots| robots.keys().for_each(|key| println!("{key}"))),
+        Command::Robots(files) => list(&files),
     };
     match said {
         Ok(()) => ExitCode::SUCCESS,

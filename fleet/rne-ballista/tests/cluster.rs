@@ -236,6 +236,24 @@ async fn two_executors_give_what_one_process_gives() -> Result<()> {
     Ok(())
 }
 
+/// A pipe that is closed wants no more; a disk that is full is an error, and neither is a panic.
+#[cfg(target_os = "linux")]
+#[test]
+fn what_cannot_be_written_is_said() {
+    for arguments in [&["robots"][..], &["sql", "SELECT 1"]] {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rne-fleet"));
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("Linux has it");
+        let output = command.args(arguments).stdout(full).output().expect("it starts");
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.code() == Some(1) && said.starts_with("error: "), "{arguments:?}: {said}");
+        let (reader, writer) = std::io::pipe().expect("a pipe");
+        drop(reader);
+        let mut command = Command::new(env!("CARGO_BIN_EXE_rne-fleet"));
+        let output = command.args(arguments).stdout(writer).output().expect("it starts");
+        assert!(output.status.success() && output.stderr.is_empty(), "{arguments:?}: {output:?}");
+    }
+}
+
 /// When an executor is killed.
 #[derive(Clone, Copy, Debug)]
 enum Loss {

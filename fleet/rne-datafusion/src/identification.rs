@@ -204,7 +204,7 @@ fn unknowns(structure: &Structure, found: &OnePass) -> Vec<Unknown> {
         name: report.name.clone(),
         value: report.value,
         deviation: report.deviation,
-        unit: unit(base.kept).to_owned(),
+        unit: unit(structure.robot(), base.kept).to_owned(),
         is_excited: report.is_excited(),
     });
     let joints = structure.robot().joints.iter().zip(&found.friction).enumerate();

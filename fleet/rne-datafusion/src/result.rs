@@ -8,14 +8,15 @@ use datafusion::arrow::datatypes::{DataType, Field, FieldRef};
 use datafusion::common::{Result, exec_err};
 use rne::compiled::Layout;
 
-/// The type of a column of results.
+/// The type of a column of results. Of a state that is null every part of the result is: who asks for a field of a
+/// record does not ask whether the record is null.
 pub(crate) fn data_type(layout: &Layout) -> DataType {
     match layout {
         Layout::Number => DataType::Float64,
         Layout::Array(length, of) => DataType::FixedSizeList(item(data_type(of)), size(*length)),
         Layout::Record(record, parts) => {
             let parts = record.fields().into_iter().zip(parts);
-            DataType::Struct(parts.map(|(name, part)| Field::new(name, data_type(part), false)).collect())
+            DataType::Struct(parts.map(|(name, part)| Field::new(name, data_type(part), true)).collect())
         }
     }
 }
@@ -30,14 +31,14 @@ pub(crate) fn column(layout: &Layout, numbers: Vec<f64>, states: usize, nulls: O
     match layout {
         Layout::Number => Ok(Arc::new(Float64Array::new(numbers.values.into(), nulls))),
         Layout::Array(length, of) => {
-            let inner = numbers.elements(of, &each(&[0], *length, of))?;
+            let inner = numbers.elements(of, &each(&[0], *length, of), None)?;
             Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*length), inner, nulls)?))
         }
         Layout::Record(record, parts) => {
             let (mut start, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
             for (name, part) in record.fields().into_iter().zip(parts) {
-                fields.push(Field::new(name, data_type(part), false));
-                arrays.push(numbers.elements(part, &[start])?);
+                fields.push(Field::new(name, data_type(part), true));
+                arrays.push(numbers.elements(part, &[start], nulls.as_ref())?);
                 start += part.len();
             }
             Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, nulls, states)?))
@@ -52,31 +53,32 @@ struct Numbers {
 }
 
 impl Numbers {
-    /// The elements that start at those outputs, of every state, state by state.
-    fn elements(&self, layout: &Layout, starts: &[usize]) -> Result<ArrayRef> {
+    /// The elements that start at those outputs, of every state, state by state; `nulls` are of so many elements.
+    fn elements(&self, layout: &Layout, starts: &[usize], nulls: Option<&NullBuffer>) -> Result<ArrayRef> {
         let Self { values: numbers, outputs, states } = self;
         let length = states * starts.len();
         match layout {
             Layout::Number if starts.iter().copied().eq(0..*outputs) => {
-                Ok(Arc::new(Float64Array::from(numbers.clone())))
+                Ok(Arc::new(Float64Array::new(numbers.clone().into(), nulls.cloned())))
             }
             Layout::Number => {
                 let of_state = |state: usize| starts.iter().map(move |start| numbers[state * outputs + start]);
-                Ok(Arc::new(Float64Array::from((0..*states).flat_map(of_state).collect::<Vec<f64>>())))
+                let values = (0..*states).flat_map(of_state).collect::<Vec<f64>>();
+                Ok(Arc::new(Float64Array::new(values.into(), nulls.cloned())))
             }
             Layout::Array(count, of) => {
-                let inner = self.elements(of, &each(starts, *count, of))?;
-                Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*count), inner, None)?))
+                let inner = self.elements(of, &each(starts, *count, of), None)?;
+                Ok(Arc::new(FixedSizeListArray::try_new(item(data_type(of)), size(*count), inner, nulls.cloned())?))
             }
             Layout::Record(record, parts) => {
                 let (mut before, mut fields, mut arrays) = (0, Vec::new(), Vec::new());
                 for (name, part) in record.fields().into_iter().zip(parts) {
-                    fields.push(Field::new(name, data_type(part), false));
+                    fields.push(Field::new(name, data_type(part), true));
                     let starts: Vec<usize> = starts.iter().map(|start| start + before).collect();
-                    arrays.push(self.elements(part, &starts)?);
+                    arrays.push(self.elements(part, &starts, nulls)?);
                     before += part.len();
                 }
-                Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, None, length)?))
+                Ok(Arc::new(StructArray::try_new_with_length(fields.into(), arrays, nulls.cloned(), length)?))
             }
         }
     }

@@ -227,6 +227,36 @@ async fn what_is_null_makes_a_state_null_and_no_other() -> Result<()> {
     Ok(())
 }
 
+/// A part of a record that is null is null: where, averages and lists of parts would take its numbers in.
+#[tokio::test]
+async fn parts_of_what_is_null_are_null() -> Result<()> {
+    let (context, planar) = (context(), key("planar2"));
+    let q: ArrayRef = Arc::new(ListArray::from_iter_primitive::<Float64Type, _, _>([
+        Some(vec![Some(0.3), Some(0.4)]),
+        None,
+        Some(vec![Some(0.3), None]),
+    ]));
+    context.register_batch("log", RecordBatch::try_from_iter([("q", q)])?)?;
+    for (call, part, length) in [
+        ("forward_kinematics('P', q)", "rotation", 9),
+        ("forward_kinematics('P', q)", "translation", 3),
+        ("momentum_and_rate('P', q, q)", "momentum", 2),
+        ("momentum_and_rate('P', q, q)", "rate", 2),
+        ("inverse_dynamics_derivatives('P', q, q, q)", "dq", 4),
+    ] {
+        let call = call.replace('P', &planar);
+        let found =
+            one(&context, &format!("SELECT count(s) n, count({call}['{part}']) p FROM (SELECT {call} s, q FROM log)"));
+        let found = found.await?;
+        let counts = [0, 1].map(|at| found.column(at).as_primitive::<Int64Type>().value(0));
+        assert_eq!(counts, [1, 1], "{part} of {call}");
+        let found = one(&context, &format!("SELECT {call}['{part}'] p FROM log")).await?;
+        assert!(found.column(0).is_valid(0) && found.column(0).is_null(1) && found.column(0).is_null(2));
+        assert_eq!(numbers(&found.column(0).slice(0, 1)).len(), length, "{part} of {call}");
+    }
+    Ok(())
+}
+
 #[tokio::test]
 async fn no_states_give_no_results_and_single_precision_is_read() -> Result<()> {
     let (context, planar) = (context(), key("planar2"));

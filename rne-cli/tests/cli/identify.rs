@@ -79,7 +79,8 @@ fn what_is_of_no_free_motion_does_not_count() {
     for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.29 s"), (&failed, "the first at 7.81 s")] {
         let called = rne(&["identify", ARM, log]);
         let words = called.said();
-        let warned = words.contains("rows of shoulder are far from all others and do not count") && words.contains(said);
+        let warned =
+            words.contains("rows of shoulder are far from all others and do not count") && words.contains(said);
         assert!(called.status == 0 && warned, "{called:?}");
         let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
         // the offset, half the difference, is hard to tell from the weight of an arm that moves little
@@ -111,6 +112,35 @@ fn nothing_is_excited_by_an_arm_that_stands_still() {
     assert!(said.contains("nothing is excited") && said.contains("still.yaml is not written"), "{said}");
     assert!(said.contains("efforts of waist are -2.260 throughout"), "{said}");
     assert!(!out.exists());
+}
+
+/// An offset that is larger than Coulomb friction has no place in a robot file, and no arm has efforts of the wrong
+/// sign: both are said.
+#[test]
+fn what_no_model_explains_is_said() {
+    let folder = folder("identify_strange");
+    let shifted = changed(&folder.join("shifted.csv"), |_, cells| {
+        cells[7] = (cells[7].parse::<f64>().expect("a number") + 3.0).to_string();
+    });
+    let called = rne(&["identify", ARM, &shifted]);
+    assert_eq!(called.status, 0, "{called:?}");
+    let said = called.said();
+    let (_, said) = said.split_once("warning: waist has an offset of ").expect("a warning");
+    let number = |text: &str| {
+        let word = text.split_whitespace().next().expect("a word");
+        word.trim_end_matches(',').parse::<f64>().expect("a number")
+    };
+    let (_, coulomb) = said.split_once("which is ").expect("both");
+    assert!((number(said) - 3.0).abs() < 0.05 && (number(coulomb) - 0.5).abs() < 0.05, "{said}");
+    let turned = changed(&folder.join("turned.csv"), |_, cells| {
+        cells[7] = (-cells[7].parse::<f64>().expect("a number")).to_string();
+    });
+    let called = rne(&["identify", ARM, &turned]);
+    assert!(called.said().contains("no model of the arm explains the efforts of waist"), "{called:?}");
+    for log in [LOG, "docs/desk_arm_knock.csv"] {
+        let said = rne(&["identify", ARM, log]).said();
+        assert!(!said.contains("no model of the arm") && !said.contains("has an offset"), "{said}");
+    }
 }
 
 #[test]

@@ -121,6 +121,39 @@ fn another_arm_is_not_in_order() {
     assert!(called.err.contains("warning") && called.err.contains("shoulder"), "{}", called.err);
 }
 
+/// A channel of zeros, or of one number, is no arm in order.
+#[test]
+fn a_dead_channel_is_not_in_order() {
+    let folder = folder("watch_dead");
+    let log = fs::read_to_string(format!("{ROOT}/{QUIET}")).expect("a log");
+    for (columns, effort, said) in [
+        (8..9, "0", "shoulder: is FILE"),
+        (7..10, "0", "waist, shoulder, elbow: is"),
+        (8..9, "3.3", "shoulder: is FILE"),
+    ] {
+        let dead = log.lines().enumerate().map(|(at, line)| {
+            let cell = |(index, cell)| if at > 0 && columns.contains(&index) { effort } else { cell };
+            line.split(',').enumerate().map(cell).collect::<Vec<_>>().join(",") + "\n"
+        });
+        let path = folder.join("dead.csv");
+        fs::write(&path, dead.collect::<String>()).expect("a file");
+        let called = rne(&["watch", ARM, path.to_str().expect("UTF-8")]);
+        assert_eq!(called.status, 1, "{}", called.out);
+        assert!(called.said().contains(&format!("the model explains nothing of the torques of {said}")), "{called:?}");
+    }
+}
+
+/// The errors of a watch are those of a judge, whatever is usual.
+#[test]
+fn errors_are_those_of_a_judge() {
+    let judged = fine(&["identify", ARM, KNOCK, "--judge"]);
+    let (_, judged) = judged.split_once("root mean square").expect("a table");
+    for more in [&[][..], &["--quiet", QUIET]] {
+        let watched = rne(&[&["watch", ARM, KNOCK], more].concat());
+        assert!(watched.out.ends_with(judged), "{}\n{judged}", watched.out);
+    }
+}
+
 /// What is usual of another arm is not what is usual of this one.
 #[test]
 fn a_quiet_log_of_another_arm_is_not_in_order() {

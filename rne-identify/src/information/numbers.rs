@@ -32,12 +32,13 @@ impl fmt::Display for WrongNumbers {
 impl std::error::Error for WrongNumbers {}
 
 impl Information {
-    /// Everything it has, as numbers: a head, then of each stretch and joint the rows, their weight and the triangle.
+    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each stretch and joint the rows, their weight and the triangle.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // counts below 2^53; one that has no end is infinite
     pub fn to_numbers(&self) -> Vec<f64> {
         let length = if self.is_unordered() { f64::INFINITY } else { self.length as f64 };
         let mut numbers = vec![length, self.states as f64, self.duration, self.shift, self.stretches.len() as f64];
+        numbers.extend(&self.largest);
         for factor in self.stretches.iter().flatten() {
             numbers.extend([factor.rows() as f64, factor.weight()]);
             numbers.extend(factor.upper());
@@ -61,8 +62,12 @@ impl Information {
         } else {
             Self { length: count(length).filter(|length| *length >= empty.length)?, ..empty }
         };
+        let (largest, after) = rest.split_at_checked(structure.dof())?;
+        rest = after;
+        let is_effort = |most: &f64| most.is_finite() && *most >= 0.0;
+        let largest = largest.iter().all(is_effort).then(|| largest.to_vec())?;
         let stretches = count(stretches).filter(|stretches| *stretches <= STRETCHES as u64)?;
-        let mut read = Self { states: count(states)?, duration, shift, ..empty };
+        let mut read = Self { states: count(states)?, duration, shift, largest, ..empty };
         for _ in 0..stretches {
             let mut stretch: Stretch = Vec::with_capacity(structure.dof());
             for joint in 0..structure.dof() {
