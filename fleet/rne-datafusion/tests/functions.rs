@@ -6,7 +6,7 @@ use datafusion::arrow::array::{
     Array, ArrayRef, AsArray, FixedSizeListArray, Float32Array, Float64Array, Int64Array, LargeListArray, ListArray,
     RecordBatch, StringArray,
 };
-use datafusion::arrow::datatypes::{DataType, Field, Float64Type};
+use datafusion::arrow::datatypes::{DataType, Field, Float64Type, Int64Type};
 use datafusion::common::Result;
 use datafusion::datasource::MemTable;
 use datafusion::prelude::SessionContext;
@@ -240,14 +240,13 @@ async fn parts_of_what_is_null_are_null() -> Result<()> {
     for (call, part, length) in [
         ("forward_kinematics('P', q)", "rotation", 9),
         ("forward_kinematics('P', q)", "translation", 3),
-        ("momentum_and_rate('P', q, q)", "momentum", 2),
-        ("momentum_and_rate('P', q, q)", "rate", 2),
+        ("momentum_and_rate('P', q, q, q)", "momentum", 2),
+        ("momentum_and_rate('P', q, q, q)", "rate", 2),
         ("inverse_dynamics_derivatives('P', q, q, q)", "dq", 4),
     ] {
         let call = call.replace('P', &planar);
-        let found =
-            one(&context, &format!("SELECT count(s) n, count({call}['{part}']) p FROM (SELECT {call} s, q FROM log)"));
-        let found = found.await?;
+        let sql = format!("SELECT count(s) n, count({call}['{part}']) p FROM (SELECT {call} s, q FROM log)");
+        let found = one(&context, &sql).await?;
         let counts = [0, 1].map(|at| found.column(at).as_primitive::<Int64Type>().value(0));
         assert_eq!(counts, [1, 1], "{part} of {call}");
         let found = one(&context, &format!("SELECT {call}['{part}'] p FROM log")).await?;
