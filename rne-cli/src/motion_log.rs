@@ -23,6 +23,9 @@ const WIDER: f64 = 4.0;
 /// The low-pass of both sides, of the filter that the spectrum chooses: what moves passes, and most noise does not.
 const PART: f64 = 0.5;
 
+/// The names that a message lists at most.
+const SHOWN: usize = 16;
+
 /// Of the rate: no filter of the log may be wider.
 const HIGHEST: f64 = 0.3;
 
@@ -69,7 +72,9 @@ impl MotionLog {
         // the log's own filter is chosen here
         let asked = options.cutoff.take();
         let mut remarks = Vec::new();
-        if options.joints.is_none() {
+        if let Some(names) = &options.joints {
+            check_count(robot, names)?;
+        } else {
             let log = Log::open(paths, Options { torque_constants: Vec::new(), ..options.clone() }).map_err(failure)?;
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
@@ -265,24 +270,74 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
     Err(Failure::input(format_args!("{said}, and no other is: runs are too short")))
 }
 
+/// Opens logs by the names of the robot's joints; where those of the logs are as many numbers, by these.
+pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) -> Result<Log, Failure> {
+    let names = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    Log::open(paths, Options { joints: Some(names), ..options.clone() }).or_else(|error| {
+        let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
+        match Log::open(paths, options) {
+            Ok(log) if log.layout().joints.len() == robot.dof() && log.layout().joints.iter().all(is_number) => Ok(log),
+            _ => Err(failure(error)),
+        }
+    })
+}
+
+/// Refuses another number of joints than the robot has.
+fn check_count(robot: &Robot, names: &[String]) -> Result<(), Failure> {
+    if names.len() == robot.dof() {
+        return Ok(());
+    }
+    Err(Failure::usage(format_args!(
+        "{TYPED}--joints{TYPED:#} names {} of the log, and the robot has {}: {}; say which joint of the log each of them \
+         is, base to tip",
+        of_joints(names.len()),
+        of_joints(robot.dof()),
+        of_robot(robot)
+    )))
+}
+
+/// Their names, base to tip.
+fn of_robot(robot: &Robot) -> String {
+    let names: Vec<String> = robot.joints.iter().take(SHOWN).map(|joint| one_line(&joint.name)).collect();
+    names.join(", ")
+}
+
+fn of_joints(count: usize) -> String {
+    if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") }
+}
+
 /// The joints of the log that are those of the robot, base to tip.
 fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) -> Result<Vec<String>, Failure> {
     let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     if names.iter().all(|name| logged.contains(name)) {
         return Ok(names);
     }
-    if logged.len() == names.len() {
-        let logged: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
-        remarks.push((format!("joints of the log by their order: {}", logged.join(", ")), false));
-        return Ok(logged);
-    }
-    let shown: Vec<String> = logged.iter().take(16).map(|name| one_line(name)).collect();
-    Err(Failure::usage(format_args!(
-        "the log has {} joints, the robot {}; {TYPED}--joints{TYPED:#} names those of the log, base to tip: {}",
-        logged.len(),
+    let listed = |most: usize| logged.iter().take(most).map(|name| one_line(name)).collect::<Vec<_>>().join(", ");
+    let both = format!(
+        "the log has {}, the robot {}: {} there and {} here",
+        of_joints(logged.len()),
         names.len(),
-        shown.join(",")
-    )))
+        listed(SHOWN),
+        of_robot(robot)
+    );
+    if logged.len() < names.len() {
+        return Err(Failure::usage(format_args!(
+            "{both}; positions and torques of all of them are needed, so take a log that has all, or a robot file of \
+             the joints that were logged"
+        )));
+    }
+    let said = format!("{TYPED}--joints{TYPED:#} says which of the log's are the robot's, base to tip");
+    if logged.len() > names.len() {
+        return Err(Failure::usage(format_args!("{both}; {said}")));
+    }
+    // some names are those of the robot, and say another order
+    let is_elsewhere = |(at, name): &(usize, &String)| logged.contains(name) && logged[*at] != **name;
+    if let Some((_, name)) = names.iter().enumerate().find(is_elsewhere) {
+        let name = one_line(name);
+        return Err(Failure::usage(format_args!("{both}, and {name} has another place among them; {said}")));
+    }
+    remarks.push((format!("joints of the log by their order: {}", listed(usize::MAX)), false));
+    Ok(logged.to_vec())
 }
 
 /// Units that names of columns say are those of the robot's joints: what turns has no position in mm.

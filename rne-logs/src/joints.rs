@@ -50,11 +50,6 @@ impl Joints {
             }
             return Ok(joints);
         };
-        // columns q1, q2, … are joints by their numbers
-        let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
-        if missing.len() == wanted.len() && there.iter().all(is_number) && there.len() == wanted.len() {
-            return Ok(Self { names: there, ..Self::default() });
-        }
         let near = instead(first, there.iter().map(String::as_str));
         let all = listed(there.iter().map(String::as_str));
         let missing = listed(missing.iter().map(|name| name.as_str()));

@@ -79,7 +79,8 @@ fn what_is_of_no_free_motion_does_not_count() {
     for (log, said) in [("docs/desk_arm_knock.csv", "the first at 9.29 s"), (&failed, "the first at 7.81 s")] {
         let called = rne(&["identify", ARM, log]);
         let words = called.said();
-        let warned = words.contains("rows of shoulder are far from all others and do not count") && words.contains(said);
+        let warned =
+            words.contains("rows of shoulder are far from all others and do not count") && words.contains(said);
         assert!(called.status == 0 && warned, "{called:?}");
         let [viscous, forward, backward] = friction(&called.out)[..] else { panic!("{}", called.out) };
         // the offset, half the difference, is hard to tell from the weight of an arm that moves little

@@ -124,22 +124,17 @@ fn columns_are_joints_by_number_and_say_their_units() {
     let folder = folder("log_columns");
     let path = folder.join("log.csv");
     let log = path.to_str().expect("UTF-8");
-    let judged = |arguments: &[&str]| {
-        let called = rne(&[&["identify", "docs/desk_arm.yaml", log, "--judge"], arguments].concat());
-        assert_eq!(called.status, 0, "{}", called.err);
-        called.out
-    };
     let plain = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1);
     desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
-    let expected = judged(&[]);
+    let expected = judged(log, &[]);
     desk_log(&path, [2, 0, 1], plain, [1.0; 3]);
-    assert_eq!(judged(&[]), expected);
+    assert_eq!(judged(log, &[]), expected);
     let degree = std::f64::consts::PI / 180.0;
     let said = |quantity: usize, joint: usize| {
         format!("{}{}{}", ["q", "qd", "tau"][quantity], joint + 1, [" [deg]", " [deg/s]", "[mNm]"][quantity])
     };
     desk_log(&path, [2, 0, 1], said, [degree, degree, 1e-3]);
-    assert_eq!(judged(&[]), expected);
+    assert_eq!(judged(log, &[]), expected);
     let noted = fine(&["log", log]);
     assert!(noted.contains("converted from the units of columns' names: q1 [deg], q2 [deg]"), "{noted}");
     assert!(!noted.contains("--torque-constant"), "{noted}");
@@ -163,4 +158,61 @@ fn columns_are_joints_by_number_and_say_their_units() {
     assert!(called.status == 1 && asked.iter().all(|part| called.out.contains(part)), "{called:?}");
     fails(2, &["log", log, "-o", "-"], &asked);
     fine(&["log", log, "--torque-constant", "1"]);
+}
+
+fn judged(log: &str, more: &[&str]) -> String {
+    let called = rne(&judge(log, more));
+    assert_eq!(called.status, 0, "{}", called.err);
+    called.out
+}
+
+fn judge<'a>(log: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    ["identify", "docs/desk_arm.yaml", log, "--judge"].into_iter().chain(more.iter().copied()).collect()
+}
+
+/// Names are those of the log: others are refused, whether its joints have names or numbers, and so is another number
+/// of them. Numbers say an order.
+#[test]
+fn joints_are_named_as_the_log_names_them() {
+    let folder = folder("log_names");
+    let path = folder.join("log.csv");
+    let log = path.to_str().expect("UTF-8");
+    let plain = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1);
+    desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
+    let expected = judged(log, &[]);
+    for names in ["foo,bar,baz", "waist,shoulder,elbow", "elbow,shoulder,waist"] {
+        let said = ["the log has no joint", "it has 1, 2, 3", "--joints names those"];
+        fails(2, &judge(log, &["--joints", names]), &said);
+        fails(2, &["watch", "docs/desk_arm.yaml", log, "--joints", names], &said);
+        fails(2, &["log", log, "--joints", names], &said);
+    }
+    assert_eq!(judged(log, &["--joints", "1,2,3"]), expected);
+    // a log that says another order is another log
+    let reversed = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], 3 - joint);
+    desk_log(&path, [0, 1, 2], reversed, [1.0; 3]);
+    assert_eq!(judged(log, &["--joints", "3,2,1"]), expected);
+    // `rne log` has the robot's joints by name, of numbers by order
+    assert!(fine(&["log", log, "--robot", "docs/desk_arm.yaml"]).contains("\n1  1 "));
+    let named = |quantity: usize, joint: usize| {
+        format!("{}.{}", ["position", "velocity", "effort"][quantity], ["waist", "shoulder", "elbow"][joint])
+    };
+    desk_log(&path, [2, 0, 1], named, [1.0; 3]);
+    assert_eq!(judged(log, &[]), expected);
+    assert!(fine(&["log", log, "--robot", "docs/desk_arm.yaml"]).contains("\n1  waist "));
+    // two of its names, and not where they are
+    let other = |quantity: usize, joint: usize| {
+        format!("{}.{}", ["position", "velocity", "effort"][quantity], ["base", "elbow", "shoulder"][joint])
+    };
+    desk_log(&path, [0, 1, 2], other, [1.0; 3]);
+    fails(2, &judge(log, &[]), &["base, elbow, shoulder there", "shoulder has another place", "--joints"]);
+    assert_eq!(judged(log, &["--joints", "base,elbow,shoulder"]), expected);
+    // fewer or more than the robot has
+    fails(2, &["identify", "ur10", log], &["the log has 3 joints, the robot 6", "take a log that has all"]);
+    fails(2, &["identify", "ur10", log, "--joints", "base,elbow,shoulder"], &["3 joints of the log", "has 6 joints"]);
+    fails(2, &["watch", "planar2", log], &["the log has 3 joints, the robot 2", "--joints says which"]);
+    fails(
+        2,
+        &judge(log, &["--joints", "base"]),
+        &["names 1 joint of the log, and the robot has 3 joints: waist, shoulder"],
+    );
 }
