@@ -22,7 +22,7 @@ pub(crate) struct LogArguments {
     /// Efforts are currents: N m/A, of all or of each
     #[arg(long, alias = "torque-constants", value_name = "LIST", allow_hyphen_values = true)]
     torque_constant: Option<List>,
-    /// Positions and velocities are in degrees
+    /// In degrees: all but joints that slide in FILE
     #[arg(long, conflicts_with = "radians")]
     degrees: bool,
     /// They are not, however far they range

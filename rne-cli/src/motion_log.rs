@@ -71,6 +71,7 @@ impl MotionLog {
     fn open_with(paths: &[PathBuf], robot: &Robot, mut options: Options, wider: f64) -> Result<Self, Failure> {
         // the log's own filter is chosen here
         let asked = options.cutoff.take();
+        options.slides = slides(robot);
         let mut remarks = Vec::new();
         if let Some(names) = &options.joints {
             check_count(robot, names)?;
@@ -272,6 +273,7 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
 
 /// Opens logs by the names of the robot's joints; where those of the logs are as many numbers, by these.
 pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) -> Result<Log, Failure> {
+    let options = Options { slides: slides(robot), ..options };
     let names = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     Log::open(paths, Options { joints: Some(names), ..options.clone() }).or_else(|error| {
         let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
@@ -280,6 +282,11 @@ pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) 
             _ => Err(failure(error)),
         }
     })
+}
+
+/// Which joints slide: no option makes angles of lengths.
+fn slides(robot: &Robot) -> Vec<bool> {
+    robot.joints.iter().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
 }
 
 /// Refuses another number of joints than the robot has.

@@ -11,6 +11,7 @@ use crate::motions::Motions;
 use crate::options::{Angles, Options};
 use crate::pass::Pass;
 use crate::sample::{Sample, Source};
+use crate::spelling::listed;
 use crate::survey::Survey;
 use crate::unit::{Dimension, FileUnits, JointUnits};
 
@@ -74,7 +75,7 @@ impl Log {
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
         // the first messages may be of several files
-        let (topic, notes) = (chain.source.topic().map(str::to_owned), chain.source.notes());
+        let (topic, mut notes) = (chain.source.topic().map(str::to_owned), chain.source.notes());
         let mut head: Vec<Sample> = Vec::new();
         let mut sample = Sample::default();
         while head.len() < HEAD && chain.read(&mut sample)? {
@@ -122,6 +123,8 @@ impl Log {
             );
             return Err(LogError::request(path, what));
         }
+        let units: Vec<JointUnits> = joints.names.iter().map(|name| chain.units.of(name)).collect();
+        notes.extend(slides_in_metres(&options, &joints.names, &units));
         let layout = Layout {
             format: chain.format,
             topic,
@@ -133,7 +136,7 @@ impl Log {
             without_efforts: without_efforts(&mut joints.clone(), &states),
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
-            units: joints.names.iter().map(|name| chain.units.of(name)).collect(),
+            units,
             notes,
         };
         Ok(Self { files, options, joints, layout })
@@ -204,9 +207,9 @@ impl Log {
         (self.layout.has_efforts && self.options.torque_constants.is_empty()).then_some(first)
     }
 
-    /// What positions and velocities are multiplied by; `said` is what a name says that they are.
-    pub(crate) fn of_angle(&self, said: Option<Dimension>) -> f64 {
-        let is_degrees = self.options.angles == Angles::Degrees && said.is_none();
+    /// What positions and velocities of a joint are multiplied by; `said` is what a name says that they are.
+    pub(crate) fn of_angle(&self, joint: usize, said: Option<Dimension>) -> f64 {
+        let is_degrees = self.options.angles == Angles::Degrees && said.is_none() && !self.options.is_slide(joint);
         if is_degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
     }
 
@@ -299,6 +302,20 @@ fn no_step(path: &Path, times: &[i64]) -> LogError {
         1 => LogError::file(path, "the log has one joint state; a motion needs many"),
         count => LogError::file(path, format_args!("the times of the first {count} joint states do not grow")),
     }
+}
+
+/// What is said where degrees are of joints that turn, and others stay as they are.
+fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -> Option<String> {
+    let stays = |joint: &usize| {
+        let JointUnits { position, velocity, .. } = units[*joint];
+        options.angles == Angles::Degrees && options.is_slide(*joint) && position.or(velocity).is_none()
+    };
+    let slides: Vec<&str> = (0..names.len()).filter(stays).map(|joint| names[joint].as_str()).collect();
+    let plural = if slides.len() == 1 { ("slides", "is") } else { ("slide", "are") };
+    (!slides.is_empty()).then(|| {
+        let names = listed(slides.into_iter());
+        format!("--degrees is of joints that turn: {names} {}, and {} taken for m and m/s", plural.0, plural.1)
+    })
 }
 
 /// Numbers that make no sense in any log.

@@ -216,3 +216,48 @@ fn joints_are_named_as_the_log_names_them() {
         &["names 1 joint of the log, and the robot has 3 joints: waist, shoulder"],
     );
 }
+
+/// Degrees are of what turns, where a robot file says what does.
+#[test]
+fn metres_of_a_slide_are_no_degrees() {
+    let folder = folder("log_slide");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let robot = path("slide.yaml");
+    let text = "{format: 1, name: slide, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [\
+                {name: rail, type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: 2}}, \
+                {name: arm, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0}, \
+                link: {mass: 1, com: [-0.1, 0, 0]}}]}";
+    fs::write(&robot, text).expect("a robot file");
+    let log = |name: &str, header: &str, unit: f64| {
+        let rows = (0..600).map(|row| {
+            let t = f64::from(row) * 0.01;
+            let (rail, arm) = (0.4 * (2.0 * t).sin(), (3.0 * t).sin() / unit);
+            format!("{t},{rail},{arm},{},{}\n", 30.0 + t.cos(), (2.5 * t).sin())
+        });
+        let path = path(name);
+        fs::write(&path, format!("{header}\n{}", rows.collect::<String>())).expect("a log");
+        path
+    };
+    let radians = log("log.csv", "t,q1,q2,tau1,tau2", 1.0);
+    let account = |arguments: &[&str]| {
+        let called = rne(arguments);
+        (called.out, called.err)
+    };
+    let expected = account(&["identify", &robot, &radians, "--judge"]).0;
+    let degrees = log("log.csv", "t,q1,q2,tau1,tau2", f64::to_radians(1.0));
+    let (found, said) = account(&["identify", &robot, &degrees, "--judge", "--degrees"]);
+    assert_eq!(found, expected);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("--degrees is of joints that turn: 1 slides, and is taken for m and m/s"), "{said}");
+    let said = fine(&["log", &degrees, "--degrees", "--robot", &robot]);
+    assert!(said.contains("1  1      -0.4 … 0.4") && said.contains("--degrees is of joints that turn: 1"), "{said}");
+    let watched = account(&["watch", &robot, &degrees, "--degrees"]).1;
+    assert!(watched.contains("joints that turn: 1"), "{watched}");
+    // without a robot nobody knows, but its column may say it
+    let said = fine(&["log", &degrees, "--degrees"]);
+    assert!(!said.contains("-0.4 … 0.4") && !said.contains("that turn"), "{said}");
+    let named = log("named.csv", "t,q1 [m],q2,tau1,tau2", f64::to_radians(1.0));
+    let (found, said) = account(&["identify", &robot, &named, "--judge", "--degrees"]);
+    assert_eq!(found.replace("named.csv", "log.csv"), expected);
+    assert!(!said.contains("that turn"), "{said}");
+}

@@ -114,6 +114,22 @@ fn units_of_names_are_converted() {
     let asked = Options { angles: Angles::Degrees, ..options() };
     assert_eq!(motion(&said, options()), motion(&text, asked.clone()));
     assert_eq!(motion(&said, asked.clone()), motion(&text, asked.clone()));
+    // what slides is in metres, whatever joints it is asked with
+    let slide = |joints: &[&str], slides: &[bool]| Options {
+        joints: Some(joints.iter().map(|name| (*name).into()).collect()),
+        slides: slides.to_vec(),
+        ..asked.clone()
+    };
+    let of_metres = with_units("time,q1,q2,qd1,qd2,tau1,tau2", [1.0, 1.0, degree, 1.0, degree, 1.0, 1.0]);
+    for (joints, slides) in [(["1", "2"], [true, false]), (["2", "1"], [false, true])] {
+        let found = motion(&of_metres, slide(&joints, &slides));
+        let plain = motion(&plain, Options { joints: slide(&joints, &[]).joints, ..options() });
+        assert!(is_near(&found, &plain), "{joints:?}");
+        let (_folder, path) = file("log.csv", &of_metres);
+        let (log, _) = survey(&[path], slide(&joints, &slides)).unwrap();
+        let note = "--degrees is of joints that turn: 1 slides, and is taken for m and m/s".to_owned();
+        assert_eq!(log.layout().notes, [note]);
+    }
     // the option is of what says none
     let partly = text.replace("q1,q2,qd1,qd2", "q1 [deg],q2 [deg],qd1,qd2");
     assert_eq!(motion(&partly, asked.clone()), motion(&text, asked));
