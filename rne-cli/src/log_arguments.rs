@@ -46,8 +46,8 @@ pub(crate) struct LogArguments {
     /// Rows per second of a table without times
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     rate: Option<f64>,
-    /// Of an array, in order
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "time,q,qd,tau")]
+    /// Of an array, in order [default: time,q,qd,tau]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
 }
 

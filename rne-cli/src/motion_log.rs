@@ -232,7 +232,16 @@ fn check_efforts(log: &Log) -> Result<(), Failure> {
     }
     let missing: Vec<String> = layout.without_efforts.iter().map(|name| one_line(name)).collect();
     if missing.is_empty() || missing.len() == layout.joints.len() {
-        return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
+        let unread: Vec<String> = layout.unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
+        let unread = if unread.is_empty() {
+            String::new()
+        } else {
+            let names = unread.join(", ");
+            format!("; not read are {names}, and names of efforts are tau1, … or effort and the joint: docs/logs.md")
+        };
+        return Err(Failure::input(format_args!(
+            "the log has no efforts, and torques are what a model is held against{unread}"
+        )));
     }
     Err(Failure::input(format_args!(
         "the log has no efforts of {}, and torques of every joint are what a model is held against",

@@ -101,6 +101,13 @@ impl Format {
 
     /// Opens a file of this format.
     pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
+        if self != Self::Npy && !options.columns.is_empty() {
+            let what = format!("--columns is of arrays of numpy; this is {self}, which has names: take it away");
+            return Err(LogError::request(path, what));
+        }
+        if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
+            return Err(LogError::request(path, "messages have times, and --rate is of tables without: take it away"));
+        }
         Ok(match self {
             #[cfg(feature = "rosbag")]
             Self::Sqlite => Box::new(SqliteBag::open(path, options.topic.as_deref())?),

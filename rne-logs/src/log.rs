@@ -57,6 +57,9 @@ pub struct Layout {
     pub origin: i64,
     /// The units that names of columns say, by joint.
     pub units: Vec<JointUnits>,
+    /// The columns of a table that are not read: those like the columns of joints, and all others where no joint has a
+    /// velocity, or none an effort.
+    pub unread: Vec<String>,
     /// Remarks on what the file is.
     pub notes: Vec<String>,
 }
@@ -75,7 +78,8 @@ impl Log {
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
         // the first messages may be of several files
-        let (topic, mut notes) = (chain.source.topic().map(str::to_owned), chain.source.notes());
+        let (topic, unread) = (chain.source.topic().map(str::to_owned), chain.source.unread());
+        let mut notes = chain.source.notes();
         let mut head: Vec<Sample> = Vec::new();
         let mut sample = Sample::default();
         while head.len() < HEAD && chain.read(&mut sample)? {
@@ -137,6 +141,7 @@ impl Log {
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
             units,
+            unread,
             notes,
         };
         Ok(Self { files, options, joints, layout })

@@ -33,7 +33,8 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times.
     pub rate: Option<f64>,
-    /// What the columns of an array are, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    /// What the columns of an array are, in order: of `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    /// Empty: all of these. Other formats have names, and refuse it.
     pub columns: Vec<String>,
 }
 
@@ -71,7 +72,7 @@ impl Default for Options {
             recorded: false,
             time_unit: None,
             rate: None,
-            columns: ["time", "q", "qd", "tau"].map(str::to_owned).to_vec(),
+            columns: Vec::new(),
         }
     }
 }

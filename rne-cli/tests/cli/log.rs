@@ -261,3 +261,38 @@ fn metres_of_a_slide_are_no_degrees() {
     assert_eq!(found.replace("named.csv", "log.csv"), expected);
     assert!(!said.contains("that turn"), "{said}");
 }
+
+/// Columns whose names are not understood are named where something is missing, and units that are converted.
+#[test]
+fn columns_that_are_not_understood_are_named() {
+    let folder = folder("log_german");
+    let path = folder.join("german.csv");
+    let log = path.to_str().expect("UTF-8");
+    let german =
+        |quantity: usize, joint: usize| format!("Achse{}_{}", joint + 1, ["position", "speed", "Moment"][quantity]);
+    desk_log(&path, [0, 1, 2], german, [1.0; 3]);
+    let text = fs::read_to_string(&path).expect("a log");
+    fs::write(&path, text.replacen("time", "Zeit [s]", 1)).expect("a log");
+    let there = "and there is Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
+    fails(2, &["log", log], &["no column has times", there, "--rate"]);
+    let unread = "Zeit [s], Achse1_Moment, Achse2_Moment, Achse3_Moment";
+    let said = fine(&["log", log, "--rate", "25"]);
+    let place = |words: &str| said.find(words).unwrap_or_else(|| panic!("no `{words}` in {said}"));
+    assert!(place(&format!("columns that are not read: {unread}")) < place("there are no efforts"));
+    let judge = judge(log, &["--rate", "25"]);
+    fails(1, &judge, &["the log has no efforts", &format!("not read are {unread}"), "tau1, …"]);
+    // of a log that has all, nothing else is meant
+    let timed = fs::read_to_string(&path).expect("a log").replace("Moment", "torque").replacen("Zeit", "t", 1);
+    fs::write(&path, &timed).expect("a log");
+    assert!(!fine(&["log", log]).contains("not read"));
+    fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and --rate is of tables without"]);
+    fails(2, &["log", log, "--columns", "time,q,tau"], &["--columns is of arrays of numpy; this is CSV"]);
+    fails(2, &["log", UR10, "--rate", "125"], &["messages have times"]);
+    let rows = timed.lines().skip(1).map(|line| {
+        let (time, others) = line.split_once(',').expect("a time");
+        format!("\n{},{others}", 1e3 * time.parse::<f64>().expect("a number"))
+    });
+    let header = timed.lines().next().expect("a header").replace("t [s]", "t [ms]");
+    fs::write(&path, header + &rows.collect::<String>() + "\n").expect("a log");
+    assert!(fine(&["log", log]).contains("note: numbers are converted from the units of columns' names: t [ms]\n"));
+}
