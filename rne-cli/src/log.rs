@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let survey = log.survey(|share| bar.set_position(thousandths(share)));
     bar.finish_and_clear();
     let survey = survey.map_err(|error| failure(&error))?;
-    let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+    let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
     let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
         String::new()

@@ -83,7 +83,7 @@ impl MotionLog {
         check_units(robot, log.layout())?;
         check_efforts(&log)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
-        let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+        let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
         if let (true, Err(error)) = (is_unsaid, log.motions(&survey)) {
             return Err(failure(error));
         }

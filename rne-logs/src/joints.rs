@@ -50,6 +50,12 @@ impl Joints {
             }
             return Ok(joints);
         };
+        if first.trim().is_empty() {
+            let all = listed(there.iter().map(String::as_str));
+            let what =
+                format!("a name of --joints is empty; the log has {all}, and base to tip they are --joints A,B,…");
+            return Err(LogError::request(path, what));
+        }
         let near = instead(first, there.iter().map(String::as_str));
         let all = listed(there.iter().map(String::as_str));
         let missing = listed(missing.iter().map(|name| name.as_str()));

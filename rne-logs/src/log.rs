@@ -75,6 +75,7 @@ impl Log {
         let Some(path) = files.first() else {
             return Err(LogError::request(Path::new("log"), "no file is named"));
         };
+        format::check_once(&files)?;
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
         // the first messages may be of several files
@@ -203,13 +204,14 @@ impl Log {
         LogError::request(&self.files[0], what)
     }
 
-    /// The first joint whose efforts are currents by the names of columns, where there are no torque constants: such a
-    /// log is not filtered.
+    /// The joints whose efforts are currents by the names of columns, where there are no torque constants: such a log is
+    /// not filtered.
     #[must_use]
-    pub fn unsaid_currents(&self) -> Option<usize> {
-        let is_current = |units: &JointUnits| units.effort == Some(Dimension::Current);
-        let first = self.layout.units.iter().position(is_current)?;
-        (self.layout.has_efforts && self.options.torque_constants.is_empty()).then_some(first)
+    pub fn unsaid_currents(&self) -> Vec<&str> {
+        let Layout { joints, units, has_efforts, .. } = &self.layout;
+        let is_unsaid = *has_efforts && self.options.torque_constants.is_empty();
+        let is_current = |units: &JointUnits| is_unsaid && units.effort == Some(Dimension::Current);
+        joints.iter().zip(units).filter(|(_, units)| is_current(units)).map(|(name, _)| name.as_str()).collect()
     }
 
     /// What positions and velocities of a joint are multiplied by; `said` is what a name says that they are.

@@ -65,6 +65,15 @@ fn what_is_wrong_is_said() {
     };
     fails(2, &["log", PANDA, "--robot", "panda"], &["no joint panda_joint1", "fer_joint1", "--joints"]);
     fails(2, &["log", PANDA, "--joints", "fer_joint1,fer_jont2"], &["did you mean fer_joint2?"]);
+    for names in ["", " ", "fer_joint1,", ",fer_joint1"] {
+        fails(2, &["log", PANDA, "--joints", names], &["a name of --joints is empty; the log has fer_joint1, fer"]);
+    }
+    let numbered = rne(&["log", "docs/desk_arm_log.csv", "--joints", "7,1,2"]);
+    assert!(numbered.status == 2 && !numbered.err.contains("did you mean"), "{numbered:?}");
+    for twice in [[PANDA, PANDA], [PANDA, "rne-logs/tests/../tests/data/panda.db3"]] {
+        fails(2, &["log", twice[0], twice[1]], &["panda.db3: the file is named twice", "count twice"]);
+        fails(2, &["identify", "panda", twice[0], twice[1]], &["named twice"]);
+    }
     fails(2, &["log", PANDA, "--topic", "/joints"], &["no topic /joints", "/joint_states"]);
     fails(2, &["log", PANDA, "--cutoff", "12"], &["too high for samples at 30.0007 Hz"]);
     fails(2, &["log", PANDA, "--torque-constant", "1,2"], &["2 torque constants for 7 joints"]);
@@ -152,7 +161,7 @@ fn columns_are_joints_by_number_and_say_their_units() {
         format!("{}{}{}", ["q", "qd", "i"][quantity], joint + 1, ["", "", " [A]"][quantity])
     };
     desk_log(&path, [0, 1, 2], currents, [1.0; 3]);
-    let asked = ["efforts of 1 are currents", "--torque-constant"];
+    let asked = ["efforts of 1, 2, 3 are currents", "--torque-constant"];
     fails(2, &["identify", "docs/desk_arm.yaml", log, "--judge"], &asked);
     let called = rne(&["log", log]);
     assert!(called.status == 1 && asked.iter().all(|part| called.out.contains(part)), "{called:?}");

@@ -151,9 +151,9 @@ fn currents_need_a_constant() {
     let text = csv(&times()).replace("tau1,tau2", "i1 [mA],i2 [A]");
     let (_folder, path) = file("log.csv", &text);
     let (log, _) = survey(&[path], options()).unwrap();
-    assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (Some(0), Some(Dimension::Current)));
+    assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (vec!["1", "2"], Some(Dimension::Current)));
     let error = refused(&text, options());
-    assert!(error.contains("efforts of 1 are currents, by the name of their column: --torque-constant"), "{error}");
+    assert!(error.contains("efforts of 1, 2 are currents, by the names of columns: --torque-constant"), "{error}");
     assert!(refused(&csv(&times()).replace("tau", "current_"), options()).contains("are currents"));
     let said = motion(&text, Options { torque_constants: vec![200.0, 0.3], ..options() });
     let plain = motion(&csv(&times()), options());
