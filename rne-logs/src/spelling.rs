@@ -16,12 +16,11 @@ pub(crate) fn instead<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> S
     nearest.map_or(String::new(), |(_, name)| format!(" (did you mean {name}?)"))
 }
 
-/// Names, the first dozen of them.
+/// Names, the first dozen of them; a last one more is shown, too.
 pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     let names: Vec<&str> = names.collect();
-    let shown = names[..names.len().min(LISTED)].join(", ");
     match names.len().saturating_sub(LISTED) {
-        0 => shown,
-        others => format!("{shown} and {others} others"),
+        0 | 1 => names.join(", "),
+        others => format!("{} and {others} others", names[..LISTED].join(", ")),
     }
 }
