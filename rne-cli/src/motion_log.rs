@@ -304,8 +304,8 @@ fn check_count(robot: &Robot, names: &[String]) -> Result<(), Failure> {
         return Ok(());
     }
     Err(Failure::usage(format_args!(
-        "{TYPED}--joints{TYPED:#} names {} of the log, and the robot has {}: {}; say which joint of the log each of them \
-         is, base to tip",
+        "{TYPED}--joints{TYPED:#} names {} of the log, and the robot has {}: {}; say which joint of the log each of \
+         them is, base to tip",
         of_joints(names.len()),
         of_joints(robot.dof()),
         of_robot(robot)

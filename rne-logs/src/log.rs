@@ -204,8 +204,8 @@ impl Log {
         LogError::request(&self.files[0], what)
     }
 
-    /// The joints whose efforts are currents by the names of columns, where there are no torque constants: such a log is
-    /// not filtered.
+    /// The joints whose efforts are currents by the names of columns, where there are no torque constants: such a log
+    /// is not filtered.
     #[must_use]
     pub fn unsaid_currents(&self) -> Vec<&str> {
         let Layout { joints, units, has_efforts, .. } = &self.layout;

@@ -126,14 +126,12 @@ impl ParquetTable {
             self.units.others = lists.units;
             let of_leaf = |leaf: &Leaf| time(&leaf.name).filter(|_| !leaf.is_list);
             let time = leaves.iter().enumerate().find_map(|(place, leaf)| Some((place, of_leaf(leaf)?.ok()?)));
-            let of_name = |(place, unit): (usize, Option<TimeUnit>)| {
-                let is_of_name = leaves[place].kind.is_number() && unit.is_some_and(|unit| unit != TimeUnit::Seconds);
-                is_of_name.then_some(place)
-            };
-            let lists = [Some((position, factor)), lists.velocity, lists.effort].into_iter().flatten();
-            let places = lists.filter(|(_, factor)| *factor != 1.0).map(|(place, _)| place);
-            let names = time.and_then(of_name).into_iter().chain(places).map(|place| leaves[place].name.clone());
-            self.notes.extend(columns::converted(&names.collect::<Vec<_>>()));
+            let mut converted = lists.converted;
+            let is_other = |unit: Option<TimeUnit>| unit.is_some_and(|unit| unit != TimeUnit::Seconds);
+            if let Some((place, _)) = time.filter(|(place, unit)| is_other(*unit) && leaves[*place].kind.is_number()) {
+                converted.insert(0, leaves[place].name.clone());
+            }
+            self.notes.extend(columns::converted(&converted));
             return self.tell_time(leaves, time, options);
         }
         let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
