@@ -73,10 +73,15 @@ impl MotionLog {
         let asked = options.cutoff.take();
         options.slides = slides(robot);
         let mut remarks = Vec::new();
+        let unnamed = || Log::open(paths, Options { joints: None, torque_constants: Vec::new(), ..options.clone() });
         if let Some(names) = &options.joints {
-            check_count(robot, names)?;
+            // an empty name is refused with those that there are
+            if names.len() != robot.dof() && names.iter().all(|name| !name.trim().is_empty()) {
+                let logged = unnamed().map(|log| log.layout().joints.clone()).unwrap_or_default();
+                return Err(miscounted(robot, names.len(), &logged));
+            }
         } else {
-            let log = Log::open(paths, Options { torque_constants: Vec::new(), ..options.clone() }).map_err(failure)?;
+            let log = unnamed().map_err(failure)?;
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
@@ -298,24 +303,37 @@ fn slides(robot: &Robot) -> Vec<bool> {
     robot.joints.iter().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
 }
 
-/// Refuses another number of joints than the robot has.
-fn check_count(robot: &Robot, names: &[String]) -> Result<(), Failure> {
-    if names.len() == robot.dof() {
-        return Ok(());
-    }
-    Err(Failure::usage(format_args!(
-        "{TYPED}--joints{TYPED:#} names {} of the log, and the robot has {}: {}; say which joint of the log each of \
-         them is, base to tip",
-        of_joints(names.len()),
+/// What to do where a log has fewer joints than the robot.
+const ALL_NEEDED: &str = "positions and torques of all of them are needed, so take a log that has all, or a robot file \
+                          of the joints that were logged";
+
+/// Refuses names of another number than the robot has joints; those of the log, where it can be read without names.
+fn miscounted(robot: &Robot, named: usize, logged: &[String]) -> Failure {
+    let there = if logged.is_empty() { String::new() } else { format!(", which has {}", shown(logged)) };
+    let advice = if (1..robot.dof()).contains(&logged.len()) {
+        ALL_NEEDED
+    } else {
+        "say which joint of the log each of them is, base to tip"
+    };
+    Failure::usage(format_args!(
+        "{TYPED}--joints{TYPED:#} names {} of the log{there}, and the robot has {}: {}; {advice}",
+        of_joints(named),
         of_joints(robot.dof()),
         of_robot(robot)
-    )))
+    ))
 }
 
-/// Their names, base to tip.
+/// Names of a log, the first of them.
+fn shown(logged: &[String]) -> String {
+    let names: Vec<String> = logged.iter().take(SHOWN).map(|name| one_line(name)).collect();
+    let more = if logged.len() > SHOWN { ", …" } else { "" };
+    names.join(", ") + more
+}
+
+/// Its joints' names, base to tip.
 fn of_robot(robot: &Robot) -> String {
-    let names: Vec<String> = robot.joints.iter().take(SHOWN).map(|joint| one_line(&joint.name)).collect();
-    names.join(", ")
+    let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    shown(&names)
 }
 
 fn of_joints(count: usize) -> String {
@@ -328,19 +346,15 @@ fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) 
     if names.iter().all(|name| logged.contains(name)) {
         return Ok(names);
     }
-    let listed = |most: usize| logged.iter().take(most).map(|name| one_line(name)).collect::<Vec<_>>().join(", ");
     let both = format!(
         "the log has {}, the robot {}: {} there and {} here",
         of_joints(logged.len()),
         names.len(),
-        listed(SHOWN),
+        shown(logged),
         of_robot(robot)
     );
     if logged.len() < names.len() {
-        return Err(Failure::usage(format_args!(
-            "{both}; positions and torques of all of them are needed, so take a log that has all, or a robot file of \
-             the joints that were logged"
-        )));
+        return Err(Failure::usage(format_args!("{both}; {ALL_NEEDED}")));
     }
     let said = format!("{TYPED}--joints{TYPED:#} says which of the log's are the robot's, base to tip");
     if logged.len() > names.len() {
@@ -352,7 +366,7 @@ fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) 
         let name = one_line(name);
         return Err(Failure::usage(format_args!("{both}, and {name} has another place among them; {said}")));
     }
-    remarks.push((format!("joints of the log by their order: {}", listed(usize::MAX)), false));
+    remarks.push((format!("joints of the log by their order: {}", shown(logged)), false));
     Ok(logged.to_vec())
 }
 

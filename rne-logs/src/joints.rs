@@ -36,7 +36,7 @@ impl Joints {
             }
             return Ok(Self { names: by_number(names), ..Self::default() });
         };
-        if let Some(twice) = twice(wanted) {
+        if let Some(twice) = twice(wanted).filter(|name| !name.trim().is_empty()) {
             return Err(LogError::request(path, format_args!("the joint {twice} is asked for twice")));
         }
         let there = names(samples);
