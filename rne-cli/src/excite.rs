@@ -10,7 +10,8 @@ use rne_identify::{
     AskedLimits, Excitation, ExcitationError, ExcitationOptions, ExcitationProgress, Fourier, JointUse, MotionLimits,
     excite,
 };
-use rne_model::{Robot, one_line};
+use rne_machine::{CompiledArm, Form};
+use rne_model::{Joint, Robot, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
 use crate::layout::{Align, push_table, shortened, wrap};
@@ -129,7 +130,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();
-    let found = watched(&robot, &limits, &options(arguments)).map_err(|error| failure(&error))?;
+    let found = watched(&robot, &limits, &options(arguments)).map_err(|error| match &error {
+        ExcitationError::Effort { .. } => beyond_effort(&robot, &limits, &error),
+        _ => failure(&error),
+    })?;
     let account = account(arguments, &robot, &found);
     let mut remark = String::new();
     if let Some(path) = &arguments.plot {
@@ -149,6 +153,99 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
 
 fn failure(error: &ExcitationError) -> Failure {
     if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
+}
+
+/// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
+fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError) -> Failure {
+    let none = "no motion was found within the effort limits";
+    let Some(loads) = Load::all(robot, limits) else { return failure(error) };
+    let [Some(middle), Some(least), Some(most)] = [
+        loads.first(),
+        loads.iter().reduce(|least, load| if load.part < least.part * (1.0 - SAME) { load } else { least }),
+        loads.iter().reduce(|most, load| if load.part > most.part * (1.0 + SAME) { load } else { most }),
+    ] else {
+        return failure(error);
+    };
+    let helps = "neither a slower motion nor a smaller --range helps";
+    Failure::input(if least.part > 1.0 {
+        let name = one_line(&robot.joints[least.joint].name);
+        format!(
+            "{none}: {}, and at none of {POSITIONS} positions within the limits less than that, so {helps}: is the \
+             effort limit of {name} right, and are the masses that it carries?",
+            least.words(robot, limits)
+        )
+    } else if middle.part > 1.0 {
+        format!(
+            "{none}: {}, the middle of the limits, so {helps}; position limits in the robot file, about where the arm \
+             is held with less, do",
+            middle.words(robot, limits)
+        )
+    } else if most.part > 1.0 {
+        format!("{error}; {}, which a smaller --range keeps away from", most.words(robot, limits))
+    } else {
+        return failure(error);
+    })
+}
+
+/// Positions at which gravity is looked at.
+const POSITIONS: u32 = 2000;
+
+/// Torques that differ by no more are rounding.
+const SAME: f64 = 1e-9;
+
+/// What gravity asks of the joint that has the least to spare, at rest.
+struct Load {
+    q: Vec<f64>,
+    joint: usize,
+    /// N m or N
+    needed: f64,
+    /// Of the joint's effort limit.
+    part: f64,
+}
+
+impl Load {
+    /// At positions that fill what the limits allow, the first of them in its middle: multiples of powers of the root
+    /// of x^(n + 1) = x + 1 for n joints, without their whole parts (Roberts, The Unreasonable Effectiveness of
+    /// Quasirandom Sequences, 2018). None where there are no effort limits.
+    fn all(robot: &Robot, limits: &[MotionLimits]) -> Option<Vec<Self>> {
+        let arm = CompiledArm::from_robot(robot).in_form(Form::SevenSteps);
+        let power = f64::from(u32::try_from(robot.dof() + 1).ok()?);
+        let root = (0..60).fold(2.0_f64, |root, _| (1.0 + root).powf(1.0 / power));
+        let at = |number: u32| {
+            let mut step = 1.0;
+            let of_joint = limits.iter().map(|limits| {
+                step /= root;
+                let (lower, upper) = limits.position;
+                lower + (upper - lower) * (0.5 + f64::from(number) * step).fract()
+            });
+            of_joint.collect::<Vec<f64>>()
+        };
+        (0..POSITIONS).map(|number| Self::of(&arm, limits, at(number))).collect()
+    }
+
+    fn of(arm: &CompiledArm, limits: &[MotionLimits], q: Vec<f64>) -> Option<Self> {
+        let torques = arm.gravity_torques(&q).ok()?;
+        let parts = torques.iter().zip(limits).map(|(torque, limits)| Some((torque.abs(), limits.effort?)));
+        let parts = parts.enumerate().filter_map(|(joint, part)| Some((joint, part?)));
+        let (joint, (needed, limit)) = parts.max_by(|(_, a), (_, b)| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+        Some(Self { q, joint, needed, part: needed / limit })
+    }
+
+    fn words(&self, robot: &Robot, limits: &[MotionLimits]) -> String {
+        let position = |(joint, q): (&Joint, &f64)| {
+            format!("{} {} {}", one_line(&joint.name), rounded(*q, 3), joint.row.kind.position_unit())
+        };
+        let positions: Vec<String> = robot.joints.iter().zip(&self.q).map(position).collect();
+        let joint = &robot.joints[self.joint];
+        format!(
+            "gravity alone needs {} of {} {} of {} at {}",
+            rounded(self.needed, 3),
+            limits[self.joint].effort.map_or_else(String::new, |limit| rounded(limit, 3)),
+            joint.row.kind.effort_unit(),
+            one_line(&joint.name),
+            positions.join(", ")
+        )
+    }
 }
 
 fn asked(arguments: &Arguments) -> AskedLimits {

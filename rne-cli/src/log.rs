@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use rne_logs::{Cutoff, Log, LogError, Motion, Options, Survey};
+use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
 
 use crate::input_file::is_standard_input;
 use crate::log_arguments::{LogArguments, failure};
 use crate::log_report::{self, Reply};
-use crate::motion_log::check_units;
+use crate::motion_log::{check_units, open_by_names};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::robot_file;
@@ -48,12 +48,16 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    fn options(&self) -> Result<Options, Failure> {
-        let mut options = self.reading.options();
-        if let Some(file) = &self.robot {
-            options.joints = Some(robot_file::robot(file)?.joints.into_iter().map(|joint| joint.name).collect());
-        }
-        Ok(options)
+    /// The log, by the joints of the robot where there is one.
+    fn open(&self) -> Result<Log, Failure> {
+        let options = self.reading.options();
+        let Some(file) = &self.robot else {
+            return Log::open(&self.files, options).map_err(|error| failure(&error));
+        };
+        let robot = robot_file::robot(file)?;
+        let log = open_by_names(&self.files, &robot, options)?;
+        check_units(&robot, log.layout())?;
+        Ok(log)
     }
 }
 
@@ -62,22 +66,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let what = format!("{} is standard input; a log is read twice, so name a file", stream.display());
         return Err(Failure::usage(what));
     }
-    let options = arguments.options()?;
     let out = arguments.out.as_deref();
     let is_result_shown = out.is_some_and(is_standard_output);
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
         let sources: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
     }
-    let log = Log::open(&arguments.files, options).map_err(|error| failure(&error))?;
-    if let Some(file) = &arguments.robot {
-        check_units(&robot_file::robot(file)?, log.layout())?;
-    }
+    let log = arguments.open()?;
     let bar = progress("read", is_result_shown);
     let survey = log.survey(|share| bar.set_position(thousandths(share)));
     bar.finish_and_clear();
     let survey = survey.map_err(|error| failure(&error))?;
-    let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+    let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
     let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
         String::new()

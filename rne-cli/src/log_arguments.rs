@@ -22,7 +22,7 @@ pub(crate) struct LogArguments {
     /// Efforts are currents: N m/A, of all or of each
     #[arg(long, alias = "torque-constants", value_name = "LIST", allow_hyphen_values = true)]
     torque_constant: Option<List>,
-    /// Positions and velocities are in degrees
+    /// In degrees: all but joints that slide in FILE
     #[arg(long, conflicts_with = "radians")]
     degrees: bool,
     /// They are not, however far they range
@@ -46,8 +46,8 @@ pub(crate) struct LogArguments {
     /// Rows per second of a table without times
     #[arg(long, value_name = "HZ", value_parser = hertz)]
     rate: Option<f64>,
-    /// Of an array, in order
-    #[arg(long, value_name = "NAMES", value_delimiter = ',', default_value = "time,q,qd,tau")]
+    /// Of an array, in order [default: time,q,qd,tau]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
 }
 

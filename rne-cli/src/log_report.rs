@@ -247,7 +247,7 @@ fn notes(log: &Log, survey: &Survey) -> Vec<(String, bool)> {
     let mut notes = notes_of_motion(log, survey);
     if !layout.has_efforts {
         notes.push(("there are no efforts: the motion has no torques".to_owned(), true));
-    } else if log.unsaid_currents().is_none() && takes_torques(log) {
+    } else if log.unsaid_currents().is_empty() && takes_torques(log) {
         let what =
             "efforts are taken for torques, N m, or forces, N; if they are currents, --torque-constant says N m/A";
         notes.push((what.to_owned(), false));
@@ -288,11 +288,12 @@ pub(crate) fn notes_of_motion(log: &Log, survey: &Survey) -> Vec<(String, bool)>
     if !layout.has_velocities {
         notes.push(("velocities are derived from positions".to_owned(), false));
     }
-    if let Some(joint) = log.unsaid_currents() {
+    let currents = log.unsaid_currents();
+    if !currents.is_empty() {
         let what = format!(
-            "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
-             torques of them",
-            layout.joints[joint]
+            "efforts of {} are currents, by the names of columns: --torque-constant says the N m/A that make torques \
+             of them",
+            currents.join(", ")
         );
         notes.push((what, true));
     }

@@ -23,6 +23,9 @@ const WIDER: f64 = 4.0;
 /// The low-pass of both sides, of the filter that the spectrum chooses: what moves passes, and most noise does not.
 const PART: f64 = 0.5;
 
+/// The names that a message lists at most.
+const SHOWN: usize = 16;
+
 /// Of the rate: no filter of the log may be wider.
 const HIGHEST: f64 = 0.3;
 
@@ -68,16 +71,24 @@ impl MotionLog {
     fn open_with(paths: &[PathBuf], robot: &Robot, mut options: Options, wider: f64) -> Result<Self, Failure> {
         // the log's own filter is chosen here
         let asked = options.cutoff.take();
+        options.slides = slides(robot);
         let mut remarks = Vec::new();
-        if options.joints.is_none() {
-            let log = Log::open(paths, Options { torque_constants: Vec::new(), ..options.clone() }).map_err(failure)?;
+        let unnamed = || Log::open(paths, Options { joints: None, torque_constants: Vec::new(), ..options.clone() });
+        if let Some(names) = &options.joints {
+            // an empty name is refused with those that there are
+            if names.len() != robot.dof() && names.iter().all(|name| !name.trim().is_empty()) {
+                let logged = unnamed().map(|log| log.layout().joints.clone()).unwrap_or_default();
+                return Err(miscounted(robot, names.len(), &logged));
+            }
+        } else {
+            let log = unnamed().map_err(failure)?;
             options.joints = Some(matched(robot, &log.layout().joints, &mut remarks)?);
         }
         let log = Log::open(paths, options.clone()).map_err(failure)?;
         check_units(robot, log.layout())?;
         check_efforts(&log)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
-        let is_unsaid = survey.may_be_degrees(&log).is_some() || log.unsaid_currents().is_some();
+        let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
         if let (true, Err(error)) = (is_unsaid, log.motions(&survey)) {
             return Err(failure(error));
         }
@@ -226,7 +237,16 @@ fn check_efforts(log: &Log) -> Result<(), Failure> {
     }
     let missing: Vec<String> = layout.without_efforts.iter().map(|name| one_line(name)).collect();
     if missing.is_empty() || missing.len() == layout.joints.len() {
-        return Err(Failure::input("the log has no efforts, and torques are what a model is held against"));
+        let unread: Vec<String> = layout.unread.iter().take(SHOWN).map(|name| one_line(name)).collect();
+        let unread = if unread.is_empty() {
+            String::new()
+        } else {
+            let names = unread.join(", ");
+            format!("; not read are {names}, and names of efforts are tau1, … or effort and the joint: docs/logs.md")
+        };
+        return Err(Failure::input(format_args!(
+            "the log has no efforts, and torques are what a model is held against{unread}"
+        )));
     }
     Err(Failure::input(format_args!(
         "the log has no efforts of {}, and torques of every joint are what a model is held against",
@@ -265,24 +285,89 @@ fn check_cutoff(log: &Log, cutoff: f64, longest: f64, left: impl Fn(f64) -> f64)
     Err(Failure::input(format_args!("{said}, and no other is: runs are too short")))
 }
 
+/// Opens logs by the names of the robot's joints; where those of the logs are as many numbers, by these.
+pub(crate) fn open_by_names(paths: &[PathBuf], robot: &Robot, options: Options) -> Result<Log, Failure> {
+    let options = Options { slides: slides(robot), ..options };
+    let names = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    Log::open(paths, Options { joints: Some(names), ..options.clone() }).or_else(|error| {
+        let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
+        match Log::open(paths, options) {
+            Ok(log) if log.layout().joints.len() == robot.dof() && log.layout().joints.iter().all(is_number) => Ok(log),
+            _ => Err(failure(error)),
+        }
+    })
+}
+
+/// Which joints slide: no option makes angles of lengths.
+fn slides(robot: &Robot) -> Vec<bool> {
+    robot.joints.iter().map(|joint| joint.row.kind == JointKind::Prismatic).collect()
+}
+
+/// What to do where a log has fewer joints than the robot.
+const ALL_NEEDED: &str = "positions and torques of all of them are needed, so take a log that has all, or a robot file \
+                          of the joints that were logged";
+
+/// Refuses names of another number than the robot has joints; those of the log, where it can be read without names.
+fn miscounted(robot: &Robot, named: usize, logged: &[String]) -> Failure {
+    let there = if logged.is_empty() { String::new() } else { format!(", which has {}", shown(logged)) };
+    let advice = if (1..robot.dof()).contains(&logged.len()) {
+        ALL_NEEDED
+    } else {
+        "say which joint of the log each of them is, base to tip"
+    };
+    Failure::usage(format_args!(
+        "{TYPED}--joints{TYPED:#} names {} of the log{there}, and the robot has {}: {}; {advice}",
+        of_joints(named),
+        of_joints(robot.dof()),
+        of_robot(robot)
+    ))
+}
+
+/// Names of a log, the first of them.
+fn shown(logged: &[String]) -> String {
+    let names: Vec<String> = logged.iter().take(SHOWN).map(|name| one_line(name)).collect();
+    let more = if logged.len() > SHOWN { ", …" } else { "" };
+    names.join(", ") + more
+}
+
+/// Its joints' names, base to tip.
+fn of_robot(robot: &Robot) -> String {
+    let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    shown(&names)
+}
+
+fn of_joints(count: usize) -> String {
+    if count == 1 { "1 joint".to_owned() } else { format!("{count} joints") }
+}
+
 /// The joints of the log that are those of the robot, base to tip.
 fn matched(robot: &Robot, logged: &[String], remarks: &mut Vec<(String, bool)>) -> Result<Vec<String>, Failure> {
     let names: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
     if names.iter().all(|name| logged.contains(name)) {
         return Ok(names);
     }
-    if logged.len() == names.len() {
-        let logged: Vec<String> = logged.iter().map(|name| one_line(name)).collect();
-        remarks.push((format!("joints of the log by their order: {}", logged.join(", ")), false));
-        return Ok(logged);
-    }
-    let shown: Vec<String> = logged.iter().take(16).map(|name| one_line(name)).collect();
-    Err(Failure::usage(format_args!(
-        "the log has {} joints, the robot {}; {TYPED}--joints{TYPED:#} names those of the log, base to tip: {}",
-        logged.len(),
+    let both = format!(
+        "the log has {}, the robot {}: {} there and {} here",
+        of_joints(logged.len()),
         names.len(),
-        shown.join(",")
-    )))
+        shown(logged),
+        of_robot(robot)
+    );
+    if logged.len() < names.len() {
+        return Err(Failure::usage(format_args!("{both}; {ALL_NEEDED}")));
+    }
+    let said = format!("{TYPED}--joints{TYPED:#} says which of the log's are the robot's, base to tip");
+    if logged.len() > names.len() {
+        return Err(Failure::usage(format_args!("{both}; {said}")));
+    }
+    // some names are those of the robot, and say another order
+    let is_elsewhere = |(at, name): &(usize, &String)| logged.contains(name) && logged[*at] != **name;
+    if let Some((_, name)) = names.iter().enumerate().find(is_elsewhere) {
+        let name = one_line(name);
+        return Err(Failure::usage(format_args!("{both}, and {name} has another place among them; {said}")));
+    }
+    remarks.push((format!("joints of the log by their order: {}", shown(logged)), false));
+    Ok(logged.to_vec())
 }
 
 /// Units that names of columns say are those of the robot's joints: what turns has no position in mm.

@@ -29,8 +29,13 @@ pub(crate) struct Columns {
     pub(crate) velocity: Vec<Option<Column>>,
     pub(crate) effort: Vec<Option<Column>>,
     pub(crate) units: FileUnits,
-    /// Remarks for the reader of a survey.
-    pub(crate) notes: Vec<String>,
+    /// The names of columns whose numbers are not of SI, by these.
+    pub(crate) converted: Vec<String>,
+    /// The names of columns that are not read: those like the columns of joints, and all others where no joint has a
+    /// velocity, or none an effort.
+    pub(crate) unread: Vec<String>,
+    /// Other remarks for the reader of a survey.
+    notes: Vec<String>,
 }
 
 impl Columns {
@@ -50,8 +55,11 @@ impl Columns {
         named.check_units(&positions, &velocities, &efforts, options)?;
         let mut joints = positions;
         joints.sort_by_key(|found| found.named.number.unwrap_or(u32::MAX));
+        let time = named.time(options)?;
         let mut columns = Self {
-            time: named.time(options)?,
+            time,
+            converted: named.converted(time, &[&joints[..], &velocities, &efforts].concat()),
+            unread: named.unread(&joints, &velocities, &efforts),
             names: joints.iter().map(|found| found.named.joint.clone()).collect(),
             position: joints.iter().map(|found| found.column()).collect(),
             notes: named.notes(&joints, &velocities, &efforts),
@@ -79,6 +87,19 @@ impl Columns {
         }
         Ok(columns)
     }
+
+    /// What a reader should know: what is in which unit, and what is not read.
+    pub(crate) fn remarks(&self) -> Vec<String> {
+        let unread = (!self.unread.is_empty())
+            .then(|| format!("columns that are not read: {}", listed(self.unread.iter().map(String::as_str))));
+        converted(&self.converted).into_iter().chain(unread).chain(self.notes.iter().cloned()).collect()
+    }
+}
+
+/// What is said of columns whose names say units that are not of SI.
+pub(crate) fn converted(names: &[String]) -> Option<String> {
+    let listed = listed(names.iter().map(String::as_str));
+    (!names.is_empty()).then(|| format!("numbers are converted from the units of columns' names: {listed}"))
 }
 
 /// Of joints that have both, currents where the options have torque constants, else torques.
@@ -201,7 +222,35 @@ impl<'a> Header<'a> {
         Ok(Some((place, unit)))
     }
 
-    /// What a reader should know: what is not read, and what is in which unit.
+    /// The columns whose names say units that are not of SI.
+    fn converted(&self, time: Option<(usize, Option<TimeUnit>)>, read: &[&Found]) -> Vec<String> {
+        let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
+        let time = time.filter(|(_, unit)| unit.is_some_and(|unit| unit != TimeUnit::Seconds));
+        let places = time.map(|(place, _)| place).into_iter();
+        let places = places.chain(read.iter().filter(is_other).map(|found| found.place));
+        places.map(|place| self.names[place].clone()).collect()
+    }
+
+    /// The columns that are not read.
+    fn unread(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
+        let has_position = |found: &Found| joints.iter().any(|joint| joint.named.joint == found.named.joint);
+        let is_read = |place: usize| {
+            let mut read = [joints, velocities, efforts].into_iter().flatten();
+            read.any(|read| read.place == place && has_position(read))
+        };
+        let lacks = |found: &[&Found]| !found.iter().any(|found| has_position(found));
+        let is_any = lacks(velocities) || lacks(efforts);
+        let is_like =
+            |place: usize| self.unread.contains(&place) || self.found.iter().any(|found| found.place == place);
+        let is_time = |place: usize| self.times.iter().any(|(time, _)| *time == place);
+        let is_unread = |place: &usize| {
+            let is_named = !self.names[*place].trim().is_empty();
+            !is_read(*place) && !is_time(*place) && (is_like(*place) || is_any && is_named)
+        };
+        (0..self.names.len()).filter(is_unread).map(|place| self.names[place].clone()).collect()
+    }
+
+    /// What else a reader should know.
     fn notes(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
         let mut notes = Vec::new();
         let mut note = |what: &str, names: &mut dyn Iterator<Item = &str>| {
@@ -210,16 +259,6 @@ impl<'a> Header<'a> {
                 notes.push(format!("{what}: {names}"));
             }
         };
-        let name = |found: &&Found| self.names[found.place].as_str();
-        let read = [joints, velocities, efforts].concat();
-        let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
-        note("numbers are converted from the units of columns' names", &mut read.iter().filter(is_other).map(name));
-        let has_position = |found: &Found| joints.iter().any(|joint| joint.named.joint == found.named.joint);
-        let is_read = |found: &Found| read.iter().any(|read| read.place == found.place) && has_position(found);
-        let unread = self.found.iter().filter(|found| !is_read(found)).map(|found| found.place);
-        let mut unread: Vec<usize> = unread.chain(self.unread.iter().copied()).collect();
-        unread.sort_unstable();
-        note("columns that are not read", &mut unread.iter().map(|place| self.names[*place].as_str()));
         note(
             "other times that are not read",
             &mut self.times.iter().skip(1).map(|(place, _)| self.names[*place].as_str()),
@@ -396,7 +435,7 @@ mod tests {
         let header = ["t", "q1", "tau1", "current1"];
         let torques = columns(&header, &Options::default()).unwrap();
         assert_eq!((places(&torques.effort), torques.units.of("1").effort), (vec![Some(2)], None));
-        assert!(torques.notes.contains(&"columns that are not read: current1".to_owned()), "{:?}", torques.notes);
+        assert!(torques.unread.contains(&"current1".to_owned()), "{:?}", torques.unread);
         let currents = columns(&header, &Options { torque_constants: vec![0.1], ..Options::default() }).unwrap();
         assert_eq!(
             (places(&currents.effort), currents.units.of("1").effort),
@@ -406,15 +445,20 @@ mod tests {
 
     #[test]
     fn what_is_not_read_is_said() {
-        let header = ["t", "stamp", "q1 [deg]", "q1_ref", "wrist_effort", "tau1"];
-        let notes = columns(&header, &Options::default()).unwrap().notes;
+        let remarks = |header: &[&str]| columns(header, &Options::default()).unwrap().remarks();
         assert_eq!(
-            notes,
+            remarks(&["t_ms", "stamp", "q1 [deg]", "q1_ref", "wrist_effort", "qd1 [rad/s]", "tau1", "temperature"]),
             [
-                "numbers are converted from the units of columns' names: q1 [deg]",
+                "numbers are converted from the units of columns' names: t_ms, q1 [deg]",
                 "columns that are not read: q1_ref, wrist_effort",
                 "other times that are not read: stamp",
             ]
         );
+        // where something is missing, it may be in a column of a name that says nothing
+        assert_eq!(
+            remarks(&["t", "q1", "Drehmoment 1", "", "Geschwindigkeit 1"]),
+            ["columns that are not read: Drehmoment 1, Geschwindigkeit 1"]
+        );
+        assert_eq!(remarks(&["t [s]", "q1", "qd1", "tau1", "Temperatur"]), [""; 0]);
     }
 }

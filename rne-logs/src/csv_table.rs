@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use crate::Options;
 use crate::columns::{Column, Columns};
 use crate::sample::{Sample, Source};
+use crate::spelling::listed;
 use crate::unit::FileUnits;
 use crate::{LogError, TimeUnit};
 
@@ -99,9 +100,10 @@ impl CsvTable {
         }
         let columns = Columns::of(path, &header, options)?;
         let clock = match (columns.time, options.rate) {
-            (Some((place, said)), _) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
+            (Some((place, _)), Some(_)) => return Err(two_times(path, &header[place])),
+            (Some((place, said)), None) => Clock::Column(place, said.or(options.time_unit).unwrap_or_default()),
             (None, Some(rate)) => Clock::Step(1.0 / rate),
-            (None, None) => return Err(no_time(path)),
+            (None, None) => return Err(no_time(path, header.iter().map(String::as_str))),
         };
         Ok(Self { path: path.to_owned(), reader, record: csv::ByteRecord::new(), columns, clock, size, row: 0 })
     }
@@ -168,7 +170,11 @@ impl Source for CsvTable {
     }
 
     fn notes(&self) -> Vec<String> {
-        self.columns.notes.clone()
+        self.columns.remarks()
+    }
+
+    fn unread(&self) -> Vec<String> {
+        self.columns.unread.clone()
     }
 
     fn units(&self) -> FileUnits {
@@ -177,8 +183,18 @@ impl Source for CsvTable {
 }
 
 /// What is said of a table that has no times.
-pub(crate) fn no_time(path: &Path) -> LogError {
-    let what = "no column has times: its name is time, t, stamp or timestamp; --rate HZ says how fast rows follow";
+pub(crate) fn no_time<'a>(path: &Path, names: impl Iterator<Item = &'a str>) -> LogError {
+    let what = format!(
+        "no column has times: its name is time, t, stamp or timestamp, and there is {}; --rate HZ says how fast rows \
+         follow",
+        listed(names)
+    );
+    LogError::request(path, what)
+}
+
+/// What is said of a table that has times, where a rate is asked for.
+pub(crate) fn two_times(path: &Path, name: &str) -> LogError {
+    let what = format!("the column {name} has times, and --rate is of tables without: take one of both away");
     LogError::request(path, what)
 }
 

@@ -1,5 +1,6 @@
 //! The format of a file, by its first bytes.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::{self, File};
 use std::io::Read as _;
@@ -101,6 +102,13 @@ impl Format {
 
     /// Opens a file of this format.
     pub(crate) fn open(self, path: &Path, options: &Options) -> Result<Box<dyn Source>, LogError> {
+        if self != Self::Npy && !options.columns.is_empty() {
+            let what = format!("--columns is of arrays of numpy; this is {self}, which has names: take it away");
+            return Err(LogError::request(path, what));
+        }
+        if matches!(self, Self::Sqlite | Self::Mcap) && options.rate.is_some() {
+            return Err(LogError::request(path, "messages have times, and --rate is of tables without: take it away"));
+        }
         Ok(match self {
             #[cfg(feature = "rosbag")]
             Self::Sqlite => Box::new(SqliteBag::open(path, options.topic.as_deref())?),
@@ -142,6 +150,20 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
     Ok(files)
 }
 
+/// No file is named twice, by whatever path: its states would count twice.
+pub(crate) fn check_once(files: &[PathBuf]) -> Result<(), LogError> {
+    let mut seen = BTreeSet::new();
+    for file in files {
+        // what is not there is said where it is read
+        if let Ok(place) = fs::canonicalize(file)
+            && !seen.insert(place)
+        {
+            return Err(LogError::request(file, "the file is named twice, and its states would count twice"));
+        }
+    }
+    Ok(())
+}
+
 /// The number of a part, so that `bag_10` comes behind `bag_9`; then its name.
 fn part(file: &Path) -> (u64, PathBuf) {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
@@ -162,5 +184,9 @@ mod tests {
         let found = files(&[folder.path().to_owned()]).unwrap();
         let names: Vec<_> = found.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
         assert_eq!(names, ["run_0.db3", "run_9.db3", "run_10.db3"]);
+        assert!(check_once(&found).is_ok());
+        let again = folder.path().join(".").join("run_9.db3");
+        let twice = files(&[folder.path().to_owned(), again]).unwrap();
+        assert!(check_once(&twice).unwrap_err().to_string().contains("run_9.db3: the file is named twice"));
     }
 }

@@ -36,7 +36,7 @@ impl Joints {
             }
             return Ok(Self { names: by_number(names), ..Self::default() });
         };
-        if let Some(twice) = twice(wanted) {
+        if let Some(twice) = twice(wanted).filter(|name| !name.trim().is_empty()) {
             return Err(LogError::request(path, format_args!("the joint {twice} is asked for twice")));
         }
         let there = names(samples);
@@ -50,10 +50,11 @@ impl Joints {
             }
             return Ok(joints);
         };
-        // columns q1, q2, … are joints by their numbers
-        let is_number = |name: &String| name.bytes().all(|byte| byte.is_ascii_digit());
-        if missing.len() == wanted.len() && there.iter().all(is_number) && there.len() == wanted.len() {
-            return Ok(Self { names: there, ..Self::default() });
+        if first.trim().is_empty() {
+            let all = listed(there.iter().map(String::as_str));
+            let what =
+                format!("a name of --joints is empty; the log has {all}, and base to tip they are --joints A,B,…");
+            return Err(LogError::request(path, what));
         }
         let near = instead(first, there.iter().map(String::as_str));
         let all = listed(there.iter().map(String::as_str));

@@ -15,6 +15,8 @@ pub(crate) struct ListColumns {
     pub(crate) effort: Option<(usize, f64)>,
     /// Of every joint.
     pub(crate) units: JointUnits,
+    /// The names of those whose numbers are not of SI, by these.
+    pub(crate) converted: Vec<String>,
 }
 
 impl ListColumns {
@@ -45,6 +47,7 @@ impl ListColumns {
                 return Err(LogError::request(path, what));
             }
             found.push((quantity, name, unit));
+            lists.converted.extend(unit.filter(|unit| !unit.is_si()).map(|_| name.to_owned()));
             let (list, said) = match quantity {
                 Quantity::Position => (&mut lists.position, &mut lists.units.position),
                 Quantity::Velocity => (&mut lists.velocity, &mut lists.units.velocity),
@@ -85,6 +88,7 @@ mod tests {
         );
         assert_eq!(found.units.position, Some(Dimension::Angle));
         assert_eq!(found.units.effort, Some(Dimension::Current));
+        assert_eq!(found.converted, ["position_deg", "velocity [deg/s]"]);
         let found = lists(&["observation.state", "observation.environment_state"]).unwrap();
         assert_eq!(found.position, Some((0, 1.0)));
         for (names, wanted) in [

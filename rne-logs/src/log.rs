@@ -11,6 +11,7 @@ use crate::motions::Motions;
 use crate::options::{Angles, Options};
 use crate::pass::Pass;
 use crate::sample::{Sample, Source};
+use crate::spelling::listed;
 use crate::survey::Survey;
 use crate::unit::{Dimension, FileUnits, JointUnits};
 
@@ -56,6 +57,9 @@ pub struct Layout {
     pub origin: i64,
     /// The units that names of columns say, by joint.
     pub units: Vec<JointUnits>,
+    /// The columns of a table that are not read: those like the columns of joints, and all others where no joint has a
+    /// velocity, or none an effort.
+    pub unread: Vec<String>,
     /// Remarks on what the file is.
     pub notes: Vec<String>,
 }
@@ -71,10 +75,12 @@ impl Log {
         let Some(path) = files.first() else {
             return Err(LogError::request(Path::new("log"), "no file is named"));
         };
+        format::check_once(&files)?;
         check(path, &options)?;
         let mut chain = Chain::open(&files, &options)?;
         // the first messages may be of several files
-        let (topic, notes) = (chain.source.topic().map(str::to_owned), chain.source.notes());
+        let (topic, unread) = (chain.source.topic().map(str::to_owned), chain.source.unread());
+        let mut notes = chain.source.notes();
         let mut head: Vec<Sample> = Vec::new();
         let mut sample = Sample::default();
         while head.len() < HEAD && chain.read(&mut sample)? {
@@ -122,6 +128,8 @@ impl Log {
             );
             return Err(LogError::request(path, what));
         }
+        let units: Vec<JointUnits> = joints.names.iter().map(|name| chain.units.of(name)).collect();
+        notes.extend(slides_in_metres(&options, &joints.names, &units));
         let layout = Layout {
             format: chain.format,
             topic,
@@ -133,7 +141,8 @@ impl Log {
             without_efforts: without_efforts(&mut joints.clone(), &states),
             step,
             origin: if times[0].saturating_abs() > FAR { times[0] } else { 0 },
-            units: joints.names.iter().map(|name| chain.units.of(name)).collect(),
+            units,
+            unread,
             notes,
         };
         Ok(Self { files, options, joints, layout })
@@ -195,18 +204,19 @@ impl Log {
         LogError::request(&self.files[0], what)
     }
 
-    /// The first joint whose efforts are currents by the names of columns, where there are no torque constants: such a
-    /// log is not filtered.
+    /// The joints whose efforts are currents by the names of columns, where there are no torque constants: such a log
+    /// is not filtered.
     #[must_use]
-    pub fn unsaid_currents(&self) -> Option<usize> {
-        let is_current = |units: &JointUnits| units.effort == Some(Dimension::Current);
-        let first = self.layout.units.iter().position(is_current)?;
-        (self.layout.has_efforts && self.options.torque_constants.is_empty()).then_some(first)
+    pub fn unsaid_currents(&self) -> Vec<&str> {
+        let Layout { joints, units, has_efforts, .. } = &self.layout;
+        let is_unsaid = *has_efforts && self.options.torque_constants.is_empty();
+        let is_current = |units: &JointUnits| is_unsaid && units.effort == Some(Dimension::Current);
+        joints.iter().zip(units).filter(|(_, units)| is_current(units)).map(|(name, _)| name.as_str()).collect()
     }
 
-    /// What positions and velocities are multiplied by; `said` is what a name says that they are.
-    pub(crate) fn of_angle(&self, said: Option<Dimension>) -> f64 {
-        let is_degrees = self.options.angles == Angles::Degrees && said.is_none();
+    /// What positions and velocities of a joint are multiplied by; `said` is what a name says that they are.
+    pub(crate) fn of_angle(&self, joint: usize, said: Option<Dimension>) -> f64 {
+        let is_degrees = self.options.angles == Angles::Degrees && said.is_none() && !self.options.is_slide(joint);
         if is_degrees { std::f64::consts::PI / 180.0 } else { 1.0 }
     }
 
@@ -299,6 +309,20 @@ fn no_step(path: &Path, times: &[i64]) -> LogError {
         1 => LogError::file(path, "the log has one joint state; a motion needs many"),
         count => LogError::file(path, format_args!("the times of the first {count} joint states do not grow")),
     }
+}
+
+/// What is said where degrees are of joints that turn, and others stay as they are.
+fn slides_in_metres(options: &Options, names: &[String], units: &[JointUnits]) -> Option<String> {
+    let stays = |joint: &usize| {
+        let JointUnits { position, velocity, .. } = units[*joint];
+        options.angles == Angles::Degrees && options.is_slide(*joint) && position.or(velocity).is_none()
+    };
+    let slides: Vec<&str> = (0..names.len()).filter(stays).map(|joint| names[joint].as_str()).collect();
+    let plural = if slides.len() == 1 { ("slides", "is") } else { ("slide", "are") };
+    (!slides.is_empty()).then(|| {
+        let names = listed(slides.into_iter());
+        format!("--degrees is of joints that turn: {names} {}, and {} taken for m and m/s", plural.0, plural.1)
+    })
 }
 
 /// Numbers that make no sense in any log.

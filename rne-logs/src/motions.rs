@@ -4,6 +4,7 @@ use crate::grid::Grid;
 use crate::kernel::{HIGHEST, Kernel};
 use crate::number::short;
 use crate::pass::Pass;
+use crate::spelling::listed;
 use crate::survey::Survey;
 use crate::{Log, LogError, Motion};
 
@@ -59,11 +60,12 @@ impl<'a> Motions<'a> {
             );
             return Err(log.request(what));
         }
-        if let Some(joint) = log.unsaid_currents() {
+        let currents = log.unsaid_currents();
+        if !currents.is_empty() {
             let what = format!(
-                "efforts of {} are currents, by the name of their column: --torque-constant says the N m/A that make \
+                "efforts of {} are currents, by the names of columns: --torque-constant says the N m/A that make \
                  torques of them",
-                log.layout.joints[joint]
+                listed(currents.into_iter())
             );
             return Err(log.request(what));
         }

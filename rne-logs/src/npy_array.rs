@@ -8,6 +8,9 @@ use crate::csv_table::no_time;
 use crate::sample::{Sample, Source};
 use crate::{LogError, Npy, Options, TimeUnit};
 
+/// What an array may have, in the order that it has unless somebody says another.
+const QUANTITIES: [&str; 4] = ["time", "q", "qd", "tau"];
+
 /// An array of states by columns, a sample a row.
 pub(crate) struct NpyArray {
     path: PathBuf,
@@ -31,9 +34,23 @@ impl NpyArray {
             let axes = npy.shape.len();
             return Err(wrong(&format_args!("the array has {axes} axes, not 2: states, and their numbers")));
         };
-        let (places, joints) = places(path, &options.columns, width)?;
-        if places[0].is_none() && options.rate.is_none() {
-            return Err(no_time(path));
+        let asked: Vec<&str> = match options.columns.as_slice() {
+            [] => QUANTITIES.to_vec(),
+            columns => columns.iter().map(String::as_str).collect(),
+        };
+        let (places, joints) = places(path, &asked, width)?;
+        match (places[0], options.rate) {
+            (None, None) => return Err(no_time(path, asked.into_iter())),
+            (Some(_), Some(_)) => {
+                let others: Vec<&str> = asked.iter().copied().filter(|name| *name != QUANTITIES[0]).collect();
+                let what = format!(
+                    "the columns {} have times, and --rate is of arrays without: take it away, or say --columns {}",
+                    asked.join(","),
+                    others.join(",")
+                );
+                return Err(LogError::request(path, what));
+            }
+            _ => {}
         }
         Ok(Self {
             path: path.to_owned(),
@@ -102,10 +119,10 @@ impl Source for NpyArray {
 }
 
 /// Where quantities stand in a row, and how many joints there are.
-fn places(path: &Path, columns: &[String], width: u64) -> Result<([Option<usize>; 4], usize), LogError> {
+fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 4], usize), LogError> {
     let mut order = Vec::new();
     for column in columns {
-        let Some(quantity) = ["time", "q", "qd", "tau"].iter().position(|name| name == column) else {
+        let Some(quantity) = QUANTITIES.iter().position(|name| name == column) else {
             let what = format!("an array has no columns {column:?}: they are time, q, qd and tau");
             return Err(LogError::request(path, what));
         };

@@ -16,6 +16,9 @@ pub struct Options {
     pub torque_constants: Vec<f64>,
     /// The unit of positions and velocities, of a table those whose columns' names say none.
     pub angles: Angles,
+    /// By joint that is read, base to tip, whether it slides: its positions are lengths then, whatever `angles` is.
+    /// Empty: nobody knows, and `angles` is of all.
+    pub slides: Vec<bool>,
     /// An interval of more than so many steps is a gap; 3.5 where nobody says: three samples that were lost are none.
     pub gap: f64,
     /// The cut-off of the filter, Hz; without it the spectrum chooses.
@@ -30,8 +33,16 @@ pub struct Options {
     pub time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times.
     pub rate: Option<f64>,
-    /// What the columns of an array are, in order: `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    /// What the columns of an array are, in order: of `time`, `q`, `qd`, `tau`, each but the first for every joint.
+    /// Empty: all of these. Other formats have names, and refuse it.
     pub columns: Vec<String>,
+}
+
+impl Options {
+    /// Whether a joint, by its place among those that are read, is known to slide.
+    pub(crate) fn is_slide(&self, joint: usize) -> bool {
+        self.slides.get(joint).copied().unwrap_or(false)
+    }
 }
 
 /// The unit of positions and velocities.
@@ -42,7 +53,7 @@ pub enum Angles {
     Unsaid,
     /// rad and rad/s, whatever the range
     Radians,
-    /// ° and °/s, of every joint
+    /// ° and °/s, of every joint that is not known to slide
     Degrees,
 }
 
@@ -53,6 +64,7 @@ impl Default for Options {
             topic: None,
             torque_constants: Vec::new(),
             angles: Angles::Unsaid,
+            slides: Vec::new(),
             gap: 3.5,
             cutoff: None,
             leave_out_spikes: false,
@@ -60,7 +72,7 @@ impl Default for Options {
             recorded: false,
             time_unit: None,
             rate: None,
-            columns: ["time", "q", "qd", "tau"].map(str::to_owned).to_vec(),
+            columns: Vec::new(),
         }
     }
 }

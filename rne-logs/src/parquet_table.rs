@@ -12,7 +12,7 @@ use parquet::schema::types::ColumnDescriptor;
 
 use crate::column_name::time;
 use crate::columns::Columns;
-use crate::csv_table::no_time;
+use crate::csv_table::{no_time, two_times};
 use crate::guard::guarded;
 use crate::list_columns::ListColumns;
 use crate::sample::{Sample, Source};
@@ -42,6 +42,7 @@ pub(crate) struct ParquetTable {
     all: u64,
     names: Vec<String>,
     units: FileUnits,
+    unread: Vec<String>,
     notes: Vec<String>,
 }
 
@@ -97,6 +98,7 @@ impl ParquetTable {
             all: file.metadata().row_groups().iter().map(|group| u64::try_from(group.num_rows()).unwrap_or(0)).sum(),
             names: Vec::new(),
             units: FileUnits::default(),
+            unread: Vec::new(),
             notes: Vec::new(),
             file,
         };
@@ -124,11 +126,17 @@ impl ParquetTable {
             self.units.others = lists.units;
             let of_leaf = |leaf: &Leaf| time(&leaf.name).filter(|_| !leaf.is_list);
             let time = leaves.iter().enumerate().find_map(|(place, leaf)| Some((place, of_leaf(leaf)?.ok()?)));
+            let mut converted = lists.converted;
+            let is_other = |unit: Option<TimeUnit>| unit.is_some_and(|unit| unit != TimeUnit::Seconds);
+            if let Some((place, _)) = time.filter(|(place, unit)| is_other(*unit) && leaves[*place].kind.is_number()) {
+                converted.insert(0, leaves[place].name.clone());
+            }
+            self.notes.extend(columns::converted(&converted));
             return self.tell_time(leaves, time, options);
         }
         let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
         let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
-        let columns = Columns::of(&self.path, &header, options)?;
+        let mut columns = Columns::of(&self.path, &header, options)?;
         let mut column = |column: columns::Column| -> Result<usize, LogError> {
             let leaf = &leaves[scalars[column.place]];
             if leaf.kind.is_number() {
@@ -144,7 +152,14 @@ impl ParquetTable {
         let velocity = optional(&columns.velocity)?;
         let effort = optional(&columns.effort)?;
         self.roles = Roles::Scalars { position, velocity, effort };
-        (self.names, self.units, self.notes) = (columns.names, columns.units, columns.notes);
+        if let Some((place, _)) = columns.time
+            && matches!(leaves[scalars[place]].kind, Kind::Stamp(_))
+        {
+            // by its type, not by its name
+            columns.converted.retain(|name| *name != header[place]);
+        }
+        self.notes = columns.remarks();
+        (self.names, self.units, self.unread) = (columns.names, columns.units, columns.unread);
         self.tell_time(leaves, columns.time.map(|(place, unit)| (scalars[place], unit)), options)
     }
 
@@ -157,8 +172,9 @@ impl ParquetTable {
     ) -> Result<(), LogError> {
         self.clock = match (time, options.rate) {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
-            (None, None) => return Err(no_time(&self.path)),
-            (Some((leaf, said)), _) => {
+            (None, None) => return Err(no_time(&self.path, leaves.iter().map(|leaf| leaf.name.as_str()))),
+            (Some((leaf, _)), Some(_)) => return Err(two_times(&self.path, &leaves[leaf].name)),
+            (Some((leaf, said)), None) => {
                 let unit = match leaves[leaf].kind {
                     Kind::Stamp(unit) => unit,
                     Kind::Real | Kind::Integer => said.or(options.time_unit).unwrap_or_default(),
@@ -287,6 +303,10 @@ impl Source for ParquetTable {
 
     fn notes(&self) -> Vec<String> {
         self.notes.clone()
+    }
+
+    fn unread(&self) -> Vec<String> {
+        self.unread.clone()
     }
 
     fn units(&self) -> FileUnits {

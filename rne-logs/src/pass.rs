@@ -138,9 +138,9 @@ impl<'a> Pass<'a> {
         state.time = if layout.recorded { sample.recorded } else { sample.measured };
         state.numbers.clear();
         let units = &layout.units;
-        self.joints.take(&sample.position, |joint| log.of_angle(units[joint].position), &mut state.numbers);
+        self.joints.take(&sample.position, |joint| log.of_angle(joint, units[joint].position), &mut state.numbers);
         if layout.has_velocities {
-            self.joints.take(&sample.velocity, |joint| log.of_angle(units[joint].velocity), &mut state.numbers);
+            self.joints.take(&sample.velocity, |joint| log.of_angle(joint, units[joint].velocity), &mut state.numbers);
         }
         if layout.has_efforts {
             self.joints.take(&sample.effort, |joint| log.torque_constant(joint), &mut state.numbers);

@@ -33,6 +33,11 @@ pub(crate) trait Source {
         Vec::new()
     }
 
+    /// The names of columns that are not read and may be meant.
+    fn unread(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The units that the file says; its numbers are in SI units there.
     fn units(&self) -> FileUnits {
         FileUnits::default()

@@ -98,7 +98,44 @@ fn what_is_wrong_is_said() {
     fine(&["excite", path, "--range", "0.2", "--evaluations", "20"]);
     let weak = "limits: {position: [0, 1], effort: 5},";
     fs::write(&slide, text.replace("LIMITS", weak)).expect("a file");
-    fails(1, &["excite", path, "--evaluations", "20"], &["within the effort limits: rail would need"]);
+    // 2 kg wherever they are
+    let weighs = "gravity alone needs 19.620 of 5.000 N of rail at rail 0.500 m";
+    let helps = "neither a slower motion nor a smaller --range helps";
+    fails(1, &["excite", path, "--evaluations", "20"], &[weighs, helps, "is the effort limit of rail right"]);
     fs::write(&slide, text.replace("LIMITS", "limits: {position: [1, 1]},")).expect("a file");
     fails(1, &["excite", path], &["the position limits of rail leave it no room to move"]);
+}
+
+/// A pendulum of 1 kg at 0.5 m, which weighs 4.905 N m times cos q: what is advised is what helps.
+#[test]
+fn gravity_beyond_the_effort_limits_is_told_apart() {
+    let path = folder("excite_gravity").join("pendulum.yaml");
+    let file = path.to_str().expect("UTF-8");
+    let said = |position: &str, effort: f64, coulomb: f64| {
+        let text = format!(
+            "{{format: 1, name: pendulum, source: own, convention: standard, gravity: [0, -9.81, 0], joints: [{{name: \
+             swing, type: revolute, limits: {{position: {position}, velocity: 1, effort: {effort}}}, motor: {{coulomb: \
+             [{coulomb}, -{coulomb}]}}, dh: {{theta: 0, d: 0, a: 0.5, alpha: 0}}, link: {{mass: 1}}}}]}}"
+        );
+        fs::write(&path, text).expect("a file");
+        let called = rne(&["excite", file, "--evaluations", "20"]);
+        assert_eq!((called.status, called.out.as_str()), (1, ""), "{called:?}");
+        called.said()
+    };
+    let (slower, helps) = ("a slower one, by --seconds", "neither a slower motion nor a smaller --range helps");
+    let has = |said: &str, parts: &[&str]| parts.iter().for_each(|part| assert!(said.contains(part), "{part}: {said}"));
+    // cos 0.2 of it at least: at the ends, not in the middle
+    let everywhere = said("[-0.2, 0.2]", 4.0, 0.0);
+    has(&everywhere, &["gravity alone needs 4.807 of 4.000 N m of swing at swing", helps, "2000 positions"]);
+    assert!(!everywhere.contains(slower), "{everywhere}");
+    // the ends would do, and leave no room
+    let middle = said("[-0.5, 0.5]", 4.31, 0.0);
+    has(&middle, &["gravity alone needs 4.905 of 4.310 N m of swing at swing 0 rad, the middle", helps]);
+    assert!(!middle.contains(slower), "{middle}");
+    // friction is in the way where it hangs lower
+    let end = said("[-1.5, 0.2]", 4.2, 4.0);
+    has(&end, &["swing would need", slower, "gravity alone needs 4.905 of 4.200", "a smaller --range keeps away from"]);
+    let friction = said("[-1.5, 0.2]", 6.0, 6.0);
+    has(&friction, &["swing would need", slower]);
+    assert!(!friction.contains("gravity"), "{friction}");
 }

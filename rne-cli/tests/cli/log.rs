@@ -65,6 +65,16 @@ fn what_is_wrong_is_said() {
     };
     fails(2, &["log", PANDA, "--robot", "panda"], &["no joint panda_joint1", "fer_joint1", "--joints"]);
     fails(2, &["log", PANDA, "--joints", "fer_joint1,fer_jont2"], &["did you mean fer_joint2?"]);
+    for names in ["", " ", ",,", "fer_joint1,", ",fer_joint1"] {
+        fails(2, &["identify", "panda", PANDA, "--joints", names], &["a name of --joints is empty; the log has fer"]);
+        fails(2, &["log", PANDA, "--joints", names], &["a name of --joints is empty; the log has fer_joint1, fer"]);
+    }
+    let numbered = rne(&["log", "docs/desk_arm_log.csv", "--joints", "7,1,2"]);
+    assert!(numbered.status == 2 && !numbered.err.contains("did you mean"), "{numbered:?}");
+    for twice in [[PANDA, PANDA], [PANDA, "rne-logs/tests/../tests/data/panda.db3"]] {
+        fails(2, &["log", twice[0], twice[1]], &["panda.db3: the file is named twice", "count twice"]);
+        fails(2, &["identify", "panda", twice[0], twice[1]], &["named twice"]);
+    }
     fails(2, &["log", PANDA, "--topic", "/joints"], &["no topic /joints", "/joint_states"]);
     fails(2, &["log", PANDA, "--cutoff", "12"], &["too high for samples at 30.0007 Hz"]);
     fails(2, &["log", PANDA, "--torque-constant", "1,2"], &["2 torque constants for 7 joints"]);
@@ -124,22 +134,17 @@ fn columns_are_joints_by_number_and_say_their_units() {
     let folder = folder("log_columns");
     let path = folder.join("log.csv");
     let log = path.to_str().expect("UTF-8");
-    let judged = |arguments: &[&str]| {
-        let called = rne(&[&["identify", "docs/desk_arm.yaml", log, "--judge"], arguments].concat());
-        assert_eq!(called.status, 0, "{}", called.err);
-        called.out
-    };
     let plain = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1);
     desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
-    let expected = judged(&[]);
+    let expected = judged(log, &[]);
     desk_log(&path, [2, 0, 1], plain, [1.0; 3]);
-    assert_eq!(judged(&[]), expected);
+    assert_eq!(judged(log, &[]), expected);
     let degree = std::f64::consts::PI / 180.0;
     let said = |quantity: usize, joint: usize| {
         format!("{}{}{}", ["q", "qd", "tau"][quantity], joint + 1, [" [deg]", " [deg/s]", "[mNm]"][quantity])
     };
     desk_log(&path, [2, 0, 1], said, [degree, degree, 1e-3]);
-    assert_eq!(judged(&[]), expected);
+    assert_eq!(judged(log, &[]), expected);
     let noted = fine(&["log", log]);
     assert!(noted.contains("converted from the units of columns' names: q1 [deg], q2 [deg]"), "{noted}");
     assert!(!noted.contains("--torque-constant"), "{noted}");
@@ -157,10 +162,146 @@ fn columns_are_joints_by_number_and_say_their_units() {
         format!("{}{}{}", ["q", "qd", "i"][quantity], joint + 1, ["", "", " [A]"][quantity])
     };
     desk_log(&path, [0, 1, 2], currents, [1.0; 3]);
-    let asked = ["efforts of 1 are currents", "--torque-constant"];
+    let asked = ["efforts of 1, 2, 3 are currents", "--torque-constant"];
     fails(2, &["identify", "docs/desk_arm.yaml", log, "--judge"], &asked);
     let called = rne(&["log", log]);
     assert!(called.status == 1 && asked.iter().all(|part| called.out.contains(part)), "{called:?}");
     fails(2, &["log", log, "-o", "-"], &asked);
     fine(&["log", log, "--torque-constant", "1"]);
+}
+
+fn judged(log: &str, more: &[&str]) -> String {
+    let called = rne(&judge(log, more));
+    assert_eq!(called.status, 0, "{}", called.err);
+    called.out
+}
+
+fn judge<'a>(log: &'a str, more: &[&'a str]) -> Vec<&'a str> {
+    ["identify", "docs/desk_arm.yaml", log, "--judge"].into_iter().chain(more.iter().copied()).collect()
+}
+
+/// Names are those of the log: others are refused, whether its joints have names or numbers, and so is another number
+/// of them. Numbers say an order.
+#[test]
+fn joints_are_named_as_the_log_names_them() {
+    let folder = folder("log_names");
+    let path = folder.join("log.csv");
+    let log = path.to_str().expect("UTF-8");
+    let plain = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], joint + 1);
+    desk_log(&path, [0, 1, 2], plain, [1.0; 3]);
+    let expected = judged(log, &[]);
+    for names in ["foo,bar,baz", "waist,shoulder,elbow", "elbow,shoulder,waist"] {
+        let said = ["the log has no joint", "it has 1, 2, 3", "--joints names those"];
+        fails(2, &judge(log, &["--joints", names]), &said);
+        fails(2, &["watch", "docs/desk_arm.yaml", log, "--joints", names], &said);
+        fails(2, &["log", log, "--joints", names], &said);
+    }
+    assert_eq!(judged(log, &["--joints", "1,2,3"]), expected);
+    // a log that says another order is another log
+    let reversed = |quantity: usize, joint: usize| format!("{}{}", ["q", "qd", "tau"][quantity], 3 - joint);
+    desk_log(&path, [0, 1, 2], reversed, [1.0; 3]);
+    assert_eq!(judged(log, &["--joints", "3,2,1"]), expected);
+    // `rne log` has the robot's joints by name, of numbers by order
+    assert!(fine(&["log", log, "--robot", "docs/desk_arm.yaml"]).contains("\n1  1 "));
+    let named = |quantity: usize, joint: usize| {
+        format!("{}.{}", ["position", "velocity", "effort"][quantity], ["waist", "shoulder", "elbow"][joint])
+    };
+    desk_log(&path, [2, 0, 1], named, [1.0; 3]);
+    assert_eq!(judged(log, &[]), expected);
+    assert!(fine(&["log", log, "--robot", "docs/desk_arm.yaml"]).contains("\n1  waist "));
+    // two of its names, and not where they are
+    let other = |quantity: usize, joint: usize| {
+        format!("{}.{}", ["position", "velocity", "effort"][quantity], ["base", "elbow", "shoulder"][joint])
+    };
+    desk_log(&path, [0, 1, 2], other, [1.0; 3]);
+    fails(2, &judge(log, &[]), &["base, elbow, shoulder there", "shoulder has another place", "--joints"]);
+    assert_eq!(judged(log, &["--joints", "base,elbow,shoulder"]), expected);
+    // fewer or more than the robot has; what is advised is no circle
+    let few = "take a log that has all";
+    fails(2, &["identify", "ur10", log], &["the log has 3 joints, the robot 6: base, elbow, shoulder there", few]);
+    let there = "names 3 joints of the log, which has base, elbow, shoulder, and the robot has 6 joints: shoulder";
+    fails(2, &["identify", "ur10", log, "--joints", "base,elbow,shoulder"], &[there, few]);
+    fails(2, &["watch", "planar2", log], &["the log has 3 joints, the robot 2", "--joints says which"]);
+    let there = "names 1 joint of the log, which has base, elbow, shoulder, and the robot has 3 joints: waist";
+    fails(2, &judge(log, &["--joints", "base"]), &[there, "say which joint of the log each of them is"]);
+}
+
+/// Degrees are of what turns, where a robot file says what does.
+#[test]
+fn metres_of_a_slide_are_no_degrees() {
+    let folder = folder("log_slide");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    let robot = path("slide.yaml");
+    let text = "{format: 1, name: slide, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [\
+                {name: rail, type: prismatic, dh: {theta: 0, d: 0, a: 0, alpha: pi/2}, link: {mass: 2}}, \
+                {name: arm, type: revolute, dh: {theta: 0, d: 0, a: 0.3, alpha: 0}, \
+                link: {mass: 1, com: [-0.1, 0, 0]}}]}";
+    fs::write(&robot, text).expect("a robot file");
+    let log = |name: &str, header: &str, unit: f64| {
+        let rows = (0..600).map(|row| {
+            let t = f64::from(row) * 0.01;
+            let (rail, arm) = (0.4 * (2.0 * t).sin(), (3.0 * t).sin() / unit);
+            format!("{t},{rail},{arm},{},{}\n", 30.0 + t.cos(), (2.5 * t).sin())
+        });
+        let path = path(name);
+        fs::write(&path, format!("{header}\n{}", rows.collect::<String>())).expect("a log");
+        path
+    };
+    let radians = log("log.csv", "t,q1,q2,tau1,tau2", 1.0);
+    let account = |arguments: &[&str]| {
+        let called = rne(arguments);
+        (called.out, called.err)
+    };
+    let expected = account(&["identify", &robot, &radians, "--judge"]).0;
+    let degrees = log("log.csv", "t,q1,q2,tau1,tau2", f64::to_radians(1.0));
+    let (found, said) = account(&["identify", &robot, &degrees, "--judge", "--degrees"]);
+    assert_eq!(found, expected);
+    let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(said.contains("--degrees is of joints that turn: 1 slides, and is taken for m and m/s"), "{said}");
+    let said = fine(&["log", &degrees, "--degrees", "--robot", &robot]);
+    assert!(said.contains("1  1      -0.4 … 0.4") && said.contains("--degrees is of joints that turn: 1"), "{said}");
+    let watched = account(&["watch", &robot, &degrees, "--degrees"]).1;
+    assert!(watched.contains("joints that turn: 1"), "{watched}");
+    // without a robot nobody knows, but its column may say it
+    let said = fine(&["log", &degrees, "--degrees"]);
+    assert!(!said.contains("-0.4 … 0.4") && !said.contains("that turn"), "{said}");
+    let named = log("named.csv", "t,q1 [m],q2,tau1,tau2", f64::to_radians(1.0));
+    let (found, said) = account(&["identify", &robot, &named, "--judge", "--degrees"]);
+    assert_eq!(found.replace("named.csv", "log.csv"), expected);
+    assert!(!said.contains("that turn"), "{said}");
+}
+
+/// Columns whose names are not understood are named where something is missing, and units that are converted.
+#[test]
+fn columns_that_are_not_understood_are_named() {
+    let folder = folder("log_german");
+    let path = folder.join("german.csv");
+    let log = path.to_str().expect("UTF-8");
+    let german =
+        |quantity: usize, joint: usize| format!("Achse{}_{}", joint + 1, ["position", "speed", "Moment"][quantity]);
+    desk_log(&path, [0, 1, 2], german, [1.0; 3]);
+    let text = fs::read_to_string(&path).expect("a log");
+    fs::write(&path, text.replacen("time", "Zeit [s]", 1)).expect("a log");
+    let there = "and there is Zeit [s], Achse1_position, Achse2_position, Achse3_position, Achse1_speed";
+    fails(2, &["log", log], &["no column has times", there, "--rate"]);
+    let unread = "Zeit [s], Achse1_Moment, Achse2_Moment, Achse3_Moment";
+    let said = fine(&["log", log, "--rate", "25"]);
+    let place = |words: &str| said.find(words).unwrap_or_else(|| panic!("no `{words}` in {said}"));
+    assert!(place(&format!("columns that are not read: {unread}")) < place("there are no efforts"));
+    let judge = judge(log, &["--rate", "25"]);
+    fails(1, &judge, &["the log has no efforts", &format!("not read are {unread}"), "tau1, …"]);
+    // of a log that has all, nothing else is meant
+    let timed = fs::read_to_string(&path).expect("a log").replace("Moment", "torque").replacen("Zeit", "t", 1);
+    fs::write(&path, &timed).expect("a log");
+    assert!(!fine(&["log", log]).contains("not read"));
+    fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and --rate is of tables without"]);
+    fails(2, &["log", log, "--columns", "time,q,tau"], &["--columns is of arrays of numpy; this is CSV"]);
+    fails(2, &["log", UR10, "--rate", "125"], &["messages have times"]);
+    let rows = timed.lines().skip(1).map(|line| {
+        let (time, others) = line.split_once(',').expect("a time");
+        format!("\n{},{others}", 1e3 * time.parse::<f64>().expect("a number"))
+    });
+    let header = timed.lines().next().expect("a header").replace("t [s]", "t [ms]");
+    fs::write(&path, header + &rows.collect::<String>() + "\n").expect("a log");
+    assert!(fine(&["log", log]).contains("note: numbers are converted from the units of columns' names: t [ms]\n"));
 }

@@ -46,11 +46,11 @@ fn joints_are_by_their_numbers_in_any_order_of_columns() {
     let as_texts = [1, 10, 11, 2, 3, 4, 5, 6, 7, 8, 9];
     let expected = motion(&eleven(&sorted), options());
     assert_eq!(motion(&eleven(&as_texts), options()), expected);
-    // by the names of a robot that are none of the log, and of two of its joints
+    // two of them, and names that are none of the log, as many as it has
     let named =
         |names: &[&str]| Options { joints: Some(names.iter().map(|name| (*name).into()).collect()), ..options() };
-    let robot = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k"];
-    assert_eq!(motion(&eleven(&as_texts), named(&robot)), expected);
+    let others = ["a", "b", "c", "d", "e", "f", "g", "h", "i", "j", "k"];
+    assert!(refused(&eleven(&as_texts), named(&others)).contains("no joint a, b, c"));
     let two = motion(&eleven(&as_texts), named(&["10", "2"]));
     assert_eq!((&two.q[0], &two.q[1], &two.tau[0]), (&expected.q[9], &expected.q[1], &expected.tau[9]));
     // words with numbers
@@ -114,6 +114,22 @@ fn units_of_names_are_converted() {
     let asked = Options { angles: Angles::Degrees, ..options() };
     assert_eq!(motion(&said, options()), motion(&text, asked.clone()));
     assert_eq!(motion(&said, asked.clone()), motion(&text, asked.clone()));
+    // what slides is in metres, whatever joints it is asked with
+    let slide = |joints: &[&str], slides: &[bool]| Options {
+        joints: Some(joints.iter().map(|name| (*name).into()).collect()),
+        slides: slides.to_vec(),
+        ..asked.clone()
+    };
+    let of_metres = with_units("time,q1,q2,qd1,qd2,tau1,tau2", [1.0, 1.0, degree, 1.0, degree, 1.0, 1.0]);
+    for (joints, slides) in [(["1", "2"], [true, false]), (["2", "1"], [false, true])] {
+        let found = motion(&of_metres, slide(&joints, &slides));
+        let plain = motion(&plain, Options { joints: slide(&joints, &[]).joints, ..options() });
+        assert!(is_near(&found, &plain), "{joints:?}");
+        let (_folder, path) = file("log.csv", &of_metres);
+        let (log, _) = survey(&[path], slide(&joints, &slides)).unwrap();
+        let note = "--degrees is of joints that turn: 1 slides, and is taken for m and m/s".to_owned();
+        assert_eq!(log.layout().notes, [note]);
+    }
     // the option is of what says none
     let partly = text.replace("q1,q2,qd1,qd2", "q1 [deg],q2 [deg],qd1,qd2");
     assert_eq!(motion(&partly, asked.clone()), motion(&text, asked));
@@ -135,9 +151,9 @@ fn currents_need_a_constant() {
     let text = csv(&times()).replace("tau1,tau2", "i1 [mA],i2 [A]");
     let (_folder, path) = file("log.csv", &text);
     let (log, _) = survey(&[path], options()).unwrap();
-    assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (Some(0), Some(Dimension::Current)));
+    assert_eq!((log.unsaid_currents(), log.layout().units[0].effort), (vec!["1", "2"], Some(Dimension::Current)));
     let error = refused(&text, options());
-    assert!(error.contains("efforts of 1 are currents, by the name of their column: --torque-constant"), "{error}");
+    assert!(error.contains("efforts of 1, 2 are currents, by the names of columns: --torque-constant"), "{error}");
     assert!(refused(&csv(&times()).replace("tau", "current_"), options()).contains("are currents"));
     let said = motion(&text, Options { torque_constants: vec![200.0, 0.3], ..options() });
     let plain = motion(&csv(&times()), options());

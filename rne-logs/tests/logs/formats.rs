@@ -331,6 +331,32 @@ fn topics_are_named_where_there_are_several() {
     assert!(asked.to_string().contains("no topic has sensor_msgs/msg/JointState; it has"), "{asked}");
 }
 
+/// An option that a format has no use for, or that says what the log says too, is refused.
+#[test]
+fn options_that_count_for_nothing_are_refused() {
+    let (_folder, bag) = sqlite(&times(), true, true);
+    let rate = Options { rate: Some(125.0), ..options() };
+    let columns = Options { columns: ["time", "q", "tau"].map(str::to_owned).to_vec(), ..options() };
+    let plain = || WriterProperties::builder().build();
+    let (has, names) = ("and --rate is of", "--columns is of arrays of numpy; this is");
+    for (name, bytes) in [
+        ("log.csv", csv(&times()).into_bytes()),
+        ("log.npy", npy(&times(), true, "<f8")),
+        ("log.parquet", scalars(&times(), plain())),
+        ("log.parquet", lists(&times(), true)),
+        ("bag.mcap", mcap(&times(), None, &["/js"])),
+        ("bag.db3", std::fs::read(bag).unwrap()),
+    ] {
+        let (_folder, path) = file(name, bytes);
+        let refused = error(path.clone(), rate.clone());
+        assert!(refused.is_of_request() && refused.to_string().contains(has), "{name}: {refused}");
+        if name != "log.npy" {
+            let refused = error(path, columns.clone());
+            assert!(refused.is_of_request() && refused.to_string().contains(names), "{name}: {refused}");
+        }
+    }
+}
+
 #[test]
 fn other_schemas_are_told() {
     let text = parquet(
@@ -365,7 +391,11 @@ fn other_schemas_are_told() {
         ("old.bag", b"#ROSBAG V2.0\n".to_vec(), "a bag of ROS 1"),
         ("empty.csv", Vec::new(), "the file is empty"),
         ("numbers.csv", b"0,1,2\n3,4,5\n".to_vec(), "the first line has numbers"),
-        ("no_time.csv", b"q1,q2\n3,4\n".to_vec(), "no column has times"),
+        (
+            "no_time.csv",
+            b"Zeit,q1,q2\n3,4,5\n".to_vec(),
+            "no column has times: its name is time, t, stamp or timestamp, and there is Zeit, q1, q2;",
+        ),
         ("words.csv", b"time,q1\n0,1\n0.1,two\n".to_vec(), "line 3: \"two\" is no number"),
         ("short.csv", b"time,q1,q2\n0,1,2\n0.1,2\n".to_vec(), "line 3: the line has 2 cells, the header 3"),
         ("still.csv", b"time,q1\n1,1\n1,2\n1,3\n".to_vec(), "do not grow"),
