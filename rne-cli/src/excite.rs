@@ -17,7 +17,7 @@ use rne_plot::{Panel, PanelCurve, panels};
 use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, Replacement, check_new, is_standard_output, unwritable};
+use crate::output_file::{self, Replacement, check_new, is_standard_output, unwritable, will_be_same};
 use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
@@ -120,13 +120,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let sources = [arguments.file.as_path()];
     let out = arguments.output.as_deref();
     let is_shown = out.is_some_and(is_standard_output);
+    if let (Some(out), Some(plot)) = (out, arguments.plot.as_deref())
+        && will_be_same(out, plot)
+    {
+        return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
+    }
     for path in out.filter(|_| !is_shown).into_iter().chain(arguments.plot.as_deref()) {
         check_new(path, None, &sources, arguments.force)?;
         // before the search, not after it
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
-    }
-    if out.is_some() && out == arguments.plot.as_deref() {
-        return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
     }
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();

@@ -16,7 +16,7 @@ use crate::log_arguments::LogArguments;
 use crate::motion_log::{MotionLog, Part};
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, check_place, is_same, is_standard_output};
+use crate::output_file::{self, check_place, is_standard_output, will_be_same};
 use crate::robot_file;
 use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
 
@@ -147,8 +147,8 @@ fn warnings(found: &Identification) -> Vec<String> {
             ));
         } else if let Some((offset, coulomb)) = report.offset {
             said.push(format!(
-                "{name} has an offset of {} {unit}, a spring, a counterweight or a sensor: a robot file holds none above \
-                 Coulomb friction, which is {}, so what it predicts is off by the rest",
+                "{name} has an offset of {} {unit}, a spring, a counterweight or a sensor: a robot file holds none \
+                 above Coulomb friction, which is {}, so what it predicts is off by the rest",
                 rounded(offset, 3),
                 rounded(coulomb, 3)
             ));
@@ -162,7 +162,7 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
     let output = arguments.output.as_deref().filter(|path| !is_standard_output(path));
     let plot = arguments.plot.as_deref();
     if let (Some(output), Some(plot)) = (output, plot)
-        && (output == plot || is_same(output, plot) || is_one_name(output, plot))
+        && will_be_same(output, plot)
     {
         let shown = one_line(&plot.display().to_string());
         return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
@@ -176,15 +176,6 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         }
     }
     Ok(())
-}
-
-/// Whether two paths, of which a file may not be there yet, have one name in one folder.
-fn is_one_name(one: &Path, other: &Path) -> bool {
-    let folder = |path: &Path| {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        folder.canonicalize().ok()
-    };
-    one.file_name() == other.file_name() && folder(one).is_some_and(|of_one| Some(of_one) == folder(other))
 }
 
 fn options(arguments: &Arguments, cutoff: f64) -> Options {

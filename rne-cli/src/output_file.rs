@@ -61,6 +61,16 @@ pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
     }
 }
 
+/// Whether two paths lead to one file, which may not be there yet.
+pub(crate) fn will_be_same(a: &Path, b: &Path) -> bool {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::canonicalize(folder).ok()
+    };
+    let is_one_name = || a.file_name() == b.file_name() && folder(a).is_some_and(|of_a| Some(of_a) == folder(b));
+    a == b || is_same(a, b) || is_one_name()
+}
+
 /// Writes a file through a temporary one beside it, so that a reader finds the old text or the new one. A file that has
 /// the text already keeps its date, so nothing is built again.
 pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {

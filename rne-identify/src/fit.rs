@@ -14,8 +14,8 @@ const FIRST: usize = 3;
 const CHOOSING: usize = 2;
 /// N m or N: no joint's noise is less, so that efforts that are zero throughout divide nothing by nothing.
 const LEAST_NOISE: f64 = 1e-12;
-/// Efforts of which none is more than this part of the largest one of all joints are not measured: by their noise, which
-/// is as small, they would outweigh all other joints.
+/// Efforts of which none is more than this part of the largest one of all joints are not measured: by their noise,
+/// which is as small, they would outweigh all other joints.
 const NOT_MEASURED: f64 = 1e-8;
 
 /// Rows of joints tell deviations where there are so many times as many as unknowns.
@@ -128,8 +128,8 @@ impl Fit {
         design.tr_mul(&(design * unknowns - target.column(0)))
     }
 
-    /// The offset of a joint and its Coulomb friction, N m or N, where the former is larger: a spring, a counterweight, a
-    /// sensor. No robot file holds what is more. `effort` is of the joint, root mean square.
+    /// The offset of a joint and its Coulomb friction, N m or N, where the former is larger: a spring, a counterweight,
+    /// a sensor. No robot file holds what is more. `effort` is of the joint, root mean square.
     #[must_use]
     pub fn loose_offset(&self, structure: &Structure, joint: usize, effort: f64) -> Option<(f64, f64)> {
         let at = structure.friction_at(joint)?;

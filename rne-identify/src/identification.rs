@@ -28,7 +28,8 @@ pub(crate) const UNKNOWN: f64 = 0.5;
 /// A joint is not excited where more than this part of its effort is no torque of any model, root mean square.
 const NOISE: f64 = 0.5;
 
-/// What is left of a joint, as a part of its effort, where no model explains it; beyond these an effort does not change.
+/// What is left of a joint, as a part of its effort, where no model explains it; beyond these an effort does not
+/// change.
 const UNEXPLAINED: Range<f64> = 0.9..10.0;
 
 /// N m or N: efforts of which none is larger are no torques.
@@ -130,8 +131,8 @@ impl JointReport {
         }
     }
 
-    /// Whether no model of the arm explains efforts that do change: they are noise, of another sign, or those of another
-    /// joint.
+    /// Whether no model of the arm explains efforts that do change: they are noise, of another sign, or those of
+    /// another joint.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         !self.is_excited() && UNEXPLAINED.contains(&self.error.as_read)

@@ -183,9 +183,9 @@ impl Place {
         Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
     }
 
-    /// The source distribution as pip builds it, apart from this folder's own build. Where there is no Rust, maturin asks
-    /// for the package `puccinialin`, which downloads one; here the Rust that is on `PATH` is taken, so that nothing
-    /// depends on a download.
+    /// The source distribution as pip builds it, apart from this folder's own build. Where there is no Rust, maturin
+    /// asks for the package `puccinialin`, which downloads one; here the Rust that is on `PATH` is taken, so that
+    /// nothing depends on a download.
     fn holds_from_sources(&self) -> Result<bool> {
         let (shell, maturin) = (&self.shell, self.maturin(true)?);
         let sources = self.folder.join("sources");

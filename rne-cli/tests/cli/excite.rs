@@ -22,6 +22,8 @@ fn a_trajectory_is_what_other_commands_read() {
     let folder = folder("excite");
     let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
     let (csv, svg) = (path("trajectory.csv"), path("motion.svg"));
+    // one file by two ways
+    fails(2, &excite(&["-o", &csv, "--plot", &path("../excite/trajectory.csv")]), &["-o and --plot name the same"]);
     let called = rne(&excite(&["-o", &csv, "--plot", &svg]));
     assert!(called.status == 0 && called.err.matches("wrote").count() == 2, "{called:?}");
     assert!(called.out.lines().all(|line| line.chars().count() <= 80), "{}", called.out);

@@ -32,7 +32,8 @@ impl fmt::Display for WrongNumbers {
 impl std::error::Error for WrongNumbers {}
 
 impl Information {
-    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each stretch and joint the rows, their weight and the triangle.
+    /// Everything it has, as numbers: a head, the largest effort of each joint, then of each stretch and joint the
+    /// rows, their weight and the triangle.
     #[must_use]
     #[allow(clippy::cast_precision_loss)] // counts below 2^53; one that has no end is infinite
     pub fn to_numbers(&self) -> Vec<f64> {
