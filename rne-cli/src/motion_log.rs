@@ -32,6 +32,8 @@ const HIGHEST: f64 = 0.3;
 /// Logs that were opened and surveyed.
 pub(crate) struct MotionLog {
     log: Log,
+    /// How it was opened.
+    options: Options,
     survey: Survey,
     /// Hz: what both sides pass.
     pub(crate) cutoff: f64,
@@ -108,7 +110,8 @@ impl MotionLog {
             if wider.is_finite() { log.left(&survey, (wider * cutoff).min(highest)) } else { longest }
         })?;
         let read_to = (wider * cutoff).min(highest);
-        let log = Log::open(paths, Options { cutoff: Some(read_to), ..options }).map_err(failure)?;
+        options.cutoff = Some(read_to);
+        let log = Log::open(paths, options.clone()).map_err(failure)?;
         let survey = log.survey(|_| ()).map_err(failure)?;
         remarks.extend(notes_of_motion(&log, &survey));
         for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {
@@ -120,7 +123,16 @@ impl MotionLog {
         for (messages, why) in left_out(&log, &survey) {
             remarks.push((format!("left out: {messages} messages {why}"), true));
         }
-        Ok(Self { log, survey, cutoff, read_to, remarks })
+        Ok(Self { log, options, survey, cutoff, read_to, remarks })
+    }
+
+    /// The same logs behind the filter that a robot file is judged behind; of runs that have no room for it, too.
+    pub(crate) fn judged(&self) -> Result<Self, Failure> {
+        let read_to = (WIDER * self.cutoff).min(self.read_to);
+        let options = Options { cutoff: Some(read_to), ..self.options.clone() };
+        let log = Log::open(self.log.files(), options.clone()).map_err(failure)?;
+        let survey = log.survey(|_| ()).map_err(failure)?;
+        Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
     }
 
     /// What a reader should know of it, in lines of a width.

@@ -110,7 +110,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         }
     }
     // behind the filter that `rne identify --judge` has, so that its errors are these
-    let judged = MotionLog::open_all(&arguments.logs, &robot, &arguments.reading)?;
+    let judged = log.judged()?;
     let errors = prediction(&robot, &judged, Part::All)?;
     let mut is_explained = true;
     let mut warn = |names: &[String], where_: &str| {

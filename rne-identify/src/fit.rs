@@ -12,7 +12,7 @@ const ROUNDS: usize = 12;
 /// Rounds before the reversals of friction are chosen, and in which they are.
 const FIRST: usize = 3;
 const CHOOSING: usize = 2;
-/// N m or N: no joint's noise is less, so that efforts that are zero throughout divide nothing by nothing.
+/// N m or N: no joint's noise is less, so that efforts without any divide nothing by nothing.
 const LEAST_NOISE: f64 = 1e-12;
 /// Efforts of which none is more than this part of the largest one of all joints are not measured: by their noise,
 /// which is as small, they would outweigh all other joints.
@@ -134,13 +134,20 @@ impl Fit {
     pub fn loose_offset(&self, structure: &Structure, joint: usize, effort: f64) -> Option<(f64, f64)> {
         let at = structure.friction_at(joint)?;
         let (coulomb, offset) = (self.solution[at + 1], self.solution[at + 2]);
-        let covariance = |row: usize, column: usize| self.covariance[(at + row, at + column)];
         // of the friction of the direction against which the offset goes
-        let variance = covariance(1, 1) + covariance(2, 2) - 2.0 * offset.signum() * covariance(1, 2);
+        let deviation = self.coulomb_deviation(at, -offset.signum());
         let beyond = offset.abs() - coulomb;
         let [deviations, part] = BEYOND;
-        let is_larger = beyond > part * effort && beyond > deviations * variance.abs().sqrt();
+        let is_larger = beyond > part * effort && beyond > deviations * deviation;
         (coulomb > 0.0 && is_larger).then_some((offset, coulomb))
+    }
+
+    /// The deviation of Coulomb friction forward (1) or backward (-1) of the joint whose friction is at these unknowns:
+    /// its odd part plus or minus the offset. What is no number stays none.
+    pub(crate) fn coulomb_deviation(&self, at: usize, direction: f64) -> f64 {
+        let covariance = |row: usize, column: usize| self.covariance[(at + row, at + column)];
+        let variance = covariance(1, 1) + covariance(2, 2) + 2.0 * direction * covariance(1, 2);
+        if variance < 0.0 { 0.0 } else { variance.sqrt() }
     }
 
     /// Half the width of an unknown's interval of 95 %: its deviation times the quantile of Student's t with one degree

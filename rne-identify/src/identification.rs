@@ -304,14 +304,12 @@ fn bases(structure: &Structure, fit: &Fit, scales: &Scales, robot: &Robot) -> Ve
 
 fn friction(structure: &Structure, fit: &Fit, feasible: &Feasible, joint: usize) -> [(f64, f64); FRICTION] {
     let at = structure.parameters.rank() + FRICTION * joint;
-    let covariance = |row: usize, column: usize| fit.covariance[(at + row, at + column)];
-    let both = |sign: f64| {
-        let variance = covariance(1, 1) + covariance(2, 2) + 2.0 * sign * covariance(1, 2);
-        // what is no number stays none
-        if variance < 0.0 { 0.0 } else { variance.sqrt() }
-    };
     let [viscous, forward, backward] = feasible.friction[joint];
-    [(viscous, fit.deviation(at)), (forward, both(1.0)), (backward, both(-1.0))]
+    [
+        (viscous, fit.deviation(at)),
+        (forward, fit.coulomb_deviation(at, 1.0)),
+        (backward, fit.coulomb_deviation(at, -1.0)),
+    ]
 }
 
 fn joints(

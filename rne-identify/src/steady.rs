@@ -5,7 +5,7 @@
 //! to be far off any more. Stretches of time are kept apart anyway: those that stand out from the others count less
 //! until the others agree, which takes no other pass over the logs. From there on rows are told from each other.
 
-use crate::fit::Fit;
+use crate::fit::{Fit, effort};
 use crate::identification::scales;
 use crate::information::Information;
 use crate::r_factor::RFactor;
@@ -59,10 +59,7 @@ fn residuals(structure: &Structure, information: &Information, fit: &Fit) -> Vec
             }
             left.norm() / factor.weight().max(1.0).sqrt()
         };
-        let effort = {
-            let factor = &total[joint];
-            factor.triangle().column(factor.columns() - 1).norm() / factor.weight().max(1.0).sqrt()
-        };
+        let effort = effort(&total[joint]);
         let stretches = information.stretches.iter().filter_map(|stretch| stretch.get(joint));
         stretches.map(|factor| left(factor).max(ROUNDING * effort)).collect()
     };

@@ -11,22 +11,7 @@ use rne_model::{Friction, Reversal, Robot};
 use rne_runtime::DynArm;
 
 /// Two bodies in three dimensions, with friction.
-const ARM: &str = "
-format: 1
-name: two
-source: made up
-convention: modified
-gravity: [0, 0, -9.81]
-joints:
-  - type: revolute
-    dh: {theta: 0, d: 0, a: 0, alpha: pi/2}
-    link: {mass: 4, com: [0.2, 0.02, 0.03], inertia: {xx: 0.02, yy: 0.06, zz: 0.06, xy: 0.002}}
-    motor: {viscous: 1.2, coulomb: [1.5, -1.1], coulomb_width: 0.05}
-  - type: revolute
-    dh: {theta: 0, d: 0.05, a: 0.4, alpha: -pi/2}
-    link: {mass: 2, com: [0.15, -0.01, 0.02], inertia: {xx: 0.008, yy: 0.02, zz: 0.02, xz: 0.001}}
-    motor: {viscous: 0.7, coulomb: [0.6, -0.8], coulomb_width: 0.025}
-";
+const ARM: &str = include_str!("two.yaml");
 
 fn arm() -> Robot {
     Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"))
@@ -318,7 +303,7 @@ fn bodies_are_the_best_ones() {
 
 /// Five million states, and as many numbers are kept as of a hundred thousand.
 #[test]
-#[ignore = "minutes: cargo test --release -p rne-identify -- --ignored"]
+#[ignore = "long: cargo test -p rne-identify --test synthetic -- --ignored"]
 fn five_million_states_need_no_more_memory() {
     let robot = arm();
     let mut rng = Rng::with_seed(11);
@@ -384,7 +369,7 @@ fn intervals_have_the_truth() {
 }
 
 #[test]
-#[ignore = "minutes: cargo test --release -p rne-identify -- --ignored"]
+#[ignore = "long: cargo test -p rne-identify --test synthetic -- --ignored"]
 fn intervals_have_the_truth_as_often_as_they_say() {
     let found = coverage(1000);
     let mean = found.iter().sum::<f64>() / f64::from(u32::try_from(found.len()).unwrap());

@@ -7,22 +7,7 @@ use rne_logs::Motion;
 use rne_model::Robot;
 use rne_runtime::DynArm;
 
-const ARM: &str = "
-format: 1
-name: two
-source: made up
-convention: modified
-gravity: [0, 0, -9.81]
-joints:
-  - type: revolute
-    dh: {theta: 0, d: 0, a: 0, alpha: pi/2}
-    link: {mass: 4, com: [0.2, 0.02, 0.03], inertia: {xx: 0.02, yy: 0.06, zz: 0.06, xy: 0.002}}
-    motor: {viscous: 1.2, coulomb: [1.5, -1.1], coulomb_width: 0.05}
-  - type: revolute
-    dh: {theta: 0, d: 0.05, a: 0.4, alpha: -pi/2}
-    link: {mass: 2, com: [0.15, -0.01, 0.02], inertia: {xx: 0.008, yy: 0.02, zz: 0.02, xz: 0.001}}
-    motor: {viscous: 0.7, coulomb: [0.6, -0.8], coulomb_width: 0.025}
-";
+const ARM: &str = include_str!("two.yaml");
 
 fn arm() -> Robot {
     Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"))

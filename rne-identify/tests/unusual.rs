@@ -6,25 +6,26 @@ use rne_logs::Motion;
 use rne_model::Robot;
 use rne_runtime::DynArm;
 
-const ARM: &str = "
-format: 1
-name: two
-source: made up
-convention: modified
-gravity: [0, 0, -9.81]
-joints:
-  - type: revolute
-    dh: {theta: 0, d: 0, a: 0, alpha: pi/2}
-    link: {mass: 4, com: [0.2, 0.02, 0.03], inertia: {xx: 0.02, yy: 0.06, zz: 0.06, xy: 0.002}}
-    motor: {inertia: 0.0001, gear_ratio: 100, viscous: 0.00012, coulomb: [0.015, -0.011], coulomb_width: 0.05}
-  - type: revolute
-    dh: {theta: 0, d: 0.05, a: 0.4, alpha: -pi/2}
-    link: {mass: 2, com: [0.15, -0.01, 0.02], inertia: {xx: 0.008, yy: 0.02, zz: 0.02, xz: 0.001}}
-    motor: {inertia: 0.00005, gear_ratio: 80, viscous: 0.0001, coulomb: [0.0075, -0.01], coulomb_width: 0.025}
-";
+/// Two bodies in three dimensions, with gears; at the joints the friction of the file.
+fn file() -> String {
+    let geared = |text: &str, at_joint: &str, of_motor: &str| {
+        assert!(text.contains(at_joint), "{text}");
+        text.replace(at_joint, of_motor)
+    };
+    let first = geared(
+        include_str!("two.yaml"),
+        "viscous: 1.2, coulomb: [1.5, -1.1]",
+        "inertia: 0.0001, gear_ratio: 100, viscous: 0.00012, coulomb: [0.015, -0.011]",
+    );
+    geared(
+        &first,
+        "viscous: 0.7, coulomb: [0.6, -0.8]",
+        "inertia: 0.00005, gear_ratio: 80, viscous: 0.0001, coulomb: [0.0075, -0.01]",
+    )
+}
 
 fn arm() -> Robot {
-    Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"))
+    Robot::from_yaml(&file()).unwrap_or_else(|report| panic!("{report}"))
 }
 
 /// States at a rate along sums of sines; torques are the arm's with its rotors and its friction, and answer late.
@@ -188,7 +189,7 @@ fn wrong_signs_and_large_offsets_are_found() {
 /// A rotor of a joint that slides is as a mass.
 #[test]
 fn units_are_those_of_the_joint() {
-    let slides = Robot::from_yaml(&ARM.replacen("revolute", "prismatic", 1));
+    let slides = Robot::from_yaml(&file().replacen("revolute", "prismatic", 1));
     let slides = slides.unwrap_or_else(|report| panic!("{report}"));
     for (robot, units) in [(arm(), ["kg m²", "kg m²"]), (slides, ["kg", "kg m²"])] {
         for (joint, unit) in units.into_iter().enumerate() {

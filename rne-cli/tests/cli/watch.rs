@@ -154,6 +154,18 @@ fn errors_are_those_of_a_judge() {
     }
 }
 
+/// A run in which a judge's filter has no room is watched all the same.
+#[test]
+fn short_runs_are_watched() {
+    let path = folder("watch_short").join("short.csv");
+    let log = fs::read_to_string(format!("{ROOT}/{KNOCK}")).expect("a log");
+    fs::write(&path, log.lines().take(61).collect::<Vec<_>>().join("\n") + "\n").expect("a file");
+    let short = path.to_str().expect("UTF-8");
+    fails(2, &["identify", ARM, short, "--judge", "--cutoff", "1"], &["--cutoff", "from"]);
+    let text = fine(&["watch", ARM, short, "--quiet", QUIET, "--cutoff", "1"]);
+    assert!(text.contains("no events") && text.contains("60 of 60 states"), "{text}");
+}
+
 /// What is usual of another arm is not what is usual of this one.
 #[test]
 fn a_quiet_log_of_another_arm_is_not_in_order() {
