@@ -9,6 +9,7 @@ mod certificate;
 mod counts;
 mod features;
 mod fleet;
+mod frozen;
 mod fuzz;
 mod growth;
 mod instructions;
@@ -67,6 +68,7 @@ enum Task {
     Tool(tool::Tool),
     Features(features::Features),
     Fleet(fleet::Fleet),
+    Frozen(frozen::Frozen),
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
@@ -105,6 +107,7 @@ impl Task {
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
             Self::Fleet(task) => ("fleet", task.changed, task.run()),
+            Self::Frozen(task) => ("frozen", false, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
