@@ -10,11 +10,9 @@ use rne_model::Convention;
 
 use crate::terminal::{HELP_STYLES, TITLE, TYPED};
 use crate::{
-    check, convert, diagnose, emit, eval, example, explain, export, firmware, import, list, new, ops, plot, report,
-    search, shell, show,
+    check, convert, diagnose, emit, eval, example, excite, explain, export, firmware, identify, import, list, log, new,
+    ops, plot, report, search, shell, show, watch,
 };
-#[cfg(feature = "logs")]
-use crate::{excite, identify, log, watch};
 
 /// The dynamics compiler for robot arms.
 #[derive(Parser)]
@@ -53,13 +51,9 @@ pub(crate) enum Command {
     Eval(eval::Arguments),
     Diagnose(diagnose::Arguments),
     Plot(plot::Arguments),
-    #[cfg(feature = "logs")]
     Log(log::Arguments),
-    #[cfg(feature = "logs")]
     Identify(identify::Arguments),
-    #[cfg(feature = "logs")]
     Watch(watch::Arguments),
-    #[cfg(feature = "logs")]
     Excite(excite::Arguments),
     Search(search::Arguments),
     New(new::Arguments),

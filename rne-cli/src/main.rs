@@ -15,7 +15,6 @@ mod emit;
 mod equations;
 mod eval;
 mod example;
-#[cfg(feature = "logs")]
 mod excite;
 mod explain;
 mod export;
@@ -24,7 +23,6 @@ mod functions;
 mod golden;
 mod heading;
 mod highlight;
-#[cfg(feature = "logs")]
 mod identify;
 mod import;
 mod input_file;
@@ -33,14 +31,10 @@ mod layout;
 mod letters;
 mod limits;
 mod list;
-#[cfg(feature = "logs")]
 mod log;
-#[cfg(feature = "logs")]
 mod log_arguments;
-#[cfg(feature = "logs")]
 mod log_report;
 mod mistyped;
-#[cfg(feature = "logs")]
 mod motion_log;
 mod new;
 mod numbers;
@@ -62,7 +56,6 @@ mod states;
 mod terminal;
 mod tour;
 mod trajectory_file;
-#[cfg(feature = "logs")]
 mod watch;
 mod worksheet;
 mod worksheet_file;
@@ -104,16 +97,12 @@ fn run(command: Option<Command>) -> (&'static str, Result<Outcome, Failure>) {
         Some(Command::Eval(arguments)) => ("rne eval", eval::run(&arguments)),
         Some(Command::Diagnose(arguments)) => ("rne diagnose", diagnose::run(&arguments)),
         Some(Command::Plot(arguments)) => ("rne plot", plot::run(&arguments)),
-        #[cfg(feature = "logs")]
         Some(Command::Identify(arguments)) => ("rne identify", identify::run(&arguments)),
-        #[cfg(feature = "logs")]
         Some(Command::Watch(arguments)) => ("rne watch", watch::run(&arguments)),
-        #[cfg(feature = "logs")]
         Some(Command::Excite(arguments)) => ("rne excite", excite::run(&arguments)),
         Some(Command::List(_)) => ("rne list", list::run()),
         Some(Command::Example(arguments)) => ("rne example", example::run(&arguments)),
         Some(Command::New(arguments)) => ("rne new", new::run(&arguments)),
-        #[cfg(feature = "logs")]
         Some(Command::Log(arguments)) => ("rne log", log::run(&arguments)),
         Some(Command::Search(arguments)) => ("rne search", search::run(&arguments)),
         Some(Command::Import(arguments)) => ("rne import", import::run(&arguments)),

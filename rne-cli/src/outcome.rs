@@ -75,7 +75,6 @@ impl Failure {
 }
 
 /// What a log says nothing by.
-#[cfg(feature = "logs")]
 impl From<rne_identify::MotionError> for Failure {
     fn from(error: rne_identify::MotionError) -> Self {
         Self::input(error)

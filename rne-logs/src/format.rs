@@ -7,13 +7,13 @@ use std::io::Read as _;
 use std::path::{Path, PathBuf};
 
 use crate::csv_table::CsvTable;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 use crate::mcap_bag::McapBag;
 use crate::npy_array::NpyArray;
 #[cfg(feature = "parquet")]
 use crate::parquet_table::ParquetTable;
 use crate::sample::Source;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 use crate::sqlite_bag::SqliteBag;
 use crate::{LogError, Options};
 
@@ -110,15 +110,15 @@ impl Format {
             return Err(LogError::request(path, "messages have times, and --rate is of tables without: take it away"));
         }
         Ok(match self {
-            #[cfg(feature = "rosbag")]
+            #[cfg(feature = "bags")]
             Self::Sqlite => Box::new(SqliteBag::open(path, options.topic.as_deref())?),
-            #[cfg(feature = "rosbag")]
+            #[cfg(feature = "bags")]
             Self::Mcap => Box::new(McapBag::open(path, options.topic.as_deref())?),
             #[cfg(feature = "parquet")]
             Self::Parquet => Box::new(ParquetTable::open(path, options)?),
             Self::Npy => Box::new(NpyArray::open(path, options)?),
             Self::Csv => Box::new(CsvTable::open(path, options)?),
-            #[cfg(not(all(feature = "rosbag", feature = "parquet")))]
+            #[cfg(not(all(feature = "bags", feature = "parquet")))]
             other => return Err(LogError::file(path, format_args!("this build does not read {other}"))),
         })
     }

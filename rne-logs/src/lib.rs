@@ -26,16 +26,16 @@ mod csv_table;
 mod error;
 mod format;
 mod grid;
-#[cfg(any(feature = "rosbag", feature = "parquet"))]
+#[cfg(any(feature = "bags", feature = "parquet"))]
 mod guard;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 mod joint_state;
 mod joints;
 mod kernel;
 #[cfg(feature = "parquet")]
 mod list_columns;
 mod log;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 mod mcap_bag;
 mod median;
 mod motion;
@@ -51,11 +51,11 @@ mod sample;
 mod spectrum;
 mod spelling;
 mod spikes;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 mod sqlite_bag;
 mod survey;
 mod time_unit;
-#[cfg(feature = "rosbag")]
+#[cfg(feature = "bags")]
 mod topic;
 mod unit;
 
