@@ -103,11 +103,6 @@ impl Replacement {
         Ok(Self { file: beside(&path)?, path, permissions })
     }
 
-    /// Another one of the same file.
-    pub(crate) fn again(&self) -> io::Result<Self> {
-        Self::begin(&self.path)
-    }
-
     /// The file, to be written and read, from its beginning.
     pub(crate) fn file(&self) -> io::Result<File> {
         self.file.reopen()

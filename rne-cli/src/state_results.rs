@@ -2,15 +2,16 @@
 
 use std::fmt::Write as _;
 use std::fs::File;
-use std::io::{self, BufReader, BufWriter, IsTerminal as _, Read as _, Seek as _, Write};
+use std::io::{self, BufWriter, IsTerminal as _, Seek as _, Write};
 use std::path::Path;
 
-use npyz::WriterBuilder as _;
+use rne_logs::Npy;
 
 use crate::outcome::Failure;
 use crate::output_file::{self, Replacement};
 
-/// CSV as results come; arrays of numpy behind a header that tells their number.
+/// CSV or an array of numpy, as results come. The header of an array, which tells how many states there are, is written
+/// last, in the place that was kept for it.
 pub(crate) enum Results {
     Csv {
         out: BufWriter<Box<dyn Write>>,
@@ -23,6 +24,7 @@ pub(crate) enum Results {
     Npy {
         out: BufWriter<File>,
         width: usize,
+        states: u64,
         kept: Replacement,
     },
 }
@@ -41,8 +43,9 @@ impl Results {
         let kept = Replacement::begin(path).map_err(unwritable)?;
         let file = kept.file().map_err(unwritable)?;
         if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
-            // the numbers now; the header, which tells how many states there are, when they are known
-            return Ok(Self::Npy { out: BufWriter::new(file), width, kept });
+            let mut out = BufWriter::new(file);
+            out.write_all(&Npy::header(0, width as u64)).map_err(unwritable)?;
+            return Ok(Self::Npy { out, width, states: 0, kept });
         }
         let out = BufWriter::new(Box::new(file) as Box<dyn Write>);
         Ok(Self::Csv { out, header, is_terminal: false, width, kept: Some(kept) })
@@ -69,7 +72,10 @@ impl Results {
                 }
                 Ok(())
             }
-            Self::Npy { out, .. } => numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes())),
+            Self::Npy { out, width, states, .. } => {
+                *states += (numbers.len() / (*width).max(1)) as u64;
+                numbers.iter().try_for_each(|number| out.write_all(&number.to_le_bytes()))
+            }
         }
     }
 
@@ -81,25 +87,12 @@ impl Results {
                 out.flush()?;
                 kept.map_or(Ok(()), Replacement::keep)
             }
-            Self::Npy { out, width, kept } => {
-                let mut numbers = out.into_inner().map_err(io::IntoInnerError::into_error)?;
-                let states = numbers.stream_position()? / (8 * width.max(1) as u64);
-                numbers.seek(io::SeekFrom::Start(0))?;
-                let mut numbers = BufReader::new(numbers);
-                // a second file beside it, with the header in front
-                let whole = kept.again()?;
-                let mut out = BufWriter::new(whole.file()?);
-                let options = npyz::WriteOptions::new().default_dtype().shape(&[states, width as u64]);
-                let mut array: npyz::NpyWriter<f64, _> = options.writer(&mut out).begin_nd()?;
-                let mut bytes = [0; 8];
-                for _ in 0..states * width as u64 {
-                    numbers.read_exact(&mut bytes)?;
-                    array.push(&f64::from_le_bytes(bytes))?;
-                }
-                array.finish()?;
+            Self::Npy { mut out, width, states, kept } => {
+                out.seek(io::SeekFrom::Start(0))?;
+                out.write_all(&Npy::header(states, width as u64))?;
                 out.flush()?;
                 drop(out);
-                whole.keep()
+                kept.keep()
             }
         }
     }
