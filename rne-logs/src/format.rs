@@ -119,7 +119,10 @@ impl Format {
             Self::Npy => Box::new(NpyArray::open(path, options)?),
             Self::Csv => Box::new(CsvTable::open(path, options)?),
             #[cfg(not(all(feature = "bags", feature = "parquet")))]
-            other => return Err(LogError::file(path, format_args!("this build does not read {other}"))),
+            other => {
+                let remedy = "`cargo install --path rne-cli --features full` in a clone of rne builds one that does";
+                return Err(LogError::file(path, format_args!("this build of rne does not read {other}; {remedy}")));
+            }
         })
     }
 }

@@ -13,6 +13,7 @@ mod frozen;
 mod fuzz;
 mod growth;
 mod instructions;
+mod light;
 mod lines;
 mod machine;
 mod mutants;
@@ -63,6 +64,7 @@ enum Task {
     Growth(growth::Growth),
     Mutate(mutate::Mutate),
     Verify(verify::Verify),
+    Light(light::Light),
     Lines(lines::Lines),
     Package(package::Package),
     Tool(tool::Tool),
@@ -103,6 +105,7 @@ impl Task {
             Self::Growth(task) => ("growth", false, task.run()),
             Self::Mutate(task) => ("mutate", false, task.run()),
             Self::Verify(task) => ("verify", false, task.run()),
+            Self::Light(_) => ("light", false, light::Light::run()),
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),

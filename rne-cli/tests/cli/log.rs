@@ -5,10 +5,13 @@ use std::fs;
 
 use crate::call::{fails, fine, folder, rne};
 
+#[cfg(feature = "bags")]
 const UR10: &str = "rne-logs/tests/data/ur10.db3";
+#[cfg(feature = "bags")]
 const PANDA: &str = "rne-logs/tests/data/panda.db3";
 
 #[test]
+#[cfg(feature = "bags")]
 fn a_log_is_described() {
     let said = fine(&["log", UR10, "--robot", "ur10", "--cutoff", "8"]);
     for part in [
@@ -31,6 +34,7 @@ fn a_log_is_described() {
 
 /// The filtered motion is one that other commands take: the torques of its states are those of the plot's kind.
 #[test]
+#[cfg(feature = "bags")]
 fn a_motion_is_what_other_commands_read() {
     let folder = folder("log_motion");
     let motion = folder.join("motion.csv");
@@ -56,6 +60,7 @@ fn a_motion_is_what_other_commands_read() {
 }
 
 #[test]
+#[cfg(feature = "bags")]
 fn what_is_wrong_is_said() {
     let folder = folder("log_wrong");
     let write = |name: &str, bytes: &[u8]| {
@@ -76,6 +81,7 @@ fn what_is_wrong_is_said() {
         fails(2, &["identify", "panda", twice[0], twice[1]], &["named twice"]);
     }
     fails(2, &["log", PANDA, "--topic", "/joints"], &["no topic /joints", "/joint_states"]);
+    fails(2, &["log", UR10, "--rate", "125"], &["messages have times"]);
     fails(2, &["log", PANDA, "--cutoff", "12"], &["too high for samples at 30.0007 Hz"]);
     fails(2, &["log", PANDA, "--torque-constant", "1,2"], &["2 torque constants for 7 joints"]);
     fails(2, &["log", "-"], &["read twice"]);
@@ -85,6 +91,16 @@ fn what_is_wrong_is_said() {
     fails(1, &["log", &cut], &["cut.db3: the bag is cut off: it has 100000 bytes of 135168"]);
     let short = write("short.csv", b"time,q1\n0,1\n0.1,1\n0.2,1\n");
     fails(1, &["log", &short, "--cutoff", "1", "-o", "-"], &["no run is longer"]);
+}
+
+/// A bag is read by a build with its feature; another one says how to get it, in `rne log`, `identify` and `watch`.
+#[test]
+#[cfg(not(feature = "bags"))]
+fn a_format_that_is_left_out_names_the_command_that_has_it() {
+    const BAG: &str = "rne-logs/tests/data/ur10.db3";
+    for call in [["log", BAG].as_slice(), &["identify", "ur10", BAG], &["watch", "ur10", BAG]] {
+        fails(1, call, &["does not read rosbag2, SQLite", "cargo install --path rne-cli --features full"]);
+    }
 }
 
 /// Degrees are asked for, not taken.
@@ -296,7 +312,6 @@ fn columns_that_are_not_understood_are_named() {
     assert!(!fine(&["log", log]).contains("not read"));
     fails(2, &["log", log, "--rate", "25"], &["the column t [s] has times, and --rate is of tables without"]);
     fails(2, &["log", log, "--columns", "time,q,tau"], &["--columns is of arrays of numpy; this is CSV"]);
-    fails(2, &["log", UR10, "--rate", "125"], &["messages have times"]);
     let rows = timed.lines().skip(1).map(|line| {
         let (time, others) = line.split_once(',').expect("a time");
         format!("\n{},{others}", 1e3 * time.parse::<f64>().expect("a number"))

@@ -9,10 +9,15 @@
     reason = "numbers are small, and so are the texts"
 )]
 
+#[cfg(feature = "full")]
 mod bags;
 mod columns;
+#[cfg(feature = "full")]
 mod corrupt;
 mod filtered;
+#[cfg(feature = "full")]
 mod formats;
+#[cfg(not(feature = "full"))]
+mod left_out;
 mod runs;
 mod written;
