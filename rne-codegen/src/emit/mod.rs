@@ -8,6 +8,7 @@ mod expression;
 mod formula;
 mod heading;
 mod inert;
+mod line_breaks;
 mod listing;
 mod own_tests;
 mod parameters;
