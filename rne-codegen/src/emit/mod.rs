@@ -23,7 +23,7 @@ mod wrap;
 pub use annotated::{Annotated, Part};
 pub use ascii::ascii;
 pub use c::{BadPrefix, CCode, ConstantTooLarge, Origin, Prefix, c_code, c_code_of_file};
-pub use evidence::evidence;
+pub use evidence::{evidence, refusals};
 pub use formula::Formula;
 pub use heading::{GENERATED, Heading};
 pub use inert::{markdown, title, verbatim};
