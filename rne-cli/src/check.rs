@@ -4,13 +4,14 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::Function;
+use rne_codegen::{Form, Function, emit};
 use rne_model::{Checked, Convention, JointKind, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
 
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome};
 use crate::terminal::{GOOD, QUIET, WARNING};
-use crate::{physics, plan_file, robot_file};
+use crate::plan_file::Compiler;
+use crate::{functions, physics, plan_file, robot_file};
 
 /// Check robot files and plans: `ok` and lints, or every error
 #[derive(Args)]
@@ -20,7 +21,8 @@ Examples:
   rne check --physics robots/planar2.yaml
   rne check robots/puma560.plan.yaml   a plan is compiled and proved
 
-A plan beside a robot file is checked too. Exit status 1 when a file has errors,
+A plan beside a robot file is checked too. Of an arm of up to 8 joints, a note
+names each function with a reduced form that is refused, and the reason. Exit status 1 when a file has errors,
 or when an arm misses a law of physics by more than rounding; lints, which are
 warnings and notes, leave it at 0. docs/robot-file.md explains every key.")]
 pub(crate) struct Arguments {
@@ -82,10 +84,31 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     {
         plan_file::verify(&robot, &read)?;
     }
+    let refusals = refusals(path, &robot)?;
     let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
     let lints = (!lints.is_empty()).then(|| lints.render(true));
-    let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).collect();
+    let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).chain(refusals).collect();
     Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), laws })
+}
+
+/// The reduced forms that a build would refuse, with the reasons: a note for each function that has such a form.
+fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
+    /// An arm of more joints would keep people waiting; `rne show` tells of one function.
+    const MOST_JOINTS: usize = 8;
+    if robot.dof() > MOST_JOINTS {
+        return Ok(Vec::new());
+    }
+    let compiler = Compiler::new(path, robot);
+    let mut notes = Vec::new();
+    for function in functions::of(robot) {
+        // what does not compile is an error of the commands that write code
+        let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
+        let lines = emit::refusals(&program);
+        if !lines.is_empty() {
+            notes.push(format!("{QUIET}note{QUIET:#}: {}", lines.join("\n")));
+        }
+    }
+    Ok(notes)
 }
 
 /// A golden file that the tests of a derive would not find.

@@ -16,7 +16,7 @@ use crate::equations::View;
 use crate::letters::Letters;
 use crate::outcome::{Failure, Outcome};
 use crate::plan_file::Compiler;
-use crate::terminal::{QUIET, TYPED};
+use crate::terminal::{QUIET, TYPED, WARNING};
 use crate::{arguments, base_parameters, equations, heading, highlight};
 
 /// Show the generated code step by step, what was folded, and why
@@ -184,7 +184,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let line = format!("{QUIET}kept for reading, and counted: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, COLUMNS));
     }
-    if program.form != arguments.form {
+    let refusals = emit::refusals(&program);
+    if program.form != arguments.form && refusals.is_empty() {
         let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
     }
     if program.is_rewritten && (arguments.joint.is_some() || arguments.step.is_some()) {
@@ -198,6 +199,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         text.push('\n');
         for line in emit::evidence(&program, proof) {
             let _ = writeln!(text, "{QUIET}{}{QUIET:#}", letters.of(&line));
+        }
+    }
+    if !refusals.is_empty() {
+        text.push('\n');
+        for line in refusals {
+            let _ = writeln!(text, "{WARNING}{}{WARNING:#}", letters.of(&line));
         }
     }
     let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };

@@ -33,6 +33,7 @@ pub mod plan;
 mod program;
 mod prove;
 mod reduced;
+mod refusal;
 
 use std::sync::OnceLock;
 
@@ -56,6 +57,7 @@ pub use program::{
 };
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::BodiesPer;
+pub use refusal::{Attempt, LeftOut, Reason, Refusal};
 
 use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
 use crate::plan::PlanSet;
@@ -129,18 +131,21 @@ impl<'r> Compiler<'r> {
     /// cannot be proved.
     pub fn compile(&self, function: Function, form: Form) -> Result<Program, CompileError> {
         let robot = self.robot;
-        // then there is nothing else to take, or nothing to be held against
-        let is_irreducible = function.entry().is_irreducible
-            || form == Form::Reduced && function.divides().is_some() && prove::divides_by_zero(robot, function);
-        if form == Form::SevenSteps || is_irreducible {
-            let keep: &[Quantity] = if form == Form::SevenSteps { &self.intermediates } else { &[] };
-            let explains = self.explains && form == Form::SevenSteps;
-            return seven_steps_within(LARGEST, robot, function, keep, explains);
+        if form == Form::SevenSteps {
+            return seven_steps_within(LARGEST, robot, function, &self.intermediates, self.explains);
+        }
+        if function.entry().is_irreducible {
+            return seven_steps_within(LARGEST, robot, function, &[], false);
+        }
+        // then there is nothing to be held against
+        if function.divides().is_some() && prove::divides_by_zero(robot, function) {
+            let refusals = vec![Refusal::new(Attempt::Any, Reason::DividesByZero)];
+            return Ok(Program { refusals, ..seven_steps_within(LARGEST, robot, function, &[], false)? });
         }
         let reference = reference(robot, function)?;
         // numbers that are not known cannot be regrouped
         if !robot.run_time.is_empty() {
-            return Ok(self.numbered(function, reference));
+            return Ok(self.numbered(function, reference, Vec::new()));
         }
         // graphs are those of links alone
         let of_links = self.plans.get().filter(|_| !(robot.has_rotors() && function.feels_rotors()));
@@ -153,7 +158,7 @@ impl<'r> Compiler<'r> {
             return Ok(Program { algorithm, choices, is_rewritten: true, ..program });
         }
         if !plan::is_planned(function) {
-            return Ok(self.numbered(function, reference));
+            return Ok(self.numbered(function, reference, Vec::new()));
         }
         let plans = self.plans();
         match self.planned(plans, function, &reference) {
@@ -162,9 +167,14 @@ impl<'r> Compiler<'r> {
             Err(error @ CompileError::TooLarge { .. }) => Err(error),
             // a plan file answers for what it was made for; for other functions it is a suggestion
             Err(error) if plans.is_of_build() || function != Function::InverseDynamics && error.is_refusal() => {
-                let fewer = plans.with_ever_fewer_choices();
-                let program = fewer.iter().find_map(|plans| self.planned(plans, function, &reference).ok());
-                Ok(program.unwrap_or_else(|| self.numbered(function, reference)))
+                let mut refusals = vec![Refusal::of_error(Attempt::Planned(LeftOut::Nothing), error)];
+                for (left_out, plans) in plans.with_ever_fewer_choices() {
+                    match self.planned(&plans, function, &reference) {
+                        Ok(program) => return Ok(Program { refusals, ..program }),
+                        Err(error) => refusals.push(Refusal::of_error(Attempt::Planned(left_out), error)),
+                    }
+                }
+                Ok(self.numbered(function, reference, refusals))
             }
             Err(error) => Err(error.suspecting(robot, true)),
         }
@@ -187,11 +197,21 @@ impl<'r> Compiler<'r> {
     }
 
     /// The plain formulas with every value computed once; as they are where that is cheaper, or cannot be proved.
-    fn numbered(&self, function: Function, reference: Reference<'_>) -> Program {
+    /// `refusals` are those of what was tried before.
+    fn numbered(&self, function: Function, reference: Reference<'_>, mut refusals: Vec<Refusal>) -> Program {
+        let attempt = Attempt::EveryValueOnce;
+        let of_seven_steps = reference.operations();
         match Formulation::numbered(self.robot, function).proved(function, self.target, &reference) {
-            // a value that is found where it is not used otherwise costs what it takes there
-            Ok(numbered) if numbered.operations().total() <= reference.operations() => numbered,
-            _ => reference.into_program(),
+            Ok(numbered) => {
+                let operations = numbered.operations().total();
+                if operations <= of_seven_steps {
+                    return Program { refusals, ..numbered };
+                }
+                // a value that is found where it is not used otherwise costs what it takes there
+                refusals.push(Refusal::new(attempt, Reason::Longer { operations, of_seven_steps }));
+            }
+            Err(error) => refusals.push(Refusal::of_error(attempt, error)),
         }
+        Program { refusals, ..reference.into_program() }
     }
 }

@@ -64,6 +64,7 @@ pub(crate) fn lower(
         is_rewritten: false,
         choices: Vec::new(),
         proof: None,
+        refusals: Vec::new(),
     };
     program.check_names()?;
     Ok((program, exactly))

@@ -12,6 +12,7 @@ use crate::ir::fold_report::{Causes, FoldReport, Place};
 use crate::ir::name::Name;
 use crate::ir::{ExactAngle, Number};
 use crate::reduced::algorithm::Algorithm;
+use crate::refusal::Refusal;
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,6 +54,8 @@ pub struct Program {
     pub choices: Vec<String>,
     /// Why a program that is not the seven steps gives their torques.
     pub proof: Option<Proof>,
+    /// The reduced forms that were tried before this one and refused, in order.
+    pub refusals: Vec<Refusal>,
 }
 
 /// The evidence that a program computes what the seven steps compute.

@@ -30,7 +30,8 @@ const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
 /// but for rounding.
 const SINGULAR: f64 = 0.1;
 
-const fn largest_rounding(function: Function) -> f64 {
+/// The largest rounding error of a program that is emitted.
+pub(crate) const fn largest_rounding(function: Function) -> f64 {
     if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
 }
 

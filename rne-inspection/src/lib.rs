@@ -66,6 +66,7 @@ impl Inspection {
             robot: described(robot),
             function: program.function.to_string(),
             form: program.form.to_string(),
+            refusals: program.refusals.iter().map(ToString::to_string).collect(),
             counts: Counts {
                 before: Operations { products: before.0, sums: before.1 },
                 after: Operations { products: after.mul, sums: after.add },

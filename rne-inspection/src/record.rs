@@ -21,6 +21,8 @@ pub struct Inspection {
     pub function: String,
     /// Name of its form: `seven_steps` or `reduced`.
     pub form: String,
+    /// The reduced forms that were refused before this one, each with the reason.
+    pub refusals: Vec<String>,
     /// Its operations.
     pub counts: Counts,
     /// What every name means, by its text.

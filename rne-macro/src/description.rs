@@ -18,10 +18,11 @@ pub(crate) fn operations(programs: &[Program]) -> String {
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")
 }
 
-/// Why a form that is not the seven steps can be trusted.
-pub(crate) fn evidence(programs: &[Program]) -> Option<String> {
-    let (program, proof) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)))?;
-    Some(emit::verbatim(&emit::evidence(program, proof).join("\n")))
+/// Why a form that is not the seven steps can be trusted, and which ones could not.
+pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
+    let proved = programs.iter().find_map(|program| Some(emit::evidence(program, program.proof.as_ref()?)));
+    let refusals = programs.iter().map(emit::refusals).filter(|refusals| !refusals.is_empty());
+    proved.into_iter().chain(refusals).map(|lines| emit::verbatim(&lines.join("\n"))).collect()
 }
 
 /// The documentation of one method: what it costs, its steps, and where more is told. `of_trait` is the trait's path.

@@ -46,13 +46,13 @@ impl Target<'_> {
         let (ident, krate, dof) = (&self.item.ident, self.krate, Literal::usize_unsuffixed(robot.dof()));
         let name = format_ident!("{}", capability.name());
         let operations = description::operations(programs);
-        let evidence = description::evidence(programs).map(|evidence| quote!(#[doc = #evidence]));
+        let evidence = description::evidence(programs).into_iter().map(|evidence| quote!(#[doc = #evidence]));
         let methods = programs.iter().map(|program| self.method(robot, program, parameters));
         quote! {
             #constants
 
             #[doc = #operations]
-            #evidence
+            #(#evidence)*
             #[automatically_derived]
             #[allow(clippy::approx_constant)] // a mass of 3.14 kg is not π
             #[allow(clippy::inline_always)] // into the code of the processor's instructions

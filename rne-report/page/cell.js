@@ -296,6 +296,7 @@ class Cards {
         "The same torques with the fewest operations that are known. Only the torques keep a meaning: " +
           "its vectors are in frames of its own, of matter that is regrouped.",
       ),
+      ...(programs.reduced.refusals ?? []).map((refusal) => element("p", { class: "hint" }, `Refused: ${refusal}.`)),
       torques,
       element(
         "div",

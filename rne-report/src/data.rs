@@ -27,6 +27,10 @@ pub fn data(robot: &Robot, torques: &Program, with_wrench: &Program, reduced: Op
         let mut told = program(&inspection, true);
         told["names"] = names(&inspection);
         told["counts"] = json!(inspection.counts);
+        if !inspection.refusals.is_empty() {
+            told["form"] = json!(inspection.form);
+            told["refusals"] = json!(inspection.refusals);
+        }
         quantities.extend(inspection.quantities);
         programs.insert("reduced".to_owned(), told);
     }

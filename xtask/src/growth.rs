@@ -14,17 +14,26 @@ use crate::machine;
 #[command(after_help = "\
 Examples:
   cargo xtask growth           1, 2, 5, 10, 20, 30, 40 and 50 joints
-  cargo xtask growth 1 5 10    these only")]
+  cargo xtask growth 1 5 10    these only
+  cargo xtask growth --arms 300    random arms of 7 to 12 joints instead: what it
+                               takes to write each function in the reduced form")]
 pub(crate) struct Growth {
     /// Numbers of joints, 1 or more each
     #[arg(value_parser = clap::value_parser!(u16).range(1..))]
     joints: Vec<u16>,
+    /// Measure so many random arms instead, and fail where a function takes more than a second
+    #[arg(long, value_name = "N", conflicts_with = "joints", value_parser = clap::value_parser!(u16).range(1..))]
+    arms: Option<u16>,
 }
 
 impl Growth {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
-        Ok(Verdict::from(command(&shell, &self.joints).run().is_ok()))
+        let command = match self.arms {
+            Some(arms) => printing(&shell, arms),
+            None => command(&shell, &self.joints),
+        };
+        Ok(Verdict::from(command.run().is_ok()))
     }
 }
 
@@ -43,4 +52,11 @@ fn command<'a>(shell: &'a xshell::Shell, joints: &[u16]) -> Cmd<'a> {
         "cargo run --quiet --locked {manifest} --no-default-features --features growth --bin growth -- {joints...}"
     )
     .quiet()
+}
+
+/// As the installed command line is built.
+fn printing(shell: &xshell::Shell, arms: u16) -> Cmd<'_> {
+    let arms = arms.to_string();
+    let options = ["--manifest-path=benches/Cargo.toml", "--no-default-features", "--features", "growth"];
+    cmd!(shell, "cargo run --quiet --locked --release {options...} --bin printing -- {arms}").quiet()
 }

@@ -34,6 +34,19 @@ impl Annotated {
         parts.into_iter().reduce(|all, part| all + between + part).unwrap_or_default()
     }
 
+    /// Writes another one behind it.
+    pub(super) fn push(&mut self, other: &Self) {
+        let before = self.text.len();
+        self.text.push_str(&other.text);
+        let behind = |(range, part): &(Range<usize>, Part)| (range.start + before..range.end + before, *part);
+        self.spans.extend(other.spans.iter().map(behind));
+    }
+
+    /// Writes words, operators or brackets behind it.
+    pub(super) fn push_str(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
     /// The text alone.
     #[must_use]
     pub fn as_str(&self) -> &str {
@@ -73,10 +86,7 @@ impl<T: Into<Self>> Add<T> for Annotated {
     type Output = Self;
 
     fn add(mut self, other: T) -> Self {
-        let (other, before) = (other.into(), self.text.len());
-        self.text.push_str(&other.text);
-        let behind = |(range, part): (Range<usize>, Part)| (range.start + before..range.end + before, part);
-        self.spans.extend(other.spans.into_iter().map(behind));
+        self.push(&other.into());
         self
     }
 }

@@ -1,5 +1,6 @@
 //! Why a program that is not the seven steps can be trusted, in words.
 
+use crate::function::Form;
 use crate::program::{Program, Proof};
 
 /// What the form is, its proof and its choices, one sentence or choice per line.
@@ -35,4 +36,19 @@ pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
         lines.extend(program.choices.iter().map(|choice| format!("  {choice}")));
     }
     lines
+}
+
+/// Which reduced forms of a function were refused, and why; then what the function has instead. No line where nothing
+/// was refused.
+#[must_use]
+pub fn refusals(program: &Program) -> Vec<String> {
+    if program.refusals.is_empty() {
+        return Vec::new();
+    }
+    let form = match program.form {
+        Form::SevenSteps => "its code is that of the seven steps",
+        Form::Reduced => "its code is another one, which is proved",
+    };
+    let heading = format!("Not every reduced form of {} could be taken; {form}. Refused:", program.function);
+    std::iter::once(heading).chain(program.refusals.iter().map(|refusal| format!("  {refusal}"))).collect()
 }

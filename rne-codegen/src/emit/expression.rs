@@ -1,8 +1,9 @@
-//! How an expression is written: where parentheses stand and where a long line breaks.
+//! How an expression is written: where parentheses stand, and how wide its parts are.
+
+use std::cell::Cell;
 
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
-use super::wrap::WIDTH;
 use crate::program::{Expression, Operator};
 
 /// Where an operand stands.
@@ -31,6 +32,16 @@ impl Operator {
         }
     }
 
+    /// With a blank on each side.
+    pub(super) const fn between_blanks(self) -> &'static str {
+        match self {
+            Self::Sum => " + ",
+            Self::Difference => " - ",
+            Self::Product => " * ",
+            Self::Quotient => " / ",
+        }
+    }
+
     /// Where its operands stand.
     pub(super) const fn positions(self) -> [Position; 2] {
         match self {
@@ -54,180 +65,157 @@ pub(super) fn needs_parentheses(syntax: Syntax, operand: &Expression, position: 
     }
 }
 
-fn in_parentheses(text: Annotated) -> Annotated {
-    Annotated::default() + "(" + text + ")"
-}
-
 /// The expression on one line.
 pub(super) fn line(syntax: Syntax, expression: &Expression) -> Annotated {
-    let operand = |operand: &Expression, position| {
-        let text = line(syntax, operand);
-        if needs_parentheses(syntax, operand, position) { in_parentheses(text) } else { text }
-    };
-    match expression {
-        Expression::Variable(name) => (*name).into(),
-        Expression::Zero => Annotated::part(Part::Number, syntax.zero()),
-        Expression::Negative(a) => Annotated::default() + "-" + operand(a, Position::Negated),
-        Expression::Binary(operator, a, b) => {
-            let [left, right] = operator.positions();
-            operand(a, left) + format!(" {} ", operator.sign()) + operand(b, right)
-        }
-        Expression::BySign(operands) => {
-            let arguments = Annotated::join(operands.iter().map(|argument| line(syntax, argument)), ", ");
-            Annotated::from(syntax.by_sign()) + in_parentheses(arguments)
-        }
-    }
+    let measured = Measured::new(syntax, expression);
+    let mut text = Annotated::default();
+    measured.write(measured.whole(), &mut text);
+    text
 }
 
-/// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long, as rustfmt does.
-pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: &Expression) -> Annotated {
-    let start = Annotated::default() + indent + start;
-    let one_line = line(syntax, expression);
-    // one column is for the blank before it, and one for the semicolon, wherever that stands
-    let used = width(&start) + 1;
-    if used + width(&one_line) < WIDTH {
-        return start + " " + one_line + ";";
-    }
-    let room = |used: usize| (WIDTH - 1).saturating_sub(used);
-    let beside = Room { width: room(used), indent: indent.len(), used };
-    let below = indent.len() + 4;
-    let below = Room { width: room(below), indent: below, used: below };
-    let breaks = |text: &Annotated| text.as_str().matches('\n').count();
-    match (broken(syntax, expression, beside), broken(syntax, expression, below)) {
-        (Some(beside), Some(below)) if breaks(&below) > 0 && breaks(&beside) <= breaks(&below) + 1 => {
-            start + " " + beside + ";"
-        }
-        (Some(beside), None) => start + " " + beside + ";",
-        // no line is wide enough for the names of what has no room
-        (_, below) => start + "\n" + indent + "    " + below.unwrap_or(one_line) + ";",
-    }
+/// An expression in a language, of whose every part the width is known: nobody writes a part in order to measure it.
+#[derive(Default)]
+pub(super) struct Measured {
+    /// The parts. An operand stands before what it is an operand of, so the last one is the whole expression.
+    parts: Vec<Measure>,
+    /// How many parts have been looked at, to be measured, laid out or written.
+    pub(super) visits: Cell<usize>,
 }
 
-/// Columns that code takes: it is ASCII.
-fn width(code: &Annotated) -> usize {
-    code.as_str().len()
+/// A part of an expression.
+pub(super) struct Measure {
+    /// The columns that it takes on one line. Code is ASCII.
+    pub(super) width: usize,
+    /// Whether it begins with a parenthesis.
+    pub(super) opens: bool,
+    pub(super) kind: Kind,
 }
 
-/// The room for an expression.
+/// What a part of an expression is.
+pub(super) enum Kind {
+    /// A name, or zero.
+    Word(Annotated),
+    Negative(Operand),
+    /// Two or more operands of one operator, computed from the left to the right.
+    Chain(Operator, Vec<Operand>),
+    /// The name of a function, and its arguments.
+    Call(String, Vec<usize>),
+}
+
+/// An operand, by its place among the parts.
 #[derive(Clone, Copy)]
-struct Room {
-    /// Columns that are left on its first line, less what must follow it.
-    width: usize,
-    /// Indentation of the block in which it stands; its further lines are indented by four more.
-    indent: usize,
-    /// Columns used on its first line.
-    used: usize,
+pub(super) struct Operand {
+    pub(super) part: usize,
+    pub(super) in_parentheses: bool,
 }
 
-impl Room {
-    /// Behind so many columns.
-    fn behind(self, columns: usize) -> Option<Self> {
-        let width = self.width.checked_sub(columns)?;
-        Some(Self { width, used: self.used + columns, ..self })
+impl Measured {
+    pub(super) fn new(syntax: Syntax, expression: &Expression) -> Self {
+        let mut measured = Self::default();
+        measured.add(syntax, expression);
+        measured
     }
 
-    /// With so many columns behind it.
-    fn before(self, columns: usize) -> Option<Self> {
-        let width = self.width.checked_sub(columns)?;
-        Some(Self { width, ..self })
+    /// The part that is the whole expression.
+    pub(super) fn whole(&self) -> usize {
+        self.parts.len() - 1
     }
 
-    /// A line of its own, indented by four more, with the same behind it.
-    fn next_line(self) -> Option<Self> {
-        let behind = WIDTH.saturating_sub(self.used + self.width);
-        let indent = self.indent + 4;
-        Some(Self { width: (WIDTH - behind).checked_sub(indent)?, indent, used: indent })
+    /// Looks at a part.
+    pub(super) fn visit(&self, part: usize) -> &Measure {
+        self.visits.set(self.visits.get() + 1);
+        &self.parts[part]
     }
-}
 
-/// An expression over several lines, if need be: the operands of its outermost operator each on a line of its own, and
-/// so on inside those that are still too long. `None` where there is no room for it.
-fn broken(syntax: Syntax, expression: &Expression, room: Room) -> Option<Annotated> {
-    let one_line = line(syntax, expression);
-    if width(&one_line) <= room.width {
-        return Some(one_line);
+    /// The columns of an operand on one line, with its parentheses.
+    pub(super) fn width(&self, operand: Operand) -> usize {
+        self.parts[operand.part].width + if operand.in_parentheses { 2 } else { 0 }
     }
-    match expression {
-        Expression::Variable(_) | Expression::Zero | Expression::BySign(_) => Some(one_line),
-        Expression::Negative(a) => {
-            Some(Annotated::default() + "-" + operand(syntax, (a, Position::Negated), room.behind(1)?)?)
+
+    /// Whether an operand begins with a parenthesis.
+    pub(super) fn opens(&self, operand: Operand) -> bool {
+        operand.in_parentheses || self.parts[operand.part].opens
+    }
+
+    fn add(&mut self, syntax: Syntax, expression: &Expression) -> usize {
+        self.visits.set(self.visits.get() + 1);
+        let word = |word: Annotated| (word.as_str().len(), false, Kind::Word(word));
+        let (width, opens, kind) = match expression {
+            Expression::Variable(name) => word((*name).into()),
+            Expression::Zero => word(Annotated::part(Part::Number, syntax.zero())),
+            Expression::Negative(a) => {
+                let operand = self.operand(syntax, a, Position::Negated);
+                (1 + self.width(operand), false, Kind::Negative(operand))
+            }
+            Expression::Binary(operator, ..) => {
+                let operands = self.chain(syntax, expression, *operator);
+                let widths: usize = operands.iter().map(|operand| self.width(*operand)).sum();
+                let between = operator.between_blanks().len() * (operands.len() - 1);
+                let opens = operands.first().is_some_and(|first| self.opens(*first));
+                (widths + between, opens, Kind::Chain(*operator, operands))
+            }
+            Expression::BySign(operands) => {
+                let name = syntax.by_sign();
+                let arguments: Vec<usize> = operands.iter().map(|operand| self.add(syntax, operand)).collect();
+                let widths: usize = arguments.iter().map(|argument| self.parts[*argument].width).sum();
+                let width = name.len() + "()".len() + widths + ", ".len() * (arguments.len() - 1);
+                (width, false, Kind::Call(name, arguments))
+            }
+        };
+        self.parts.push(Measure { width, opens, kind });
+        self.parts.len() - 1
+    }
+
+    fn operand(&mut self, syntax: Syntax, expression: &Expression, position: Position) -> Operand {
+        let in_parentheses = needs_parentheses(syntax, expression, position);
+        Operand { part: self.add(syntax, expression), in_parentheses }
+    }
+
+    /// The operands of an operator and of the same operator in its left operand, and so on.
+    fn chain(&mut self, syntax: Syntax, expression: &Expression, operator: Operator) -> Vec<Operand> {
+        let [left, right] = operator.positions();
+        let mut others = Vec::new();
+        let mut first = expression;
+        while let Expression::Binary(same, a, b) = first
+            && *same == operator
+        {
+            others.push(&**b);
+            first = a;
         }
-        Expression::Binary(operator, ..) => {
-            let (first, others) = chain(expression, *operator);
-            last_line_broken(syntax, first, &others, operator.sign(), room)
-                .or_else(|| all_broken(syntax, first, &others, operator.sign(), room))
-        }
+        let mut operands = vec![self.operand(syntax, first, left)];
+        operands.extend(others.into_iter().rev().map(|other| self.operand(syntax, other, right)));
+        operands
     }
-}
 
-type Operand<'a> = (&'a Expression, Position);
-
-/// The operands of an operator and of the same operator in its left operand, and so on.
-fn chain(expression: &Expression, operator: Operator) -> (Operand<'_>, Vec<Operand<'_>>) {
-    let [left, right] = operator.positions();
-    let mut others = Vec::new();
-    let mut first = expression;
-    while let Expression::Binary(same, a, b) = first
-        && *same == operator
-    {
-        others.push((&**b, right));
-        first = a;
-    }
-    others.reverse();
-    ((first, left), others)
-}
-
-fn operand(syntax: Syntax, (expression, position): Operand<'_>, room: Room) -> Option<Annotated> {
-    if !needs_parentheses(syntax, expression, position) {
-        return broken(syntax, expression, room);
-    }
-    broken(syntax, expression, room.behind(1)?.before(1)?).map(in_parentheses)
-}
-
-/// All operands on one line, but for what the last one breaks: that is allowed where little stands before it.
-fn last_line_broken(
-    syntax: Syntax,
-    first: Operand<'_>,
-    others: &[Operand<'_>],
-    sign: char,
-    room: Room,
-) -> Option<Annotated> {
-    let sign = format!(" {sign} ");
-    let (last, others) = others.split_last()?;
-    let mut text = operand(syntax, first, room)?;
-    for other in others {
-        text = text + sign.as_str() + operand(syntax, *other, room.next_line()?.behind(2)?)?;
-    }
-    text = text + sign.as_str();
-    if text.as_str().contains('\n') {
-        return None;
-    }
-    let before = width(&text);
-    let last = operand(syntax, *last, room.behind(before)?)?;
-    let is_broken = last.as_str().contains('\n');
-    let first_line = last.as_str().lines().next().unwrap_or_default();
-    let fits = before + first_line.len() <= room.width;
-    let is_neat = !is_broken || !(last.as_str().starts_with('(') || before > 4);
-    (fits && is_neat).then(|| text + last)
-}
-
-/// Every operand on a line of its own.
-fn all_broken(syntax: Syntax, first: Operand<'_>, others: &[Operand<'_>], sign: char, room: Room) -> Option<Annotated> {
-    let mut text = operand(syntax, first, room)?;
-    let next = room.next_line()?;
-    for other in others {
-        // what is shorter than the indentation is no line
-        let used = if text.as_str().contains('\n') { 0 } else { room.used };
-        let last_line = text.as_str().lines().last().unwrap_or_default();
-        if last_line.len() + used <= next.used {
-            let beside = room.behind(3 + last_line.trim_start().len());
-            if let Some(beside) = beside.and_then(|room| operand(syntax, *other, room)) {
-                text = text + format!(" {sign} ") + beside;
-                continue;
+    /// Writes a part on one line, behind what is there.
+    pub(super) fn write(&self, part: usize, text: &mut Annotated) {
+        match &self.visit(part).kind {
+            Kind::Word(word) => text.push(word),
+            Kind::Negative(operand) => {
+                text.push_str("-");
+                self.write_operand(*operand, text);
+            }
+            Kind::Chain(operator, operands) => {
+                for (index, operand) in operands.iter().enumerate() {
+                    text.push_str(if index > 0 { operator.between_blanks() } else { "" });
+                    self.write_operand(*operand, text);
+                }
+            }
+            Kind::Call(name, arguments) => {
+                text.push_str(name);
+                text.push_str("(");
+                for (index, argument) in arguments.iter().enumerate() {
+                    text.push_str(if index > 0 { ", " } else { "" });
+                    self.write(*argument, text);
+                }
+                text.push_str(")");
             }
         }
-        let start = format!("\n{}{sign} ", " ".repeat(next.indent));
-        text = text + start + operand(syntax, *other, next.behind(2)?)?;
     }
-    Some(text)
+
+    fn write_operand(&self, operand: Operand, text: &mut Annotated) {
+        text.push_str(if operand.in_parentheses { "(" } else { "" });
+        self.write(operand.part, text);
+        text.push_str(if operand.in_parentheses { ")" } else { "" });
+    }
 }

@@ -7,8 +7,9 @@ use std::fmt;
 use rne_model::{JointKind, Robot};
 
 use super::annotated::{Annotated, Part};
-use super::expression::{self, statement as written};
+use super::expression;
 use super::formula::{Formula, formulas, payload_formulas, reduced_formulas};
+use super::line_breaks::statement as written;
 use super::syntax::Syntax;
 use super::table::angle;
 use super::text::returned;

@@ -7,7 +7,7 @@ use std::fmt::Write;
 use rne_model::Robot;
 
 use super::annotated::Annotated;
-use super::evidence::evidence;
+use super::evidence::{evidence, refusals};
 use super::expression::line;
 use super::heading::Heading;
 use super::inert::{markdown, verbatim};
@@ -134,6 +134,9 @@ fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
     }
     if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
         let _ = writeln!(text, "{}\n", verbatim(&evidence(program, proof).join("\n")));
+    }
+    for refusals in programs.iter().map(refusals).filter(|refusals| !refusals.is_empty()) {
+        let _ = writeln!(text, "{}\n", verbatim(&refusals.join("\n")));
     }
     text.push_str("Operations of one call, of the recursion -> of the code below:\n\n");
     text.push_str(&operations_table(programs));

@@ -15,6 +15,7 @@ use crate::plan::graph_text;
 use crate::plan::trick::Trick;
 use crate::plan::{JointPlan, OriginShift, Plan, RegroupingTarget, Scale};
 use crate::reduced::algorithm::Algorithm;
+use crate::refusal::LeftOut;
 
 /// The choices by which a robot's functions are compiled in the reduced form.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,17 +69,18 @@ impl PlanSet {
 
     /// Ever fewer choices, for a build that cannot prove all of them: without those of frames, without any, without
     /// regrouping.
-    pub(crate) fn with_ever_fewer_choices(&self) -> Vec<Self> {
+    pub(crate) fn with_ever_fewer_choices(&self) -> Vec<(LeftOut, Self)> {
         let unframed = Plan { turned_last_frame: false, carried_prismatics: false, ..self.plan.clone() };
         let none = Plan::new(self.plan.joints.len());
         let unregrouped = Plan { regrouped: false, ..none.clone() };
-        let mut plans = vec![self.plan.clone()];
-        for plan in [unframed, none, unregrouped] {
-            if !plans.contains(&plan) {
-                plans.push(plan);
+        let fewer = [(LeftOut::Frames, unframed), (LeftOut::Choices, none), (LeftOut::Regrouping, unregrouped)];
+        let mut plans = vec![(LeftOut::Nothing, self.plan.clone())];
+        for (left_out, plan) in fewer {
+            if plans.iter().all(|(_, other)| *other != plan) {
+                plans.push((left_out, plan));
             }
         }
-        plans.into_iter().skip(1).map(|plan| Self { plan, ..self.clone() }).collect()
+        plans.into_iter().skip(1).map(|(left_out, plan)| (left_out, Self { plan, ..self.clone() })).collect()
     }
 
     /// The algorithm by which a function takes the fewest operations, and the plan for it: that at hand, or that

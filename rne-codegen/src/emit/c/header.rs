@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::signature::{fields, head, parameters_type, record_type, records};
 use super::{ConstantTooLarge, File, comment, observer};
-use crate::emit::evidence::evidence;
+use crate::emit::evidence::{evidence, refusals};
 use crate::emit::heading::Heading;
 use crate::emit::parameters::{self, Parameter};
 use crate::emit::syntax::Precision;
@@ -156,9 +156,11 @@ fn robot(file: &File) -> String {
         }
     }
     let proved = file.programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)));
-    if let Some((program, proof)) = proved {
+    let evidence = proved.map(|(program, proof)| evidence(program, proof));
+    let refusals = file.programs.iter().map(refusals).filter(|refusals| !refusals.is_empty());
+    for lines in evidence.into_iter().chain(refusals) {
         text.push_str("//\n");
-        for line in evidence(program, proof) {
+        for line in lines {
             // a number stays on its line
             text.push_str(&comment("//", &line.replace(" - ", &format!("{TIED}-{TIED}"))));
         }

@@ -1,0 +1,115 @@
+//! What was tried before a function got the code that it has, and why it was refused.
+
+use std::fmt;
+
+use crate::error::CompileError;
+use crate::function::Function;
+use crate::prove::largest_rounding;
+
+/// A reduced form of a function that was refused, so that the function has another one, or the seven steps.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Refusal {
+    /// What was refused.
+    pub attempt: Attempt,
+    /// Why.
+    pub reason: Reason,
+}
+
+/// A way to write the reduced form of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Attempt {
+    /// Any way at all.
+    Any,
+    /// By the choices of the plan, without some of them.
+    Planned(LeftOut),
+    /// The plain formulas with every value computed once.
+    EveryValueOnce,
+}
+
+/// Which choices of a plan are not made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LeftOut {
+    /// Every choice of the plan is made.
+    Nothing,
+    /// The choices of frames: the turned last frame, and the carried prismatic links.
+    Frames,
+    /// All choices; inertial parameters are regrouped.
+    Choices,
+    /// All choices, and the regrouping of inertial parameters.
+    Regrouping,
+}
+
+/// Why a reduced form was refused.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The seven steps divide by zero in every state. No code can be proved to be identical to them.
+    DividesByZero,
+    /// The code does not compile, or the proof refuses it: it is another function, or it rounds too much.
+    Error(CompileError),
+    /// The code takes more operations than the seven steps.
+    Longer {
+        /// Its operations.
+        operations: usize,
+        /// Those of the seven steps.
+        of_seven_steps: usize,
+    },
+}
+
+impl Refusal {
+    pub(crate) const fn new(attempt: Attempt, reason: Reason) -> Self {
+        Self { attempt, reason }
+    }
+
+    pub(crate) const fn of_error(attempt: Attempt, error: CompileError) -> Self {
+        Self { attempt, reason: Reason::Error(error) }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.attempt, self.reason)
+    }
+}
+
+impl fmt::Display for Attempt {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Any => "any reduced form",
+            Self::Planned(LeftOut::Nothing) => "the choices of the plan",
+            Self::Planned(LeftOut::Frames) => "the choices of the plan without those of frames",
+            Self::Planned(LeftOut::Choices) => "regrouped inertial parameters without other choices",
+            Self::Planned(LeftOut::Regrouping) => "the reduced recursion without choices",
+            Self::EveryValueOnce => "the plain formulas with every value computed once",
+        })
+    }
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let largest = |function: &Function| if function.returns_torques() { "torque" } else { "number returned" };
+        match self {
+            Self::DividesByZero => f.write_str(
+                "the seven steps divide by zero in every state, so no other code can be proved identical to them",
+            ),
+            Self::Error(CompileError::NotIdentical { function, output, .. }) => {
+                let what = if function.returns_torques() { "the torque of joint" } else { "returned number" };
+                write!(f, "the proof fails, for {what} {output} is not that of the seven steps")
+            }
+            Self::Error(CompileError::Imprecise { function, rounding, .. }) => {
+                let most = largest_rounding(*function);
+                let largest = largest(function);
+                write!(
+                    f,
+                    "it rounds too far from the seven steps, by {rounding:.1e} of the largest {largest}, where \
+                     {most:.0e} is allowed"
+                )
+            }
+            Self::Error(error) => error.fmt(f),
+            Self::Longer { operations, of_seven_steps } => {
+                write!(f, "it takes {operations} operations, and the seven steps take {of_seven_steps}")
+            }
+        }
+    }
+}
