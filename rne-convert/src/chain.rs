@@ -1,6 +1,6 @@
 //! From a tree of links to the chain between a base and a tip: what is fixed to a link is lumped into it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use rne_model::{Limits, Motor, Report, did_you_mean};
@@ -9,7 +9,7 @@ use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
 use crate::snap::{Snapped, Snapping};
 use crate::source::{names, quoted};
-use crate::urdf::{Joint, Urdf};
+use crate::urdf::{Joint, Link, Mimic, Urdf};
 
 /// So many leaves are listed where the tip must be named.
 const LISTED: usize = 60;
@@ -73,6 +73,12 @@ pub(crate) struct Extracted {
     /// Movable joints on what stands still: nothing of them reaches the arm.
     pub(crate) aside: Vec<String>,
     pub(crate) snapped: Vec<Snapped>,
+    /// Links whose bodies are in the arm.
+    pub(crate) links: BTreeSet<usize>,
+    /// Joints of the chain, and those that are held.
+    pub(crate) joints: BTreeSet<usize>,
+    /// What the reader of the robot file should know too, in sentences.
+    pub(crate) remarks: Vec<String>,
 }
 
 /// Takes the chain out of the tree. `gravity` is in the axes of the root link.
@@ -89,9 +95,11 @@ pub(crate) fn extract(
     let path = path(urdf, base, tip(urdf, base, selection)?)?;
     let tip = path.last().map_or(base, |&joint| urdf.joints[joint].child);
     let locks = locks(urdf, selection)?;
+    let moves = |&joint: &usize| urdf.joints[joint].kind.has_one_freedom() && !locks.contains_key(&joint);
     let mut walk = Walk {
         urdf,
         selection,
+        moving: path.iter().copied().filter(moves).collect(),
         locks,
         snapping: Snapping { is_on: snap, ..Snapping::default() },
         loose: Vec::new(),
@@ -263,6 +271,8 @@ struct Walk<'a> {
     urdf: &'a Urdf,
     selection: &'a Selection,
     locks: HashMap<usize, f64>,
+    /// The joints of the chain that move.
+    moving: BTreeSet<usize>,
     snapping: Snapping,
     /// Movable joints off the chain that nobody holds.
     loose: Vec<usize>,
@@ -275,23 +285,30 @@ impl Walk<'_> {
         let before = path(self.urdf, self.urdf.root, base)?;
         let mut pose = Pose::identity();
         for joint in before {
-            pose = pose * self.across(joint);
+            pose = pose * self.across(joint)?;
         }
         Ok(pose)
     }
 
     /// The placement of what a held joint carries.
-    fn across(&mut self, index: usize) -> Pose {
+    fn across(&mut self, index: usize) -> Result<Pose, Report> {
         let joint = &self.urdf.joints[index];
+        self.told.joints.insert(index);
         let place = self.place(joint);
         if joint.kind == crate::urdf::Kind::Fixed {
-            return place;
+            return Ok(place);
         }
-        let Some(value) = self.held(index, 0) else {
+        let Some(value) = self.held(index)? else {
             self.loose.push(index);
-            return place;
+            return Ok(place);
         };
         self.told.held.push((joint.name.clone(), value));
+        if let Some((lower, upper)) = joint.limits.position.filter(|(lower, upper)| !is_within(value, *lower, *upper)) {
+            let name = rne_model::one_line(&joint.name);
+            self.told.remarks.push(format!(
+                "the joint {name} is held at {value}, which is outside of its limits, from {lower} to {upper}"
+            ));
+        }
         let moved = match joint.kind {
             crate::urdf::Kind::Prismatic => {
                 Pose { rotation: Rotation::identity(), translation: self.axis(joint) * decimal(value) }
@@ -302,23 +319,93 @@ impl Walk<'_> {
             // Planar, floating, spherical: held where they are at zero.
             _ => Pose::identity(),
         };
-        place * moved
+        Ok(place * moved)
     }
 
-    /// Where a joint is held, if it is.
-    fn held(&self, index: usize, depth: usize) -> Option<f64> {
-        if let Some(&value) = self.locks.get(&index) {
-            return Some(value);
+    /// Where a joint is held, if it is. One that follows a held one is held by it.
+    fn held(&mut self, index: usize) -> Result<Option<f64>, Report> {
+        if !self.selection.lock_others && !self.locks.contains_key(&index) {
+            return Ok(None);
         }
-        if !self.selection.lock_others {
-            return None;
+        self.refuse_follower(index)?;
+        let (mimics, leader) = self.follows(index)?;
+        let start = self.locks.get(&leader).copied().unwrap_or(0.0);
+        Ok(Some(mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)))
+    }
+
+    /// What decides where a joint is: those that it follows, one after the other, up to one that is held by name or
+    /// follows none.
+    fn follows(&self, index: usize) -> Result<(Vec<&Mimic>, usize), Report> {
+        let joints = &self.urdf.joints;
+        let (mut mimics, mut leader) = (Vec::new(), index);
+        while let Some(mimic) = joints[leader].mimic.as_ref().filter(|_| !self.locks.contains_key(&leader)) {
+            let joint = &joints[leader];
+            let error = |message: String| {
+                let name = rne_model::one_line(&joint.name);
+                let help = format!("correct its `mimic`, or hold it where you say with --lock {name}=VALUE");
+                self.urdf.source.error(&joint.span, message, help)
+            };
+            leader = mimic.leader.ok_or_else(|| {
+                let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
+                error(format!("the joint {follower} follows {leader}, and there is no such joint in the file"))
+            })?;
+            mimics.push(mimic);
+            if mimics.len() > joints.len() {
+                let (follower, leader) = (quoted(&joint.name), quoted(&mimic.joint));
+                return Err(error(format!("the joint {follower} follows {leader}, which follows it in a circle")));
+            }
         }
-        // One that follows a held one is held by it.
-        let leader = self.urdf.joints[index].mimic.as_ref().filter(|_| depth < MAX_JOINTS).and_then(|mimic| {
-            let leader = self.urdf.joints.iter().position(|joint| joint.name == mimic.joint)?;
-            Some(mimic.multiplier * self.held(leader, depth + 1)? + mimic.offset)
-        });
-        Some(leader.unwrap_or(0.0))
+        Ok((mimics, leader))
+    }
+
+    /// The moving joint of the chain that a joint follows, if it does, however it is held itself.
+    fn moving_leader(&self, index: usize) -> Option<usize> {
+        let mimic = self.urdf.joints[index].mimic.as_ref()?;
+        let (mimics, leader) = self.follows(mimic.leader?).ok()?;
+        let moves = self.moving.contains(&leader) && mimics.iter().all(|mimic| mimic.multiplier != 0.0);
+        (moves && mimic.multiplier != 0.0).then_some(leader)
+    }
+
+    /// Refuses a joint off the chain that follows a moving joint of the chain, unless it is held by name or nothing
+    /// that it carries has mass: a table cannot say that it moves.
+    fn refuse_follower(&mut self, index: usize) -> Result<(), Report> {
+        let Some(leader) = self.moving_leader(index) else { return Ok(()) };
+        let joint = &self.urdf.joints[index];
+        let (name, leader) = (rne_model::one_line(&joint.name), &self.urdf.joints[leader].name);
+        if self.locks.contains_key(&index) {
+            self.told.remarks.push(format!(
+                "the joint {name} is held still, although it follows {}, which moves",
+                rne_model::one_line(leader)
+            ));
+            return Ok(());
+        }
+        if self.carries_mass(joint.child) {
+            let message =
+                format!("the joint {} follows {}, a moving joint of the chain", quoted(&joint.name), quoted(leader));
+            let help = format!(
+                "what it carries has mass, and no row of a table can say that it moves along; if it may be held still, \
+                 say where with --lock {name}=VALUE"
+            );
+            return Err(self.urdf.source.error(&joint.span, message, help));
+        }
+        self.told.remarks.push(format!(
+            "the joint {name} follows {}, which moves; it is held still, for nothing that it carries has mass",
+            rne_model::one_line(leader)
+        ));
+        Ok(())
+    }
+
+    /// Whether a link, or anything behind it, has mass or inertia.
+    fn carries_mass(&self, link: usize) -> bool {
+        let mut open = vec![link];
+        while let Some(index) = open.pop() {
+            let link = &self.urdf.links[index];
+            if has_mass(link) {
+                return true;
+            }
+            open.extend(link.children.iter().map(|&joint| self.urdf.joints[joint].child));
+        }
+        false
     }
 
     fn place(&mut self, joint: &Joint) -> Pose {
@@ -334,14 +421,15 @@ impl Walk<'_> {
     fn along(&mut self, base: usize, path: &[usize], chain: &mut Chain) -> Result<(), Report> {
         // The frame of the current link in that of the last one that moves.
         let mut pose = Pose::identity();
-        self.aside(base, path.first().copied());
+        self.aside(base, path.first().copied())?;
         for (i, &index) in path.iter().enumerate() {
             let next = path.get(i + 1).copied();
             let joint = &self.urdf.joints[index];
             if joint.kind == crate::urdf::Kind::Fixed || self.locks.contains_key(&index) {
-                pose = pose * self.across(index);
+                pose = pose * self.across(index)?;
             } else {
                 self.refuse(joint)?;
+                self.remark(index);
                 let place = pose * self.place(joint);
                 let axis = self.axis(joint);
                 let [viscous, friction] = joint.friction;
@@ -367,10 +455,10 @@ impl Walk<'_> {
                 pose = Pose::identity();
             }
             if chain.joints.is_empty() {
-                self.aside(joint.child, next);
+                self.aside(joint.child, next)?;
                 continue;
             }
-            let body = self.lump(joint.child, pose, next);
+            let body = self.lump(joint.child, pose, next)?;
             if let Some(last) = chain.joints.last_mut() {
                 last.body = last.body + body;
             }
@@ -412,14 +500,36 @@ impl Walk<'_> {
         Ok(())
     }
 
+    /// What is remarkable about a joint of the chain that moves.
+    fn remark(&mut self, index: usize) {
+        self.told.joints.insert(index);
+        let joint = &self.urdf.joints[index];
+        let name = rne_model::one_line(&joint.name);
+        if !joint.has_axis {
+            self.told.remarks.push(format!("the joint {name} has no element `axis`; its axis is then 1 0 0"));
+        }
+        if let Some((lower, upper)) = joint.crossed {
+            self.told.remarks.push(format!(
+                "the joint {name} has a lower limit, {lower}, that is above its upper one, {upper}; both are left out"
+            ));
+        }
+    }
+
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the
     /// link stands at `pose`.
-    fn lump(&mut self, link: usize, pose: Pose, next: Option<usize>) -> Body {
+    fn lump(&mut self, link: usize, pose: Pose, next: Option<usize>) -> Result<Body, Report> {
         let mut body = Body::NONE;
         let mut open = vec![(link, pose)];
         while let Some((index, pose)) = open.pop() {
             let link = &self.urdf.links[index];
-            if link.mass != 0.0 || link.inertia != rne_model::Inertia::default() {
+            self.told.links.insert(index);
+            if let Some(part) = link.lacks {
+                let name = rne_model::one_line(&link.name);
+                self.told
+                    .remarks
+                    .push(format!("the `inertial` of the link {name} has no element `{part}`: it is zero"));
+            }
+            if has_mass(link) {
                 let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
                 let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
                 body = body + own.seen_from(pose);
@@ -428,24 +538,37 @@ impl Walk<'_> {
                 }
             }
             let hanging = link.children.iter().filter(|&&joint| Some(joint) != next);
-            let below: Vec<(usize, Pose)> =
-                hanging.map(|&joint| (self.urdf.joints[joint].child, pose * self.across(joint))).collect();
+            let below: Vec<(usize, Pose)> = hanging
+                .map(|&joint| Ok((self.urdf.joints[joint].child, pose * self.across(joint)?)))
+                .collect::<Result<_, Report>>()?;
             open.extend(below.into_iter().rev());
         }
-        body
+        Ok(body)
     }
 
-    /// What moves on a link that stands still moves by itself.
-    fn aside(&mut self, link: usize, next: Option<usize>) {
+    /// What moves on a link that stands still moves by itself, unless it follows a joint of the chain.
+    fn aside(&mut self, link: usize, next: Option<usize>) -> Result<(), Report> {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
-            for &joint in self.urdf.links[index].children.iter().rev().filter(|&&joint| Some(joint) != next) {
-                let joint = &self.urdf.joints[joint];
+            for &index in self.urdf.links[index].children.iter().rev().filter(|&&joint| Some(joint) != next) {
+                let joint = &self.urdf.joints[index];
                 if joint.kind != crate::urdf::Kind::Fixed {
+                    self.refuse_follower(index)?;
                     self.told.aside.push(joint.name.clone());
                 }
                 open.push(joint.child);
             }
         }
+        Ok(())
     }
+}
+
+/// Whether a link has a body of its own.
+fn has_mass(link: &Link) -> bool {
+    link.mass != 0.0 || link.inertia != rne_model::Inertia::default()
+}
+
+/// Whether a position is within limits, to a millionth: limits are rounded, too.
+fn is_within(value: f64, lower: f64, upper: f64) -> bool {
+    (lower - 1e-6..=upper + 1e-6).contains(&value)
 }

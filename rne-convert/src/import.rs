@@ -1,5 +1,7 @@
 //! From a URDF to a robot file, with an account of what was done.
 
+use std::collections::BTreeSet;
+
 use rne_model::{
     Angle, Convention, Inertia, InertiaReference, Joint, JointKind, Reader, Report, Robot, Row, RunTime, Transform,
 };
@@ -10,7 +12,7 @@ use crate::dynamics::Dynamics;
 use crate::geometry::{Pose, Vector};
 use crate::robot_file;
 use crate::snap::Snapped;
-use crate::source::quoted;
+use crate::source::{quoted, some};
 use crate::table::{FAR, NEARLY_PARALLEL, Table, table};
 use crate::urdf::Urdf;
 
@@ -136,7 +138,7 @@ impl Urdf {
         let rounding = Difference::of_table(&exact, &checked.robot);
         let joints = chain.joints.iter().map(|joint| joint.name.clone());
         let account = Account {
-            remarks: [self.suspicious_numbers(), remarks(&robot, &table)].concat(),
+            remarks: [self.ignored(&told), told.remarks, self.suspicious_numbers(), remarks(&robot, &table)].concat(),
             lumped: joints.zip(told.lumped).filter(|(_, links)| links.len() > 1).collect(),
             base: told.base,
             tip: told.tip,
@@ -245,6 +247,7 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
     for (joint, value) in &told.held {
         notes.push(format!("- the joint {} is held at {}", printable(joint), robot_file::number(*value)));
     }
+    notes.extend(told.remarks.iter().map(|remark| format!("- {remark}")));
     if let Some(Difference { position, torque, .. }) = change {
         notes.push(format!(
             "- angles snapped to multiples of pi/12: {}; torques move by up to {torque:.1e} of the largest, the tip by \
@@ -256,6 +259,18 @@ fn notes(told: &Extracted, change: Option<&Difference>) -> Option<String> {
 }
 
 impl Urdf {
+    /// What of the chain, and beside the links and joints, is not known.
+    fn ignored(&self, told: &Extracted) -> Vec<String> {
+        let links = told.links.iter().map(|&link| &self.links[link].unknown);
+        let joints = told.joints.iter().map(|&joint| &self.joints[joint].unknown);
+        let kinds: BTreeSet<usize> = links.chain(joints).chain([&self.beside]).flatten().copied().collect();
+        if kinds.is_empty() {
+            return Vec::new();
+        }
+        let kinds = some(kinds.into_iter().map(|kind| self.unknown[kind].clone()));
+        vec![format!("the import ignores what it does not know: {kinds}")]
+    }
+
     /// Origins that were probably meant in other units.
     fn suspicious_numbers(&self) -> Vec<String> {
         let joints = self.joints.iter().map(|joint| ("joint", &joint.name, joint.xyz, joint.rpy));

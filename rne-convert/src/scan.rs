@@ -3,12 +3,13 @@
 //! `urdf-rs` reads the numbers, yet it knows no lines, it skips words that are no numbers, and it refuses a whole arm
 //! for a mesh that it does not know. So it gets a shorter text: links, inertias and joints alone.
 
+use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write as _;
 use std::ops::Range;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use rne_model::Report;
+use rne_model::{Report, did_you_mean};
 
 use crate::source::{Source, quoted};
 
@@ -21,11 +22,30 @@ const MAX_ELEMENTS: usize = 20_000;
 /// No number of an arm is larger, in SI units.
 const LARGEST: f64 = 1e9;
 
-/// What matters of the text, and the places of links and joints in the order of the text.
+/// More kinds of unknown elements and attributes than any description has.
+const MAX_UNKNOWN: usize = 1000;
+
+/// What matters of the text, and what was seen of links and joints in the order of the text.
+#[derive(Default)]
 pub(crate) struct Scanned {
     pub(crate) text: String,
-    pub(crate) links: Vec<Range<usize>>,
-    pub(crate) joints: Vec<Range<usize>>,
+    /// What stands beside links and joints.
+    pub(crate) robot: Seen,
+    pub(crate) links: Vec<Seen>,
+    pub(crate) joints: Vec<Seen>,
+    /// Kinds of elements and attributes that are not known, in words.
+    pub(crate) unknown: Vec<String>,
+}
+
+/// What was seen of a link or a joint.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Seen {
+    /// The place of its tag.
+    pub(crate) span: Range<usize>,
+    /// The elements in it that matter, at any depth.
+    pub(crate) elements: BTreeSet<&'static str>,
+    /// What in it is not known, as indices of [`Scanned::unknown`].
+    pub(crate) unknown: BTreeSet<usize>,
 }
 
 /// An element that matters.
@@ -113,6 +133,21 @@ const ELEMENTS: &[Element] = &[
     },
 ];
 
+/// Elements that are known and do not matter here, by what they stand in.
+const PASSED_OVER: &[(&str, &[&str])] = &[
+    ("robot", &["material", "gazebo", "transmission", "sensor", "ros2_control", "mujoco"]),
+    ("link", &["visual", "collision", "contact"]),
+    ("joint", &["calibration", "safety_controller"]),
+];
+
+/// Attributes that are known and do not matter here, by their element.
+const PASSED_OVER_ATTRIBUTES: &[(&str, &[&str])] = &[("robot", &["version", "xmlns"])];
+
+/// What stands in a list under a name.
+fn passed_over(list: &[(&str, &'static [&'static str])], name: &str) -> &'static [&'static str] {
+    list.iter().find(|(of, _)| *of == name).map_or(&[], |(_, known)| known)
+}
+
 /// Reads the text once.
 pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
     let bytes = source.text.len();
@@ -120,12 +155,8 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
         let message = format!("a URDF of {bytes} bytes; at most {MAX_BYTES} are read");
         return Err(Source { file: source.file.clone(), text: String::new() }.error(&(0..0), message, None));
     }
-    let mut scanner = Scanner {
-        source,
-        scanned: Scanned { text: String::new(), links: Vec::new(), joints: Vec::new() },
-        open: Vec::new(),
-        has_robot: false,
-    };
+    let mut scanner =
+        Scanner { source, scanned: Scanned::default(), kinds: HashMap::new(), open: Vec::new(), has_robot: false };
     let mut reader = Reader::from_str(&source.text);
     loop {
         let start = usize::try_from(reader.buffer_position()).unwrap_or(0);
@@ -170,6 +201,8 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
 struct Scanner<'a> {
     source: &'a Source,
     scanned: Scanned,
+    /// Kinds of what is not known: whether it is an attribute, the element that has it, its name.
+    kinds: HashMap<(bool, &'static str, String), usize>,
     open: Vec<Open>,
     has_robot: bool,
 }
@@ -202,6 +235,7 @@ impl Scanner<'_> {
                     parent.children.push(element.name);
                 }
             }
+            self.owner(element).elements.insert(element.name);
             self.write(element, tag, &place)?;
         }
         self.open.push(Open { element, children: Vec::new() });
@@ -214,12 +248,13 @@ impl Scanner<'_> {
     /// The element that matters, if this is one.
     fn element(&mut self, name: &str, place: &Range<usize>) -> Result<Option<&'static Element>, Report> {
         let parent = match self.open.last() {
-            None => "",
-            Some(Open { element: Some(parent), .. }) => parent.name,
+            None => None,
+            Some(Open { element: Some(parent), .. }) => Some(*parent),
             Some(_) => return Ok(None),
         };
-        let element = ELEMENTS.iter().find(|element| element.name == name && element.parent == parent);
-        if parent.is_empty() {
+        let name_of_parent = parent.map_or("", |parent| parent.name);
+        let element = ELEMENTS.iter().find(|element| element.name == name && element.parent == name_of_parent);
+        if parent.is_none() {
             if element.is_none() || self.has_robot {
                 let message = if self.has_robot {
                     "a second element behind `robot`; a URDF is one robot".to_owned()
@@ -236,23 +271,77 @@ impl Scanner<'_> {
             let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
             return Err(self.source.error(place, message, help));
         }
-        let places = match name {
+        if let (None, Some(parent)) = (element, parent) {
+            let matter = ELEMENTS.iter().filter(|element| element.parent == parent.name).map(|element| element.name);
+            let others = passed_over(PASSED_OVER, parent.name);
+            self.unknown(parent, ("element", "in"), name, (&matter.collect::<Vec<_>>(), others), place)?;
+        }
+        let seen = match name {
             "link" => &mut self.scanned.links,
             "joint" => &mut self.scanned.joints,
             _ => return Ok(element),
         };
         if element.is_some() {
-            if places.len() >= MAX_ELEMENTS {
+            if seen.len() >= MAX_ELEMENTS {
                 let message = format!("more than {MAX_ELEMENTS} elements `{name}`");
                 return Err(self.source.error(place, message, None));
             }
-            places.push(place.clone());
+            seen.push(Seen { span: place.clone(), ..Seen::default() });
         }
         Ok(element)
     }
 
+    /// Where it is kept what was seen of an element: with its link, its joint or the robot.
+    fn owner(&mut self, element: &Element) -> &mut Seen {
+        let Scanned { robot, links, joints, .. } = &mut self.scanned;
+        let owner = match (element.name, element.parent) {
+            ("link", _) | (_, "link" | "inertial") => links.last_mut(),
+            ("joint", _) | (_, "joint") => joints.last_mut(),
+            _ => None,
+        };
+        owner.unwrap_or(robot)
+    }
+
+    /// Refuses what is not known where it looks like a slip of a name that matters, and remembers the rest. `what` it
+    /// is, and the word between it and the element that has it.
+    fn unknown(
+        &mut self,
+        of: &'static Element,
+        (what, between): (&'static str, &str),
+        name: &str,
+        (matter, others): (&[&'static str], &[&'static str]),
+        place: &Range<usize>,
+    ) -> Result<(), Report> {
+        if others.contains(&name) {
+            return Ok(());
+        }
+        let key = (what == "attribute", of.name, name.to_owned());
+        let kind = match self.kinds.get(&key) {
+            Some(&kind) => kind,
+            None => {
+                let meant = did_you_mean(name, matter.iter().chain(others).copied());
+                if let Some(meant) = meant.filter(|meant| matter.contains(meant)) {
+                    let message = format!("there is no {what} {} {between} `{}`", quoted(name), of.name);
+                    let help =
+                        format!("did you mean `{meant}`? A name is not guessed: correct it, or delete what it names");
+                    return Err(self.source.error(place, message, help));
+                }
+                let kind = self.scanned.unknown.len();
+                if kind >= MAX_UNKNOWN {
+                    let message = format!("more than {MAX_UNKNOWN} names of elements and attributes that no URDF has");
+                    return Err(self.source.error(place, message, None));
+                }
+                self.scanned.unknown.push(format!("{what} {} {between} `{}`", quoted(name), of.name));
+                self.kinds.insert(key, kind);
+                kind
+            }
+        };
+        self.owner(of).unknown.insert(kind);
+        Ok(())
+    }
+
     /// Writes the tag with the attributes that matter.
-    fn write(&mut self, element: &Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
+    fn write(&mut self, element: &'static Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
         let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
         // whether one of thousands stands twice takes long to find out; those that matter are few
         for attribute in tag.attributes().with_checks(false) {
@@ -263,16 +352,22 @@ impl Scanner<'_> {
                 let help = "write the rotation as rpy, in the axes of the parent".to_owned();
                 return Err(self.source.error(place, "a rotation as `quat_xyzw` is not read", help));
             }
-            let Some(index) = element.attributes.iter().position(|known| known.name == key) else { continue };
+            let Some(index) = element.attributes.iter().position(|known| known.name == key) else {
+                if !key.starts_with("xmlns:") {
+                    let matter: Vec<&str> = element.attributes.iter().map(|known| known.name).collect();
+                    let others = passed_over(PASSED_OVER_ATTRIBUTES, element.name);
+                    let place = self.within(place, &key);
+                    self.unknown(element, ("attribute", "of"), &key, (&matter, others), &place)?;
+                }
+                continue;
+            };
             let raw = String::from_utf8_lossy(&attribute.value).into_owned();
             let value = quick_xml::escape::unescape(&raw)
                 .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
                 .into_owned();
             if let Some(fault) = fault(element.attributes[index].kind, &value) {
                 let message = format!("{} of `{}` is {}; {fault}", quoted(&key), element.name, quoted(&value));
-                let found = self.source.text.get(place.clone()).and_then(|tag| tag.find(&raw));
-                let span = found.map_or(place.clone(), |at| place.start + at..place.start + at + raw.len());
-                return Err(self.source.error(&span, message, None));
+                return Err(self.source.error(&self.within(place, &raw), message, None));
             }
             if values[index].replace(value).is_some() {
                 let message = format!("this is not XML: the attribute `{key}` stands there twice");
@@ -299,6 +394,12 @@ impl Scanner<'_> {
         }
         text.push('>');
         Ok(())
+    }
+
+    /// Where a part of a tag stands in the text.
+    fn within(&self, tag: &Range<usize>, part: &str) -> Range<usize> {
+        let found = self.source.text.get(tag.clone()).and_then(|tag| tag.find(part));
+        found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
     }
 
     fn close(&mut self) {

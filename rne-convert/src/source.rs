@@ -36,11 +36,16 @@ const NAMED: usize = 24;
 
 /// Names for a message: `a`, `b` and 3 more.
 pub(crate) fn names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> String {
-    let names: Vec<S> = names.into_iter().collect();
-    let shown: Vec<String> = names.iter().take(NAMED).map(|name| quoted(name.as_ref())).collect();
-    match names.len().saturating_sub(NAMED) {
-        0 => shown.join(", "),
-        more => format!("{} and {more} more", shown.join(", ")),
+    some(names.into_iter().map(|name| quoted(name.as_ref())))
+}
+
+/// A list for a message, not too long.
+pub(crate) fn some(items: impl IntoIterator<Item = String>) -> String {
+    let items: Vec<String> = items.into_iter().collect();
+    let shown = items[..items.len().min(NAMED)].join(", ");
+    match items.len().saturating_sub(NAMED) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
     }
 }
 

@@ -1,12 +1,12 @@
 //! A URDF as a tree of links and joints, whose every number is finite and whose every name is known.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use rne_model::{Inertia, Limits, Report};
 use urdf_rs::JointType;
 
-use crate::scan::{Scanned, scan};
+use crate::scan::{Scanned, Seen, scan};
 use crate::source::{Source, names, quoted};
 
 /// A robot as its URDF describes it. [`Urdf::read`] has checked that its links are one tree.
@@ -20,12 +20,20 @@ pub struct Urdf {
     pub(crate) joints: Vec<Joint>,
     /// The link that no joint moves.
     pub(crate) root: usize,
+    /// Kinds of elements and attributes that are not known, in words.
+    pub(crate) unknown: Vec<String>,
+    /// Those of them that stand beside links and joints.
+    pub(crate) beside: BTreeSet<usize>,
 }
 
 #[derive(Clone, Debug)]
 pub(crate) struct Link {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
+    /// What in it is not known.
+    pub(crate) unknown: BTreeSet<usize>,
+    /// What its `inertial` lacks.
+    pub(crate) lacks: Option<&'static str>,
     /// Mass, kg; 0 where there is no `inertial`.
     pub(crate) mass: f64,
     /// Centre of mass in the link frame, m.
@@ -76,6 +84,8 @@ impl Kind {
 #[derive(Clone, Debug)]
 pub(crate) struct Mimic {
     pub(crate) joint: String,
+    /// The same, where there is such a joint.
+    pub(crate) leader: Option<usize>,
     pub(crate) multiplier: f64,
     pub(crate) offset: f64,
 }
@@ -84,6 +94,12 @@ pub(crate) struct Mimic {
 pub(crate) struct Joint {
     pub(crate) name: String,
     pub(crate) span: Range<usize>,
+    /// What in it is not known.
+    pub(crate) unknown: BTreeSet<usize>,
+    /// Whether its axis is written; 1 0 0 otherwise.
+    pub(crate) has_axis: bool,
+    /// Limits of position of which the lower one is above the upper one.
+    pub(crate) crossed: Option<(f64, f64)>,
     pub(crate) kind: Kind,
     pub(crate) mimic: Option<Mimic>,
     /// The link on which it stands.
@@ -113,7 +129,15 @@ impl Urdf {
         let scanned = scan(&source)?;
         let robot = urdf_rs::read_from_string(&scanned.text)
             .map_err(|error| source.error(&(0..0), format!("this URDF cannot be read: {error}"), None))?;
-        let mut urdf = Self { source, name: robot.name, links: Vec::new(), joints: Vec::new(), root: 0 };
+        let mut urdf = Self {
+            source,
+            name: robot.name,
+            links: Vec::new(),
+            joints: Vec::new(),
+            root: 0,
+            unknown: scanned.unknown.clone(),
+            beside: scanned.robot.unknown.clone(),
+        };
         urdf.take_links(robot.links, &scanned)?;
         urdf.take_joints(robot.joints, &scanned)?;
         urdf.find_root()?;
@@ -128,7 +152,8 @@ impl Urdf {
 
     fn take_links(&mut self, links: Vec<urdf_rs::Link>, scanned: &Scanned) -> Result<(), Report> {
         let mut known = HashMap::new();
-        for (link, span) in links.into_iter().zip(&scanned.links) {
+        for (link, seen) in links.into_iter().zip(&scanned.links) {
+            let span = &seen.span;
             let urdf_rs::Inertial { origin, mass, inertia: i } = link.inertial;
             if let Some(first) = known.insert(link.name.clone(), span) {
                 let message = format!("the link {} is there already, in line {}", quoted(&link.name), self.line(first));
@@ -141,6 +166,10 @@ impl Urdf {
             self.links.push(Link {
                 name: link.name,
                 span: span.clone(),
+                unknown: seen.unknown.clone(),
+                lacks: ["mass", "inertia"]
+                    .into_iter()
+                    .find(|part| seen.elements.contains("inertial") && !seen.elements.contains(part)),
                 mass: mass.value,
                 xyz: origin.xyz.0,
                 rpy: origin.rpy.0,
@@ -156,7 +185,8 @@ impl Urdf {
         let links: HashMap<String, usize> =
             self.links.iter().enumerate().map(|(index, link)| (link.name.clone(), index)).collect();
         let mut known = HashMap::new();
-        for (index, (joint, span)) in joints.into_iter().zip(&scanned.joints).enumerate() {
+        for (index, (joint, seen)) in joints.into_iter().zip(&scanned.joints).enumerate() {
+            let span = &seen.span;
             if let Some(first) = known.insert(joint.name.clone(), span) {
                 let message =
                     format!("the joint {} is there already, in line {}", quoted(&joint.name), self.line(first));
@@ -180,7 +210,12 @@ impl Urdf {
             }
             self.links[child].parent = Some(index);
             self.links[parent].children.push(index);
-            self.joints.push(taken(joint, span.clone(), parent, child));
+            self.joints.push(taken(joint, seen, parent, child));
+        }
+        let known: HashMap<String, usize> =
+            self.joints.iter().enumerate().map(|(index, joint)| (joint.name.clone(), index)).collect();
+        for mimic in self.joints.iter_mut().filter_map(|joint| joint.mimic.as_mut()) {
+            mimic.leader = known.get(&mimic.joint).copied();
         }
         Ok(())
     }
@@ -222,7 +257,7 @@ impl Urdf {
     }
 }
 
-fn taken(joint: urdf_rs::Joint, span: Range<usize>, parent: usize, child: usize) -> Joint {
+fn taken(joint: urdf_rs::Joint, seen: &Seen, parent: usize, child: usize) -> Joint {
     let kind = match joint.joint_type {
         JointType::Revolute => Kind::Revolute,
         JointType::Continuous => Kind::Continuous,
@@ -237,16 +272,21 @@ fn taken(joint: urdf_rs::Joint, span: Range<usize>, parent: usize, child: usize)
     let positive = |limit: f64| (limit > 0.0 && limit.is_finite()).then_some(limit);
     let both = limit.lower.is_finite() && limit.upper.is_finite() && limit.lower < limit.upper;
     let position = (both && kind != Kind::Continuous).then_some((limit.lower, limit.upper));
+    let crossed = (limit.lower > limit.upper && kind != Kind::Continuous).then_some((limit.lower, limit.upper));
     let limits = Limits { position, velocity: positive(limit.velocity), effort: positive(limit.effort) };
     let mimic = joint.mimic.map(|mimic| Mimic {
         joint: mimic.joint,
+        leader: None,
         multiplier: mimic.multiplier.unwrap_or(1.0),
         offset: mimic.offset.unwrap_or(0.0),
     });
     let friction = joint.dynamics.map_or([0.0; 2], |dynamics| [dynamics.damping, dynamics.friction]);
     Joint {
         name: joint.name,
-        span,
+        span: seen.span.clone(),
+        unknown: seen.unknown.clone(),
+        has_axis: seen.elements.contains("axis"),
+        crossed,
         kind,
         mimic,
         parent,

@@ -6,7 +6,8 @@ pub(crate) const LONGEST_WORD: usize = 32;
 /// A word with more slips than these is another word.
 const MOST: usize = 2;
 
-/// The candidate that `word` was probably meant to be, if it is a slip or two away.
+/// The candidate that `word` was probably meant to be, if it is a slip or two away: a letter that is missing, too many
+/// or another one, or two neighbours that changed places.
 pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str>) -> Option<&'c str> {
     if word.is_empty() || word.chars().count() > LONGEST_WORD {
         return None;
@@ -18,7 +19,7 @@ pub fn did_you_mean<'c>(word: &str, candidates: impl IntoIterator<Item = &'c str
         // a word that is longer by three is three slips away at least
         .filter(|candidate| candidate.chars().count().abs_diff(length) <= MOST)
         .filter_map(|candidate| {
-            let distance = strsim::levenshtein(&word, &candidate.to_lowercase());
+            let distance = strsim::osa_distance(&word, &candidate.to_lowercase());
             let shorter = length.min(candidate.chars().count());
             let close = distance == 0 || (distance <= shorter.div_ceil(3).min(MOST) && distance < shorter);
             close.then_some((distance, candidate))
@@ -39,5 +40,6 @@ mod tests {
         assert_eq!(did_you_mean("b", keys), None);
         assert_eq!(did_you_mean("inertia-about", ["inertia_about"]), Some("inertia_about"));
         assert_eq!(did_you_mean("offset", keys), None);
+        assert_eq!(did_you_mean("xzy", ["xyz", "rpy"]), Some("xyz"));
     }
 }

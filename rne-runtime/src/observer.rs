@@ -18,6 +18,9 @@ use core::array;
 use crate::{Constant, DynArm, WrongLength};
 use crate::{MomentumObserver, Scalar};
 
+/// The shortest period of an observer, s.
+const SHORTEST_PERIOD: f64 = 1e-30;
+
 /// External torques without accelerations: what an observer knows from one tick of a controller to the next.
 ///
 /// The torques are those of the environment on the arm, positive along the joint: a hand that pushes joint i towards
@@ -56,18 +59,25 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     /// An observer with a low-pass of `gain` Hz (its time constant is 1/(2π gain) s), updated every `period` s.
     ///
     /// It is stable and does not overshoot for every `gain` and `period` above zero: the larger the product of both,
-    /// the nearer is what an update returns to the mean external torque of its tick. One that is not above zero
-    /// observes nothing. In single precision noise of rounding asks for a gain below a tenth of the rate of the ticks.
+    /// the nearer is what an update returns to the mean external torque of its tick. With a `gain` or a `period` that is
+    /// not above zero, and with a `period` below 1e-30 s, the observer returns zeros. In single precision noise of
+    /// rounding asks for a gain below a tenth of the rate of the ticks.
     #[must_use]
     pub fn new(gain: f64, period: f64) -> Self {
         let zeros = [T::zero(); DOF];
+        // of a shorter tick the frequency is not finite, in single precision at least
+        let (weight, frequency) = if period >= SHORTEST_PERIOD {
+            (weight(core::f64::consts::TAU * gain * period), 1.0 / period)
+        } else {
+            (0.0, 0.0)
+        };
         Self {
             momentum: zeros,
             rate: zeros,
             external: zeros,
             next: T::zero(),
-            weight: T::from_f64(weight(core::f64::consts::TAU * gain * period)),
-            frequency: T::from_f64(1.0 / period),
+            weight: T::from_f64(weight),
+            frequency: T::from_f64(frequency),
         }
     }
 
@@ -76,6 +86,9 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     /// zeros.
     ///
     /// Torques that are commanded and then held: those that were held until now.
+    ///
+    /// An update has no branch that looks at its numbers. After a sample that is not finite the external torques are
+    /// not finite until [`reset`](Self::reset); a program whose sensors can give such samples skips the update then.
     #[inline]
     pub fn update<R: MomentumObserver<DOF>>(
         &mut self,

@@ -1,7 +1,7 @@
 //! The momentum observer in simulations of its own: the sign of what it sees, its time constant, and how soon it sees a
 //! payload.
 #![cfg(feature = "std")]
-#![allow(clippy::cast_precision_loss)] // numbers of joints
+#![allow(clippy::cast_precision_loss, clippy::cast_possible_truncation)] // numbers of joints, single precision
 
 mod common;
 
@@ -58,6 +58,34 @@ fn the_response_is_that_of_a_low_pass() {
             let expected = -external * (-TAU * gain * period * f64::from(tick)).exp_m1();
             assert!((seen - expected).abs() < 1e-13 * external, "{gain} Hz, tick {tick}: {seen} is not {expected}");
         }
+    }
+}
+
+/// A gain or a period that is no positive number, and a period whose frequency is not finite, give zeros in either
+/// precision; the shortest period that is allowed gives numbers.
+#[test]
+fn an_observer_without_gain_or_period_observes_nothing() {
+    let arm = &Arm::new(one_link());
+    let of = |gain, period| {
+        let mut double = ObserverState::new(gain, period);
+        let mut single = ObserverState::new(gain, period);
+        (0..5).map(move |tick| {
+            let (q, qd) = (0.1 * f64::from(tick), 1.0 + f64::from(tick));
+            let [single] = single.update(arm, &[q as f32], &[qd as f32], &[3.0_f32]);
+            [double.update(arm, &[q], &[qd], &[3.0])[0], f64::from(single)]
+        })
+    };
+    let wrong = [0.0, -0.0, -1e-3, f64::NAN, f64::NEG_INFINITY];
+    let short = [5e-324, 1e-310, 1e-45, 2.9e-39, 9e-31].map(|period| (20.0, period));
+    let pairs = wrong.into_iter().flat_map(|wrong| [(wrong, 1e-3), (20.0, wrong), (wrong, wrong)]);
+    for (gain, period) in pairs.chain(short) {
+        for (tick, seen) in of(gain, period).enumerate() {
+            assert_eq!(seen, [0.0; 2], "{gain} Hz, {period} s, tick {tick}");
+        }
+    }
+    for (gain, period) in [(20.0, 1e-30), (20.0, 1e-3), (f64::INFINITY, 1e-3), (20.0, f64::INFINITY)] {
+        assert!(of(gain, period).flatten().all(f64::is_finite), "{gain} Hz, {period} s");
+        assert!(of(gain, period).skip(1).flatten().all(|seen| seen != 0.0), "{gain} Hz, {period} s");
     }
 }
 

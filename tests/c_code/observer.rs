@@ -86,6 +86,19 @@ fn compare<const DOF: usize>(compiler: &Compiler, name: &str) {
     }
 }
 
+/// A period of zero, below zero, and one whose frequency is not finite write zeros, as those of the runtime do.
+#[test]
+fn the_observer_in_c_without_a_period_writes_zeros() {
+    let Some(compiler) = Compiler::found() else { return };
+    let robot = Robot::from_yaml(&read(&format!("{ROOT}/robots/planar3.yaml"))).unwrap_or_else(|why| panic!("{why}"));
+    for precision in [Precision::Double, Precision::Single] {
+        for period in [0.0, -1e-3, 2.9e-39, 9e-31] {
+            let found = of_c::<3>(&compiler, &robot, Form::Reduced, precision, [20.0, period]);
+            assert_eq!(found, vec![0; 3 * TICKS], "{precision:?}, {period} s");
+        }
+    }
+}
+
 #[test]
 fn the_observer_in_c_is_that_of_the_runtime() {
     let Some(compiler) = Compiler::found() else { return };

@@ -38,14 +38,16 @@ pub(super) fn declarations(file: &File) -> String {
     text.push_str(&comment(
         "///",
         "Begins an observer whose low-pass has a gain of `gain` Hz (a time constant of 1/(2 pi gain) s), to be updated \
-         every `period` s. Stable for every gain and period above zero; one that is not observes nothing.",
+         every `period` s. Stable for every gain and period above zero. With a gain or a period that is not above zero, \
+         and with a period below 1e-30 s, every update writes zeros.",
     ));
     let _ = writeln!(text, "{};\n", begin_head(file));
     text.push_str(&comment(
         "///",
         "One tick: what was measured at its end. external: torques of the environment on the arm, positive along the \
          joint, through the low-pass; friction shows in them, unless it is taken out of tau. The first update after \
-         the beginning writes zeros.",
+         the beginning writes zeros. After a sample that is not finite they are not finite until the observer is begun \
+         anew.",
     ));
     let _ = writeln!(text, "{};", update_head(file, program));
     text
@@ -76,8 +78,12 @@ pub(super) fn definitions(file: &File) -> String {
             let _ = writeln!(text, "    observer->{member}[{joint}] = {zero};");
         }
     }
-    let _ = writeln!(text, "    observer->next = {zero};\n    observer->weight = w;");
-    let _ = writeln!(text, "    observer->frequency = {one} / period;\n}}");
+    let shortest = number(SHORTEST_PERIOD);
+    let _ = writeln!(text, "    // of a shorter tick the frequency may not be finite");
+    let _ = writeln!(text, "    const {real} frequency = {one} / period;");
+    let _ = writeln!(text, "    observer->next = {zero};");
+    let _ = writeln!(text, "    observer->weight = (period >= {shortest}) ? w : {zero};");
+    let _ = writeln!(text, "    observer->frequency = (period >= {shortest}) ? frequency : {zero};\n}}");
 
     let _ = writeln!(text, "\n{}\n{{", update_head(file, program));
     let record = record_type(file, Record::MomentumAndRate);
@@ -103,6 +109,9 @@ pub(super) fn definitions(file: &File) -> String {
     text.push_str("\n    observer->next = observer->weight;\n}\n");
     text
 }
+
+/// The shortest period, s, as that of the runtime.
+const SHORTEST_PERIOD: f64 = 1e-30;
 
 /// Of the series: the next one is below a unit in the last place of a double, at 1/2.
 const TERMS: u32 = 14;
