@@ -1,7 +1,7 @@
 //! `rne search`: a reduced form with fewer operations.
 
 use std::fmt::Write as _;
-use std::fs::OpenOptions;
+use std::fs::{File, OpenOptions};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant, SystemTime};
@@ -10,12 +10,13 @@ use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use rne_codegen::Function;
 use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions};
-use rne_model::plan_of;
+use rne_model::{Robot, plan_of};
 
 use crate::arguments::FunctionOrAll;
 use crate::input_file::is_stream;
-use crate::outcome::{Failure, Outcome};
+use crate::outcome::{Failure, INPUT, Outcome};
 use crate::output_file::{self, Written};
+use crate::plan_file::{Known, Read};
 use crate::terminal::{FOUND, GOOD, QUIET, TYPED};
 use crate::{arguments, interruption, plan_file, robot_file};
 
@@ -77,34 +78,93 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         )));
     }
     let robot = robot_file::robot(&arguments.file)?;
+    let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
+    let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
     let path = plan_of(&arguments.file);
-    let (known, left_out) = if arguments.fresh {
-        plan_file::to_replace(&arguments.file, &robot)?
-    } else {
-        let read = plan_file::read(&arguments.file, &robot)?;
-        if let Some(read) = &read {
-            plan_file::is_proved(&robot, read)?;
-        }
-        (read.map(|read| read.plan), Vec::new())
-    };
     plan_file::is_writable(&path)?;
     interruption::expect();
-    let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
-    let mut found = watched(&robot, known.as_ref(), &options, arguments.seconds)
+    let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
-    // another search may have written there meanwhile
-    if !arguments.fresh
-        && let Ok(Some(read)) = plan_file::read(&arguments.file, &robot)
-        && known.as_ref() != Some(&read.plan)
-    {
-        found.merge(read.plan);
+    let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
+    let Kept { plan, left_out, written } = searched.keep(found, || ())?;
+    Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
+}
+
+/// What a search was of.
+struct Searched<'a> {
+    file: &'a Path,
+    /// As it was read at the start.
+    robot: &'a Robot,
+    /// What the search went on from.
+    known: Known,
+    fresh: bool,
+}
+
+/// What stands in the plan file after a search.
+struct Kept {
+    plan: PlanFile,
+    /// Functions of the plan that was there whose graphs are not proved.
+    left_out: Vec<Function>,
+    written: Written,
+}
+
+impl Searched<'_> {
+    /// Writes what a search has found into the plan file, with what another search has written there meanwhile. The
+    /// robot file is locked from the reading to the writing, so of searches that end together each sees what those
+    /// before it have written; `between` is called then, for tests. Nothing is written where the robot has changed, or
+    /// where something stands in the place of the plan that no search may begin from.
+    fn keep(&self, mut found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+        let path = plan_of(self.file);
+        let _locked = locked(self.file);
+        self.is_unchanged(&found)?;
+        let now = plan_file::known(self.file, self.robot, self.fresh).map_err(|failure| meanwhile(&path, &failure))?;
+        if now.text != self.known.text
+            && let Some(plan) = now.plan
+        {
+            found.merge(plan);
+            plan_file::is_proved(self.robot, &Read::of(&path, &found))?;
+        }
+        between();
+        let written = output_file::replace(&path, &found.to_yaml())?;
+        if written == Written::Anew {
+            touch(self.file);
+        }
+        Ok(Kept { plan: found, left_out: now.left_out, written })
     }
-    let written = output_file::replace(&path, &found.to_yaml())
-        .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
-    if written == Written::Anew {
-        touch(&arguments.file);
+
+    /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
+    fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
+        let is_same = |now: Robot| now.name == found.robot && plan::fingerprint(&now) == found.fingerprint;
+        if robot_file::robot(self.file).is_ok_and(is_same) {
+            return Ok(());
+        }
+        Err(Failure::input(format_args!(
+            "{} has changed during the search: what was found is of the arm as it was, so {} is not written. Search again",
+            self.file.display(),
+            plan_of(self.file).display()
+        )))
     }
-    Ok(Outcome::text(summary(&found, known.as_ref(), &left_out, &path, written)))
+}
+
+/// Why nothing is written in the place of a plan that has appeared or changed during the search.
+fn meanwhile(path: &Path, failure: &Failure) -> Failure {
+    let text = format!(
+        "{}\n\n{} has changed during the search, and stays as it is; what was found is not written",
+        failure.text.trim_end(),
+        path.display()
+    );
+    Failure { text, status: INPUT }
+}
+
+/// The robot file, locked for other searches until it is dropped. Where the system cannot lock it, the search is still
+/// worth its result. On Windows a lock would keep every reader out.
+fn locked(robot_file: &Path) -> Option<File> {
+    if cfg!(windows) {
+        return None;
+    }
+    let file = File::open(robot_file).ok()?;
+    file.lock().ok()?;
+    Some(file)
 }
 
 /// The functions whose graphs are to be rewritten.
@@ -129,7 +189,7 @@ fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
 
 /// Searches with a progress bar on a terminal.
 fn watched(
-    robot: &rne_model::Robot,
+    robot: &Robot,
     known: Option<&PlanFile>,
     options: &SearchOptions,
     seconds: f64,
