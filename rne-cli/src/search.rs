@@ -81,8 +81,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
     let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
     let path = plan_of(&arguments.file);
-    plan_file::is_writable(&path)?;
     interruption::expect();
+    plan_file::is_writable(&path)?;
     let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
     let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
@@ -268,4 +268,154 @@ fn touch(robot_file: &Path) {
         |path: &Path| -> io::Result<()> { OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now()) };
     // a robot file that cannot be touched is built anew when it changes
     let _ = touched(robot_file);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use rne_codegen::plan::Rewritten;
+
+    use super::*;
+
+    /// The robot and the plan of the box, in a folder of their own.
+    struct Arm {
+        folder: tempfile::TempDir,
+        robot: Robot,
+        plan: PlanFile,
+    }
+
+    impl Arm {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let shipped = rne_robots::find("scara_cobra600").expect("shipped");
+            let file = folder.path().join("arm.yaml");
+            fs::write(&file, shipped.yaml).expect("written");
+            let robot = robot_file::robot(&file).unwrap_or_else(|failure| panic!("{}", failure.text));
+            let plan = PlanFile::read("plan", shipped.plan.expect("a plan"), &robot).expect("of the robot");
+            Self { folder, robot, plan }
+        }
+
+        fn file(&self) -> PathBuf {
+            self.folder.path().join("arm.yaml")
+        }
+
+        /// What stands in the place of the plan.
+        fn written(&self) -> Option<String> {
+            fs::read_to_string(plan_of(&self.file())).ok()
+        }
+
+        fn write(&self, plan: &str) {
+            fs::write(plan_of(&self.file()), plan).expect("written");
+        }
+
+        /// A plan that rewrites one function alone.
+        fn found(&self, function: Function) -> PlanFile {
+            let mut found = self.plan.clone();
+            found.rewritten.retain(|&one, _: &mut Rewritten| one == function);
+            assert_eq!(found.rewritten.len(), 1, "{function} is rewritten");
+            found
+        }
+
+        /// The end of a search that began without a plan.
+        fn keep(&self, found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+            self.keep_as(false, found, between)
+        }
+
+        fn keep_as(&self, fresh: bool, found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+            let known = Known { text: None, plan: None, left_out: Vec::new() };
+            Searched { file: &self.file(), robot: &self.robot, known, fresh }.keep(found, between)
+        }
+    }
+
+    /// The message of a search that must not write.
+    fn refused(kept: Result<Kept, Failure>) -> (u8, String) {
+        let failure = kept.map(|_| ()).expect_err("nothing is written");
+        let text = anstream::adapter::strip_str(&failure.text).to_string();
+        (failure.status, text.split_whitespace().collect::<Vec<_>>().join(" "))
+    }
+
+    #[test]
+    fn a_robot_that_changed_during_the_search_has_no_plan() {
+        let arm = Arm::new();
+        let text = fs::read_to_string(arm.file()).expect("a robot");
+        for (from, to) in [("mass: ", "mass: 1+"), ("name: scara_cobra600", "name: another"), ("format: 1", "format")] {
+            fs::write(arm.file(), text.replacen(from, to, 1)).expect("written");
+            let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
+            assert_eq!(status, INPUT);
+            assert!(
+                said.contains("arm.yaml has changed during the search") && said.contains("is not written"),
+                "{said}"
+            );
+            assert_eq!(arm.written(), None);
+        }
+        fs::remove_file(arm.file()).expect("removed");
+        refused(arm.keep(arm.plan.clone(), || ()));
+        // a comment is no number
+        fs::write(arm.file(), format!("# a comment\n{text}")).expect("written");
+        assert!(arm.keep(arm.plan.clone(), || ()).is_ok_and(|kept| kept.written == Written::Anew));
+        assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
+    }
+
+    #[test]
+    fn what_is_no_plan_stays() {
+        let arm = Arm::new();
+        for notes in ["my notes\n", "format: 2\nrobot: scara_cobra600\n", "\u{0}"] {
+            arm.write(notes);
+            let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
+            assert_eq!(status, INPUT);
+            assert!(said.contains("arm.plan.yaml has changed during the search, and stays as it is"), "{said}");
+            assert_eq!(arm.written().as_deref(), Some(notes));
+        }
+        // a fresh search replaces a plan that cannot be read, and nothing else
+        arm.write("my notes\n");
+        refused(arm.keep_as(true, arm.plan.clone(), || ()));
+        assert_eq!(arm.written().as_deref(), Some("my notes\n"));
+        arm.write("format: 2\nfingerprint: 0\n");
+        assert!(arm.keep_as(true, arm.plan.clone(), || ()).is_ok());
+        assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
+    }
+
+    /// A graph with a wrong sign, which looks as good as any, and claims to be better than all.
+    #[test]
+    fn a_plan_that_is_not_proved_is_not_merged() {
+        let arm = Arm::new();
+        let function = Function::MassMatrix;
+        let right = arm.found(function).to_yaml();
+        let wrong = right.replacen("out1 = ", "out1 = -", 1).replacen("= --", "= ", 1);
+        assert_ne!(right, wrong);
+        arm.write(&wrong);
+        let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
+        assert!(said.contains("is not the seven steps") && said.contains("stays as it is"), "{said}");
+        assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));
+        let kept = arm.keep_as(true, arm.found(Function::ForwardDynamics), || ());
+        let kept = kept.unwrap_or_else(|failure| panic!("{}", failure.text));
+        assert_eq!(kept.left_out, [function]);
+        assert_eq!(arm.written(), Some(arm.found(Function::ForwardDynamics).to_yaml()));
+    }
+
+    #[test]
+    fn searches_that_end_together_lose_nothing() {
+        let arm = Arm::new();
+        let functions = [Function::MassMatrix, Function::ForwardDynamics, Function::InverseDynamics];
+        let keep = |function: Function, between: &mut dyn FnMut()| {
+            let kept = arm.keep(arm.found(function), between);
+            kept.map(drop).unwrap_or_else(|failure| panic!("{}", failure.text));
+        };
+        std::thread::scope(|scope| {
+            // the others begin while the first one has read and not yet written; they wait for it
+            keep(functions[0], &mut || {
+                let other = File::open(arm.file()).expect("a robot");
+                assert!(cfg!(windows) || matches!(other.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
+                for &function in &functions[1..] {
+                    scope.spawn(move || keep(function, &mut || ()));
+                }
+            });
+        });
+        let written = arm.written().expect("a plan");
+        let plan = PlanFile::read("plan", &written, &arm.robot).expect("a plan");
+        assert!(functions.iter().all(|function| plan.rewritten.contains_key(function)), "{written}");
+        let names = fs::read_dir(arm.folder.path()).expect("a folder").count();
+        assert_eq!(names, 2, "neither a lock nor a temporary file is left");
+    }
 }
