@@ -112,12 +112,12 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
 const EXIT_STATUS: &str = "\
 0    fine. `rne check`: no file has an error, lints or not; `rne emit --check`:
      the file is what rne would write
-1    the input is at fault: a robot file or a plan has an error or cannot be
-     read, the result of one state is not finite, a file that is checked is
-     stale, torques differ and `rne diagnose` cannot say why, a value differs
-     from that of `rne eval --trace --compare`, `rne watch` has events, `rne log`
-     cannot tell the units or the noise of a log, a log excites nothing that
-     `rne identify` could find, or the output cannot be written
+1    the input is at fault: a robot file or a plan has an error, cannot be read
+     or changes during a search, the result of one state is not finite, a file
+     that is checked is stale, torques differ and `rne diagnose` cannot say why,
+     a value differs from that of `rne eval --trace --compare`, `rne watch` has
+     events, `rne log` cannot tell the units or the noise of a log, a log excites
+     nothing that `rne identify` could find, or the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file or folder that
      rne does not overwrite

@@ -4,6 +4,7 @@
 //! `NO_COLOR` asks for it.
 
 use std::collections::hash_map::RandomState;
+use std::env;
 use std::fmt::{self, Display, Write as _};
 use std::hash::BuildHasher as _;
 use std::io::{self, Write};
@@ -116,7 +117,9 @@ pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
 /// Prints what clap says: help, or what is wrong with the command line, which may be quoted.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
     let text = error.render();
-    let text = coloured(&text.to_string(), &text.ansi().to_string());
+    // A word that is quoted may have colours of its own, and nobody knows which is which.
+    let has_colours = env::args_os().any(|word| word.to_string_lossy().contains('\u{1B}'));
+    let text = if has_colours { text.to_string() } else { marked(&text.ansi().to_string()) };
     if error.use_stderr() {
         // Where even this finds no reader, the status must do.
         let _ = write(AutoStream::auto(io::stderr().lock()), &text);
