@@ -34,10 +34,12 @@ pub(crate) struct Arguments {
 
 /// The help of rne itself: the usual one, but that its two options share a line. A page has 40.
 fn page() -> String {
+    // the parser's own text, as its styles are
+    let (title, typed) = (TITLE.0, TYPED.0);
     format!(
-        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{TITLE}Commands:{TITLE:#}\n{{subcommands}}\n\n\
-         {TITLE}Options:{TITLE:#} {TYPED}-h{TYPED:#}, {TYPED}--help{TYPED:#}  Print help   \
-         {TYPED}-V{TYPED:#}, {TYPED}--version{TYPED:#}  Print version{{after-help}}"
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{title}Commands:{title:#}\n{{subcommands}}\n\n\
+         {title}Options:{title:#} {typed}-h{typed:#}, {typed}--help{typed:#}  Print help   \
+         {typed}-V{typed:#}, {typed}--version{typed:#}  Print version{{after-help}}"
     )
 }
 

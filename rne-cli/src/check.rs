@@ -8,7 +8,7 @@ use rne_codegen::{Form, Function, emit};
 use rne_model::{Checked, Convention, JointKind, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
 
 use crate::layout::{left, width};
-use crate::outcome::{Failure, Outcome};
+use crate::outcome::{Failure, Outcome, rendered};
 use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::plan_file::Compiler;
 use crate::{functions, physics, plan_file, robot_file};
@@ -86,7 +86,7 @@ fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
     }
     let refusals = refusals(path, &robot)?;
     let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
-    let lints = (!lints.is_empty()).then(|| lints.render(true));
+    let lints = (!lints.is_empty()).then(|| rendered(&lints));
     let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).chain(refusals).collect();
     Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), laws })
 }

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     /// The rows of the new table
     #[arg(long, value_parser = convention())]
     convention: Convention,
-    /// Where to write the robot file; standard output, unless given
+    /// Where to write the robot file; standard output, unless given, or where it is -
     #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite a file that is there
@@ -47,11 +47,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(remark, "{line}");
     }
     let _ = writeln!(remark, "{QUIET}{}{QUIET:#}", rounding(&difference));
-    match &arguments.out {
-        Some(out) => {
-            remark += &output_file::write_new(out, &text, &[&arguments.file], arguments.force)?;
-            Ok(Outcome::remark(remark))
-        }
-        None => Ok(Outcome { text, remark, ..Outcome::default() }),
-    }
+    output_file::deliver(arguments.out.as_deref(), text, remark, &[&arguments.file], arguments.force)
 }

@@ -12,7 +12,7 @@ use crate::arguments::FunctionOrAll;
 use crate::arm::Rotors;
 use crate::input_file::is_stream;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, Existing, Written};
+use crate::output_file::{self, Existing, is_standard_output};
 use crate::plan_file::Compiler;
 use crate::terminal::{GOOD, TYPED};
 use crate::{arguments, functions, golden, robot_file};
@@ -134,7 +134,12 @@ struct Generated {
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     only_of_one_language(arguments)?;
     is_named_once(&arguments.run_time)?;
-    let out = arguments.output.as_deref().or(arguments.check.as_deref()).filter(|out| *out != Path::new("-"));
+    let out = arguments.output.as_deref().filter(|out| !is_standard_output(out)).or(arguments.check.as_deref());
+    if arguments.check.as_deref().is_some_and(is_standard_output) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--check{TYPED:#} compares with a file, and standard output is none; name the file"
+        )));
+    }
     out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
     let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
     let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
@@ -298,17 +303,8 @@ fn is_ours(text: &str) -> bool {
 /// Writes all files, or none if one of them is another's.
 fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure> {
     files.iter().try_for_each(|file| may_be_written(arguments, &file.path))?;
-    let mut remark = String::new();
-    for Generated { path, text } in files {
-        let written = output_file::replace(path, text)
-            .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
-        let word = match written {
-            Written::Anew => "wrote",
-            Written::Unchanged => "up to date:",
-        };
-        let _ = writeln!(remark, "{GOOD}{word}{GOOD:#} {}", path.display());
-    }
-    Ok(Outcome::remark(remark))
+    let files: Vec<(&Path, &str)> = files.iter().map(|file| (file.path.as_path(), file.text.as_str())).collect();
+    output_file::write_all(&files).map(Outcome::remark)
 }
 
 fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
@@ -340,7 +336,7 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
             arguments.lang.extension()
         ))),
         Existing::Special => Err(Failure::usage(format_args!("{} is not a regular file; name another", out.display()))),
-        Existing::Unreadable(error) => Err(Failure::input(format_args!("{} cannot be read: {error}", out.display()))),
+        Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
     }
 }
 

@@ -6,7 +6,7 @@ use rne_inspection::{Became, Cell, Component, Inspection, Operations};
 
 use crate::layout::wrap;
 use crate::letters::Letters;
-use crate::terminal::{self, FORMULA, FOUND, QUIET, TITLE};
+use crate::terminal::{self, FORMULA, FOUND, QUIET, Style, TITLE};
 
 /// Columns where the output is no terminal.
 const WIDTH: usize = 80;
@@ -159,6 +159,6 @@ fn code(view: View<'_>, component: &Component) -> Vec<String> {
 }
 
 /// A style for each of several lines.
-fn styled(style: anstyle::Style, text: &str) -> String {
+fn styled(style: Style, text: &str) -> String {
     text.lines().map(|line| format!("{style}{line}{style:#}")).collect::<Vec<_>>().join("\n")
 }

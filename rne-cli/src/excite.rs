@@ -17,7 +17,7 @@ use rne_plot::{Panel, PanelCurve, panels};
 use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, Replacement, check_new, is_standard_output, unwritable, will_be_same};
+use crate::output_file::{self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same};
 use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
@@ -125,6 +125,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     {
         return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
     }
+    check_picture(arguments.plot.as_deref())?;
     for path in out.filter(|_| !is_shown).into_iter().chain(arguments.plot.as_deref()) {
         check_new(path, None, &sources, arguments.force)?;
         // before the search, not after it

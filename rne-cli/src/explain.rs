@@ -112,15 +112,20 @@ fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> 
 const EXIT_STATUS: &str = "\
 0    fine. `rne check`: no file has an error, lints or not; `rne emit --check`:
      the file is what rne would write
-1    the input is at fault: a robot file or a plan has an error or cannot be
-     read, the result of one state is not finite, a file that is checked is
-     stale, torques differ and `rne diagnose` cannot say why, a value differs
-     from that of `rne eval --trace --compare`, `rne watch` has events, or the
-     output cannot be written
+1    the input is at fault: a robot file or a plan has an error, cannot be read
+     or changes during a search, the result of one state is not finite, a file
+     that is checked is stale, torques differ and `rne diagnose` cannot say why,
+     a value differs from that of `rne eval --trace --compare`, `rne watch` has
+     events, `rne log` cannot tell the units or the noise of a log, a log excites
+     nothing that `rne identify` could find, or the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
-     the robot does not have, a list of another length, or a file that rne does
-     not overwrite
-130  a second Ctrl-C ended `rne search` or `rne excite`; files are as they were
+     the robot does not have, a list of another length, or a file or folder that
+     rne does not overwrite
+130  Ctrl-C ended the command; of `rne search` and `rne excite` the second one
+129, 143  SIGHUP or SIGTERM ended the command
+
+Where a signal ended the command, files are as they were, and no temporary file
+is left.
 
 Errors go to standard error, and nothing to standard output then; but what an
 answer of status 1 has to say, such as events, is on standard output, and what

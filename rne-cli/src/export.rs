@@ -26,7 +26,7 @@ pub(crate) struct Arguments {
     /// The format: URDF
     #[arg(long, required = true)]
     urdf: bool,
-    /// Where to write it; standard output, unless given
+    /// Where to write it; standard output, unless given, or where it is -
     #[arg(short, long = "output", value_name = "FILE")]
     out: Option<PathBuf>,
     /// Overwrite a file that is there
@@ -42,11 +42,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     for line in exported.remarks {
         let _ = writeln!(remark, "{line}");
     }
-    match &arguments.out {
-        Some(out) => {
-            remark += &output_file::write_new(out, &exported.text, &[&arguments.file], arguments.force)?;
-            Ok(Outcome::remark(remark))
-        }
-        None => Ok(Outcome { text: exported.text, remark, ..Outcome::default() }),
-    }
+    output_file::deliver(arguments.out.as_deref(), exported.text, remark, &[&arguments.file], arguments.force)
 }

@@ -4,8 +4,8 @@
 //! stand; only the lines named in [`files`] change with the robot.
 
 use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::{self, ErrorKind, Write as _};
+use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -13,9 +13,10 @@ use rne_codegen::{Form, Function, emit};
 use rne_model::{Robot, plan_of};
 
 use crate::outcome::{Failure, Outcome};
+use crate::output_file::{is_standard_output, unreadable, unwritable};
 use crate::plan_file::{self, Compiler};
-use crate::robot_file;
 use crate::terminal::{GOOD, TYPED};
+use crate::{output_folder, robot_file};
 
 /// Write a folder with a firmware for Cortex-M that computes torques
 #[derive(Args)]
@@ -93,11 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let mut files = files(&arguments.name, &robot, &dependency);
     files.push((ROBOT.into(), yaml));
     files.extend(plan.map(|plan| (plan_of(Path::new(ROBOT)), plan)));
-    for (file, text) in &files {
-        let path = folder.join(file);
-        write(&path, text)
-            .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
-    }
+    output_folder::write(&folder, &files).map_err(|(path, error)| unwritable(&path, &error))?;
     Ok(Outcome::remark(next(&folder, &files)))
 }
 
@@ -110,6 +107,12 @@ fn robot_of(arguments: &Arguments) -> PathBuf {
 /// Whether nothing stands where the folder is to be.
 fn is_free(folder: &Path) -> Result<(), Failure> {
     let shown = folder.display();
+    if is_standard_output(folder) {
+        return Err(Failure::usage(format_args!(
+            "a firmware is a folder of files, so it cannot go to standard output; name the folder with {TYPED}-o \
+             FOLDER{TYPED:#}"
+        )));
+    }
     match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
         Ok(true) => Ok(()),
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
@@ -119,7 +122,7 @@ fn is_free(folder: &Path) -> Result<(), Failure> {
         Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
             "{shown} is no folder and stays as it is; name another with {TYPED}-o FOLDER{TYPED:#}"
         ))),
-        Err(error) => Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
+        Err(error) => Err(unreadable(folder, &error)),
     }
 }
 
@@ -170,14 +173,6 @@ fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> 
         ("src/main.rs", main),
     ];
     files.map(|(file, text)| (file.into(), text)).into()
-}
-
-/// Writes a file that is not there, and the folders that it needs.
-fn write(path: &Path, text: &str) -> io::Result<()> {
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder)?;
-    }
-    File::create_new(path)?.write_all(text.as_bytes())
 }
 
 /// What was written, and what is typed next.

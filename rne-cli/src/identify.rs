@@ -16,7 +16,7 @@ use crate::log_arguments::LogArguments;
 use crate::motion_log::{MotionLog, Part};
 use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, check_place, is_standard_output, will_be_same};
+use crate::output_file::{self, check_picture, check_place, is_standard_output, will_be_same};
 use crate::robot_file;
 use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
 
@@ -167,9 +167,7 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         let shown = one_line(&plot.display().to_string());
         return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
     }
-    if plot.is_some_and(is_standard_output) {
-        return Err(Failure::usage("a picture goes into a file; name one behind --plot"));
-    }
+    check_picture(plot)?;
     for (path, begins) in [(output, "# Identified"), (plot, "<svg")] {
         if let Some(path) = path {
             check_place(path, begins, sources, arguments.force)?;

@@ -92,14 +92,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         ..Options::default()
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
-    let mut remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
-    match &arguments.out {
-        Some(out) => {
-            remark += &output_file::write_new(out, &text, &[&arguments.file], arguments.force)?;
-            Ok(Outcome::remark(remark))
-        }
-        None => Ok(Outcome { text, remark, ..Outcome::default() }),
-    }
+    let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
+    output_file::deliver(arguments.out.as_deref(), text, remark, &[&arguments.file], arguments.force)
 }
 
 /// The text, and what messages call its file.

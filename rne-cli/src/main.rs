@@ -41,6 +41,7 @@ mod numbers;
 mod ops;
 mod outcome;
 mod output_file;
+mod output_folder;
 mod physics;
 mod plan_file;
 mod plot;

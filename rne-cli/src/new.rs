@@ -1,14 +1,14 @@
 //! `rne new`: a robot file to fill in.
 
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use rne_model::Convention;
 
 use crate::arguments::{convention, robot_name};
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{Existing, existing, replace};
+use crate::output_file::{Existing, existing, is_standard_output, replace, unreadable};
 use crate::terminal::TYPED;
 
 /// Write a commented robot file with placeholders, for your arm
@@ -48,19 +48,21 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let text = text(&arguments.name, arguments.dof, &arguments.prismatic, arguments.convention);
     let path = match &arguments.output {
-        Some(path) if path == Path::new("-") => return Ok(Outcome::text(text)),
+        Some(path) if is_standard_output(path) => return Ok(Outcome::text(text)),
         Some(path) => path.clone(),
         None => PathBuf::from(format!("{}.yaml", arguments.name)),
     };
-    if !matches!(existing(&path), Existing::Nothing) {
-        return Err(Failure::input(format_args!(
-            "{} exists and stays as it is; name another file with {TYPED}-o FILE{TYPED:#}",
-            path.display()
-        )));
-    }
-    replace(&path, &text)
-        .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
     let shown = path.display();
+    match existing(&path) {
+        Existing::Nothing => {}
+        Existing::Unreadable(error) => return Err(unreadable(&path, &error)),
+        Existing::Folder | Existing::Special | Existing::Text(_) | Existing::Other => {
+            return Err(Failure::usage(format_args!(
+                "{shown} is there already and stays as it is; name another file with {TYPED}-o FILE{TYPED:#}"
+            )));
+        }
+    }
+    replace(&path, &text)?;
     Ok(Outcome::remark(format!(
         "{shown} is written; put your numbers in it, then\n\n  {TYPED}rne check {shown}{TYPED:#}\n  {TYPED}rne show \
          {shown}{TYPED:#}\n"

@@ -4,7 +4,7 @@ use rne_codegen::CompileError;
 use rne_model::Report;
 use serde::Serialize;
 
-use crate::terminal::ERROR;
+use crate::terminal::{ERROR, coloured};
 
 /// Exit status when the input is at fault.
 pub(crate) const INPUT: u8 = 1;
@@ -84,8 +84,13 @@ impl From<rne_identify::MotionError> for Failure {
 /// Errors of a robot file, as the compiler shows them too.
 impl From<&Report> for Failure {
     fn from(report: &Report) -> Self {
-        Self { text: report.render(true), status: INPUT }
+        Self { text: rendered(report), status: INPUT }
     }
+}
+
+/// A report in colours.
+pub(crate) fn rendered(report: &Report) -> String {
+    coloured(&report.render(false), &report.render(true))
 }
 
 fn headed(message: impl std::fmt::Display) -> String {

@@ -1,12 +1,15 @@
-//! Files that are written: whole or not at all.
+//! Files that are written: whole or not at all, and of several that belong together all or none.
 
+use std::fmt::Write as _;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read as _, Write as _};
 use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
-use crate::outcome::Failure;
+use crate::interruption::{self, Registered};
+use crate::layout::shortened;
+use crate::outcome::{Failure, Outcome};
 use crate::terminal::{GOOD, TYPED};
 
 /// What stands where a file is to be written.
@@ -73,21 +76,48 @@ pub(crate) fn will_be_same(a: &Path, b: &Path) -> bool {
 
 /// Writes a file through a temporary one beside it, so that a reader finds the old text or the new one. A file that has
 /// the text already keeps its date, so nothing is built again.
-pub(crate) fn replace(path: &Path, text: &str) -> io::Result<Written> {
-    if matches!(existing(path), Existing::Text(old) if old == text) {
-        return Ok(Written::Unchanged);
+pub(crate) fn replace(path: &Path, text: &str) -> Result<Written, Failure> {
+    Ok(replace_all(&[(path, text)])?[0])
+}
+
+/// The same for files that belong together: none of them changes before all are written beside their places.
+pub(crate) fn replace_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<Vec<Written>, Failure> {
+    let mut written = Vec::with_capacity(files.len());
+    let mut replacements = Vec::new();
+    for (path, text) in files {
+        let (path, text) = (path.as_ref(), text.as_ref());
+        let is_old = matches!(existing(path), Existing::Text(old) if old == text);
+        if !is_old {
+            let replacement = Replacement::with(path, text).map_err(|error| unwritable(path, &error))?;
+            replacements.push(replacement);
+        }
+        written.push(if is_old { Written::Unchanged } else { Written::Anew });
     }
-    let replacement = Replacement::begin(path)?;
-    replacement.file()?.write_all(text.as_bytes())?;
-    replacement.keep()?;
-    Ok(Written::Anew)
+    Replacement::keep_all(replacements).map_err(|(path, error)| unwritable(&path, &error))?;
+    Ok(written)
+}
+
+/// Writes files that belong together; what was done, for the reader.
+pub(crate) fn write_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<String, Failure> {
+    let written = replace_all(files)?;
+    let mut remark = String::new();
+    for ((path, _), written) in files.iter().zip(written) {
+        let word = match written {
+            Written::Anew => "wrote",
+            Written::Unchanged => "up to date:",
+        };
+        let _ = writeln!(remark, "{GOOD}{word}{GOOD:#} {}", path.as_ref().display());
+    }
+    Ok(remark)
 }
 
 /// A file beside the one whose place it takes when it is whole; it is gone when it is not kept.
 pub(crate) struct Replacement {
     file: NamedTempFile,
+    /// A signal removes the file too.
+    registered: Registered,
     path: PathBuf,
-    /// Those of the file that is there.
+    /// Those of the file that is there; without one there is no file.
     permissions: Option<fs::Permissions>,
 }
 
@@ -100,7 +130,16 @@ impl Replacement {
         if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
             return Err(io::Error::new(ErrorKind::PermissionDenied, "it is write-protected"));
         }
-        Ok(Self { file: beside(&path)?, path, permissions })
+        let (registered, file) = Registered::new(|| beside(&path))?;
+        Ok(Self { file, registered, path, permissions })
+    }
+
+    /// One that has a text already.
+    fn with(path: &Path, text: &str) -> io::Result<Self> {
+        let replacement = Self::begin(path)?;
+        replacement.file.as_file().write_all(text.as_bytes())?;
+        replacement.file.as_file().sync_all()?;
+        Ok(replacement)
     }
 
     /// The file, to be written and read, from its beginning.
@@ -110,13 +149,41 @@ impl Replacement {
 
     /// Takes the place of the file.
     pub(crate) fn keep(self) -> io::Result<()> {
-        let Self { file, path, permissions } = self;
-        if let Some(permissions) = permissions {
-            file.as_file().set_permissions(permissions)?;
+        Self::keep_all(vec![self]).map_err(|(_, error)| error)
+    }
+
+    /// All take their places. Where one cannot, the files that were not there before are removed again.
+    fn keep_all(replacements: Vec<Self>) -> Result<(), (PathBuf, io::Error)> {
+        for Self { file, path, permissions, .. } in &replacements {
+            let ready = match permissions {
+                Some(permissions) => file.as_file().set_permissions(permissions.clone()),
+                None => Ok(()),
+            };
+            ready.and_then(|()| file.as_file().sync_all()).map_err(|error| (path.clone(), error))?;
         }
-        file.as_file().sync_all()?;
-        file.persist(&path)?;
-        Ok(())
+        let mut new: Vec<PathBuf> = Vec::new();
+        // forgotten when no signal waits any more
+        let mut forgotten = Vec::new();
+        let held = interruption::hold();
+        let mut kept = Ok(());
+        for Self { file, registered, path, permissions } in replacements {
+            forgotten.push(registered);
+            if kept.is_err() {
+                continue;
+            }
+            match file.persist(&path) {
+                Ok(_) if permissions.is_none() => new.push(path),
+                Ok(_) => {}
+                Err(error) => kept = Err((path, error.error)),
+            }
+        }
+        if kept.is_err() {
+            for path in new {
+                let _ = fs::remove_file(path);
+            }
+        }
+        drop(held);
+        kept
     }
 }
 
@@ -124,13 +191,23 @@ impl Replacement {
 /// `sources`, which were read for it, stay in any case. Returns what was done, for the reader.
 pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool) -> Result<String, Failure> {
     check_new(path, Some(text), sources, force)?;
-    let shown = path.display();
-    let word = match replace(path, text) {
-        Ok(Written::Anew) => "wrote",
-        Ok(Written::Unchanged) => "up to date:",
-        Err(error) => return Err(unwritable(path, &error)),
+    write_all(&[(path, text)])
+}
+
+/// What a command returns whose result goes into the file that `-o` names, or else to standard output. A file that is
+/// there stays, as [`write_new`] has it.
+pub(crate) fn deliver(
+    out: Option<&Path>,
+    text: String,
+    mut remark: String,
+    sources: &[&Path],
+    force: bool,
+) -> Result<Outcome, Failure> {
+    let Some(out) = out.filter(|out| !is_standard_output(out)) else {
+        return Ok(Outcome { text, remark, ..Outcome::default() });
     };
-    Ok(format!("{GOOD}{word}{GOOD:#} {shown}\n"))
+    remark += &write_new(out, &text, sources, force)?;
+    Ok(Outcome::remark(remark))
 }
 
 /// Whether a path names standard output.
@@ -138,8 +215,20 @@ pub(crate) fn is_standard_output(path: &Path) -> bool {
     path == Path::new("-") || path == Path::new("/dev/stdout")
 }
 
+/// Whether the file of a picture is a file: standard output has the account.
+pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
+    if path.is_some_and(is_standard_output) {
+        return Err(Failure::usage(format_args!(
+            "a picture goes into a file; name one after {TYPED}--plot{TYPED:#}, such as picture.svg"
+        )));
+    }
+    Ok(())
+}
+
 /// Whether a file may be written: none stands there, or one with this text, or `force` says so, and none of `sources`.
 pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
+    // before the work starts its threads
+    interruption::catch();
     let shown = path.display();
     if sources.iter().any(|source| is_same(path, source)) {
         return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
@@ -147,7 +236,7 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
     match existing(path) {
         Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
         Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file; name another"))),
-        Existing::Unreadable(error) => return Err(Failure::input(format_args!("{shown} cannot be read: {error}"))),
+        Existing::Unreadable(error) => return Err(unreadable(path, &error)),
         Existing::Text(old) if Some(old.as_str()) == text => {}
         Existing::Text(_) | Existing::Other if !force => {
             return Err(Failure::usage(format_args!(
@@ -171,10 +260,27 @@ pub(crate) fn check_place(path: &Path, begins: &str, sources: &[&Path], force: b
     Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
 }
 
-/// Why a file cannot be written: its folder is missing, or what the system says; not of the temporary file beside it.
+/// Why what is at the place of a file cannot be read.
+pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
+    if error.kind() == ErrorKind::InvalidFilename {
+        return unwritable(path, error);
+    }
+    Failure::input(format_args!("{} cannot be read: {error}", path.display()))
+}
+
+/// Why a file cannot be written: its name is none that the system takes, its folder is missing, or what the system
+/// says; not of the temporary file beside it.
 pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     let shown = path.display();
-    match path.parent().filter(|folder| !folder.as_os_str().is_empty() && !folder.exists()) {
+    if error.kind() == ErrorKind::InvalidFilename {
+        return Failure::usage(format_args!(
+            "{} cannot be written: its name is too long for this system, or has letters that it does not take; name \
+             another file",
+            shortened(&shown.to_string(), 80)
+        ));
+    }
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    match path.parent().filter(|_| error.kind() == ErrorKind::NotFound).filter(is_missing) {
         Some(folder) => Failure::input(format_args!(
             "{shown} cannot be written: there is no folder {}; make it first",
             folder.display()
@@ -187,15 +293,15 @@ pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
     }
 }
 
-/// A temporary file in the same folder, so that renaming it is one step; it is gone when it is not kept. With the
-/// permissions that any new file has.
-pub(crate) fn beside(path: &Path) -> io::Result<NamedTempFile> {
+/// A temporary file in the same folder, so that renaming it is one step. With the permissions that any new file has.
+fn beside(path: &Path) -> io::Result<NamedTempFile> {
+    // of a long name the beginning, for the name of the temporary file is longer
+    const LONGEST_NAME: usize = 40;
     let name = path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is no name of a file"))?;
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut hidden = std::ffi::OsString::from(".");
-    hidden.push(name);
-    hidden.push(".");
+    let name: String = name.to_string_lossy().chars().take(LONGEST_NAME).collect();
     let mut builder = tempfile::Builder::new();
+    let hidden = format!(".{name}.");
     builder.prefix(&hidden).suffix(".tmp");
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

@@ -13,7 +13,7 @@ use rne_model::{Robot, plan_of, read_file, robot_of};
 
 use crate::input_file::is_stream;
 use crate::outcome::Failure;
-use crate::output_file::{self, Existing};
+use crate::output_file::{self, Existing, Replacement, unwritable};
 use crate::robot_file::of_a_name;
 
 /// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
@@ -29,6 +29,13 @@ pub(crate) struct Read {
     pub(crate) name: String,
     pub(crate) text: String,
     pub(crate) plan: PlanFile,
+}
+
+impl Read {
+    /// A plan as it would be read after it was written.
+    pub(crate) fn of(path: &Path, plan: &PlanFile) -> Self {
+        Self { name: path.display().to_string(), text: plan.to_yaml(), plan: plan.clone() }
+    }
 }
 
 /// The plan file of a robot file, if there is one.
@@ -54,9 +61,37 @@ pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Fai
     Ok(Some(Read { name, text, plan }))
 }
 
+/// What a search goes on from.
+#[derive(Debug)]
+pub(crate) struct Known {
+    /// The text of the plan file, where there is one.
+    pub(crate) text: Option<String>,
+    /// What is proved of it.
+    pub(crate) plan: Option<PlanFile>,
+    /// Functions whose graphs are not proved, where that is no error.
+    pub(crate) left_out: Vec<Function>,
+}
+
+/// The plan that a search goes on from, proved. Of a `fresh` one what cannot be proved is left out.
+pub(crate) fn known(robot_file: &Path, robot: &Robot, fresh: bool) -> Result<Known, Failure> {
+    if fresh {
+        let text = match output_file::existing(&plan_of(robot_file)) {
+            Existing::Text(text) => Some(text),
+            _ => None,
+        };
+        let (plan, left_out) = to_replace(robot_file, robot)?;
+        return Ok(Known { text, plan, left_out });
+    }
+    let Some(read) = read(robot_file, robot)? else {
+        return Ok(Known { text: None, plan: None, left_out: Vec::new() });
+    };
+    is_proved(robot, &read)?;
+    Ok(Known { text: Some(read.text), plan: Some(read.plan), left_out: Vec::new() })
+}
+
 /// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs
 /// cannot. Nothing of one that is stale or broken. What is no plan at all stays.
-pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
+fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
     let path = plan_of(robot_file);
     match output_file::existing(&path) {
         Existing::Nothing => Ok((None, Vec::new())),
@@ -83,11 +118,10 @@ pub(crate) fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<Pla
 
 /// Whether a plan can be written there: better known before a search than after it.
 pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
-    let failure = |error| Failure::input(format_args!("{} cannot be written: {error}", path.display()));
     if path.is_dir() {
         return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
     }
-    output_file::beside(path).map(drop).map_err(failure)
+    Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
 }
 
 fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program, CompileError> {

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// The numbers as CSV instead of a picture
     #[arg(long)]
     csv: bool,
-    /// The file that is written; standard output, unless given
+    /// The file that is written; standard output, unless given, or where it is -
     #[arg(short, long, value_name = "OUT")]
     output: Option<PathBuf>,
     /// Overwrites a file that is there
@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let text =
         if arguments.csv { csv(&robot, &trajectory, &history) } else { svg(&robot, &trajectory, &history, &about) };
-    match &arguments.output {
+    match arguments.output.as_deref().filter(|path| !output_file::is_standard_output(path)) {
         None => Ok(Outcome::text(text)),
         Some(path) => {
             let sources: Vec<&Path> =

@@ -27,7 +27,7 @@ pub(crate) struct Arguments {
     file: PathBuf,
     #[command(flatten)]
     rotors: Rotors,
-    /// Where to write the page
+    /// Where to write the page; - is standard output
     #[arg(short, long = "output", value_name = "OUT.html")]
     out: PathBuf,
     /// Overwrite a file that is there
@@ -40,5 +40,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let reduced = Compiler::new(&arguments.file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
-    output_file::write_new(&arguments.out, &page, &[&arguments.file], arguments.force).map(Outcome::remark)
+    output_file::deliver(Some(&arguments.out), page, String::new(), &[&arguments.file], arguments.force)
 }

@@ -1,6 +1,5 @@
 //! `rne completions` and `rne man`: what a shell and `man` know of the command line.
 
-use std::fmt::Write as _;
 use std::io;
 use std::path::PathBuf;
 
@@ -9,8 +8,8 @@ use clap_complete::Shell;
 
 use crate::arguments;
 use crate::outcome::{Failure, Outcome};
-use crate::output_file::{self, Existing};
-use crate::terminal::GOOD;
+use crate::output_file::{self, Existing, is_standard_output};
+use crate::terminal::TYPED;
 
 /// Print the script by which a shell completes commands and options
 #[derive(Args)]
@@ -57,17 +56,22 @@ pub(crate) fn man(arguments: &Man) -> Result<Outcome, Failure> {
             Failure::usage(format_args!("{wanted} has no page; the commands are {}", names.join(", ")))
         });
     };
-    if !matches!(output_file::existing(folder), Existing::Folder) {
-        return Err(Failure::input(format_args!("there is no folder {}; make it first", folder.display())));
+    let shown = folder.display();
+    match output_file::existing(folder) {
+        Existing::Folder => {}
+        _ if is_standard_output(folder) => {
+            return Err(Failure::usage(format_args!(
+                "the pages are files in a folder; {TYPED}rne man{TYPED:#} and {TYPED}rne man COMMAND{TYPED:#} print one"
+            )));
+        }
+        Existing::Nothing => return Err(Failure::input(format_args!("there is no folder {shown}; make it first"))),
+        Existing::Unreadable(error) => return Err(output_file::unreadable(folder, &error)),
+        Existing::Text(_) | Existing::Other | Existing::Special => {
+            return Err(Failure::usage(format_args!("{shown} is not a folder; name the folder of the pages")));
+        }
     }
-    let mut remark = String::new();
-    for (name, page) in &pages {
-        let path = folder.join(format!("{name}.1"));
-        output_file::replace(&path, page)
-            .map_err(|error| Failure::input(format_args!("{} cannot be written: {error}", path.display())))?;
-        let _ = writeln!(remark, "{GOOD}wrote{GOOD:#} {}", path.display());
-    }
-    Ok(Outcome::remark(remark))
+    let files: Vec<_> = pages.iter().map(|(name, page)| (folder.join(format!("{name}.1")), page)).collect();
+    output_file::write_all(&files).map(Outcome::remark)
 }
 
 /// The manual pages, rne's own first: names, and what stands in them.

@@ -10,6 +10,7 @@ use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination};
 
 use crate::input_file::is_standard_input;
 use crate::outcome::{Failure, Outcome};
+use crate::output_file::is_standard_output;
 use crate::state_results::{self, Results};
 use crate::state_table::{PART, Table};
 use crate::terminal::{GOOD, QUIET};
@@ -81,7 +82,7 @@ impl Job<'_> {
         let mut table = Table::open(self.states, &columns, mass(compiled))?;
         let outputs = results(self.function, self.arm.dof());
         let read = [self.robot_file, self.states];
-        let mut results = Results::open(self.out.filter(|out| !is_standard_input(out)), &read, self.force, &outputs)?;
+        let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;
         let progress = progress(self.states, table.states, results.is_terminal());
         let start = Instant::now();
         let (mut states, mut not_finite) = (0_usize, NotFinite::default());
@@ -124,7 +125,7 @@ impl Job<'_> {
         let of = if states == 1 { "state" } else { "states" };
         let place = self
             .out
-            .filter(|out| !is_standard_input(out))
+            .filter(|out| !is_standard_output(out))
             .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
         let remark = format!("{place}{} of {states} {of}{rate}\n{}", self.function, not_finite.remark());
         Ok(Outcome::remark(remark))

@@ -3,43 +3,75 @@
 //! Commands return text with colours in it; the streams here take them out where there is no terminal, or where
 //! `NO_COLOR` asks for it.
 
-use std::fmt::Write as _;
+use std::collections::hash_map::RandomState;
+use std::env;
+use std::fmt::{self, Display, Write as _};
+use std::hash::BuildHasher as _;
 use std::io::{self, Write};
 use std::process::ExitCode;
+use std::sync::LazyLock;
 
 use anstream::AutoStream;
-use anstyle::{AnsiColor, Style};
+use anstyle::AnsiColor;
 use clap::builder::Styles;
 use rne_model::{is_control, one_line};
 
 use crate::outcome::{Failure, INPUT, Outcome, USAGE};
 
 /// Titles.
-pub(crate) const TITLE: Style = Style::new().bold();
+pub(crate) const TITLE: Style = Style(anstyle::Style::new().bold());
 /// What is not the matter itself: units, tallies, hints.
-pub(crate) const QUIET: Style = Style::new().dimmed();
+pub(crate) const QUIET: Style = Style(anstyle::Style::new().dimmed());
 /// Formulas of the lecture.
-pub(crate) const FORMULA: Style = AnsiColor::Cyan.on_default();
+pub(crate) const FORMULA: Style = Style(AnsiColor::Cyan.on_default());
 /// What the compiler found out.
-pub(crate) const FOUND: Style = AnsiColor::Green.on_default();
+pub(crate) const FOUND: Style = Style(AnsiColor::Green.on_default());
 /// What can be typed.
-pub(crate) const TYPED: Style = AnsiColor::Yellow.on_default();
+pub(crate) const TYPED: Style = Style(AnsiColor::Yellow.on_default());
 /// All is well.
-pub(crate) const GOOD: Style = AnsiColor::Green.on_default().bold();
+pub(crate) const GOOD: Style = Style(AnsiColor::Green.on_default().bold());
 /// Something is probably not what was meant.
-pub(crate) const WARNING: Style = AnsiColor::Yellow.on_default().bold();
+pub(crate) const WARNING: Style = Style(AnsiColor::Yellow.on_default().bold());
 /// Something is wrong.
-pub(crate) const ERROR: Style = AnsiColor::Red.on_default().bold();
+pub(crate) const ERROR: Style = Style(AnsiColor::Red.on_default().bold());
 
 /// The same palette for `--help`.
 pub(crate) const HELP_STYLES: Styles = Styles::plain()
-    .header(TITLE)
-    .usage(TITLE)
-    .literal(TYPED)
-    .placeholder(Style::new())
-    .error(ERROR)
-    .invalid(TYPED)
-    .valid(FOUND);
+    .header(TITLE.0)
+    .usage(TITLE.0)
+    .literal(TYPED.0)
+    .placeholder(anstyle::Style::new())
+    .error(ERROR.0)
+    .invalid(TYPED.0)
+    .valid(FOUND.0);
+
+/// A style of the palette: `{STYLE}` begins it and `{STYLE:#}` ends it. Its sequences carry the mark of this process,
+/// which no file and no name can know, so the terminal gets these and no others: see [`inert`].
+#[derive(Clone, Copy)]
+pub(crate) struct Style(pub(crate) anstyle::Style);
+
+impl Display for Style {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let sequences = if f.alternate() { format!("{:#}", self.0) } else { self.0.to_string() };
+        f.write_str(&marked(&sequences))
+    }
+}
+
+/// How a sequence begins that colours.
+const BEGIN: &str = "\u{1B}[";
+
+/// The first parameter of every sequence of ours: a random number, of the same length in every process.
+static MARK: LazyLock<String> = LazyLock::new(|| format!("{:020};", RandomState::new().hash_one(())));
+
+fn marked(sequences: &str) -> String {
+    sequences.replace(BEGIN, &format!("{BEGIN}{}", *MARK))
+}
+
+/// A text in the colours of a library. Where the text without them has a sequence too, that is of a file or of a name,
+/// and nobody knows which is which: it stays without colours.
+pub(crate) fn coloured(plain: &str, coloured: &str) -> String {
+    if plain.contains('\u{1B}') { plain.to_owned() } else { marked(coloured) }
+}
 
 /// Columns of prose: those of the terminal, and no more than `most`, which a pipe or a file has.
 pub(crate) fn width(most: usize) -> usize {
@@ -84,14 +116,16 @@ pub(crate) fn complain(command: &str, failure: &Failure) -> ExitCode {
 
 /// Prints what clap says: help, or what is wrong with the command line, which may be quoted.
 pub(crate) fn usage(error: &clap::Error) -> ExitCode {
-    let text = error.render().ansi().to_string();
-    // A reader that has gone away needs no help.
+    let text = error.render();
+    // A word that is quoted may have colours of its own, and nobody knows which is which.
+    let has_colours = env::args_os().any(|word| word.to_string_lossy().contains('\u{1B}'));
+    let text = if has_colours { text.to_string() } else { marked(&text.ansi().to_string()) };
     if error.use_stderr() {
+        // Where even this finds no reader, the status must do.
         let _ = write(AutoStream::auto(io::stderr().lock()), &text);
         return USAGE.into();
     }
-    let _ = write(AutoStream::auto(io::stdout().lock()), &text);
-    ExitCode::SUCCESS
+    show(&Outcome::text(text))
 }
 
 fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
@@ -99,29 +133,29 @@ fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences that colour. Whatever a
-/// file or its name holds, a terminal shows it and does nothing else.
+/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences of our own [`Style`]s.
+/// Whatever a file or its name holds, a terminal shows it and does nothing else.
 fn inert(text: &str) -> String {
     let mut inert = String::with_capacity(text.len());
     let mut rest = text;
     while let Some(at) = rest.find(|c: char| c != '\n' && is_control(c)) {
         let (before, from) = rest.split_at(at);
         inert.push_str(before);
-        let coloured = colour(from);
-        let taken = if coloured > 0 { coloured } else { from.chars().next().map_or(0, char::len_utf8) };
-        let (control, after) = from.split_at(taken);
-        inert.push_str(&if coloured > 0 { control.to_owned() } else { one_line(control) });
-        rest = after;
+        if let Some((parameters, after)) = own_sequence(from) {
+            let _ = write!(inert, "{BEGIN}{parameters}m");
+            rest = after;
+        } else {
+            let (control, after) = from.split_at(from.chars().next().map_or(0, char::len_utf8));
+            inert.push_str(&one_line(control));
+            rest = after;
+        }
     }
     inert + rest
 }
 
-/// The length of the sequence that chooses a colour with which a text starts, such as `ESC [ 1 ; 31 m`; 0 where there
-/// is none.
-fn colour(text: &str) -> usize {
-    let parameters = text.strip_prefix("\u{1B}[").unwrap_or_default();
-    let end = parameters.find(|c: char| !c.is_ascii_digit() && c != ';');
-    end.filter(|&end| parameters[end..].starts_with('m')).map_or(0, |end| "\u{1B}[".len() + end + "m".len())
+/// The parameters of the sequence of ours with which a text starts, without the mark, and the text after it.
+fn own_sequence(text: &str) -> Option<(&str, &str)> {
+    text.strip_prefix(BEGIN)?.strip_prefix(MARK.as_str())?.split_once('m')
 }
 
 #[cfg(test)]
@@ -134,7 +168,22 @@ mod tests {
     fn commands_to_a_terminal_are_shown_and_colours_kept() {
         let text = format!("{ERROR}error{ERROR:#}: a\u{1B}]0;title\u{7}b\r\u{9B}2J\u{202E}c\td\u{2028}e\u{1B}[2J\n");
         let shown = "a\u{FFFD}]0;title\u{FFFD}b \u{FFFD}2J\u{FFFD}c d e\u{FFFD}[2J\n";
-        assert_eq!(inert(&text), format!("{ERROR}error{ERROR:#}: {shown}"));
+        assert_eq!(inert(&text), format!("{}error{:#}: {shown}", ERROR.0, ERROR.0));
+    }
+
+    /// What hides the rest of a line, and what says that all is well, also in the colours of the palette.
+    #[test]
+    fn colours_of_data_are_shown_and_do_nothing() {
+        for data in ["\u{1B}[8m", "\u{1B}[0m", "\u{1B}[1m\u{1B}[32m", "\u{1B}[m", "\u{1B}[00000000000000000000;8m"] {
+            let text = format!("{QUIET}{data}hidden{QUIET:#}");
+            let shown = data.replace('\u{1B}', "\u{FFFD}");
+            assert_eq!(inert(&text), format!("{}{shown}hidden{:#}", QUIET.0, QUIET.0));
+            // a library's message that quotes it
+            let message = format!("no `{data}`");
+            let styled = format!("\u{1B}[31m{message}\u{1B}[0m");
+            assert_eq!(inert(&coloured(&message, &styled)), format!("no `{shown}`"));
+        }
+        assert_eq!(inert(&coloured("error", "\u{1B}[31merror\u{1B}[0m")), "\u{1B}[31merror\u{1B}[0m");
     }
 
     fn piece() -> impl Strategy<Value = String> {
@@ -162,8 +211,7 @@ mod tests {
         #[test]
         fn no_text_controls_the_terminal(pieces in prop::collection::vec(piece(), 0..20)) {
             let text = inert(&pieces.concat());
-            let plain = anstream::adapter::strip_str(&text).to_string();
-            prop_assert!(!plain.chars().any(|c| c != '\n' && is_control(c)), "{text:?}");
+            prop_assert!(!text.chars().any(|c| c != '\n' && is_control(c)), "{text:?}");
             prop_assert_eq!(inert(&text), text, "once is enough");
         }
     }

@@ -17,7 +17,7 @@ use crate::numbers::rounded;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
 use crate::robot_file;
-use crate::terminal::{GOOD, QUIET, TITLE, WARNING};
+use crate::terminal::{GOOD, QUIET, TITLE, TYPED, WARNING};
 
 /// Columns of the account.
 const WIDTH: usize = 80;
@@ -73,6 +73,12 @@ fn above_zero(text: &str) -> Result<f64, String> {
     number.ok_or_else(|| "it is a number above 0".to_owned())
 }
 
+/// Whether two paths lead to one log: the same file, or a folder and what is inside.
+fn is_within(a: &Path, b: &Path) -> bool {
+    let (Ok(a), Ok(b)) = (a.canonicalize(), b.canonicalize()) else { return false };
+    a.starts_with(&b) || b.starts_with(&a)
+}
+
 /// What a motion may be too short for.
 fn unless_too_short<T>(found: Result<T, WatchError>) -> Result<Option<T>, WatchError> {
     match found {
@@ -85,6 +91,14 @@ fn unless_too_short<T>(found: Result<T, WatchError>) -> Result<Option<T>, WatchE
 pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let inputs = arguments.logs.iter().chain(&arguments.quiet).chain([&arguments.file]);
     let sources: Vec<&Path> = inputs.map(PathBuf::as_path).collect();
+    if let Some(both) = arguments.quiet.iter().find(|quiet| arguments.logs.iter().any(|log| is_within(log, quiet))) {
+        return Err(Failure::usage(format_args!(
+            "{} is also watched: what is usual comes from a log in which nothing happens, so name another log after \
+             {TYPED}--quiet{TYPED:#}, or leave the option out",
+            one_line(&both.display().to_string())
+        )));
+    }
+    output_file::check_picture(arguments.plot.as_deref())?;
     if let Some(path) = &arguments.plot {
         output_file::check_place(path, "<svg", &sources, arguments.force)?;
     }

@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 
-use crate::{Diagnostic, Report, Severity};
+use crate::{Diagnostic, Report, Severity, one_line};
 
 /// So many diagnostics are shown; whoever has more fixes these first.
 const SHOWN: usize = 20;
@@ -21,7 +21,7 @@ pub(crate) fn full(report: &Report, color: bool) -> String {
 
 pub(crate) fn short(report: &Report) -> String {
     let line = |found: &Diagnostic| {
-        let mut line = format!("{}:{}:{}: ", report.name, found.line, found.column);
+        let mut line = format!("{}:{}:{}: ", one_line(&report.name), found.line, found.column);
         let _ = write!(line, "{}: {}", severity(found.severity), found.message);
         line
     };
@@ -52,13 +52,15 @@ fn snippet(report: &Report, found: &Diagnostic, renderer: &Renderer) -> String {
         Severity::Note => Level::NOTE,
     };
     let title = level.primary_title(&found.message);
+    // a file may have any name
+    let name = one_line(&report.name);
     // Only the line concerned is handed over: the caret of a span of several lines ends with its first.
     let (line, span) = line_of(&report.text, &found.span);
     let group = if report.text.is_empty() || line.len() > LONGEST_LINE {
-        title.element(Origin::path(&report.name).line(found.line).char_column(found.column))
+        title.element(Origin::path(&name).line(found.line).char_column(found.column))
     } else {
         let caret = AnnotationKind::Primary.span(span).label(found.label.as_deref());
-        title.element(Snippet::source(line).line_start(found.line).path(&report.name).annotation(caret))
+        title.element(Snippet::source(line).line_start(found.line).path(&name).annotation(caret))
     };
     let group = group.elements(found.help.as_deref().map(|help| Level::HELP.message(help)));
     renderer.render(&[group])

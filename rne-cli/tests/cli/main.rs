@@ -11,6 +11,7 @@ mod emit_c;
 mod emit_tests;
 mod eval;
 mod excite;
+mod files;
 mod firmware;
 mod help;
 #[cfg(unix)]

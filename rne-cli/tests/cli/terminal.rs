@@ -3,7 +3,7 @@
 use std::io::Read as _;
 use std::process::Stdio;
 
-use crate::call::{command, fine, folder, rne};
+use crate::call::{ROOT, command, fine, folder, rne};
 
 #[test]
 fn pipes_get_plain_text() {
@@ -109,4 +109,78 @@ fn the_name_of_a_file_is_no_command() {
         assert!(controls.is_empty() && !text.contains(['\u{7}', '\u{9B}', '\u{202E}']), "{text:?}");
         assert!(!text.contains("[2J\u{1B}") && !text.contains("\u{1B}[2J"), "{text:?}");
     }
+}
+
+/// What a terminal gets of a call, and the sequences in it that this project has no use for.
+#[cfg(unix)]
+fn foreign_sequences(arguments: &[&str]) -> (String, Vec<String>) {
+    let output = command(arguments).env("CLICOLOR_FORCE", "1").output().expect("rne starts");
+    let text = [output.stdout, output.stderr].concat();
+    let text = String::from_utf8(text).expect("UTF-8");
+    let sequences = text.split('\u{1B}').skip(1).map(|rest| rest.split_inclusive('m').next().unwrap_or_default());
+    // the palette, and that of messages with a line of a file
+    let is_ours = |sequence: &str| {
+        let parameters = sequence.strip_prefix('[').and_then(|rest| rest.strip_suffix('m'));
+        let known = ["0", "1", "2", "31", "32", "33", "36", "91", "92", "93", "94", "96"];
+        parameters.is_some_and(|parameters| known.contains(&parameters))
+    };
+    let foreign = sequences.filter(|sequence| !is_ours(sequence)).map(str::to_owned).collect();
+    (text, foreign)
+}
+
+/// Colours in names of joints, columns, files and words: none of them reaches a terminal, nor a part of the palette
+/// that would close the colour of a message or begin that of another.
+#[test]
+#[cfg(unix)]
+fn colours_of_names_are_no_colours() {
+    let folder = folder("coloured");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    // 8 conceals; 5;35;41 is in no palette
+    let of_line = |line: &str| match line {
+        "  - name: j1" => "  - name: \"\\e[8mj1\"".to_owned(),
+        line if line.starts_with("title: ") => "title: \"a \\e[5;35;41mtitle\"".to_owned(),
+        line => line.to_owned(),
+    };
+    let arm = std::fs::read_to_string(format!("{ROOT}/robots/planar2.yaml")).expect("a robot");
+    let named = arm.lines().map(of_line).collect::<Vec<_>>().join("\n");
+    assert_eq!(named.matches("\\e[").count(), 2, "{named}");
+    std::fs::write(path("arm.yaml"), &named).expect("written");
+    let hidden = path("\u{1B}[8mhidden.yaml");
+    std::fs::write(&hidden, &named).expect("written");
+    let log = path("log.csv");
+    let row = |at: i32| {
+        let time = f64::from(at) * 0.01;
+        format!("{time},{},{}", (2.0 * time).sin(), (3.0 * time).sin())
+    };
+    let rows: Vec<String> = (0..400).map(row).collect();
+    let text = format!("t,\u{1B}[8mfirst_position,\u{1B}[5;35;41msecond_position\n{}\n", rows.join("\n"));
+    std::fs::write(&log, text).expect("written");
+    let arm = path("arm.yaml");
+    let concealed = "\u{1B}[8mword";
+    let calls: [&[&str]; 14] = [
+        &["check", &arm],
+        &["check", &hidden],
+        &["show", &arm],
+        &["show", &hidden],
+        &["ops", &hidden],
+        &["report", &arm, "-o", &hidden],
+        &["eval", &arm, "--q", "9,9", "--qd", "0,0", "--qdd", "0,0", "--trace"],
+        &["log", &log],
+        &["log", &log, "--robot", &arm],
+        &["log", &log, "--joints", concealed],
+        &["identify", &arm, &log],
+        &["explain", concealed],
+        &["list", concealed],
+        &["emit", concealed],
+    ];
+    for call in calls {
+        let (text, foreign) = foreign_sequences(call);
+        assert!(foreign.is_empty(), "{call:?}: {foreign:?} in {text}");
+    }
+    // shown, so that the reader sees what the name is
+    let (text, _) = foreign_sequences(&["explain", concealed]);
+    assert!(text.contains("`\u{FFFD}[8mword`"), "{text:?}");
+    // a part of the palette is shown too
+    let (text, _) = foreign_sequences(&["explain", "\u{1B}[31mword"]);
+    assert!(text.contains("`\u{FFFD}[31mword`"), "{text:?}");
 }
