@@ -129,8 +129,8 @@ pub use rne_model as model;
 pub use rne_runtime::{
     Actuation, BaseMotion, BatchInverseDynamics, BatchScalar, CentreOfMass, Constant, CoriolisMatrix, Dual, Energy,
     ForwardDynamics, InverseDynamics, InverseDynamicsDerivatives, JointWrenches, Kinematics, LengthMismatch,
-    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, ObserverState, Operations, Payload, Pose, Regressor,
-    Scalar, TorqueDerivatives, VectorUnit, Wrench,
+    MassMatrix, MomentumAndRate, MomentumObserver, MovingBase, NegativeMass, ObserverState, Operations, Payload, Pose,
+    Regressor, Scalar, TorqueDerivatives, VectorUnit, Wrench,
 };
 #[cfg(feature = "arm")]
 #[doc(inline)]

@@ -130,14 +130,14 @@ fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f6
         }
     };
     let list = argument(function, "--payload", given, Argument::Payload, numbers, what)?;
-    if let Some(mass) = list.as_ref().and_then(|list| list.first()).filter(|mass| **mass < 0.0) {
-        return Err(Failure::usage(format_args!("--payload begins with its mass, {mass} kg: no body has less than 0")));
-    }
-    Ok(list.map(|list| {
+    let payload = list.map(|list| {
         let mut all = [0.0; 10];
         all.iter_mut().zip(list).for_each(|(number, value)| *number = value);
         Payload::from_array(all)
-    }))
+    });
+    let check = payload.map_or(Ok(()), |payload| payload.check());
+    check.map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
+    Ok(payload)
 }
 
 fn triple(list: &[f64], from: usize) -> [f64; 3] {

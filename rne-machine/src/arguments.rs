@@ -61,10 +61,11 @@ impl<'a, T> Array<'a, T> {
         }
     }
 
-    /// One element of the first state, of an array that has so many elements.
-    pub(crate) fn first(&self, element: usize, elements: usize) -> Option<&'a T> {
-        match self.source(element, elements, 1)? {
-            Source::Column(numbers) | Source::Strided(numbers, _) => numbers.first(),
+    /// One element of one of so many states, of an array that has so many elements.
+    pub(crate) fn number(&self, element: usize, elements: usize, state: usize, states: usize) -> Option<&'a T> {
+        match self.source(element, elements, states)? {
+            Source::Column(numbers) => numbers.get(state),
+            Source::Strided(numbers, apart) => numbers.get(state * apart),
         }
     }
 }
@@ -174,6 +175,6 @@ mod tests {
             assert!(part.source(0, 3, 1).is_none(), "{part:?}");
         }
         let part = Array::Strided { numbers: &numbers, state: 0, element: 1 }.part(3, 1..3);
-        assert_eq!(part.first(1, 2), Some(&3.0));
+        assert_eq!(part.number(1, 2, 0, 1), Some(&3.0));
     }
 }

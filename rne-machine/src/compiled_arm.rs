@@ -202,7 +202,8 @@ impl CompiledArm {
     /// The numbers of a result stand in the order of the function's [layout](Function::layout), matrices row by row.
     ///
     /// # Errors
-    /// When the function cannot be compiled, an argument is missing or has another size, or the room for the results.
+    /// When the function cannot be compiled, an argument is missing or has another size, the payload of a state has a
+    /// mass below zero, or the room for the results has another size.
     pub fn run<T: Number>(
         &self,
         function: Function,

@@ -1,8 +1,8 @@
 //! One function of one arm, ready to run.
 
 use rne_codegen::{CompileError, Program};
-use rne_runtime::VectorUnit;
 use rne_runtime::machine::{Destination, Source};
+use rne_runtime::{NegativeMass, VectorUnit};
 
 use crate::{Arguments, EvaluationError, Machine, Number};
 
@@ -74,7 +74,8 @@ impl CompiledFunction {
     /// Computes so many states, on all cores with the feature `rayon`.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or the room for the results.
+    /// When an argument is missing or has another size, the payload of a state has a mass below zero, or the room for
+    /// the results has another size.
     pub fn run<T: Number>(
         &self,
         unit: VectorUnit,
@@ -100,7 +101,8 @@ impl CompiledFunction {
     /// but what the thread keeps of its first call.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or the room for the results.
+    /// When an argument is missing or has another size, the payload of a state has a mass below zero, or the room for
+    /// the results has another size.
     pub fn run_one<T: Number>(
         &self,
         unit: VectorUnit,
@@ -119,7 +121,7 @@ impl CompiledFunction {
         };
         for (input, &(array, element)) in inputs.iter_mut().zip(&self.inputs) {
             let (name, elements) = self.arrays[array];
-            let number = arguments.get(name).and_then(|array| array.first(element, elements));
+            let number = arguments.get(name).and_then(|array| array.number(element, elements, 0, 1));
             let wrong = EvaluationError::Argument { argument: name, elements, states: 1 };
             *input = *number.ok_or(wrong)?;
         }
@@ -131,13 +133,25 @@ impl CompiledFunction {
         self.machine.code().run_one(unit, inputs, results).map_err(|_| room)
     }
 
-    /// Refuses arguments that are not there or have another size, whether the program uses them or not.
-    fn check<T>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
+    /// Refuses what [`run`](Self::run) refuses of the arguments of so many states, whether the program uses them or
+    /// not. Who computes states in parts asks this once before the first part.
+    ///
+    /// # Errors
+    /// When an argument is missing or has another size, or when the payload of a state has a mass below zero.
+    pub fn check<T: Number>(&self, states: usize, arguments: &Arguments<'_, T>) -> Result<(), EvaluationError> {
         for &(argument, elements) in &self.arrays {
             let function = self.program.function;
             let array = arguments.get(argument).ok_or(EvaluationError::Missing { function, argument })?;
             if (0..elements).any(|element| array.source(element, elements, states).is_none()) {
                 return Err(EvaluationError::Argument { argument, elements, states });
+            }
+            if argument == "payload" {
+                // its first element is the mass
+                let masses = (0..states).filter_map(|state| array.number(0, elements, state, states));
+                for (index, mass) in masses.enumerate() {
+                    let wrong = |mass| EvaluationError::NegativeMass { mass, state: index + 1, states };
+                    NegativeMass::check(*mass).map_err(wrong)?;
+                }
             }
         }
         Ok(())

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 
 use rne_codegen::{CompileError, Function};
 use rne_model::Report;
+use rne_runtime::NegativeMass;
 
 /// Why a file gave no arm.
 #[derive(Debug)]
@@ -70,6 +71,15 @@ pub enum EvaluationError {
         /// How many states there are.
         states: usize,
     },
+    /// The payload of a state has a mass below zero.
+    NegativeMass {
+        /// The mass.
+        mass: NegativeMass,
+        /// The first state that has it, counted from 1.
+        state: usize,
+        /// How many states there are.
+        states: usize,
+    },
     /// The room for the results has another size.
     Room {
         /// How many numbers the function returns for each state.
@@ -90,6 +100,8 @@ impl fmt::Display for EvaluationError {
             Self::Argument { argument, elements, states } => {
                 write!(f, "`{argument}` has {elements} elements for each of {states} states; another number was given")
             }
+            Self::NegativeMass { mass, states: 1, .. } => mass.fmt(f),
+            Self::NegativeMass { mass, state, states } => write!(f, "state {state} of {states}: {mass}"),
             Self::Room { outputs, states } => {
                 write!(
                     f,

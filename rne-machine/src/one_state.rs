@@ -41,7 +41,8 @@ impl CompiledArm {
     /// `results`. Nothing is allocated for more than the arguments.
     ///
     /// # Errors
-    /// When an argument is missing or has another size, or `results`, or when the function cannot be compiled.
+    /// When an argument is missing or has another size, or `results`, when the payload has a mass below zero, or when
+    /// the function cannot be compiled.
     pub fn run_one<T: Number>(
         &self,
         function: Function,
@@ -90,7 +91,8 @@ impl CompiledArm {
     /// Torques when `payload` is fixed to the tip.
     ///
     /// # Errors
-    /// When an argument does not have one element per joint, or the function cannot be compiled for this robot.
+    /// When an argument does not have one element per joint, the payload has a mass below zero, or the function cannot
+    /// be compiled for this robot.
     pub fn inverse_dynamics_with_payload<T: Number>(
         &self,
         q: &[T],

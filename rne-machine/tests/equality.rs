@@ -6,7 +6,7 @@ use rne_codegen::plan::PlanFile;
 use rne_codegen::{Arguments as Numbers, Compiler, Interpreter, Target};
 use rne_machine::{Arguments, Array, CompiledArm, Destination, Form, Function};
 use rne_model::Robot;
-use rne_runtime::{Scalar, VectorUnit};
+use rne_runtime::{Payload, Scalar, VectorUnit};
 
 /// States: some blocks, and some that fill none.
 const STATES: usize = 150;
@@ -49,6 +49,8 @@ impl States {
         let q = rows[0].clone();
         rows[4] = q.iter().map(|&q| Scalar::sin_cos(q).0).collect();
         rows[5] = q.iter().map(|&q| Scalar::sin_cos(q).1).collect();
+        // no payload has a mass below zero
+        rows[8].iter_mut().step_by(10).for_each(|mass| *mass = mass.abs());
         Self { dof, rows }
     }
 
@@ -287,5 +289,39 @@ fn single_precision_is_near() {
             let error = found.iter().zip(&expected).map(|(&a, b)| (f64::from(a) - b).abs()).fold(0.0, f64::max);
             assert!(error <= 2e-5 * largest(&expected), "{}, {unit}: {error:e}", robot.name);
         }
+    }
+}
+
+/// In every layout and precision, alone and among others, and nothing is written.
+#[test]
+fn a_payload_of_negative_mass_is_refused() {
+    let arm = arms().find(|arm| arm.robot().name == "planar2").expect("a shipped robot");
+    let function = Function::InverseDynamicsWithPayload;
+    let zeros = [0.0; 6];
+    let motion = || Arguments::new().q(Array::Rows(&zeros)).qd(Array::Rows(&zeros)).qdd(Array::Rows(&zeros));
+    let mut rows = [1.0; 30];
+    rows[10] = -0.5;
+    let columns: Vec<Vec<f64>> =
+        (0..10).map(|element| (0..3).map(|state| rows[10 * state + element]).collect()).collect();
+    let columns: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+    let strided = Array::Strided { numbers: &rows[..], state: 10, element: 1 };
+    for payload in [Array::Rows(&rows[..]), Array::Columns(&columns), strided] {
+        let mut results = [7.0; 6];
+        let error = arm.run(function, 3, &motion().payload(payload), Destination::Rows(&mut results)).unwrap_err();
+        assert_eq!(error.to_string(), "state 2 of 3: the payload's mass is -0.5 kg: no body has less than 0");
+        assert_eq!(results, [7.0; 6]);
+    }
+    let mut same = [7.0; 6];
+    let arguments = motion().payload(Array::Same(&rows[10..20]));
+    assert!(arm.run(function, 3, &arguments, Destination::Rows(&mut same)).is_err());
+    assert_eq!(same, [7.0; 6]);
+
+    let none = [0.0_f32; 2];
+    let payload = Payload { mass: -1.0_f32, ..Payload::none() };
+    let error = arm.inverse_dynamics_with_payload(&none, &none, &none, &payload).unwrap_err();
+    assert_eq!(error.to_string(), "the payload's mass is -1 kg: no body has less than 0");
+    for mass in [0.0, -0.0, f32::NAN] {
+        let payload = Payload { mass, ..Payload::none() };
+        assert!(arm.inverse_dynamics_with_payload(&none, &none, &none, &payload).is_ok(), "{mass}");
     }
 }

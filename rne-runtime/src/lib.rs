@@ -97,7 +97,7 @@ pub use error::{LoadError, WrongJointCount, WrongLength};
 pub use observer::DynObserverState;
 pub use observer::ObserverState;
 pub use operations::Operations;
-pub use payload::Payload;
+pub use payload::{NegativeMass, Payload};
 pub use pose::Pose;
 pub use scalar::{Constant, RunTimeParameter, Scalar};
 #[cfg(feature = "arm")]

@@ -1,5 +1,8 @@
 //! What is fixed to the tip: a gripper with what it holds.
 
+use core::error::Error;
+use core::fmt;
+
 use rne_model::Inertia;
 
 use crate::Scalar;
@@ -9,6 +12,10 @@ use crate::Scalar;
 ///
 /// The torques with a payload are those of the arm whose last link has the payload's mass, first moment and inertia
 /// too. The default is no payload.
+///
+/// The mass is not below zero. Compiled arms, the Python package, the C library and the command line refuse a payload
+/// whose mass is. Derived and emitted code, `Arm` and `DynArm` compute with the numbers that they are given, without a
+/// branch that looks at them: call [`check`](Self::check) where a payload comes from outside of the program.
 ///
 /// ```
 /// # #[cfg(all(feature = "arm", feature = "std"))] {
@@ -64,6 +71,50 @@ impl<T: Scalar> Payload<T> {
         Self { mass, com: [x, y, z], inertia: Inertia { xx, yy, zz, xy, xz, yz } }
     }
 }
+
+impl<T: Scalar + Into<f64>> Payload<T> {
+    /// Refuses a mass below zero. A mass that is not a number passes: results show it.
+    ///
+    /// ```
+    /// use rne_runtime::Payload;
+    ///
+    /// let wrong = Payload { mass: -1.0, ..Payload::none() }.check().unwrap_err();
+    /// assert_eq!(wrong.to_string(), "the payload's mass is -1 kg: no body has less than 0");
+    /// ```
+    ///
+    /// # Errors
+    /// When the mass is below zero.
+    pub fn check(&self) -> Result<(), NegativeMass> {
+        NegativeMass::check(self.mass)
+    }
+}
+
+/// A payload whose mass is below zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct NegativeMass {
+    /// The mass, kg.
+    pub mass: f64,
+}
+
+impl NegativeMass {
+    /// Refuses a payload's mass that is below zero.
+    ///
+    /// # Errors
+    /// When it is below zero.
+    pub fn check(mass: impl Into<f64>) -> Result<(), Self> {
+        let mass = mass.into();
+        if mass < 0.0 { Err(Self { mass }) } else { Ok(()) }
+    }
+}
+
+impl fmt::Display for NegativeMass {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "the payload's mass is {} kg: no body has less than 0", self.mass)
+    }
+}
+
+impl Error for NegativeMass {}
 
 /// [`Payload::none`].
 impl<T: Scalar> Default for Payload<T> {
