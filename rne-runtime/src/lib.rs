@@ -70,6 +70,8 @@ mod sin_cos;
 mod smooth_sign;
 #[doc(hidden)]
 pub mod testing;
+#[cfg(feature = "rayon")]
+mod threads;
 #[cfg(feature = "arm")]
 mod trace;
 mod wrench;

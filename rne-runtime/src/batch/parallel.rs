@@ -3,6 +3,7 @@
 use core::array::from_fn;
 
 use super::blocks::States;
+use crate::threads::join;
 
 /// States that are worth a task of their own: tens of microseconds of work, against about one to hand it to a thread.
 /// A multiple of every block, so that threads divide states where blocks end.
@@ -17,7 +18,7 @@ pub(super) fn for_each_part<R: Sync, T: Send + Sync, const DOF: usize>(
         return run(all);
     }
     let (first, second) = halves(all);
-    rayon::join(|| for_each_part(first, run), || for_each_part(second, run));
+    join(|| for_each_part(first, run), || for_each_part(second, run));
 }
 
 fn halves<R, T, const DOF: usize>(all: States<'_, R, T, DOF>) -> (States<'_, R, T, DOF>, States<'_, R, T, DOF>) {

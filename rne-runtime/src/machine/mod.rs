@@ -90,7 +90,7 @@ impl Code {
             let half = states.len() / 2 / TASK * TASK;
             let middle = states.start + half;
             let (first, second) = destination.split_at(half, self.outputs);
-            rayon::join(
+            crate::threads::join(
                 || self.run_part(unit, states.start..middle, sources, first),
                 || self.run_part(unit, middle..states.end, sources, second),
             );
