@@ -136,7 +136,8 @@ for unit, name, step, dt in (
 ):
     body = stamped(lambda i, step=step: str(i * step), dt=dt)
     csv(f"time: {name}", table(body=body), "refused", ["time-unit"], everywhere=True)
-    csv(f"time: {name}, with the unit", table(body=body), "taken", options=["--time-unit", unit])
+    at = [f"at {1 / dt:.0f} Hz"]
+    csv(f"time: {name}, with the unit", table(body=body), says=at, options=["--time-unit", unit])
     late = stamped(lambda i, step=step: str(1_700_000_000_000 + i * step), dt=dt)
     csv(f"time: {name} since 1970", table(body=late), "refused", everywhere=True)
 csv(
