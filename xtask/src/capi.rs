@@ -59,19 +59,30 @@ impl Capi {
         {
             println!("capi: {error}");
         }
-        let folder = machine::target_folder("target")?.join("capi");
-        let prefix = self.prefix.clone().unwrap_or_else(|| folder.join("prefix"));
-        fs::create_dir_all(&prefix).with_context(|| prefix.display().to_string())?;
-        let prefix = prefix.canonicalize()?;
-        let build =
-            cmd!(shell, "cargo build --quiet --release --locked --manifest-path capi/Cargo.toml --target-dir {folder}");
-        machine::without_flags(build).quiet().run()?;
-        lay_out(&folder.join("release"), &prefix)?;
+        let prefix = built(&self.prefix.clone().map_or_else(prefix, Ok)?)?;
         println!("capi: {}", prefix.display());
-        let programs = folder.join("programs");
+        let programs = machine::target_folder("target")?.join("capi/programs");
         fs::create_dir_all(&programs)?;
         Ok(Verdict::from(holds(&shell, &prefix, &programs)? && cmake(&shell, &prefix, &programs)?))
     }
+}
+
+/// Where the library is laid out unless another place is named.
+pub(crate) fn prefix() -> Result<PathBuf> {
+    Ok(machine::target_folder("target")?.join("capi/prefix"))
+}
+
+/// The library, built and laid out below a prefix; the absolute path of that.
+pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
+    let shell = machine::shell()?;
+    let folder = machine::target_folder("target")?.join("capi");
+    fs::create_dir_all(prefix).with_context(|| prefix.display().to_string())?;
+    let prefix = prefix.canonicalize()?;
+    let build =
+        cmd!(shell, "cargo build --quiet --release --locked --manifest-path capi/Cargo.toml --target-dir {folder}");
+    machine::without_flags(build).quiet().run()?;
+    lay_out(&folder.join("release"), &prefix)?;
+    Ok(prefix)
 }
 
 /// What the shared library is called here.

@@ -7,6 +7,7 @@ mod batch_profile;
 mod capi;
 mod certificate;
 mod counts;
+mod doors;
 mod features;
 mod fleet;
 mod frozen;
@@ -71,6 +72,7 @@ enum Task {
     Features(features::Features),
     Fleet(fleet::Fleet),
     Frozen(frozen::Frozen),
+    Doors(doors::Doors),
     Fuzz(fuzz::Fuzz),
     Urdf(urdf::Urdf),
     Python(python::Python),
@@ -111,6 +113,7 @@ impl Task {
             Self::Tool(task) => ("tool", task.install, task.run()),
             Self::Fleet(task) => ("fleet", task.changed, task.run()),
             Self::Frozen(task) => ("frozen", false, task.run()),
+            Self::Doors(task) => ("doors", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
             Self::Features(_) => ("features", false, features::Features::run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),

@@ -98,13 +98,13 @@ pub(crate) fn beside_peers() -> Result<String> {
 }
 
 /// Where wheels and environments are.
-struct Place {
+pub(crate) struct Place {
     shell: Shell,
     folder: PathBuf,
 }
 
 impl Place {
-    fn new() -> Result<Self> {
+    pub(crate) fn new() -> Result<Self> {
         if !machine::has("python3") {
             return Err(Missing::error("there is no python3"));
         }
@@ -112,7 +112,7 @@ impl Place {
     }
 
     /// A virtual environment, its Python; one that is there already stays.
-    fn environment(&self, name: &str) -> Result<PathBuf> {
+    pub(crate) fn environment(&self, name: &str) -> Result<PathBuf> {
         let (shell, venv) = (&self.shell, self.folder.join(name));
         let python = venv.join("bin/python");
         if !python.exists() && cmd!(shell, "python3 -m venv {venv}").quiet().ignore_stderr().run().is_err() {
@@ -121,7 +121,7 @@ impl Place {
         Ok(python)
     }
 
-    fn pip(&self, python: &Path, packages: &[&str]) -> bool {
+    pub(crate) fn pip(&self, python: &Path, packages: &[&str]) -> bool {
         let shell = &self.shell;
         let install = cmd!(shell, "{python} -m pip install --quiet --disable-pip-version-check {packages...}");
         install.quiet().ignore_stderr().run().is_ok()
@@ -136,8 +136,13 @@ impl Place {
         Ok(maturin)
     }
 
+    /// Whether a wheel was built here before, so that another one takes little.
+    pub(crate) fn has_wheel(&self) -> bool {
+        self.folder.join("wheels").exists()
+    }
+
     /// The wheel, built.
-    fn wheel(&self, install: bool) -> Result<PathBuf> {
+    pub(crate) fn wheel(&self, install: bool) -> Result<PathBuf> {
         let (shell, folder, maturin) = (&self.shell, &self.folder, self.maturin(install)?);
         let wheels = folder.join("wheels");
         let _ = fs::remove_dir_all(&wheels);

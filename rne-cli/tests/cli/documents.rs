@@ -49,6 +49,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask lines", ".ci/run", "step cargo xtask lines\n"),
     ("cargo xtask verify", ".ci/run", "step cargo xtask verify\n"),
     ("cargo xtask urdf", "xtask/src/verify.rs", "\"xtask\", \"urdf\""),
+    ("cargo xtask doors", ".ci/run", "step cargo xtask doors --install\n"),
     ("cargo xtask fuzz", ".ci/run", "step cargo xtask fuzz"),
     ("cargo xtask package", "xtask/src/verify.rs", "\"xtask\", \"package\""),
     ("cargo xtask tool", "xtask/src/verify.rs", "\"xtask\", \"tool\", \"deny\""),
