@@ -1,10 +1,9 @@
-//! The first look at a URDF: what of it matters, where it stands, and what no reader should let pass.
+//! The values of a URDF that matter to dynamics, where they stand, and what no reader should let pass.
 //!
-//! `urdf-rs` reads the numbers, yet it knows no lines, it skips words that are no numbers, and it refuses a whole arm
-//! for a mesh that it does not know. So it gets a shorter text: links, inertias and joints alone.
+//! Links, inertias and joints are read; everything else, such as meshes, is passed over. Every value has been checked
+//! when it is here: a number is a number, and what is required is there.
 
 use std::collections::{BTreeSet, HashMap};
-use std::fmt::Write as _;
 use std::ops::Range;
 
 use quick_xml::Reader;
@@ -12,6 +11,7 @@ use quick_xml::events::{BytesStart, Event};
 use rne_model::{Report, did_you_mean};
 
 use crate::source::{Source, quoted};
+use crate::urdf;
 
 /// Far more than the description of any arm.
 pub(crate) const MAX_BYTES: usize = 16 << 20;
@@ -28,8 +28,7 @@ const MAX_UNKNOWN: usize = 1000;
 /// What matters of the text, and what was seen of links and joints in the order of the text.
 #[derive(Default)]
 pub(crate) struct Scanned {
-    pub(crate) text: String,
-    /// What stands beside links and joints.
+    /// What stands beside links and joints, and the robot's own name.
     pub(crate) robot: Seen,
     pub(crate) links: Vec<Seen>,
     pub(crate) joints: Vec<Seen>,
@@ -44,8 +43,28 @@ pub(crate) struct Seen {
     pub(crate) span: Range<usize>,
     /// The elements in it that matter, at any depth.
     pub(crate) elements: BTreeSet<&'static str>,
+    /// The values of their attributes, by element and attribute.
+    values: HashMap<(&'static str, &'static str), String>,
     /// What in it is not known, as indices of [`Scanned::unknown`].
     pub(crate) unknown: BTreeSet<usize>,
+}
+
+impl Seen {
+    /// The text of an attribute.
+    pub(crate) fn text(&self, element: &'static str, attribute: &'static str) -> Option<&str> {
+        self.values.get(&(element, attribute)).map(String::as_str)
+    }
+
+    /// The number of an attribute.
+    pub(crate) fn number(&self, element: &'static str, attribute: &'static str) -> Option<f64> {
+        self.text(element, attribute)?.trim().parse().ok()
+    }
+
+    /// The three numbers of an attribute.
+    pub(crate) fn vector(&self, element: &'static str, attribute: &'static str) -> Option<[f64; 3]> {
+        let mut numbers = self.text(element, attribute)?.split_whitespace().map(|word| word.parse().ok());
+        Some([numbers.next()??, numbers.next()??, numbers.next()??])
+    }
 }
 
 /// An element that matters.
@@ -71,9 +90,6 @@ enum Kind {
     Limit,
     Vector,
 }
-
-/// The types of joints that `urdf-rs` reads.
-const JOINTS: [&str; 7] = ["revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical"];
 
 const fn text(name: &'static str) -> Attribute {
     Attribute { name, kind: Kind::Text, required: true }
@@ -168,7 +184,9 @@ pub(crate) fn scan(source: &Source) -> Result<Scanned, Report> {
         match event {
             Ok(Event::Start(tag)) => scanner.open(&tag, place, false)?,
             Ok(Event::Empty(tag)) => scanner.open(&tag, place, true)?,
-            Ok(Event::End(_)) => scanner.close(),
+            Ok(Event::End(_)) => {
+                scanner.open.pop();
+            }
             Ok(Event::DocType(_)) => {
                 let message = "a document type; its entities are not read";
                 let help = "delete the line: a URDF needs none".to_owned();
@@ -236,11 +254,10 @@ impl Scanner<'_> {
                 }
             }
             self.owner(element).elements.insert(element.name);
-            self.write(element, tag, &place)?;
+            self.take(element, tag, &place)?;
         }
-        self.open.push(Open { element, children: Vec::new() });
-        if is_empty {
-            self.close();
+        if !is_empty {
+            self.open.push(Open { element, children: Vec::new() });
         }
         Ok(())
     }
@@ -340,8 +357,8 @@ impl Scanner<'_> {
         Ok(())
     }
 
-    /// Writes the tag with the attributes that matter.
-    fn write(&mut self, element: &'static Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
+    /// Keeps the attributes of a tag that matter.
+    fn take(&mut self, element: &'static Element, tag: &BytesStart, place: &Range<usize>) -> Result<(), Report> {
         let mut values: Vec<Option<String>> = element.attributes.iter().map(|_| None).collect();
         // whether one of thousands stands twice takes long to find out; those that matter are few
         for attribute in tag.attributes().with_checks(false) {
@@ -362,7 +379,8 @@ impl Scanner<'_> {
                 continue;
             };
             let raw = String::from_utf8_lossy(&attribute.value).into_owned();
-            let value = quick_xml::escape::unescape(&raw)
+            // XML takes every blank of an attribute for a space
+            let value = quick_xml::escape::unescape(&raw.replace(['\t', '\n', '\r'], " "))
                 .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
                 .into_owned();
             if let Some(fault) = fault(element.attributes[index].kind, &value) {
@@ -374,25 +392,14 @@ impl Scanner<'_> {
                 return Err(self.source.error(place, message, None));
             }
         }
-        let text = &mut self.scanned.text;
-        let _ = write!(text, "<{}", element.name);
-        for (attribute, value) in element.attributes.iter().zip(&values) {
-            match value {
-                Some(value) => {
-                    let _ = write!(text, " {}=\"{}\"", attribute.name, quick_xml::escape::escape(value.as_str()));
-                }
-                None if attribute.required => {
-                    let message = format!("`{}` lacks the attribute `{}`", element.name, attribute.name);
-                    return Err(self.source.error(place, message, None));
-                }
-                // What urdf-rs asks for and robots leave out.
-                None if attribute.kind == Kind::Limit && matches!(attribute.name, "effort" | "velocity") => {
-                    let _ = write!(text, " {}=\"0\"", attribute.name);
-                }
-                None => {}
+        for (attribute, value) in element.attributes.iter().zip(values) {
+            if let Some(value) = value {
+                self.owner(element).values.insert((element.name, attribute.name), value);
+            } else if attribute.required {
+                let message = format!("`{}` lacks the attribute `{}`", element.name, attribute.name);
+                return Err(self.source.error(place, message, None));
             }
         }
-        text.push('>');
         Ok(())
     }
 
@@ -402,11 +409,6 @@ impl Scanner<'_> {
         found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
     }
 
-    fn close(&mut self) {
-        if let Some(Open { element: Some(element), .. }) = self.open.pop() {
-            let _ = writeln!(self.scanned.text, "</{}>", element.name);
-        }
-    }
 }
 
 /// Why a value cannot be that of an attribute.
@@ -419,7 +421,7 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
         Kind::Text if value.chars().any(|c| c.is_ascii_control() && !c.is_ascii_whitespace()) => {
             Some("it must have no control characters")
         }
-        Kind::Joint if !JOINTS.contains(&value) => {
+        Kind::Joint if urdf::Kind::of(value).is_none() => {
             Some("it must be revolute, continuous, prismatic, fixed, floating, planar or spherical")
         }
         Kind::Number if words.len() != 1 || !words.iter().all(|word| fine(word)) => {

@@ -4,9 +4,8 @@ use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
 use rne_model::{Inertia, Limits, Report};
-use urdf_rs::JointType;
 
-use crate::scan::{Scanned, Seen, scan};
+use crate::scan::{Seen, scan};
 use crate::source::{Source, names, quoted};
 
 /// A robot as its URDF describes it. [`Urdf::read`] has checked that its links are one tree.
@@ -61,6 +60,21 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
+    pub(crate) const ALL: [Self; 7] = [
+        Self::Revolute,
+        Self::Continuous,
+        Self::Prismatic,
+        Self::Fixed,
+        Self::Floating,
+        Self::Planar,
+        Self::Spherical,
+    ];
+
+    /// The kind of a word in a URDF.
+    pub(crate) fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.name() == word)
+    }
+
     /// Its word in a URDF.
     pub(crate) fn name(self) -> &'static str {
         match self {
@@ -127,19 +141,17 @@ impl Urdf {
         let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
         let source = Source { file: file.to_owned(), text: text.to_owned() };
         let scanned = scan(&source)?;
-        let robot = urdf_rs::read_from_string(&scanned.text)
-            .map_err(|error| source.error(&(0..0), format!("this URDF cannot be read: {error}"), None))?;
         let mut urdf = Self {
             source,
-            name: robot.name,
+            name: scanned.robot.text("robot", "name").unwrap_or_default().to_owned(),
             links: Vec::new(),
             joints: Vec::new(),
             root: 0,
             unknown: scanned.unknown.clone(),
             beside: scanned.robot.unknown.clone(),
         };
-        urdf.take_links(robot.links, &scanned)?;
-        urdf.take_joints(robot.joints, &scanned)?;
+        urdf.take_links(&scanned.links)?;
+        urdf.take_joints(&scanned.joints)?;
         urdf.find_root()?;
         Ok(urdf)
     }
@@ -150,30 +162,39 @@ impl Urdf {
         self.links.iter().filter(|link| link.children.is_empty()).map(|link| link.name.as_str()).collect()
     }
 
-    fn take_links(&mut self, links: Vec<urdf_rs::Link>, scanned: &Scanned) -> Result<(), Report> {
+    fn take_links(&mut self, links: &[Seen]) -> Result<(), Report> {
         let mut known = HashMap::new();
-        for (link, seen) in links.into_iter().zip(&scanned.links) {
+        for seen in links {
             let span = &seen.span;
-            let urdf_rs::Inertial { origin, mass, inertia: i } = link.inertial;
-            if let Some(first) = known.insert(link.name.clone(), span) {
-                let message = format!("the link {} is there already, in line {}", quoted(&link.name), self.line(first));
+            let name = seen.text("link", "name").unwrap_or_default();
+            if let Some(first) = known.insert(name, span) {
+                let message = format!("the link {} is there already, in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of links must differ".to_owned()));
             }
-            if mass.value < 0.0 {
-                let message = format!("the mass of the link {} is {} kg", quoted(&link.name), mass.value);
+            let mass = seen.number("mass", "value").unwrap_or(0.0);
+            if mass < 0.0 {
+                let message = format!("the mass of the link {} is {mass} kg", quoted(name));
                 return Err(self.source.error(span, message, "a mass is zero or positive".to_owned()));
             }
+            let inertia = |attribute| seen.number("inertia", attribute).unwrap_or(0.0);
             self.links.push(Link {
-                name: link.name,
+                name: name.to_owned(),
                 span: span.clone(),
                 unknown: seen.unknown.clone(),
                 lacks: ["mass", "inertia"]
                     .into_iter()
                     .find(|part| seen.elements.contains("inertial") && !seen.elements.contains(part)),
-                mass: mass.value,
-                xyz: origin.xyz.0,
-                rpy: origin.rpy.0,
-                inertia: Inertia { xx: i.ixx, yy: i.iyy, zz: i.izz, xy: i.ixy, xz: i.ixz, yz: i.iyz },
+                mass,
+                xyz: seen.vector("origin", "xyz").unwrap_or_default(),
+                rpy: seen.vector("origin", "rpy").unwrap_or_default(),
+                inertia: Inertia {
+                    xx: inertia("ixx"),
+                    yy: inertia("iyy"),
+                    zz: inertia("izz"),
+                    xy: inertia("ixy"),
+                    xz: inertia("ixz"),
+                    yz: inertia("iyz"),
+                },
                 parent: None,
                 children: Vec::new(),
             });
@@ -181,36 +202,40 @@ impl Urdf {
         Ok(())
     }
 
-    fn take_joints(&mut self, joints: Vec<urdf_rs::Joint>, scanned: &Scanned) -> Result<(), Report> {
+    fn take_joints(&mut self, joints: &[Seen]) -> Result<(), Report> {
         let links: HashMap<String, usize> =
             self.links.iter().enumerate().map(|(index, link)| (link.name.clone(), index)).collect();
         let mut known = HashMap::new();
-        for (index, (joint, seen)) in joints.into_iter().zip(&scanned.joints).enumerate() {
+        for (index, seen) in joints.iter().enumerate() {
             let span = &seen.span;
-            if let Some(first) = known.insert(joint.name.clone(), span) {
-                let message =
-                    format!("the joint {} is there already, in line {}", quoted(&joint.name), self.line(first));
+            let name = seen.text("joint", "name").unwrap_or_default();
+            if let Some(first) = known.insert(name, span) {
+                let message = format!("the joint {} is there already, in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of joints must differ".to_owned()));
             }
-            let link = |name: &str| {
-                links.get(name).copied().ok_or_else(|| {
-                    let message = format!("the joint {} names the link {}", quoted(&joint.name), quoted(name));
+            let link = |end: &'static str| {
+                let Some(link) = seen.text(end, "link") else {
+                    let message = format!("the joint {} has no element `{end}`", quoted(name));
+                    return Err(self.source.error(span, message, format!("write <{end} link=\"NAME\"/> into it")));
+                };
+                links.get(link).copied().ok_or_else(|| {
+                    let message = format!("the joint {} names the link {}", quoted(name), quoted(link));
                     self.source.error(span, message, "there is no such link in the file".to_owned())
                 })
             };
-            let (parent, child) = (link(&joint.parent.link)?, link(&joint.child.link)?);
+            let (parent, child) = (link("parent")?, link("child")?);
             if let Some(first) = self.links[child].parent {
                 let message = format!(
                     "the link {} is moved by two joints, {} and {}",
                     quoted(&self.links[child].name),
                     quoted(&self.joints[first].name),
-                    quoted(&joint.name)
+                    quoted(name)
                 );
                 return Err(self.source.error(span, message, "a URDF is a tree: loops cannot be closed".to_owned()));
             }
             self.links[child].parent = Some(index);
             self.links[parent].children.push(index);
-            self.joints.push(taken(joint, seen, parent, child));
+            self.joints.push(Joint::of(seen, parent, child));
         }
         let known: HashMap<String, usize> =
             self.joints.iter().enumerate().map(|(index, joint)| (joint.name.clone(), index)).collect();
@@ -257,44 +282,40 @@ impl Urdf {
     }
 }
 
-fn taken(joint: urdf_rs::Joint, seen: &Seen, parent: usize, child: usize) -> Joint {
-    let kind = match joint.joint_type {
-        JointType::Revolute => Kind::Revolute,
-        JointType::Continuous => Kind::Continuous,
-        JointType::Prismatic => Kind::Prismatic,
-        JointType::Fixed => Kind::Fixed,
-        JointType::Planar => Kind::Planar,
-        JointType::Floating => Kind::Floating,
-        JointType::Spherical => Kind::Spherical,
-    };
-    let limit = &joint.limit;
-    // Zero stands where nothing was measured.
-    let positive = |limit: f64| (limit > 0.0 && limit.is_finite()).then_some(limit);
-    let both = limit.lower.is_finite() && limit.upper.is_finite() && limit.lower < limit.upper;
-    let position = (both && kind != Kind::Continuous).then_some((limit.lower, limit.upper));
-    let crossed = (limit.lower > limit.upper && kind != Kind::Continuous).then_some((limit.lower, limit.upper));
-    let limits = Limits { position, velocity: positive(limit.velocity), effort: positive(limit.effort) };
-    let mimic = joint.mimic.map(|mimic| Mimic {
-        joint: mimic.joint,
-        leader: None,
-        multiplier: mimic.multiplier.unwrap_or(1.0),
-        offset: mimic.offset.unwrap_or(0.0),
-    });
-    let friction = joint.dynamics.map_or([0.0; 2], |dynamics| [dynamics.damping, dynamics.friction]);
-    Joint {
-        name: joint.name,
-        span: seen.span.clone(),
-        unknown: seen.unknown.clone(),
-        has_axis: seen.elements.contains("axis"),
-        crossed,
-        kind,
-        mimic,
-        parent,
-        child,
-        xyz: joint.origin.xyz.0,
-        rpy: joint.origin.rpy.0,
-        axis: joint.axis.xyz.0,
-        limits,
-        friction,
+impl Joint {
+    /// A joint between two links, as its elements say.
+    fn of(seen: &Seen, parent: usize, child: usize) -> Self {
+        let kind = seen.text("joint", "type").and_then(Kind::of).unwrap_or(Kind::Fixed);
+        let number = |element, attribute| seen.number(element, attribute).unwrap_or(0.0);
+        let (lower, upper) = (number("limit", "lower"), number("limit", "upper"));
+        let both = lower.is_finite() && upper.is_finite() && lower < upper;
+        // zero stands where nothing was measured
+        let positive = |limit: f64| (limit > 0.0 && limit.is_finite()).then_some(limit);
+        let mimic = seen.text("mimic", "joint").map(|joint| Mimic {
+            joint: joint.to_owned(),
+            leader: None,
+            multiplier: seen.number("mimic", "multiplier").unwrap_or(1.0),
+            offset: number("mimic", "offset"),
+        });
+        Self {
+            name: seen.text("joint", "name").unwrap_or_default().to_owned(),
+            span: seen.span.clone(),
+            unknown: seen.unknown.clone(),
+            has_axis: seen.elements.contains("axis"),
+            crossed: (lower > upper && kind != Kind::Continuous).then_some((lower, upper)),
+            kind,
+            mimic,
+            parent,
+            child,
+            xyz: seen.vector("origin", "xyz").unwrap_or_default(),
+            rpy: seen.vector("origin", "rpy").unwrap_or_default(),
+            axis: seen.vector("axis", "xyz").unwrap_or([1.0, 0.0, 0.0]),
+            limits: Limits {
+                position: (both && kind != Kind::Continuous).then_some((lower, upper)),
+                velocity: positive(number("limit", "velocity")),
+                effort: positive(number("limit", "effort")),
+            },
+            friction: [number("dynamics", "damping"), number("dynamics", "friction")],
+        }
     }
 }

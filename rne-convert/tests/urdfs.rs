@@ -414,6 +414,24 @@ fn what_no_row_can_say_is_refused_with_a_reason() {
     assert!(mimic.contains("the joint `b` on the chain follows `a`") && mimic.contains("--lock b=VALUE"), "{mimic}");
     let unknown = Urdf::read("arm.urdf", &with("helical", "")).unwrap_err().to_string();
     assert!(unknown.contains("helical"), "{unknown}");
+    for (end, element) in [("parent", "<parent link=\"one\"/>"), ("child", "<child link=\"two\"/>")] {
+        let text = with("continuous", "");
+        let at = text.rfind(element).expect("the second joint has it");
+        let without = format!("{}{}", &text[..at], &text[at + element.len()..]);
+        let message = Urdf::read("arm.urdf", &without).unwrap_err().to_string();
+        for part in [&format!("the joint `b` has no element `{end}`"), "arm.urdf:6:1"] {
+            assert!(message.contains(part), "no `{part}` in {message}");
+        }
+    }
+}
+
+/// XML takes a line break within an attribute for a space.
+#[test]
+fn numbers_of_an_attribute_may_stand_in_several_lines() {
+    let text = pendulum("");
+    let broken = text.replace("xyz=\"0 0 1\"", "xyz=\"0\n0\t1\"");
+    assert_ne!(text, broken);
+    assert_eq!(plain(&broken).text, plain(&text).text);
 }
 
 /// Pitfall 9: a joint and a link may share a name; a mass of zero divides nothing.
