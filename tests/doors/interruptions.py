@@ -84,7 +84,7 @@ def stream(command, pipe, expected):
         run = harness.execute(["bash", "-c", line], trial.folder)
         trial.verdict.commands += 1
         # where standard error is closed there is no message to read
-        faults = [fault for fault in harness.faults_of(run, expected, 10, 500) if fault != "no message"]
+        faults = [fault for fault in harness.faults_of(run, expected) if fault != "no message"]
         for fault in faults:
             trial.fault(f"rne {shlex.join(command)} {pipe}: {fault}; it says {run.err[:200]!r}")
 
