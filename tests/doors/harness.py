@@ -355,8 +355,10 @@ def verdict_of(case, folder):
         case.body(trial)
     except Skipped as lack:
         trial.verdict.skipped = str(lack)
-    except BaseException:  # noqa: BLE001 (a panic is no Exception)
-        trial.fault("the case ends with " + traceback.format_exc().strip()[-800:])
+    except BaseException as error:  # noqa: BLE001 (a panic is no Exception)
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        said = " ".join(str(error).split())[:300]
+        trial.fault(f"{pathlib.Path(place.filename).name}:{place.lineno}: {type(error).__name__}: {said}")
     sys.stdout.flush()
     return trial.verdict
 
