@@ -160,20 +160,21 @@ class Trial:
         seconds=SECONDS,
         megabytes=MEGABYTES,
         folder=None,
+        colours=False,
         **run,
     ):
         """Runs a command in the folder, and notes what is wrong with what it did.
 
         `says`: what it must print; `never`: what it must not; `names`: what a refusal must name; `writes`: the files
-        that it may make or change.
+        that it may make or change; `colours`: it prints as on a terminal, where its own colours are right.
         """
         folder = folder or self.folder
         before = digests(folder)
-        answer = execute(command, folder, seconds=seconds, **run)
+        answer = execute(command, folder, seconds=seconds, colours=colours, **run)
         self.verdict.commands += 1
         self.verdict.seconds = max(self.verdict.seconds, answer.seconds)
         self.verdict.megabytes = max(self.verdict.megabytes, answer.megabytes)
-        faults = list(faults_of(answer, expected, seconds, megabytes))
+        faults = list(faults_of(answer, expected, seconds, megabytes, colours))
         faults += [f"does not say {words!r}" for words in says if words not in answer.said]
         faults += [f"says {words!r}" for words in never if words in answer.said]
         if answer.status in (1, 2) and names and names not in answer.said:
@@ -187,7 +188,7 @@ class Trial:
         return answer
 
 
-def faults_of(answer, expected, seconds, megabytes):
+def faults_of(answer, expected, seconds=SECONDS, megabytes=MEGABYTES, colours=False):
     """What is wrong with an answer whatever the input was."""
     if answer.hangs:
         yield f"does not end within {CLOCK[-1]:.0f} s"
@@ -207,7 +208,7 @@ def faults_of(answer, expected, seconds, megabytes):
         yield "no message"
     if answer.status == 2 and answer.out.strip():
         yield "status 2 with standard output"
-    if "\x1b" in answer.said:
+    if "\x1b" in answer.said and not colours:
         yield "escape codes where there is no terminal"
 
 
@@ -243,20 +244,20 @@ def changes(before, after, allowed):
             yield f"leaves {path}"
 
 
-def execute(command, folder, stdin=None, seconds=SECONDS, limits=(), clock=None, limited=True):
+def execute(command, folder, stdin=None, seconds=SECONDS, limits=(), clock=None, limited=True, colours=False):
     """Runs a command to its end, a second time where the clock ended it.
 
     `stdin`: a file, which it gets by a pipe; `limits`: pairs of what is limited and how; `limited`: whether its address
     space is, which a program with sanitizers does not bear.
     """
     for patience in (clock,) if clock else CLOCK:
-        answer = attempt(command, folder, stdin, seconds, limits, patience, limited)
+        answer = attempt(command, folder, stdin, seconds, limits, patience, limited, colours)
         if not answer.hangs:
             break
     return answer
 
 
-def attempt(command, folder, stdin, seconds, limits, clock, limited):
+def attempt(command, folder, stdin, seconds, limits, clock, limited, colours):
     def set_up():
         os.setsid()
         time_limit(seconds)
@@ -278,6 +279,7 @@ def attempt(command, folder, stdin, seconds, limits, clock, limited):
             stdin=source,
             stdout=out,
             stderr=err,
+            env={**os.environ, "CLICOLOR_FORCE": "1"} if colours else None,
             preexec_fn=set_up,  # noqa: PLW1509
         )
         if stdin is not None:
@@ -353,8 +355,10 @@ def verdict_of(case, folder):
         case.body(trial)
     except Skipped as lack:
         trial.verdict.skipped = str(lack)
-    except BaseException:  # noqa: BLE001 (a panic is no Exception)
-        trial.fault("the case ends with " + traceback.format_exc().strip()[-800:])
+    except BaseException as error:  # noqa: BLE001 (a panic is no Exception)
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        said = " ".join(str(error).split())[:300]
+        trial.fault(f"{pathlib.Path(place.filename).name}:{place.lineno}: {type(error).__name__}: {said}")
     sys.stdout.flush()
     return trial.verdict
 

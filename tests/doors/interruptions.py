@@ -84,7 +84,7 @@ def stream(command, pipe, expected):
         run = harness.execute(["bash", "-c", line], trial.folder)
         trial.verdict.commands += 1
         # where standard error is closed there is no message to read
-        faults = [fault for fault in harness.faults_of(run, expected, 10, 500) if fault != "no message"]
+        faults = [fault for fault in harness.faults_of(run, expected) if fault != "no message"]
         for fault in faults:
             trial.fault(f"rne {shlex.join(command)} {pipe}: {fault}; it says {run.err[:200]!r}")
 
@@ -126,17 +126,13 @@ def until(condition, seconds=WAIT_AT_MOST):
     return True
 
 
-def grows(folder, before):
+def has_begun(folder, before):
     """Whether a command has begun to write: there is a new entry with something in it."""
-
-    def written():
-        for name in set(os.listdir(folder)) - before:
-            with contextlib.suppress(FileNotFoundError):
-                if os.stat(folder / name).st_size > 0:
-                    return True
-        return False
-
-    return written
+    for name in set(os.listdir(folder)) - before:
+        with contextlib.suppress(FileNotFoundError):
+            if os.stat(folder / name).st_size > 0:
+                return True
+    return False
 
 
 WRITERS = {
@@ -155,7 +151,7 @@ def long_log(path):
         file.writelines(b"%.2f,%s\n" % (i * 0.04, rows[i % len(rows)]) for i in range(LONG_ROWS // 2))
 
 
-def interrupted(command, out, number, again=False):
+def interrupted(command, out, number):
     """A command that writes for long is ended by a signal: what it wrote so far is gone."""
 
     def body(trial):
@@ -165,7 +161,7 @@ def interrupted(command, out, number, again=False):
             trial.write("big.csv", states_of(LONG_ROWS))
         before = set(os.listdir(trial.folder))
         child = started(trial, *command)
-        if not until(lambda: child.poll() is not None or grows(trial.folder, before)()):
+        if not until(lambda: child.poll() is not None or has_begun(trial.folder, before)):
             trial.fault("writes nothing")
         with contextlib.suppress(ProcessLookupError):
             child.send_signal(number)

@@ -123,6 +123,16 @@ case(
     "bad",
 )
 
+
+def on_a_terminal(trial):
+    """A colour code in the name of a topic conceals nothing of what stands after it."""
+    topics = ((1, "\x1b[8mhidden", KIND, "cdr", ""), (2, "/b", KIND, "cdr", ""))
+    trial.write("log.db3", lambda path: bag(path, topics=topics))
+    trial.rne("log", "log.db3", never=["\x1b[8m"], colours=True)
+
+
+CASES.add("topic of codes of colours, on a terminal", on_a_terminal)
+
 # Data of messages.
 NULLABLE = SCHEMA.replace("BLOB NOT NULL", "BLOB")
 sqlite("data NULL", schema=NULLABLE, messages=[(0, None), (1, None)])

@@ -61,7 +61,9 @@ class Rules(unittest.TestCase):
             self.assertIn("division", run(lambda trial: 1 / 0)[0])
             self.assertIn("its process ends", run(lambda trial: os.abort())[0])
             self.assertIn("does not end", run(lambda trial: signal.pause(), clock=0.1)[0])
-            self.assertEqual(harness.run(harness.Case("name", self.skips), pathlib.Path(place)).skipped, "no such thing")
+            self.assertEqual(
+                harness.run(harness.Case("name", self.skips), pathlib.Path(place)).skipped, "no such thing"
+            )
 
     @staticmethod
     def skips(trial):

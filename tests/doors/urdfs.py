@@ -131,25 +131,20 @@ urdf(
 )
 urdf("65 joints", lambda: chain(66))
 
-# Words that are nearly right: what they say must not be passed over in silence. Refused, or told by their line.
-for what, right, wrong in (
-    ("axes for axis", '<axis xyz="0 1 0"/>', '<axes xyz="0 1 0"/>'),
-    ("Axis for axis", '<axis xyz="0 1 0"/>', '<Axis xyz="0 1 0"/>'),
-    ("xzy for xyz of an axis", '<axis xyz="0 1 0"/>', '<axis xzy="0 1 0"/>'),
-    ("Origin of a joint", '<origin xyz="0 0 0.3" rpy="0 0 0"/>', '<Origin xyz="0 0 0.3" rpy="0 0 0"/>'),
-    ("xzy for xyz of a joint", '<origin xyz="0 0 0.3"', '<origin xzy="0 0 0.3"'),
-    ("ryp for rpy", 'xyz="0 0 0.3" rpy=', 'xyz="0 0 0.3" ryp='),
-    ("Origin of a link", '<origin xyz="0 0 0.1" rpy="0 0 0"/>', '<Origin xyz="0 0 0.1" rpy="0 0 0"/>'),
-    ("inertal for inertial", "inertial>", "inertal>"),
+# Words that are nearly right: what they say must not be passed over in silence. They are refused, or told.
+AXIS, PLACE = '<axis xyz="0 1 0"/>', '<origin xyz="0 0 0.3" rpy="0 0 0"/>'
+CENTRE = '<origin xyz="0 0 0.1" rpy="0 0 0"/>'
+for what, right, wrong, word in (
+    ("axes for axis", AXIS, AXIS.replace("axis", "axes"), "axes"),
+    ("Axis for axis", AXIS, AXIS.replace("axis", "Axis"), "Axis"),
+    ("xzy for xyz of an axis", AXIS, AXIS.replace("xyz", "xzy"), "xzy"),
+    ("Origin of a joint", PLACE, PLACE.replace("origin", "Origin"), "Origin"),
+    ("xzy for xyz of a joint", PLACE, PLACE.replace("xyz", "xzy"), "xzy"),
+    ("ryp for rpy of a joint", PLACE, PLACE.replace("rpy", "ryp"), "ryp"),
+    ("Origin of a link", CENTRE, CENTRE.replace("origin", "Origin"), "Origin"),
+    ("inertal for inertial", "inertial>", "inertal>", "inertal"),
 ):
-    word = (
-        wrong.strip("<").split()[0].strip(">")
-        if right.split()[0] != wrong.split()[0]
-        else wrong.split("=")[0].split()[-1]
-    )
-    if what.startswith("ryp"):
-        word = "ryp"
-    urdf(f"misspelt: {what}", TWO.replace(right, wrong), options=[], says=[word])
+    urdf(f"misspelt: {what}", TWO.replace(right, wrong), says=[word])
 
 # Followers. What moves with another joint is not at rest.
 MIMIC = '<mimic joint="{}" multiplier="2" offset="0"/>' + LIMIT

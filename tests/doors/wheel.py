@@ -24,7 +24,7 @@ from robots import BOMB
 CASES = harness.Cases()
 CLOCK = 60.0
 # What programs expect where an argument is wrong. A panic is none of these.
-ERRORS = (ValueError, TypeError, KeyError, OSError, OverflowError, AttributeError, rne.EvaluationError)
+ERRORS = (ValueError, TypeError, KeyError, OSError, IndexError, OverflowError, AttributeError, rne.EvaluationError)
 ZEROS = np.zeros(6)
 STATES = np.random.default_rng(1).normal(size=(257, 6))
 

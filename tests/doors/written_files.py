@@ -159,18 +159,20 @@ for writer, (command, end, force) in WRITERS.items():
     onto(writer, "a name of a code of terminals", f"\x1b[2J{end}", "any", writes=beside(f"\x1b[2J{end}"))
     onto(writer, "a name that is no UTF-8", NOT_UTF8 + end, "any", writes=beside(NOT_UTF8 + end))
     onto(writer, "a new file", out, "any", writes=beside(out))
-    to_standard_output(writer, command) if writer not in ("emit c", "states as npy") else None
+    if writer not in ("emit c", "states as npy"):
+        to_standard_output(writer, command)
     without_room(writer, command, end, force)
+
+
+def folder_of_somebody(folder):
+    (folder / "mine").mkdir()
+    (folder / "mine/user.txt").write_text("mine\n")
+
+
 for writer in FOLDERS:
     onto(writer, "a file of somebody", "user.txt", "refused")
-    onto(
-        writer,
-        "a folder of somebody",
-        "mine",
-        "refused",
-        lambda folder: (folder / "mine").mkdir() or (folder / "mine/user.txt").write_text("mine\n"),
-    ) if writer == "firmware" else None
     onto(writer, "a new folder", writer, "taken", writes=[writer])
+onto("firmware", "a folder of somebody", "mine", "refused", folder_of_somebody)
 
 # A format of tables that `rne log` does not write must not get a table of another format under its name.
 onto("log", "Parquet", "out.parquet", "refused")

@@ -5,6 +5,8 @@
 //! so a busy machine fails nothing.
 
 mod command_lines;
+mod logs;
+mod outputs;
 mod paths;
 mod plans;
 mod robot_files;
@@ -47,16 +49,22 @@ struct Case {
     expected: Expected,
     /// What the message must name, if there is one.
     names: String,
+    /// No file may get a byte, as on a full disk.
+    has_room: bool,
 }
 
 impl Case {
     fn new<A: AsRef<str>>(what: impl Into<String>, arguments: &[A], expected: Expected) -> Self {
         let arguments = arguments.iter().map(|argument| argument.as_ref().to_owned()).collect();
-        Self { what: what.into(), arguments, piped: None, expected, names: String::new() }
+        Self { what: what.into(), arguments, piped: None, expected, names: String::new(), has_room: true }
     }
 
     fn naming(self, names: impl Into<String>) -> Self {
         Self { names: names.into(), ..self }
+    }
+
+    fn without_room(self) -> Self {
+        Self { has_room: false, ..self }
     }
 }
 
@@ -76,11 +84,15 @@ fn written(folder: &Path, index: usize, name: &str, bytes: impl AsRef<[u8]>) -> 
 
 /// The limited call, in a folder of its own, from which every name that the command gives a file leads.
 fn call(case: &Case, folder: &Path) -> Output {
-    let limits = if cfg!(target_os = "linux") {
+    let mut limits = if cfg!(target_os = "linux") {
         format!("ulimit -v {MEMORY} && ulimit -t {SECONDS} && ")
     } else {
         String::new()
     };
+    if !case.has_room {
+        // the system ends a process that writes more, unless it passes over that signal
+        limits += "trap '' XFSZ && ulimit -f 0 && ";
+    }
     let line = match &case.piped {
         Some(_) => format!("{limits} cat \"$INPUT\" | \"$@\""),
         None => format!("{limits} exec \"$@\""),
@@ -154,6 +166,8 @@ fn hostile_inputs() {
         urdfs::cases(&place("urdfs")),
         paths::cases(&place("paths")),
         command_lines::cases(&place("command_lines")),
+        logs::cases(&place("logs")),
+        outputs::cases(&place("outputs")),
     ]
     .into_iter()
     .flatten()
@@ -180,7 +194,10 @@ fn hostile_inputs() {
             });
         }
     });
-    let faults = faults.into_inner().expect("no panic");
+    let mut faults = faults.into_inner().expect("no panic");
+    faults.extend(outputs::faults(&place("outputs")));
+    let left = names(&here).into_iter().filter(|path| path.ends_with("-") || path.extension() == Some("tmp".as_ref()));
+    faults.extend(left.map(|path| format!("left: {}", path.display())));
     println!("{} inputs within {MEMORY} kB and {SECONDS} s", cases.len());
     assert!(faults.is_empty(), "{} of {}\n\n{}", faults.len(), cases.len(), faults.join("\n\n"));
     assert_eq!(names(&place("here")), beside, "nothing is written elsewhere");
