@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use rne_model::{Report, did_you_mean};
+use rne_model::{LARGEST_ANGLE, Report, did_you_mean};
 
 use crate::source::{Source, quoted};
 
@@ -20,7 +20,7 @@ const MAX_DEPTH: usize = 64;
 /// More links than any robot has.
 const MAX_ELEMENTS: usize = 20_000;
 /// No number of an arm is larger, in SI units.
-const LARGEST: f64 = 1e9;
+pub(crate) const LARGEST: f64 = 1e9;
 
 /// More kinds of unknown elements and attributes than any description has.
 const MAX_UNKNOWN: usize = 1000;
@@ -70,6 +70,7 @@ enum Kind {
     /// A number that may be infinite.
     Limit,
     Vector,
+    Angles,
 }
 
 /// The types of joints that `urdf-rs` reads.
@@ -89,7 +90,7 @@ const fn optional(name: &'static str, kind: Kind) -> Attribute {
 
 const TYPE: Attribute = Attribute { name: "type", kind: Kind::Joint, required: true };
 
-const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Vector)];
+const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Angles)];
 
 const ELEMENTS: &[Element] = &[
     Element { name: "robot", parent: "", attributes: &[optional("name", Kind::Text)] },
@@ -365,6 +366,12 @@ impl Scanner<'_> {
             let value = quick_xml::escape::unescape(&raw)
                 .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
                 .into_owned();
+            if ["${", "$("].iter().any(|mark| value.contains(mark)) {
+                let message =
+                    format!("{} of `{}` is {}, an expression of xacro", quoted(&key), element.name, quoted(&value));
+                let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
+                return Err(self.source.error(&self.within(place, &raw), message, help));
+            }
             if let Some(fault) = fault(element.attributes[index].kind, &value) {
                 let message = format!("{} of `{}` is {}; {fault}", quoted(&key), element.name, quoted(&value));
                 return Err(self.source.error(&self.within(place, &raw), message, None));
@@ -413,6 +420,7 @@ impl Scanner<'_> {
 fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let number = |word: &str| word.parse::<f64>().ok();
     let fine = |word: &str| number(word).is_some_and(|x| x.abs() <= LARGEST);
+    let is_angle = |word: &str| number(word).is_some_and(|x| x.abs() < LARGEST_ANGLE);
     let words: Vec<&str> = value.split_whitespace().collect();
     match kind {
         Kind::Text if value.trim().is_empty() => Some("it must not be empty"),
@@ -430,6 +438,9 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
         }
         Kind::Vector if words.len() != 3 || !words.iter().all(|word| fine(word)) => {
             Some("it must be three numbers, each of at most 1e9")
+        }
+        Kind::Angles if words.len() != 3 || !words.iter().all(|word| is_angle(word)) => {
+            Some("it must be three numbers, each below 8388608 rad")
         }
         _ => None,
     }

@@ -32,8 +32,6 @@ pub(crate) struct Link {
     pub(crate) span: Range<usize>,
     /// What in it is not known.
     pub(crate) unknown: BTreeSet<usize>,
-    /// What its `inertial` lacks.
-    pub(crate) lacks: Option<&'static str>,
     /// Mass, kg; 0 where there is no `inertial`.
     pub(crate) mass: f64,
     /// Centre of mass in the link frame, m.
@@ -167,9 +165,6 @@ impl Urdf {
                 name: link.name,
                 span: span.clone(),
                 unknown: seen.unknown.clone(),
-                lacks: ["mass", "inertia"]
-                    .into_iter()
-                    .find(|part| seen.elements.contains("inertial") && !seen.elements.contains(part)),
                 mass: mass.value,
                 xyz: origin.xyz.0,
                 rpy: origin.rpy.0,
