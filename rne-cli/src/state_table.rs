@@ -176,12 +176,15 @@ impl Table {
                     let begin = rows.len();
                     for (place, column) in &*columns {
                         let cell = inner(record.get(*place).unwrap_or_default());
-                        let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse().ok());
-                        rows.push(number.ok_or_else(|| {
+                        let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse::<f64>().ok());
+                        let misfit = number.and_then(|number| misfit(number, cell));
+                        rows.push(number.filter(|_| misfit.is_none()).ok_or_else(|| {
                             let line = last_line(reader, record);
-                            let what = match cell {
-                                [] => "empty".to_owned(),
-                                cell => format!("{}, which is no number", quoted(&String::from_utf8_lossy(cell))),
+                            let shown = quoted(&String::from_utf8_lossy(cell));
+                            let what = match (cell, misfit) {
+                                ([], _) => "empty".to_owned(),
+                                (_, Some(misfit)) => format!("{shown}, which is too {misfit} for a 64-bit float"),
+                                _ => format!("{shown}, which is no number"),
                             };
                             Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
                         })?);
@@ -235,6 +238,16 @@ fn instead(column: &str, header: &[String]) -> String {
         None => did_you_mean(column, header.iter().map(String::as_str))
             .map_or(String::new(), |near| format!(" (there is {})", quoted(near))),
     }
+}
+
+/// What is wrong with digits whose number is infinite or zero only because it is rounded. The word `inf` is a number,
+/// for a log may have it where nothing was measured.
+fn misfit(number: f64, cell: &[u8]) -> Option<&'static str> {
+    let mut mantissa = cell.split(|byte| matches!(byte, b'e' | b'E')).next().unwrap_or_default().iter();
+    if number.is_infinite() && mantissa.clone().any(u8::is_ascii_digit) {
+        return Some("large");
+    }
+    (number == 0.0 && mantissa.any(|byte| matches!(byte, b'1'..=b'9'))).then_some("small")
 }
 
 /// A cell without blanks and without the quotes behind them.

@@ -3,12 +3,13 @@
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 
-use rne_model::{Limits, Motor, Report, did_you_mean};
+use rne_model::{LARGEST_ANGLE, Limits, Motor, Report, did_you_mean};
 
 use crate::body::Body;
 use crate::geometry::{Pose, Rotation, Vector, decimal};
+use crate::scan::LARGEST;
 use crate::snap::{Snapped, Snapping};
-use crate::source::{names, quoted};
+use crate::source::{names, quoted, some};
 use crate::urdf::{Joint, Link, Mimic, Urdf};
 
 /// So many leaves are listed where the tip must be named.
@@ -103,6 +104,7 @@ pub(crate) fn extract(
         locks,
         snapping: Snapping { is_on: snap, ..Snapping::default() },
         loose: Vec::new(),
+        followers: Vec::new(),
         told: Extracted {
             base: urdf.links[base].name.clone(),
             tip: urdf.links[tip].name.clone(),
@@ -123,6 +125,20 @@ pub(crate) fn extract(
         let help =
             "a chain holds them still: say where with --lock JOINT=VALUE, or all others at zero with --lock-others";
         return Err(urdf.source.error(&urdf.joints[walk.loose[0]].span, message, help.to_owned()));
+    }
+    if let Some(&(first, _)) = walk.followers.first() {
+        let name = |joint: usize| &urdf.joints[joint].name;
+        let each = walk
+            .followers
+            .iter()
+            .map(|&(joint, leader)| format!("{} follows {}", quoted(name(joint)), quoted(name(leader))));
+        let message = format!("joints off the chain follow joints of the chain that move: {}", some(each));
+        let help = format!(
+            "what they carry has mass, and no row of a table can say that it moves along; where that mass may stand \
+             still, hold each of them by its name, such as --lock {}=VALUE",
+            rne_model::one_line(name(first))
+        );
+        return Err(urdf.source.error(&urdf.joints[first].span, message, help));
     }
     walk.told.snapped = walk.snapping.found;
     Ok((chain, walk.told))
@@ -254,16 +270,29 @@ fn locks(urdf: &Urdf, selection: &Selection) -> Result<HashMap<usize, f64>, Repo
                 format!("the joint {} is {} and cannot be locked at a value", quoted(name), joint.kind.name());
             return Err(urdf.source.error(&joint.span, message, None));
         }
-        if !value.is_finite() || value.abs() > 1e9 {
-            let message = format!("the joint {} cannot be locked at {value}", quoted(name));
-            return Err(urdf.source.error(&joint.span, message, None));
-        }
+        refuse_value(urdf, joint, *value)?;
         if locks.insert(index, *value).is_some() {
             let message = format!("the joint {} is locked twice", quoted(name));
             return Err(urdf.source.error(&joint.span, message, None));
         }
     }
     Ok(locks)
+}
+
+/// Refuses to hold a joint at a value that is no position.
+fn refuse_value(urdf: &Urdf, joint: &Joint, value: f64) -> Result<(), Report> {
+    let is_angle = joint.kind != crate::urdf::Kind::Prismatic;
+    let is_position = if is_angle { value.abs() < LARGEST_ANGLE } else { value.abs() <= LARGEST };
+    if is_position {
+        return Ok(());
+    }
+    let message = format!("the joint {} cannot be held at {value}", quoted(&joint.name));
+    let help = if is_angle {
+        format!("an angle is a number below {LARGEST_ANGLE} rad")
+    } else {
+        format!("a displacement is a number of at most {LARGEST:e} m")
+    };
+    Err(urdf.source.error(&joint.span, message, help))
 }
 
 /// A walk through the tree.
@@ -276,6 +305,8 @@ struct Walk<'a> {
     snapping: Snapping,
     /// Movable joints off the chain that nobody holds.
     loose: Vec<usize>,
+    /// Joints off the chain that follow one of it, and which.
+    followers: Vec<(usize, usize)>,
     told: Extracted,
 }
 
@@ -302,6 +333,7 @@ impl Walk<'_> {
             self.loose.push(index);
             return Ok(place);
         };
+        refuse_value(self.urdf, joint, value)?;
         self.told.held.push((joint.name.clone(), value));
         if let Some((lower, upper)) = joint.limits.position.filter(|(lower, upper)| !is_within(value, *lower, *upper)) {
             let name = rne_model::one_line(&joint.name);
@@ -327,7 +359,7 @@ impl Walk<'_> {
         if !self.selection.lock_others && !self.locks.contains_key(&index) {
             return Ok(None);
         }
-        self.refuse_follower(index)?;
+        self.look_at_follower(index);
         let (mimics, leader) = self.follows(index)?;
         let start = self.locks.get(&leader).copied().unwrap_or(0.0);
         Ok(Some(mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)))
@@ -366,33 +398,24 @@ impl Walk<'_> {
         (moves && mimic.multiplier != 0.0).then_some(leader)
     }
 
-    /// Refuses a joint off the chain that follows a moving joint of the chain, unless it is held by name or nothing
-    /// that it carries has mass: a table cannot say that it moves.
-    fn refuse_follower(&mut self, index: usize) -> Result<(), Report> {
-        let Some(leader) = self.moving_leader(index) else { return Ok(()) };
+    /// Looks whether a joint off the chain follows a moving joint of the chain. A table cannot say that it moves, so it
+    /// is refused at the end of the walk, unless it is held by name or nothing that it carries has mass.
+    fn look_at_follower(&mut self, index: usize) {
+        let Some(leader) = self.moving_leader(index) else { return };
         let joint = &self.urdf.joints[index];
-        let (name, leader) = (rne_model::one_line(&joint.name), &self.urdf.joints[leader].name);
-        if self.locks.contains_key(&index) {
-            self.told.remarks.push(format!(
-                "the joint {name} is held still, although it follows {}, which moves",
-                rne_model::one_line(leader)
-            ));
-            return Ok(());
+        let is_locked = self.locks.contains_key(&index);
+        if !is_locked && self.carries_mass(joint.child) {
+            self.followers.push((index, leader));
+            return;
         }
-        if self.carries_mass(joint.child) {
-            let message =
-                format!("the joint {} follows {}, a moving joint of the chain", quoted(&joint.name), quoted(leader));
-            let help = format!(
-                "what it carries has mass, and no row of a table can say that it moves along; if it may be held still, \
-                 say where with --lock {name}=VALUE"
-            );
-            return Err(self.urdf.source.error(&joint.span, message, help));
-        }
-        self.told.remarks.push(format!(
-            "the joint {name} follows {}, which moves; it is held still, for nothing that it carries has mass",
-            rne_model::one_line(leader)
-        ));
-        Ok(())
+        let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| rne_model::one_line(name));
+        self.told.remarks.push(if is_locked {
+            format!("the joint {name} is held still, although it follows {leader}, which moves")
+        } else {
+            format!(
+                "the joint {name} follows {leader}, which moves; nothing that it carries has mass, so it is held still"
+            )
+        });
     }
 
     /// Whether a link, or anything behind it, has mass or inertia.
@@ -421,7 +444,7 @@ impl Walk<'_> {
     fn along(&mut self, base: usize, path: &[usize], chain: &mut Chain) -> Result<(), Report> {
         // The frame of the current link in that of the last one that moves.
         let mut pose = Pose::identity();
-        self.aside(base, path.first().copied())?;
+        self.aside(base, path.first().copied());
         for (i, &index) in path.iter().enumerate() {
             let next = path.get(i + 1).copied();
             let joint = &self.urdf.joints[index];
@@ -455,7 +478,7 @@ impl Walk<'_> {
                 pose = Pose::identity();
             }
             if chain.joints.is_empty() {
-                self.aside(joint.child, next)?;
+                self.aside(joint.child, next);
                 continue;
             }
             let body = self.lump(joint.child, pose, next)?;
@@ -523,12 +546,6 @@ impl Walk<'_> {
         while let Some((index, pose)) = open.pop() {
             let link = &self.urdf.links[index];
             self.told.links.insert(index);
-            if let Some(part) = link.lacks {
-                let name = rne_model::one_line(&link.name);
-                self.told
-                    .remarks
-                    .push(format!("the `inertial` of the link {name} has no element `{part}`: it is zero"));
-            }
             if has_mass(link) {
                 let rpy = self.snapping.rpy(&format!("inertia of {}", link.name), link.rpy);
                 let own = Body::at(link.mass, Pose::new(link.xyz, rpy), link.inertia);
@@ -547,19 +564,18 @@ impl Walk<'_> {
     }
 
     /// What moves on a link that stands still moves by itself, unless it follows a joint of the chain.
-    fn aside(&mut self, link: usize, next: Option<usize>) -> Result<(), Report> {
+    fn aside(&mut self, link: usize, next: Option<usize>) {
         let mut open = vec![link];
         while let Some(index) = open.pop() {
             for &index in self.urdf.links[index].children.iter().rev().filter(|&&joint| Some(joint) != next) {
                 let joint = &self.urdf.joints[index];
                 if joint.kind != crate::urdf::Kind::Fixed {
-                    self.refuse_follower(index)?;
+                    self.look_at_follower(index);
                     self.told.aside.push(joint.name.clone());
                 }
                 open.push(joint.child);
             }
         }
-        Ok(())
     }
 }
 

@@ -6,10 +6,11 @@ use std::fmt::{self, Write as _};
 use rne_model::{Joint, Motor, Robot, one_line};
 
 use crate::body::Body;
-use crate::chain::ChainJoint;
+use crate::chain::{Chain, ChainJoint};
 use crate::conventions::of_robot;
 use crate::geometry::{Pose, rounded};
 use crate::robot_file::number;
+use crate::scan::LARGEST;
 
 /// A robot as a URDF.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,29 +24,45 @@ pub struct Exported {
     pub remarks: Vec<String>,
 }
 
-/// A link that a URDF cannot have.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// Why a robot has no URDF.
+#[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
-pub struct NoBody {
-    /// The link, counted from 1.
-    pub link: usize,
-    /// The joint that moves it.
-    pub joint: String,
+pub enum NoUrdf {
+    /// A link has a first moment and no mass.
+    NoMass {
+        /// The link, counted from 1.
+        link: usize,
+        /// The joint that moves it.
+        joint: String,
+    },
+    /// A number is larger than an import takes.
+    TooLarge {
+        /// What it is the number of.
+        what: String,
+        /// The number.
+        number: f64,
+    },
 }
 
-impl fmt::Display for NoBody {
+impl fmt::Display for NoUrdf {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { link, joint } = self;
-        write!(
-            f,
-            "link {link}, which the joint {} moves, has a first moment and no mass: a URDF gives links a mass and its \
-             centre, and cannot say it; give the link its `mass`",
-            one_line(joint)
-        )
+        match self {
+            Self::NoMass { link, joint } => write!(
+                f,
+                "link {link}, which the joint {} moves, has a first moment and no mass: a URDF gives links a mass and \
+                 its centre, and cannot say it; give the link its `mass`",
+                one_line(joint)
+            ),
+            Self::TooLarge { what, number } => write!(
+                f,
+                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; check \
+                 the units of the robot file: lengths are metres and masses kilograms"
+            ),
+        }
     }
 }
 
-impl Error for NoBody {}
+impl Error for NoUrdf {}
 
 /// The URDF of a robot. Its root link `world` carries the link `base`, which is frame 0; joint i moves the link
 /// `link_i`, whose frame stands on the axis of the joint; the link `tip` stands at the end of the tool.
@@ -55,12 +72,13 @@ impl Error for NoBody {}
 ///
 /// # Errors
 ///
-/// When a link has a first moment and no mass.
-pub fn export(robot: &Robot) -> Result<Exported, NoBody> {
+/// When a link has a first moment and no mass, or a number is larger than an import takes.
+pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
     if let Some(index) = robot.rows().position(|row| row.link.has_first_moment()) {
-        return Err(NoBody { link: index + 1, joint: robot.joints[index].name.clone() });
+        return Err(NoUrdf::NoMass { link: index + 1, joint: robot.joints[index].name.clone() });
     }
     let chain = of_robot(robot);
+    refuse_too_large(&chain)?;
     // Gravity in frame 0 is rounded: what that leaves in the axes of the world is nothing.
     let gravity = (chain.base.rotation * chain.gravity).to_f64().map(|g| if g.abs() < 1e-14 { 0.0 } else { g });
     let mut remarks = Vec::new();
@@ -94,6 +112,28 @@ pub fn export(robot: &Robot) -> Result<Exported, NoBody> {
     fixed(&mut text, "to_tip", (&parent, "tip"), chain.tip);
     text.push_str("</robot>\n");
     Ok(Exported { text, gravity, remarks })
+}
+
+/// Refuses numbers that an import would refuse.
+fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
+    let check = |what: String, numbers: &[f64]| match numbers.iter().find(|number| !(number.abs() <= LARGEST)) {
+        Some(&number) => Err(NoUrdf::TooLarge { what, number }),
+        None => Ok(()),
+    };
+    check("a coordinate of `base`".to_owned(), &chain.base.translation.to_f64())?;
+    check("a coordinate of the tip".to_owned(), &chain.tip.translation.to_f64())?;
+    for (index, joint) in chain.joints.iter().enumerate() {
+        let (link, number) = (joint.body.to_link(), index + 1);
+        let i = link.inertia;
+        check(format!("a coordinate of joint {number}"), &joint.place.translation.to_f64())?;
+        check(format!("a coordinate of the centre of mass of link {number}"), &link.com)?;
+        check(format!("the mass of link {number}"), &[joint.body.mass.to_f64()])?;
+        check(format!("an inertia of link {number}"), &[i.xx, i.yy, i.zz, i.xy, i.xz, i.yz])?;
+        if let Some(Friction { damping, friction }) = joint.motor.as_ref().and_then(Friction::of) {
+            check(format!("the friction of joint {number}"), &[damping, friction])?;
+        }
+    }
+    Ok(())
 }
 
 /// What a URDF cannot say of motors.

@@ -28,7 +28,7 @@ mod urdf;
 pub use chain::Selection;
 pub use comparison::Difference;
 pub use conventions::{Converted, convert};
-pub use export::{Exported, NoBody, export};
+pub use export::{Exported, NoUrdf, export};
 pub use import::{Account, Imported, Options};
 pub use kept::import;
 pub use snap::{Snapped, TOLERANCE};

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
-use rne_model::{Report, did_you_mean};
+use rne_model::{LARGEST_ANGLE, Report, did_you_mean};
 
 use crate::source::{Source, quoted};
 use crate::urdf;
@@ -20,7 +20,7 @@ const MAX_DEPTH: usize = 64;
 /// More links than any robot has.
 const MAX_ELEMENTS: usize = 20_000;
 /// No number of an arm is larger, in SI units.
-const LARGEST: f64 = 1e9;
+pub(crate) const LARGEST: f64 = 1e9;
 
 /// More kinds of unknown elements and attributes than any description has.
 const MAX_UNKNOWN: usize = 1000;
@@ -89,6 +89,7 @@ enum Kind {
     /// A number that may be infinite.
     Limit,
     Vector,
+    Angles,
 }
 
 const fn text(name: &'static str) -> Attribute {
@@ -105,7 +106,7 @@ const fn optional(name: &'static str, kind: Kind) -> Attribute {
 
 const TYPE: Attribute = Attribute { name: "type", kind: Kind::Joint, required: true };
 
-const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Vector)];
+const ORIGIN: &[Attribute] = &[optional("xyz", Kind::Vector), optional("rpy", Kind::Angles)];
 
 const ELEMENTS: &[Element] = &[
     Element { name: "robot", parent: "", attributes: &[optional("name", Kind::Text)] },
@@ -383,6 +384,12 @@ impl Scanner<'_> {
             let value = quick_xml::escape::unescape(&raw.replace(['\t', '\n', '\r'], " "))
                 .map_err(|error| self.source.error(place, format!("`{key}` cannot be read: {error}"), None))?
                 .into_owned();
+            if ["${", "$("].iter().any(|mark| value.contains(mark)) {
+                let message =
+                    format!("{} of `{}` is {}, an expression of xacro", quoted(&key), element.name, quoted(&value));
+                let help = "expand the file first: `xacro FILE.xacro > FILE.urdf`".to_owned();
+                return Err(self.source.error(&self.within(place, &raw), message, help));
+            }
             if let Some(fault) = fault(element.attributes[index].kind, &value) {
                 let message = format!("{} of `{}` is {}; {fault}", quoted(&key), element.name, quoted(&value));
                 return Err(self.source.error(&self.within(place, &raw), message, None));
@@ -415,6 +422,7 @@ impl Scanner<'_> {
 fn fault(kind: Kind, value: &str) -> Option<&'static str> {
     let number = |word: &str| word.parse::<f64>().ok();
     let fine = |word: &str| number(word).is_some_and(|x| x.abs() <= LARGEST);
+    let is_angle = |word: &str| number(word).is_some_and(|x| x.abs() < LARGEST_ANGLE);
     let words: Vec<&str> = value.split_whitespace().collect();
     match kind {
         Kind::Text if value.trim().is_empty() => Some("it must not be empty"),
@@ -432,6 +440,9 @@ fn fault(kind: Kind, value: &str) -> Option<&'static str> {
         }
         Kind::Vector if words.len() != 3 || !words.iter().all(|word| fine(word)) => {
             Some("it must be three numbers, each of at most 1e9")
+        }
+        Kind::Angles if words.len() != 3 || !words.iter().all(|word| is_angle(word)) => {
+            Some("it must be three numbers, each below 8388608 rad")
         }
         _ => None,
     }

@@ -31,8 +31,6 @@ pub(crate) struct Link {
     pub(crate) span: Range<usize>,
     /// What in it is not known.
     pub(crate) unknown: BTreeSet<usize>,
-    /// What its `inertial` lacks.
-    pub(crate) lacks: Option<&'static str>,
     /// Mass, kg; 0 where there is no `inertial`.
     pub(crate) mass: f64,
     /// Centre of mass in the link frame, m.
@@ -181,9 +179,6 @@ impl Urdf {
                 name: name.to_owned(),
                 span: span.clone(),
                 unknown: seen.unknown.clone(),
-                lacks: ["mass", "inertia"]
-                    .into_iter()
-                    .find(|part| seen.elements.contains("inertial") && !seen.elements.contains(part)),
                 mass,
                 xyz: seen.vector("origin", "xyz").unwrap_or_default(),
                 rpy: seen.vector("origin", "rpy").unwrap_or_default(),

@@ -47,6 +47,8 @@ fn every_mistake_has_its_message_and_its_place() {
         ("<robot name=\"r\">", "<sdf><robot name=\"r\">", 1, "SDF is another format"),
         ("<link name=\"a\"/>", "<link name=\"a\"/><xacro:include/>", 2, "it is not expanded yet"),
         ("</link>\n<joint", "</lin>\n<joint", 3, "this is not XML"),
+        ("name=\"j\"", "name=\"${prefix}j\"", 4, "`name` of `joint` is `${prefix}j`, an expression of xacro"),
+        ("0 0 1", "0 0 $(arg height)", 4, "an expression of xacro"),
     ] {
         let message = error(&with(old, new));
         assert!(message.contains(part), "{new}: {message}");
@@ -59,6 +61,77 @@ fn every_mistake_has_its_message_and_its_place() {
         let message = error(text);
         assert!(message.starts_with("error: "), "{text}: {message}");
     }
+}
+
+/// The place, the name and what was meant.
+#[test]
+fn what_looks_like_a_slip_is_refused() {
+    for (old, new, place, said, meant) in [
+        ("<origin xyz", "<Origin xyz", "<Origin", "no element `Origin` in `joint`", "`origin`"),
+        ("xyz=", "xzy=", "xzy", "no attribute `xzy` of `origin`", "`xyz`"),
+        ("<limit ", "<axes xyz=\"0 1 0\"/><limit ", "<axes", "no element `axes` in `joint`", "`axis`"),
+        ("<limit ", "<limits ", "<limits", "no element `limits` in `joint`", "`limit`"),
+        ("velocity=", "velocty=", "velocty", "no attribute `velocty` of `limit`", "`velocity`"),
+        ("<limit ", "<dynamic/><limit ", "<dynamic", "no element `dynamic` in `joint`", "`dynamics`"),
+        ("<limit ", "<dynamics dampng=\"1\"/><limit ", "dampng", "`dampng` of `dynamics`", "`damping`"),
+        ("<limit ", "<mimc joint=\"j\"/><limit ", "<mimc", "no element `mimc` in `joint`", "`mimic`"),
+        ("<limit ", "<mimic joint=\"j\" ofset=\"2\"/><limit ", "ofset", "`ofset` of `mimic`", "`offset`"),
+        ("<mass ", "<mas value=\"1\"/><mass ", "<mas ", "no element `mas` in `inertial`", "`mass`"),
+        ("<link name=\"a\"/>", "<Link name=\"a\"/>", "<Link", "no element `Link` in `robot`", "`link`"),
+        ("<link name=\"a\"/>", "<link name=\"a\"><inertal/></link>", "<inertal", "`inertal` in `link`", "`inertial`"),
+        ("</robot>", "<jiont/></robot>", "<jiont", "no element `jiont` in `robot`", "`joint`"),
+        ("parent link", "parent lnik=\"a\" link", "lnik", "no attribute `lnik` of `parent`", "`link`"),
+    ] {
+        let text = with(old, new);
+        let before = &text[..text.find(place).expect("the slip")];
+        let (line, column) = (before.matches('\n').count() + 1, before.len() - before.rfind('\n').unwrap_or(0));
+        let message = error(&text);
+        assert!(message.contains(said), "{new}: {message}");
+        assert!(message.contains(&format!("did you mean {meant}?")), "{new}: {message}");
+        assert!(message.contains(&format!("bad.urdf:{line}:{column}\n")), "{new}: {message}");
+    }
+}
+
+/// What real files have beside what the import reads: known things in silence, others with a note.
+#[test]
+fn what_is_not_known_is_noted() {
+    let remarks = |text: &str| {
+        let imported = Urdf::read("a.urdf", text).and_then(|urdf| urdf.import(&Options::default()));
+        imported.unwrap_or_else(|report| panic!("{report}")).account.remarks
+    };
+    let axis = |text: String| text.replace("<limit ", "<axis xyz=\"0 0 1\"/><limit ");
+    let known = axis(with(
+        "<robot name=\"r\">",
+        "<robot name=\"r\" version=\"1.0\" xmlns:xacro=\"http://www.ros.org/wiki/xacro\" xmlns=\"x\">\
+         <gazebo><self_collide/></gazebo><transmission><joint><hardwareInterface/></joint></transmission><material/>",
+    ))
+    .replace("<inertial>", "<visual><origin xzy=\"\"/><geometry/></visual><collision/><inertial>")
+    .replace("</joint>\n</robot>", "<safety_controller kvelocity=\"1\"/><calibration/></joint>\n</robot>");
+    assert_eq!(remarks(&known), Vec::<String>::new());
+    let other = known
+        .replace("<link name=\"b\">", "<link name=\"b\" type=\"x\"><verbose value=\"1\"/>")
+        .replace("<limit ", "<drake:effort_limit/><limit acceleration=\"2\" ")
+        .replace("</robot>", "<loop/></robot>");
+    let ignored = "the import ignores what it does not know: attribute `type` of `link`, element `verbose` in `link`, \
+                   element `drake:effort_limit` in `joint`, attribute `acceleration` of `limit`, element `loop` in \
+                   `robot`";
+    assert_eq!(remarks(&other), [ignored]);
+    // the link that stands still is no part of the arm
+    let still = known.replace("<link name=\"a\"/>", "<link name=\"a\" type=\"x\"><verbose/></link>");
+    assert_eq!(remarks(&still), Vec::<String>::new());
+
+    let no_axis = remarks(&with("type=\"revolute\"", "type=\"prismatic\""));
+    assert_eq!(no_axis, ["the joint j has no element `axis`; its axis is then 1 0 0"]);
+    let crossed = remarks(&axis(with("effort=", "lower=\"2\" upper=\"-1\" effort=")));
+    assert_eq!(crossed, ["the joint j has a lower limit, 2, that is above its upper one, -1; both are left out"]);
+}
+
+/// As many names as a text has room for take no time and no room of their own.
+#[test]
+fn unknown_names_are_bounded() {
+    let names: String = (0..300_000).map(|i| format!(" qq{i}=\"\"")).collect();
+    let message = error(&with("<link name=\"a\"", &format!("<link{names} name=\"a\"")));
+    assert!(message.contains("more than 1000 names of elements and attributes that no URDF has"), "{message}");
 }
 
 #[test]

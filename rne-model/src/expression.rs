@@ -259,8 +259,14 @@ impl Expression {
             Operator::Power => a == 0.0,
             _ => false,
         };
+        let vanishes = match operator {
+            Operator::Add | Operator::Subtract => false,
+            Operator::Multiply => a != 0.0 && b != 0.0,
+            Operator::Divide | Operator::Power => a != 0.0,
+        };
         let parameter = a.first_parameter().or(b.first_parameter());
         match operator.apply(a, b) {
+            Some(quantity) if vanishes && quantity == 0.0 => Err(self.too_small(text)),
             Some(quantity) => {
                 names.count(quantity.parts());
                 self.finite(quantity, divides_by_zero, text)
@@ -279,7 +285,21 @@ impl Expression {
         if argument.varying().is_some() {
             return Err(self.only_in_the_file(text, argument.first_parameter(), names));
         }
-        self.finite(Quantity::constant(function.apply(argument.value)), false, text)
+        let value = function.apply(argument.value);
+        if value == 0.0 && argument.value != 0.0 {
+            return Err(self.too_small(text));
+        }
+        self.finite(Quantity::constant(value), false, text)
+    }
+
+    /// A result that is zero in floating point and not on paper.
+    fn too_small(&self, text: &str) -> Mistake {
+        let part = quoted(text.get(self.range.clone()).unwrap_or_default());
+        Mistake::new(
+            self.range.clone(),
+            format!("{part} is too small for a 64-bit float; numbers but 0 are above 4.9e-324"),
+        )
+        .help("check the exponents and the factors, or write 0")
     }
 
     /// The result, unless it is none or too long.

@@ -40,7 +40,7 @@
 mod angle;
 mod table;
 
-pub use angle::{Angle, QuarterTurns};
+pub use angle::{Angle, LARGEST_ANGLE, QuarterTurns};
 pub use table::{Convention, Dh, Inertia, JointKind, Link, Model, Motor, Row, Transform, parent};
 
 #[cfg(feature = "std")]

@@ -90,7 +90,8 @@ pub(crate) fn invisible(cx: &Context, node: &Node, text: &str) {
 
 /// Gravity of another size than on Earth.
 pub(crate) fn gravity(cx: &Context, node: &Node, [x, y, z]: [f64; 3]) {
-    let size = libm::sqrt(x * x + y * y + z * z);
+    // neither a square nor the sum of two numbers overflows in what is shown
+    let size = libm::hypot(libm::hypot(x, y), z).min(f64::MAX);
     if size != 0.0 && !GRAVITY.contains(&size) {
         let message = format!("gravity accelerates by {} m/s²; on Earth it is 9.81 m/s²", rounded(size));
         let label = if GRAVITY.contains(&(size / 1000.0)) {

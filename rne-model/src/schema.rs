@@ -14,8 +14,8 @@ use crate::varying::{
     without_effect,
 };
 use crate::{
-    Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, Limits, Link, Motor,
-    Robot, Row, Transform, inertia, lint,
+    Angle, Convention, Dh, Entry, Inertia, InertiaElement, InertiaReference, Joint, JointKind, LARGEST_ANGLE, Limits,
+    Link, Motor, Robot, Row, Transform, inertia, lint,
 };
 
 /// More joints than any serial arm has; bounds the work of everything that follows.
@@ -472,6 +472,14 @@ fn coulomb(cx: &Context, node: &Node, joint: usize) -> Option<[f64; 2]> {
 
 fn angle(cx: &Context, node: &Node) -> Option<f64> {
     let value = fixed("the angle")(cx, node)?;
+    if value.abs() >= LARGEST_ANGLE {
+        let shown = cx.shown(node, value);
+        let message = format!(
+            "the angle {shown} rad is too large; angles are below {LARGEST_ANGLE} rad, for beyond that neighbouring \
+             numbers are more than 1e-9 rad apart"
+        );
+        return cx.refuse(Diagnostic::error(node.span.clone(), message).help("leave out its whole turns"));
+    }
     lint::angle(cx, node, value);
     Some(value)
 }

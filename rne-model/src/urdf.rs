@@ -25,7 +25,8 @@ pub(crate) fn instead_of_a_robot_file(name: &str, text: &str) -> Option<Diagnost
     let first_line = rest.lines().next().unwrap_or_default().trim_end();
     let place = start..start + first_line.len();
     if is_urdf(rest) {
-        let template = head(rest).contains("xmlns:xacro");
+        // a URDF that xacro has written may still declare its namespace
+        let template = ["<xacro:", "${", "$("].iter().any(|mark| head(rest).contains(mark));
         let before = if template { "this is a template, so let `xacro` write the URDF first; then " } else { "" };
         let is_a_path = !name.starts_with('<') && !name.contains(char::is_whitespace);
         let file = if is_a_path { name } else { "FILE" };

@@ -68,7 +68,10 @@ fn other_formats() {
     for file in [
         "<?xml version=\"1.0\"?>\n<robot name=\"arm\">\n  <link name=\"base\"/>\n</robot>\n",
         "\u{FEFF}\n<!-- from CAD -->\n<robot name=\"arm\"/>",
-        "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">",
+        "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\">\n  <xacro:include filename=\"arm.xacro\"/>",
+        "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"arm\">\n  <link name=\"${prefix}base\"/>",
+        // what xacro has written
+        "<robot xmlns:xacro=\"http://www.ros.org/wiki/xacro\" name=\"arm\">\n  <link name=\"base\"/>",
         "<?xml version=\"1.0\"?>\n<mujoco/>",
     ] {
         let _ = writeln!(text, "{}\n", found(file));

@@ -208,7 +208,7 @@ fn csv_has_many_faces() {
 /// States without a finite result have none, and are counted.
 #[test]
 fn what_is_not_finite_is_told() {
-    let found = gravity("q1,q2\n1,2\n1e400,0\nNaN,0\n1,2\n");
+    let found = gravity("q1,q2\n1,2\ninf,0\nNaN,0\n1,2\n");
     assert_eq!(found.status, 0, "{found:?}");
     assert!(found.err.ends_with("note: the results of 2 states are not finite; the first is state 2\n"), "{found:?}");
     let lines: Vec<&str> = found.out.lines().collect();
@@ -253,6 +253,8 @@ fn a_negative_mass_of_a_payload_is_refused() {
 fn mistakes_in_csv_have_a_line() {
     for (states, said) in [
         ("", "<standard input> is empty; its header is q1,q2, in any order"),
+        ("q1,q2\n1,2\n0.5,-1e400\n", "<standard input>:3: `q2` is `-1e400`, which is too large for a 64-bit float"),
+        ("q1,q2\n1e-400,2\n", "<standard input>:2: `q1` is `1e-400`, which is too small for a 64-bit float"),
         ("q1\n1\n", "<standard input>: the header has no column `q2` (there is `q1`); needed are q1, q2"),
         ("# angles\nQ1,Q2\n1,2\n", ": the header has no column `q1` (there is `Q1`)"),
         ("1,2\n3,4\n", ": the header has no column `q1`; needed are q1, q2, others are passed over"),
