@@ -116,7 +116,7 @@ const EXIT_STATUS: &str = "\
      or changes during a search, the result of one state is not finite, a file
      that is checked is stale, torques differ and `rne diagnose` cannot say why,
      a value differs from that of `rne eval --trace --compare`, `rne watch` has
-     events, `rne log` cannot tell the units or the noise of a log, a log excites
+     events, `rne log` cannot tell the units or the noise of a log, a log has
      nothing that `rne identify` could find, or the output cannot be written
 2    the command line is at fault: an option, a joint, parameter or link that
      the robot does not have, a list of another length, or a file or folder that

@@ -171,13 +171,19 @@ mod unix {
         assert!(sent.expect("a shell's command").success(), "{name} is sent");
     }
 
-    /// Waits until something is so; a child that ends before has failed.
+    /// Waits until something is so; a child that ends before has failed, and so has one that never gets there.
     fn until(child: &mut Child, mut is_so: impl FnMut(&Child) -> bool) {
-        while !is_so(child) {
+        const LOOKS: usize = 60_000;
+        for _ in 0..LOOKS {
+            if is_so(child) {
+                return;
+            }
             let ended = child.try_wait().expect("a child");
             assert!(ended.is_none(), "it ended by {ended:?}");
             thread::sleep(Duration::from_millis(5));
         }
+        let _ = child.kill();
+        panic!("it does not get there");
     }
 
     /// States that never end come through a pipe, so the file is being written when the signal comes.
