@@ -25,8 +25,8 @@ impl Arm {
         py.import("numpy")?.call_method1("array", (parameters,))
     }
 
-    /// What the torques can see of the links: a list of dicts with `name`, `value` and `combination`, a dict of
-    /// coefficients by parameter.
+    /// What the torques can see of the links: a list of dicts with `name`, `value`, `combination`, a dict of
+    /// coefficients by parameter, and `visible`: whether torques in double precision tell it from the others, to 1e-10.
     fn base_parameters<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         const NAMES: [&str; 10] = ["m", "mcx", "mcy", "mcz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
         let named = |parameter: &rne::LinkParameter| format!("{}_{}", NAMES[parameter.index], parameter.link + 1);
@@ -41,6 +41,7 @@ impl Arm {
                 }
                 found.set_item("name", named(&parameter.kept))?;
                 found.set_item("value", parameter.value)?;
+                found.set_item("visible", parameter.is_visible)?;
                 found.set_item("combination", combination)?;
                 Ok(found)
             })

@@ -2,12 +2,12 @@
 
 use std::fmt::Write as _;
 
-use rne::{BaseParameter, DynArm, LinkParameter};
+use rne::{BaseParameter, BaseParameters, DynArm, LinkParameter};
 use rne_model::Robot;
 
 use crate::layout::{left, width, wrap};
 use crate::numbers::{at_the_point, rounded};
-use crate::terminal::{self, FOUND, QUIET, TITLE};
+use crate::terminal::{self, FOUND, QUIET, TITLE, WARNING};
 
 /// Columns of a line, at most.
 const WIDTH: usize = 100;
@@ -43,6 +43,16 @@ pub(crate) fn text(robot: &Robot) -> String {
             let _ = writeln!(text, "{QUIET}{title}{QUIET:#}    {list}\n");
         }
     }
+    if base.visible_rank < base.rank() {
+        let hidden = format!(
+            "Torques in double precision see {} combinations only. Each one with a ? differs from a combination of the \
+             others by less than {:e} of what it adds to the torques. Nearly right angles cause this, such as 1.5708 \
+             for pi/2.",
+            base.visible_rank,
+            BaseParameters::VISIBLE
+        );
+        let _ = writeln!(text, "{WARNING}{}{WARNING:#}\n", wrap(&hidden, columns, ""));
+    }
     let values: Vec<String> = base.parameters.iter().map(|base| rounded(base.value, 6)).collect();
     let values = at_the_point(&values);
     let widest = values.iter().map(|value| width(value)).max().unwrap_or(0);
@@ -52,7 +62,8 @@ pub(crate) fn text(robot: &Robot) -> String {
         let combination =
             wrap(&combination(base), columns - margin.min(columns / 2), &" ".repeat(margin)).replace(TIED, " ");
         let (value, unit) = (left(value, widest), left(unit, UNIT));
-        let _ = writeln!(text, "  {value} {QUIET}{unit}{QUIET:#} {FOUND}{combination}{FOUND:#}");
+        let mark = if base.is_visible { ' ' } else { '?' };
+        let _ = writeln!(text, "{mark} {value} {QUIET}{unit}{QUIET:#} {FOUND}{combination}{FOUND:#}");
     }
     text
 }

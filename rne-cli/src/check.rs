@@ -9,8 +9,8 @@ use rne_model::{Checked, Convention, JointKind, Robot, golden_of, misnamed_golde
 
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome, rendered};
-use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::plan_file::Compiler;
+use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::{functions, physics, plan_file, robot_file};
 
 /// Check robot files and plans: `ok` and lints, or every error
@@ -21,10 +21,11 @@ Examples:
   rne check --physics robots/planar2.yaml
   rne check robots/puma560.plan.yaml   a plan is compiled and proved
 
-A plan beside a robot file is checked too. Of an arm of up to 8 joints, a note
-names each function with a reduced form that is refused, and the reason. Exit status 1 when a file has errors,
-or when an arm misses a law of physics by more than rounding; lints, which are
-warnings and notes, leave it at 0. docs/robot-file.md explains every key.")]
+A plan beside a robot file is checked too. A note names each function with a
+reduced form that is refused, and why, where the arm has 8 joints at most. Exit
+status 1 when a file has errors, or when an arm misses a law of physics by more
+than rounding; lints, which are warnings and notes, leave it at 0.
+docs/robot-file.md explains every key.")]
 pub(crate) struct Arguments {
     /// Robot files, or plans; - is standard input
     #[arg(required = true, value_name = "FILE")]

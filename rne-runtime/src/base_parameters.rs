@@ -47,6 +47,9 @@ pub struct BaseParameter {
     pub regrouped: Vec<(f64, LinkParameter)>,
     /// Its value for the robot: kg m², kg m or kg, as `kept` has it.
     pub value: f64,
+    /// Whether torques in double precision tell it from the other base parameters, by the tolerance [`BaseParameters::VISIBLE`]. The
+    /// torques see only combinations of those that they do not tell apart.
+    pub is_visible: bool,
 }
 
 /// What the torques of a robot can see of its links, without rotors and friction.
@@ -57,6 +60,9 @@ pub struct BaseParameters {
     pub parameters: Vec<BaseParameter>,
     /// Link parameters on which no torque depends.
     pub without_effect: Vec<LinkParameter>,
+    /// How many combinations torques in double precision see: as many as there are base parameters, or fewer where
+    /// some of those are not visible.
+    pub visible_rank: usize,
 }
 
 impl DynArm {
@@ -74,7 +80,8 @@ impl DynArm {
         let order = (0..self.dof()).flat_map(|link| ORDER.map(|index| LinkParameter { link, index }));
         let largest = columns.iter().map(DVector::norm).fold(0.0, f64::max);
         let mut basis = Basis::default();
-        let mut found = BaseParameters { parameters: Vec::new(), without_effect: Vec::new() };
+        let mut found = BaseParameters { parameters: Vec::new(), without_effect: Vec::new(), visible_rank: 0 };
+        let mut kept_columns = Vec::new();
         let values = self.inertial_parameters();
         let value = |parameter: LinkParameter| values[parameter.link][parameter.index];
         for parameter in order {
@@ -84,8 +91,10 @@ impl DynArm {
                 continue;
             }
             let Some(coefficients) = basis.combination_or_insert(column) else {
-                let kept = BaseParameter { kept: parameter, regrouped: Vec::new(), value: value(parameter) };
+                let value = value(parameter);
+                let kept = BaseParameter { kept: parameter, regrouped: Vec::new(), value, is_visible: true };
                 found.parameters.push(kept);
+                kept_columns.push(column);
                 continue;
             };
             for (base, coefficient) in found.parameters.iter_mut().zip(coefficients) {
@@ -104,6 +113,10 @@ impl DynArm {
                 base.value = 0.0;
             }
         }
+        for (base, is_visible) in found.parameters.iter_mut().zip(basis.visible()) {
+            base.is_visible = is_visible;
+        }
+        found.visible_rank = visible_rank(kept_columns);
         found.without_effect.sort_unstable();
         found
     }
@@ -129,6 +142,11 @@ impl DynArm {
 }
 
 impl BaseParameters {
+    /// Double precision sees a base parameter whose column of the regressor differs from every combination of the
+    /// columns of the others by more than this part of itself. Nearly right angles, such as `alpha: 1.5708`, give base
+    /// parameters that are distinct on paper and that it does not see: rounding changes the torques more.
+    pub const VISIBLE: f64 = 1e-10;
+
     /// The rank of the regressor.
     #[must_use]
     pub fn rank(&self) -> usize {
@@ -191,6 +209,22 @@ impl Basis {
         None
     }
 
+    /// Which columns differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of themselves. How far a
+    /// column is from them is one over the length of its row of the inverse of the triangle.
+    fn visible(&self) -> Vec<bool> {
+        let mut rows = vec![0.0; self.triangle.len()];
+        for column in 0..self.triangle.len() {
+            let mut unit = vec![0.0; column + 1];
+            unit[column] = 1.0;
+            for (row, element) in rows.iter_mut().zip(self.solved(unit)) {
+                *row += element * element;
+            }
+        }
+        let length = |parts: &Vec<f64>| parts.iter().map(|part| part * part).sum::<f64>().sqrt();
+        let lengths = self.triangle.iter().map(length);
+        rows.iter().zip(lengths).map(|(row, length)| row.sqrt() * length * BaseParameters::VISIBLE <= 1.0).collect()
+    }
+
     /// The combination of independent columns with these parts along the directions.
     fn solved(&self, mut parts: Vec<f64>) -> Vec<f64> {
         for k in (0..parts.len()).rev() {
@@ -200,6 +234,19 @@ impl Basis {
             }
         }
         parts
+    }
+}
+
+/// How many of these columns are left when the last one that is not visible is left out, until all are.
+fn visible_rank(mut columns: Vec<&DVector<f64>>) -> usize {
+    loop {
+        let mut basis = Basis::default();
+        // a column that is a combination of others to the tolerance is not visible either
+        columns.retain(|column| basis.combination_or_insert(column).is_none());
+        match basis.visible().iter().rposition(|is_visible| !is_visible) {
+            Some(hidden) => drop(columns.remove(hidden)),
+            None => return columns.len(),
+        }
     }
 }
 

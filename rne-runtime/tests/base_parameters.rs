@@ -133,3 +133,41 @@ fn the_same_every_time() {
     let arm = shipped("panda");
     assert_eq!(arm.base_parameters(), arm.base_parameters());
 }
+
+/// The rank of the regressor at random states, by a singular value decomposition: what is below 1e-12 of the largest
+/// singular value is rounding.
+fn rank_in_double(arm: &DynArm) -> usize {
+    let mut rng = fastrand::Rng::with_seed(31);
+    let mut rows: Vec<Vec<f64>> = Vec::new();
+    for _ in 0..120 {
+        let mut random = |most: f64| (0..arm.dof()).map(|_| most * (2.0 * rng.f64() - 1.0)).collect::<Vec<f64>>();
+        let (q, qd, qdd) = (random(3.0), random(3.0), random(10.0));
+        let matrix = arm.regressor(&q, &qd, &qdd).expect("a number per joint");
+        rows.extend(matrix.into_iter().map(|torque| torque.into_flattened()));
+    }
+    let matrix = nalgebra::DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
+    let values = matrix.singular_values();
+    values.iter().filter(|value| **value > 1e-12 * values.max()).count()
+}
+
+/// `alpha: 1.5708` and a tilt of 1e-7 are no right angles. What they let the torques see on paper is less than rounding.
+#[test]
+fn what_no_double_can_see_is_marked() {
+    for (name, rank) in [("alphas_of_1.5708", 34), ("tilts_of_1e-7", 24)] {
+        let path = format!("{}/../tests/nearly_right/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+        let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+        let arm = DynArm::from_robot(&Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}")));
+        let base = arm.base_parameters();
+        assert_eq!(rank_in_double(&arm), rank, "{name}");
+        assert_eq!((base.visible_rank, base.rank()), (rank, rank + 1), "{name}");
+        // one combination is not seen: at least two parameters take part in it, and not all of them
+        let hidden = base.parameters.iter().filter(|base| !base.is_visible).count();
+        assert!((2..base.rank() / 2).contains(&hidden), "{name}: {hidden}");
+    }
+    for name in ["puma560", "panda", "stanford", "scara_cobra600"] {
+        let arm = shipped(name);
+        let base = arm.base_parameters();
+        assert_eq!((rank_in_double(&arm), base.visible_rank), (base.rank(), base.rank()), "{name}");
+        assert!(base.parameters.iter().all(|base| base.is_visible), "{name}");
+    }
+}

@@ -18,6 +18,8 @@ fn compare(robot: &Robot, name: &str) {
     let kept: Vec<Parameter> =
         numerical.parameters.iter().map(|base| Parameter::Link(base.kept.link, base.kept.index)).collect();
     assert_eq!(exact.kept(), kept, "{name}");
+    assert_eq!(numerical.visible_rank, kept.len(), "{name}");
+    assert!(numerical.parameters.iter().all(|base| base.is_visible), "{name}");
     for (parameter, visibility) in &exact.parameters {
         let &Parameter::Link(link, index) = parameter else { panic!("{name}: no rotor was asked for") };
         let is = |other: &rne_runtime::LinkParameter| (other.link, other.index) == (link, index);

@@ -28,6 +28,7 @@ class BaseParameter(TypedDict):
     name: str
     value: float
     combination: dict[str, float]
+    visible: bool
 
 class Diagnosis(TypedDict):
     agrees: bool

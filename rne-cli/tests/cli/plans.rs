@@ -123,3 +123,26 @@ fn a_plan_is_not_believed() {
     fs::write(&robot, text.replacen("\njoints:", "\nbase: {xyz: [0, 0, 0.4]}\njoints:", 1)).expect("written");
     fails(1, &["emit", &robot, "--form", "reduced"], &["the numbers of its robot file have changed"]);
 }
+
+/// What a build refuses is said wherever the form is told, and nothing is said of an arm without a refusal.
+#[test]
+fn refused_forms_are_told() {
+    let words = ["Not every reduced form of forward_dynamics could be taken", "divide by zero in every state"];
+    for (name, is_refused) in [("singular", true), ("count", false)] {
+        let (robot, _) = arm(name);
+        let reduced = ["--function", "forward_dynamics", "--form", "reduced"];
+        let commands: [&[&str]; 4] =
+            [&["check", &robot], &["show", &robot], &["emit", &robot], &["emit", &robot, "--lang", "c"]];
+        for command in commands {
+            let arguments = if command[0] == "check" { command.to_vec() } else { [command, &reduced].concat() };
+            // a comment of C goes on in the next line
+            let said = fine(&arguments).replace("\n//", "").split_whitespace().collect::<Vec<_>>().join(" ");
+            for words in words {
+                assert_eq!(said.contains(words), is_refused, "{name}, {command:?}: {said}");
+            }
+            assert!(!said.contains("has one form"), "{name}, {command:?}: {said}");
+        }
+        let json = fine(&["show", &robot, "--function", "forward_dynamics", "--form", "reduced", "--json"]);
+        assert_eq!(json.contains(words[1]), is_refused, "{name}: {json}");
+    }
+}

@@ -292,3 +292,12 @@ fn tricks_and_what_they_save() {
     fails(2, &["ops", robot, "--without", "gyro"], &names);
     fails(2, &["ops", robot, "--tricks", "--without", "gyrostat"], &["--tricks", "--without"]);
 }
+
+#[test]
+fn base_parameters_that_no_double_can_see_are_marked() {
+    let said = "Torques in double precision see 24 combinations only";
+    let text = fine(&["show", "tests/nearly_right/tilts_of_1e-7.yaml", "--base-parameters"]);
+    assert!(text.contains(said) && text.lines().any(|line| line.starts_with("? ")), "{text}");
+    let text = fine(&["show", "puma560", "--base-parameters"]);
+    assert!(!text.contains("double precision") && !text.lines().any(|line| line.starts_with('?')), "{text}");
+}
