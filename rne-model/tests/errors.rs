@@ -174,6 +174,25 @@ fn values() {
     ]);
 }
 
+/// From 2^23 rad on neighbouring numbers are more than 1e-9 rad apart; beyond 1e13 rad every angle would be a right one.
+#[test]
+fn angles_are_so_small_that_their_digits_count() {
+    for (old, at) in [("theta: 0, d: 0.4", "theta: "), ("alpha: pi/2", "alpha: ")] {
+        for angle in ["8388608", "-1e15", "1e16", "1e300", "2^23"] {
+            let value = old.split_once(at).and_then(|(_, rest)| rest.split(',').next()).expect("a value");
+            let new = old.replacen(value, angle, 1);
+            let error = the_one(old, &new);
+            assert!(error.message.contains("rad is too large; angles are below 8388608 rad"), "{}", error.message);
+            assert_eq!(&with(old, &new)[error.span.clone()], angle);
+        }
+    }
+    for (old, new) in [("rpy: [0, 0, pi]", "rpy: [0, 0, 1e15]"), ("rpy: [0, 0, pi]", "rpy: [-1e300, 0, pi]")] {
+        assert!(the_one(old, new).message.contains("angles are below 8388608 rad"), "{new}");
+    }
+    let largest = the_one("alpha: pi/2", "alpha: 8388607.9");
+    assert_eq!(largest.severity, Severity::Warning, "{}", largest.message);
+}
+
 #[test]
 fn a_default_joint_name_can_be_taken_as_well() {
     let text = with("name: first", "name: joint2").replace("  - name: second\n    type", "  - type");

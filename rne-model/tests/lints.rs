@@ -41,6 +41,9 @@ fn lints() {
             "gravity accelerates by 9810 m/s²; on Earth it is 9.81 m/s²",
             "an acceleration in m/s²",
         ),
+        ("[0, 0, -9.81]", "[0, -1e300, 0]", 5, 10, "gravity accelerates by 1e300 m/s²", "such as"),
+        ("[0, 0, -9.81]", "[3e-300, -4e-300, 0]", 5, 10, "gravity accelerates by 5e-300 m/s²", "such as"),
+        ("[0, 0, -9.81]", "[1.7e308, 1.7e308, 0]", 5, 10, "gravity accelerates by 1.79769e308 m/s²", "such as"),
         ("[0, 0, -9.81]", "[0, 0, -1]", 5, 10, "gravity accelerates by 1 m/s²", "such as `[0, 0, -9.81]`"),
         (
             "[0, 0, -9.81]",

@@ -235,6 +235,10 @@ fn a_negative_mass_of_a_payload_is_refused() {
     assert!(found.err.contains(said), "{found:?}");
     assert_eq!(rne_reading(&arguments, &table(&[1.0, 0.0, -0.0])).status, 0);
 
+    // the same rule for one state
+    let single = [&arguments[..4], &["--q", "0,0", "--qd", "0,0", "--qdd", "0,0", "--payload=-0.25,0,0,0"]].concat();
+    fails(2, &single, &["--payload begins with the mass: the payload's mass is -0.25 kg: no body has less than 0"]);
+
     let folder = folder("states_payload");
     let (path, out) = (folder.join("in.npy"), folder.join("out.npy"));
     // in the second part
