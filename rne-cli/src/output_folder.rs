@@ -35,7 +35,9 @@ pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Un
             Err(_) => fs::rename(entry.path(), &place),
         };
         if let Err(error) = is_moved {
-            moved.iter().for_each(|place| remove(place));
+            for place in &moved {
+                remove(place);
+            }
             return Err((place, error));
         }
         moved.push(place);

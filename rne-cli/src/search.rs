@@ -400,7 +400,7 @@ mod tests {
         let functions = [Function::MassMatrix, Function::ForwardDynamics, Function::InverseDynamics];
         let keep = |function: Function, between: &mut dyn FnMut()| {
             let kept = arm.keep(arm.found(function), between);
-            kept.map(drop).unwrap_or_else(|failure| panic!("{}", failure.text));
+            kept.map_or_else(|failure| panic!("{}", failure.text), drop);
         };
         std::thread::scope(|scope| {
             // the others begin while the first one has read and not yet written; they wait for it
