@@ -307,10 +307,12 @@ def wait(pid, clock, whole_group=False):
         done, status, usage = os.wait4(pid, os.WNOHANG)
         if done:
             return hangs, os.waitstatus_to_exitcode(status), usage
-        if time.monotonic() > end and not hangs:
+        if time.monotonic() > end:
             hangs = True
-            with contextlib.suppress(ProcessLookupError):
-                (os.killpg if whole_group else os.kill)(pid, signal.SIGKILL)
+            # a process that is not yet the first of its group is ended by itself
+            for end_it in (os.killpg, os.kill) if whole_group else (os.kill,):
+                with contextlib.suppress(ProcessLookupError):
+                    end_it(pid, signal.SIGKILL)
         time.sleep(pause)
         pause = min(2 * pause, 0.02)
 

@@ -23,7 +23,8 @@ pub(super) fn cases(folder: &Path) -> Vec<Case> {
     ];
     let mut cases = Vec::new();
     for (what, command, name) in writers {
-        let with = |out: &str| [&command[..], &["-o", out]].concat();
+        let with =
+            |out: &str| -> Vec<String> { command.iter().copied().chain(["-o", out]).map(str::to_owned).collect() };
         if what != "emit C" {
             cases.push(Case::new(format!("{what}: standard output"), &with("-"), Expected::Taken));
         }
