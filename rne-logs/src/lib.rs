@@ -32,6 +32,7 @@ mod guard;
 mod joint_state;
 mod joints;
 mod kernel;
+mod limits;
 #[cfg(feature = "parquet")]
 mod list_columns;
 mod log;
@@ -54,6 +55,7 @@ mod spikes;
 #[cfg(feature = "bags")]
 mod sqlite_bag;
 mod survey;
+mod time_column;
 mod time_unit;
 #[cfg(feature = "bags")]
 mod topic;
