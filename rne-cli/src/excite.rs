@@ -131,6 +131,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         // before the search, not after it
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
     }
+    if let Some(path) = out.filter(|_| !is_shown) {
+        table_name::format(path, &[Format::Csv])?;
+    }
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();
     let found = watched(&robot, &limits, &options(arguments)).map_err(|error| match &error {

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::column_name::{Meaning, Named, Quantity, meaning};
-use crate::limits::{MOST_JOINTS, work};
+use crate::limits::work;
 use crate::spelling::listed;
 use crate::time_column::{TimeColumn, unread, within};
 use crate::unit::{Dimension, FileUnits, JointUnits, Unit};

@@ -26,7 +26,6 @@ mod csv_table;
 mod error;
 mod format;
 mod grid;
-#[cfg(any(feature = "bags", feature = "parquet"))]
 mod guard;
 #[cfg(feature = "bags")]
 mod joint_state;
@@ -46,6 +45,10 @@ mod npy_array;
 mod number;
 mod options;
 #[cfg(feature = "parquet")]
+mod parquet_column;
+#[cfg(feature = "parquet")]
+mod parquet_pages;
+#[cfg(feature = "parquet")]
 mod parquet_table;
 mod pass;
 mod sample;
@@ -63,6 +66,7 @@ mod unit;
 
 pub use crate::error::LogError;
 pub use crate::format::Format;
+pub use crate::guard::is_guarded;
 pub use crate::log::{Layout, Log};
 pub use crate::median::median;
 pub use crate::motion::Motion;

@@ -16,7 +16,7 @@ pub(crate) const MOST_BYTES: usize = 32 << 20;
 pub(crate) const LONGEST_GAP: f64 = 1000.0;
 
 /// Why a message or a row has too many joints, if it has.
-#[cfg(any(feature = "rosbag", feature = "parquet"))]
+#[cfg(any(feature = "bags", feature = "parquet"))]
 pub(crate) fn check_names<'a>(mut names: impl ExactSizeIterator<Item = &'a str>) -> Result<(), String> {
     if names.len() > MOST_JOINTS {
         return Err(format!("it names {} joints; at most {MOST_JOINTS} are read", names.len()));
