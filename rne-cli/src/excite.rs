@@ -18,6 +18,7 @@ use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same};
+use crate::table_name::{self, Format};
 use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
