@@ -55,11 +55,11 @@ pub(crate) fn column_reader(
     source: &Arc<File>,
     room: &Arc<Room>,
     group: usize,
-    leaf: usize,
+    (leaf, name): (usize, &str),
 ) -> Result<ColumnReader> {
     let rows = file.metadata().row_group(group);
     let chunk = rows.column(leaf);
-    let (name, compression) = (chunk.column_path().string(), chunk.compression());
+    let compression = chunk.compression();
     if matches!(compression, Compression::BROTLI(_) | Compression::LZO) {
         let what = format!(
             "the column {name} is compressed with {}, which is not read: write the file with zstd, snappy, gzip or lz4, \
@@ -85,7 +85,7 @@ pub(crate) fn column_reader(
         end: start.saturating_add(length),
         is_list: descriptor.max_rep_level() == 1,
         length: 0,
-        name,
+        name: name.to_owned(),
     };
     Ok(get_column_reader(descriptor, Box::new(pages)))
 }
@@ -287,6 +287,32 @@ impl Iterator for Pages {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// All columns of a table share the room, and give back what they had.
+    #[test]
+    fn pages_are_charged_to_the_room() {
+        let room = Arc::new(Room::default());
+        let file = Arc::new(tempfile::tempfile().unwrap());
+        let column = || Bounds {
+            file: Arc::clone(&file),
+            room: Arc::clone(&room),
+            of_texts: false,
+            next: AtomicU64::new(0),
+            page: AtomicU64::new(0),
+            dictionary: AtomicU64::new(0),
+        };
+        let (one, two) = (column(), column());
+        one.charge(&one.dictionary, MOST_BYTES / 4).unwrap();
+        one.charge(&one.page, MOST_BYTES / 4).unwrap();
+        one.charge(&one.page, MOST_BYTES / 2).unwrap();
+        two.charge(&two.page, MOST_BYTES / 4).unwrap();
+        let error = two.charge(&two.page, MOST_BYTES / 4 + 1).unwrap_err().to_string();
+        assert!(error.contains("its pages take more than 320 MB at once: write the file in groups"), "{error}");
+        drop(one);
+        two.charge(&two.page, MOST_BYTES).unwrap();
+        drop(two);
+        assert_eq!(room.used.load(Relaxed), 0);
+    }
 
     #[test]
     fn heads_of_pages_say_their_sizes() {

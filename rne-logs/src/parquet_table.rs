@@ -206,7 +206,8 @@ impl ParquetTable {
                 column.reader = None;
             }
             for column in &mut self.columns {
-                let open = || column_reader(&self.file, &self.source, &self.room, self.group, column.leaf);
+                let leaf = (column.leaf, column.name.as_str());
+                let open = || column_reader(&self.file, &self.source, &self.room, self.group, leaf);
                 let reader = guarded(open).unwrap_or_else(|| Err(corrupt()));
                 column.reader = Some(reader.map_err(|error| wrong(&self.path, self.read, &error))?);
             }

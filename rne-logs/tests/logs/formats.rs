@@ -76,7 +76,7 @@ pub(crate) fn sqlite(times: &[f64], is_little: bool, is_indexed: bool) -> (TempD
     (folder, path)
 }
 
-fn parquet(
+pub(crate) fn parquet(
     schema: &str,
     properties: WriterProperties,
     groups: usize,
@@ -133,7 +133,7 @@ pub(crate) fn scalars(times: &[f64], properties: WriterProperties) -> Vec<u8> {
 }
 
 /// Lists, of names too.
-fn lists(times: &[f64], has_names: bool) -> Vec<u8> {
+pub(crate) fn lists(times: &[f64], has_names: bool) -> Vec<u8> {
     let names = "REQUIRED group name (LIST) { REPEATED group list { REQUIRED BINARY element (STRING); } }";
     let list =
         |name: &str| format!("OPTIONAL group {name} (LIST) {{ REPEATED group list {{ OPTIONAL DOUBLE element; }} }}");

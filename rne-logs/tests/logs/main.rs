@@ -11,6 +11,7 @@
 
 #[cfg(feature = "full")]
 mod bags;
+mod bounds;
 mod columns;
 #[cfg(feature = "full")]
 mod corrupt;
@@ -20,4 +21,5 @@ mod formats;
 #[cfg(not(feature = "full"))]
 mod left_out;
 mod runs;
+mod tables;
 mod written;

@@ -1,7 +1,9 @@
 //! Where runs begin, and what is left out.
 
+use parquet::file::properties::WriterProperties;
 use rne_logs::{Interruption, LogError, Options, TimeUnit};
 
+use crate::formats::{lists, npy, scalars, sqlite};
 use crate::written::{csv, file, runs, survey};
 
 fn even(begin: f64, count: u32) -> Vec<f64> {
@@ -192,4 +194,52 @@ fn times_in_other_units_are_asked_for() {
     // times are since the first
     assert_eq!(found.runs[0].start, 0.0);
     assert_eq!(log.layout().origin, 1_700_000_000_000_000_000);
+}
+
+/// Times of a log of a kilohertz in whole milliseconds, of a megahertz in microseconds, or numbers of rows: taken for
+/// seconds they make a slow log of it, and accelerations a millionth.
+#[test]
+fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
+    let table = |step: f64, name: &str| {
+        let text = csv(&even(0.0, 400));
+        let rows = text.lines().skip(1).zip(0..).map(|(line, i)| {
+            let (_, cells) = line.split_once(',').unwrap();
+            format!("{},{cells}\n", step * f64::from(i))
+        });
+        format!("{name},q1,q2,qd1,qd2,tau1,tau2\n{}", rows.collect::<String>())
+    };
+    let open = |text: &str, options: Options| {
+        let (_folder, path) = file("log.csv", text);
+        survey(&[path], options).map(|(log, _)| log.layout().step)
+    };
+    let unit = |unit| Options { time_unit: Some(unit), ..Options::default() };
+    for step in [0.5, 1.0, 2.0, 8.0, 1e6] {
+        let error = open(&table(step, "t"), Options::default()).unwrap_err();
+        assert!(error.is_of_request(), "{error}");
+        assert!(error.to_string().contains("the unit of the times is not known: they are "), "{error}");
+        assert!(error.to_string().contains("as in --time-unit ms; if the times only count rows"), "{error}");
+        // who says it is believed
+        assert_eq!(open(&table(step, "t"), unit(TimeUnit::Seconds)).unwrap(), step);
+        assert!((open(&table(step, "t"), unit(TimeUnit::Milliseconds)).unwrap() / step - 1e-3).abs() < 1e-12);
+        assert_eq!(open(&table(step, "t_s"), Options::default()).unwrap(), step);
+        assert!((open(&table(step, "t [ms]"), Options::default()).unwrap() / step - 1e-3).abs() < 1e-12);
+    }
+    let error = open(&table(1.0, "t"), Options::default()).unwrap_err().to_string();
+    assert!(error.contains("1 apart, and samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
+    assert_eq!(open(&table(0.4, "t"), Options::default()).unwrap(), 0.4);
+    // of every format
+    let times: Vec<f64> = (0..200).map(f64::from).collect();
+    let (_folder, path) = file("log.npy", npy(&times, true, "<f8"));
+    assert!(survey(std::slice::from_ref(&path), Options::default()).err().unwrap().to_string().contains("--time-unit"));
+    assert_eq!(survey(&[path], unit(TimeUnit::Milliseconds)).unwrap().0.layout().step, 1e-3);
+    let (_folder, path) = file("log.npy", npy(&times, false, "<f8"));
+    let untimed = Options { rate: Some(0.5), columns: ["q", "qd", "tau"].map(str::to_owned).to_vec(), ..Options::default() };
+    assert_eq!(survey(&[path], untimed).unwrap().0.layout().step, 2.0);
+    // bags and types say theirs: a log at 1 Hz is one
+    let (_folder, path) = sqlite(&times, true, true);
+    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
+    let (_folder, path) = file("log.parquet", scalars(&times, WriterProperties::builder().build()));
+    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
+    let (_folder, path) = file("log.parquet", lists(&times, true));
+    assert!(survey(&[path], Options::default()).err().unwrap().to_string().contains("--time-unit"));
 }
