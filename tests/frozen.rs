@@ -96,7 +96,9 @@ fn frozen_now(robots: &[&'static RobotFile]) -> Frozen {
 fn committed() -> Frozen {
     let text = std::fs::read_to_string(list()).unwrap_or_default();
     let line = |line: &str| line.split_once("  ").map(|(hash, key)| (key.to_owned(), hash.to_owned()));
-    text.lines().map(|text| line(text).unwrap_or_else(|| panic!("a hash, two blanks, and what it is of: {text}"))).collect()
+    text.lines()
+        .map(|text| line(text).unwrap_or_else(|| panic!("a hash, two blanks, and what it is of: {text}")))
+        .collect()
 }
 
 #[test]

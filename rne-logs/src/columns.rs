@@ -228,12 +228,8 @@ impl<'a> Header<'a> {
     fn unread(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
         let of_joints = by_joint(joints);
         let has_position = |found: &&&Found| of_joints.contains_key(found.named.joint.as_str());
-        let read: HashSet<usize> = [joints, velocities, efforts]
-            .into_iter()
-            .flatten()
-            .filter(has_position)
-            .map(|found| found.place)
-            .collect();
+        let read: HashSet<usize> =
+            [joints, velocities, efforts].into_iter().flatten().filter(has_position).map(|found| found.place).collect();
         let lacks = |found: &[&Found]| !found.iter().any(|found| has_position(&found));
         let is_any = lacks(velocities) || lacks(efforts);
         let like: HashSet<usize> =

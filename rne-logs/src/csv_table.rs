@@ -106,8 +106,7 @@ impl CsvTable {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => return Err(no_time(path, header.iter().map(String::as_str))),
         };
-        let is_time_unit_known =
-            columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
+        let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
         let record = csv::ByteRecord::new();
         Ok(Self { path: path.to_owned(), reader, record, columns, clock, is_time_unit_known, size, row: 0 })
     }

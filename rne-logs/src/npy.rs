@@ -323,8 +323,9 @@ mod tests {
 
     #[test]
     fn headers_of_other_writers_are_read() {
-        let wanted =
-            |is_big, shape: &[u64]| Ok(Header { kind: Ok(Kind::F64 { is_big }), is_fortran: false, shape: shape.into() });
+        let wanted = |is_big, shape: &[u64]| {
+            Ok(Header { kind: Ok(Kind::F64 { is_big }), is_fortran: false, shape: shape.into() })
+        };
         for (text, is_big, shape) in [
             ("{'descr': '<f8', 'fortran_order': False, 'shape': (3, 2), }  \n", false, &[3, 2][..]),
             ("{'shape':(3,2),'fortran_order':False,'descr':'>f8'}", true, &[3, 2]),
@@ -365,7 +366,8 @@ mod tests {
             let error = parse(&text).unwrap_err();
             assert!(error.contains(wanted), "{text}: {error}");
         }
-        for kind in ["'<i8'", "'=f8'", "'|f8'", "'<f2'", "'<f16'", "'f8'", "''", "'<c16'", "'\u{ff}'", "[('t', '<f8')]"] {
+        for kind in ["'<i8'", "'=f8'", "'|f8'", "'<f2'", "'<f16'", "'f8'", "''", "'<c16'", "'\u{ff}'", "[('t', '<f8')]"]
+        {
             let text = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': (1, 2)}}");
             let error = parse(&text).unwrap().kind.unwrap_err();
             assert!(error.contains("the numbers are `") && error.contains("float64"), "{text}: {error}");

@@ -24,9 +24,7 @@ pub(crate) struct Leaf {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Kind {
     Real,
-    Integer {
-        is_signed: bool,
-    },
+    Integer { is_signed: bool },
     Stamp(TimeUnit),
     Text,
     Other,
@@ -67,10 +65,7 @@ impl Leaf {
                 let converted = leaf.converted_type();
                 !matches!(
                     converted,
-                    ConvertedType::UINT_8
-                        | ConvertedType::UINT_16
-                        | ConvertedType::UINT_32
-                        | ConvertedType::UINT_64
+                    ConvertedType::UINT_8 | ConvertedType::UINT_16 | ConvertedType::UINT_32 | ConvertedType::UINT_64
                 )
             }
         };

@@ -213,8 +213,7 @@ impl Pages {
         let levels = levels.ok_or_else(|| ParquetError::General("a page is not what its head says".to_owned()))?;
         let longest = longest_list(levels, count as usize, &mut self.length);
         if longest > MOST_JOINTS {
-            let what =
-                format!("a list of {} has {longest} numbers or more; at most {MOST_JOINTS} are read", self.name);
+            let what = format!("a list of {} has {longest} numbers or more; at most {MOST_JOINTS} are read", self.name);
             return Err(Refused::error(what));
         }
         Ok(())
@@ -318,7 +317,8 @@ mod tests {
     fn heads_of_pages_say_their_sizes() {
         assert_eq!(head(&[0x15, 0, 0x15, 0x80, 1, 0x15, 6]), Some((0, 64)));
         assert_eq!(head(&[0x15, 4, 0x15, 2, 0x15, 0xFE, 0xFF, 0xFF, 0xFF, 0x0F]), Some((2, 0x7FFF_FFFF)));
-        for bytes in [&[][..], &[0x15, 0, 0x15, 1, 0x15, 2], &[0x18, 0, 0x15], &[0x15, 0x80, 0x80, 0x80, 0x80, 0x80, 0]] {
+        for bytes in [&[][..], &[0x15, 0, 0x15, 1, 0x15, 2], &[0x18, 0, 0x15], &[0x15, 0x80, 0x80, 0x80, 0x80, 0x80, 0]]
+        {
             assert_eq!(head(bytes), None, "{bytes:?}");
         }
     }

@@ -95,8 +95,7 @@ impl ParquetTable {
 
     /// Finds out what columns are: lists where there is one of positions, else single columns.
     fn assign(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
-        let is_list =
-            |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
+        let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
         let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
         let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
         if let Some((position, factor)) = lists.position {

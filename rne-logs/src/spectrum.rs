@@ -145,9 +145,8 @@ mod tests {
     fn many_columns_hold_no_more_numbers_than_few() {
         for columns in [1, 64, 65, 1024] {
             let mut spectrum = Spectrum::new(columns, 1e6, 4.0);
-            let held = |spectrum: &Spectrum| -> usize {
-                spectrum.rows.iter().chain(&spectrum.power).map(Vec::capacity).sum()
-            };
+            let held =
+                |spectrum: &Spectrum| -> usize { spectrum.rows.iter().chain(&spectrum.power).map(Vec::capacity).sum() };
             assert_eq!(held(&spectrum), 0, "nothing is held before there is a row");
             let length = spectrum.window.len();
             assert_eq!(length, if columns <= 64 { 65_536 } else { 4_194_304 / columns.next_power_of_two() });

@@ -85,6 +85,10 @@ impl TimeColumn {
 }
 
 /// What a reader should know of the columns of times that are not read.
-pub(crate) fn unread<'a>(times: &[TimeColumn], chosen: Option<TimeColumn>, name: impl Fn(usize) -> &'a str) -> Vec<&'a str> {
+pub(crate) fn unread<'a>(
+    times: &[TimeColumn],
+    chosen: Option<TimeColumn>,
+    name: impl Fn(usize) -> &'a str,
+) -> Vec<&'a str> {
     times.iter().filter(|time| Some(**time) != chosen).map(|time| name(time.place)).collect()
 }

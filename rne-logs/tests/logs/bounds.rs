@@ -10,7 +10,7 @@ use parquet::schema::parser::parse_message_type;
 use rne_logs::Options;
 
 use crate::formats::{mcap, npy, sqlite};
-use crate::written::{csv, file, joint_state, survey};
+use crate::written::{file, joint_state, survey};
 
 fn times() -> Vec<f64> {
     (0..100).map(|i| f64::from(i) * 0.01).collect()
@@ -119,7 +119,8 @@ fn names_are_of_some_length() {
         let mut bytes = std::io::Cursor::new(Vec::new());
         let mut writer = mcap::Writer::new(&mut bytes).unwrap();
         let schema = writer.add_schema("sensor_msgs/msg/JointState", "ros2msg", b"").unwrap();
-        let channel_id = writer.add_channel(schema, "/joint_states", "cdr", &std::collections::BTreeMap::new()).unwrap();
+        let channel_id =
+            writer.add_channel(schema, "/joint_states", "cdr", &std::collections::BTreeMap::new()).unwrap();
         let header = MessageHeader { channel_id, sequence: 0, log_time: 1, publish_time: 1 };
         writer.write_to_known_channel(&header, &message).unwrap();
         writer.finish().unwrap();
@@ -137,34 +138,6 @@ fn lists_of_messages_are_as_long_as_joints_are_many() {
     let bag = rusqlite::Connection::open(&path).unwrap();
     bag.execute("INSERT INTO messages(topic_id, timestamp, data) VALUES (2, 1, ?1)", (message,)).unwrap();
     assert!(refused(path, Options::default()).contains("it has 1025 positions; at most 1024 are read"));
-}
-
-/// A thousand joints at a megahertz: the filter and the spectrum hold some rows of them, and not all.
-#[test]
-fn a_table_of_a_thousand_joints_is_read() {
-    let table = |joints: usize| {
-        let names = (1..=joints).map(|joint| format!(",q{joint}")).collect::<String>();
-        let rows = (0..100).map(|i| format!("{:.6}{}\n", f64::from(i) * 1e-6, ",0".repeat(joints)));
-        format!("t{names}\n{}", rows.collect::<String>())
-    };
-    let (_folder, path) = file("log.csv", table(1024));
-    let (log, found) = survey(&[path], Options::default()).unwrap();
-    assert_eq!((log.layout().joints.len(), found.counts.states), (1024, 100));
-    let (_folder, path) = file("log.csv", table(1025));
-    let error = refused(path, Options::default());
-    assert!(error.contains("the table has 1025 columns of positions; at most 1024 joints are read"), "{error}");
-}
-
-#[test]
-fn a_gap_has_a_limit() {
-    let (_folder, path) = file("log.csv", csv(&times()));
-    let with = |gap| Options { gap, ..Options::default() };
-    for gap in [1000.5, 1e7, 1e15, f64::INFINITY, f64::NAN] {
-        let error = survey(std::slice::from_ref(&path), with(gap)).err().unwrap();
-        assert!(error.is_of_request() && error.to_string().contains("a gap is at "), "{gap}: {error}");
-    }
-    assert!(refused(path.clone(), with(1e7)).contains("a gap is at most 1000 steps"));
-    assert!(survey(&[path], with(1000.0)).is_ok());
 }
 
 /// Of two files in one, or two arrays, the second would not be read.
@@ -198,7 +171,8 @@ fn text(text: &str) -> Vec<u8> {
 
 #[test]
 fn a_channel_is_defined_once() {
-    let schema = |number: u16, name: &str| record(3, &[&number.to_le_bytes(), &text(name), &text("ros2msg"), &text("")]);
+    let schema =
+        |number: u16, name: &str| record(3, &[&number.to_le_bytes(), &text(name), &text("ros2msg"), &text("")]);
     let channel = |number: u16, schema: u16, topic: &str, encoding: &str| {
         record(4, &[&number.to_le_bytes(), &schema.to_le_bytes(), &text(topic), &text(encoding), &text("")])
     };
@@ -218,9 +192,15 @@ fn a_channel_is_defined_once() {
     for (second, wanted) in [
         (vec![], None),
         ([schema(1, own), channel(1, 1, "/a", "cdr")].concat(), None),
-        (channel(1, 1, "/b", "cdr"), Some("channel 1 is defined twice, as /a (sensor_msgs/msg/JointState, cdr) and as /b")),
+        (
+            channel(1, 1, "/b", "cdr"),
+            Some("channel 1 is defined twice, as /a (sensor_msgs/msg/JointState, cdr) and as /b"),
+        ),
         (channel(1, 1, "/a", "json"), Some("channel 1 is defined twice")),
-        (schema(1, image), Some("schema 1 is defined twice, as sensor_msgs/msg/JointState and as sensor_msgs/msg/Image")),
+        (
+            schema(1, image),
+            Some("schema 1 is defined twice, as sensor_msgs/msg/JointState and as sensor_msgs/msg/Image"),
+        ),
         (channel(2, 1, "/a", "json"), Some("the topic /a is encoded as \"json\", not as cdr")),
         (
             [schema(2, image), channel(2, 2, "/a", "cdr")].concat(),

@@ -11,6 +11,7 @@
 
 #[cfg(feature = "full")]
 mod bags;
+#[cfg(feature = "full")]
 mod bounds;
 mod columns;
 #[cfg(feature = "full")]
@@ -21,5 +22,6 @@ mod formats;
 #[cfg(not(feature = "full"))]
 mod left_out;
 mod runs;
+#[cfg(feature = "full")]
 mod tables;
 mod written;

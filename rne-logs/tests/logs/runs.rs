@@ -1,9 +1,7 @@
 //! Where runs begin, and what is left out.
 
-use parquet::file::properties::WriterProperties;
 use rne_logs::{Interruption, LogError, Options, TimeUnit};
 
-use crate::formats::{lists, npy, scalars, sqlite};
 use crate::written::{csv, file, runs, survey};
 
 fn even(begin: f64, count: u32) -> Vec<f64> {
@@ -227,19 +225,33 @@ fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
     let error = open(&table(1.0, "t"), Options::default()).unwrap_err().to_string();
     assert!(error.contains("1 apart, and samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
     assert_eq!(open(&table(0.4, "t"), Options::default()).unwrap(), 0.4);
-    // of every format
-    let times: Vec<f64> = (0..200).map(f64::from).collect();
-    let (_folder, path) = file("log.npy", npy(&times, true, "<f8"));
-    assert!(survey(std::slice::from_ref(&path), Options::default()).err().unwrap().to_string().contains("--time-unit"));
-    assert_eq!(survey(&[path], unit(TimeUnit::Milliseconds)).unwrap().0.layout().step, 1e-3);
-    let (_folder, path) = file("log.npy", npy(&times, false, "<f8"));
-    let untimed = Options { rate: Some(0.5), columns: ["q", "qd", "tau"].map(str::to_owned).to_vec(), ..Options::default() };
-    assert_eq!(survey(&[path], untimed).unwrap().0.layout().step, 2.0);
-    // bags and types say theirs: a log at 1 Hz is one
-    let (_folder, path) = sqlite(&times, true, true);
-    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
-    let (_folder, path) = file("log.parquet", scalars(&times, WriterProperties::builder().build()));
-    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
-    let (_folder, path) = file("log.parquet", lists(&times, true));
-    assert!(survey(&[path], Options::default()).err().unwrap().to_string().contains("--time-unit"));
+}
+
+/// A thousand joints at a megahertz: the filter and the spectrum hold some rows of them, and not all.
+#[test]
+fn a_table_of_a_thousand_joints_is_read() {
+    let table = |joints: usize| {
+        let names = (1..=joints).map(|joint| format!(",q{joint}")).collect::<String>();
+        let rows = (0..100).map(|i| format!("{:.6}{}\n", f64::from(i) * 1e-6, ",0".repeat(joints)));
+        format!("t{names}\n{}", rows.collect::<String>())
+    };
+    let (_folder, path) = file("log.csv", table(1024));
+    let (log, found) = survey(&[path], Options::default()).unwrap();
+    assert_eq!((log.layout().joints.len(), found.counts.states), (1024, 100));
+    let (_folder, path) = file("log.csv", table(1025));
+    let error = survey(&[path], Options::default()).err().unwrap().to_string();
+    assert!(error.contains("the table has 1025 columns of positions; at most 1024 joints are read"), "{error}");
+}
+
+#[test]
+fn a_gap_has_a_limit() {
+    let (_folder, path) = file("log.csv", csv(&even(0.0, 100)));
+    let with = |gap| Options { gap, ..Options::default() };
+    for gap in [1000.5, 1e7, 1e15, f64::INFINITY, f64::NAN] {
+        let error = survey(std::slice::from_ref(&path), with(gap)).err().unwrap();
+        assert!(error.is_of_request() && error.to_string().contains("a gap is at "), "{gap}: {error}");
+    }
+    let error = survey(std::slice::from_ref(&path), with(1e7)).err().unwrap().to_string();
+    assert!(error.contains("a gap is at most 1000 steps"), "{error}");
+    assert!(survey(&[path], with(1000.0)).is_ok());
 }
