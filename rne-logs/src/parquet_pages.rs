@@ -41,6 +41,14 @@ impl Refused {
     pub(crate) fn error(what: impl fmt::Display) -> ParquetError {
         ParquetError::External(Box::new(Self(what.to_string())))
     }
+
+    /// What was refused, if an error says so.
+    pub(crate) fn of(error: &ParquetError) -> Option<&Self> {
+        match error {
+            ParquetError::External(inner) => inner.downcast_ref(),
+            _ => None,
+        }
+    }
 }
 
 /// The room for pages that the columns of a table share.

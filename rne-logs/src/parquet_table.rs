@@ -193,7 +193,8 @@ impl ParquetTable {
     /// Takes the next rows of all columns; false at the end.
     fn fill(&mut self) -> Result<bool, LogError> {
         let wrong = |path: &Path, read: u64, error: &ParquetError| {
-            LogError::file(path, format_args!("{}, behind {read} rows", reason(error)))
+            let behind = if Refused::of(error).is_some() { String::new() } else { format!(", behind {read} rows") };
+            LogError::file(path, reason(error) + &behind)
         };
         while self.left == 0 {
             if self.group == self.file.num_row_groups() {
@@ -316,9 +317,7 @@ fn corrupt() -> ParquetError {
 
 /// What the library says, in a sentence.
 fn reason(error: &ParquetError) -> String {
-    if let ParquetError::External(inner) = error
-        && let Some(refused) = inner.downcast_ref::<Refused>()
-    {
+    if let Some(refused) = Refused::of(error) {
         return refused.to_string();
     }
     let error = error.to_string();

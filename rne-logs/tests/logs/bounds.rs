@@ -221,10 +221,10 @@ fn a_channel_is_defined_once() {
 /// Data that is computed when it is read, of any length.
 #[test]
 fn long_data_of_sqlite_is_not_loaded() {
-    for (data, wanted) in [
-        ("zeroblob(900000000)", "a message has more than 1048576 bytes"),
-        ("CAST(replace(hex(zeroblob(30000)), '0', 'aaaaaaaaaaaaaaaaaaaa') AS BLOB)", "it has 1200000 bytes"),
-        ("CAST(printf('%900000000s', '') AS BLOB)", "bytes"),
+    for data in [
+        "zeroblob(900000000)",
+        "CAST(replace(hex(zeroblob(30000)), '0', 'aaaaaaaaaaaaaaaaaaaa') AS BLOB)",
+        "CAST(printf('%900000000s', '') AS BLOB)",
     ] {
         let (_folder, path) = file("bag.db3", "");
         let bag = rusqlite::Connection::open(&path).unwrap();
@@ -236,7 +236,7 @@ fn long_data_of_sqlite_is_not_loaded() {
         ))
         .unwrap();
         let error = refused(path, Options::default());
-        assert!(error.contains(wanted), "{data}: {error}");
+        assert!(error.contains("a message has more than 1048576 bytes"), "{data}: {error}");
     }
     // a message of any topic may be long
     let (_folder, path) = sqlite(&times(), true, true);
