@@ -165,7 +165,7 @@ fn integers_without_a_sign_have_none() {
         let columns = [Column::Int32("t", kind, stamps.clone()), Column::Int32("q1", kind, far.clone())];
         let (_folder, path) = file("log.parquet", table(&columns));
         let (_, found) = survey(&[path], milliseconds.clone()).unwrap();
-        assert_eq!((found.run_count, found.positions[0]), (1, (4e9, 4e9 + 199.0)), "{kind}");
+        assert_eq!(found.positions[0], (4e9, 4e9 + 199.0), "{kind}");
     }
     // with a sign, as it was
     let below: Vec<i32> = (0..ROWS as i32).map(|i| i - 100).collect();
