@@ -9,8 +9,8 @@ use rne_model::{Checked, Convention, JointKind, Robot, golden_of, misnamed_golde
 
 use crate::layout::{left, width};
 use crate::outcome::{Failure, Outcome, rendered};
-use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::plan_file::Compiler;
+use crate::terminal::{GOOD, QUIET, WARNING};
 use crate::{functions, physics, plan_file, robot_file};
 
 /// Check robot files and plans: `ok` and lints, or every error

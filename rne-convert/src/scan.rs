@@ -415,7 +415,6 @@ impl Scanner<'_> {
         let found = self.source.text.get(tag.clone()).and_then(|tag| tag.find(part));
         found.map_or(tag.clone(), |at| tag.start + at..tag.start + at + part.len())
     }
-
 }
 
 /// Why a value cannot be that of an attribute.

@@ -58,15 +58,8 @@ pub(crate) enum Kind {
 }
 
 impl Kind {
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Revolute,
-        Self::Continuous,
-        Self::Prismatic,
-        Self::Fixed,
-        Self::Floating,
-        Self::Planar,
-        Self::Spherical,
-    ];
+    pub(crate) const ALL: [Self; 7] =
+        [Self::Revolute, Self::Continuous, Self::Prismatic, Self::Fixed, Self::Floating, Self::Planar, Self::Spherical];
 
     /// The kind of a word in a URDF.
     pub(crate) fn of(word: &str) -> Option<Self> {

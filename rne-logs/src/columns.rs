@@ -62,7 +62,7 @@ impl Columns {
         let time = TimeColumn::choose(path, &named.times, name, options)?;
         let mut notes = Vec::new();
         note("other times that are not read", &unread(&named.times, time, name), &mut notes);
-        notes.extend(named.notes(&joints, &velocities, &efforts));
+        notes.extend(lacking(&joints, &velocities, &efforts));
         let mut columns = Self {
             time: time.map(|time| (time.place, time.unit)),
             converted: named.converted(time, &[&joints[..], &velocities, &efforts].concat()),
@@ -75,12 +75,9 @@ impl Columns {
         let [velocities, efforts] = [&velocities, &efforts].map(|found| by_joint(found));
         for (joint, position) in columns.names.iter().zip(&joints) {
             let [velocity, effort] = [&velocities, &efforts].map(|found| found.get(joint.as_str()).copied());
-            let dimension = |found: &Option<&Found>| found.and_then(Found::dimension);
-            let units = JointUnits {
-                position: position.dimension(),
-                velocity: dimension(&velocity),
-                effort: dimension(&effort),
-            };
+            let dimension = |found: Option<&Found>| found.and_then(Found::dimension);
+            let units =
+                JointUnits { position: position.dimension(), velocity: dimension(velocity), effort: dimension(effort) };
             columns.units.joints.insert(joint.clone(), units);
             columns.velocity.push(velocity.map(Found::column));
             columns.effort.push(effort.map(Found::column));
@@ -242,21 +239,21 @@ impl<'a> Header<'a> {
         work::add(self.names.len());
         (0..self.names.len()).filter(is_unread).map(|place| self.names[place].clone()).collect()
     }
+}
 
-    /// Joints that lack what others have.
-    fn notes(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
-        let mut notes = Vec::new();
-        for found in [velocities, efforts] {
-            let has = by_joint(found);
-            let has = |joint: &str| has.contains_key(joint);
-            let names = || joints.iter().map(|joint| joint.named.joint.as_str());
-            if let Some(one) = found.first().filter(|_| names().any(has)) {
-                let without: Vec<&str> = names().filter(|joint| !has(joint)).collect();
-                note(&format!("joints without a column of {}", one.named.quantity.plural()), &without, &mut notes);
-            }
+/// Joints that lack what others have.
+fn lacking(joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
+    let mut notes = Vec::new();
+    for found in [velocities, efforts] {
+        let has = by_joint(found);
+        let has = |joint: &str| has.contains_key(joint);
+        let names = || joints.iter().map(|joint| joint.named.joint.as_str());
+        if let Some(one) = found.first().filter(|_| names().any(has)) {
+            let without: Vec<&str> = names().filter(|joint| !has(joint)).collect();
+            note(&format!("joints without a column of {}", one.named.quantity.plural()), &without, &mut notes);
         }
-        notes
     }
+    notes
 }
 
 #[cfg(test)]

@@ -38,9 +38,10 @@ pub(crate) mod work {
 
     /// Adds to the work of this thread: a name or a number that was looked at.
     #[inline]
-    pub(crate) fn add(_steps: usize) {
+    #[cfg_attr(not(test), expect(unused_variables, reason = "only tests count"))]
+    pub(crate) fn add(steps: usize) {
         #[cfg(test)]
-        DONE.set(DONE.get() + _steps as u64);
+        DONE.set(DONE.get() + steps as u64);
     }
 
     /// What a call has done.

@@ -92,8 +92,7 @@ pub(crate) fn names<'a>(
     match near.as_slice() {
         [] => Ok(None),
         [(place, _)] => Ok(Some(*place)),
-        several => match several.iter().find(begins) {
-            Some((place, _)) => Ok(Some(*place)),
+        several => match several.iter().find(begins).map(|(place, _)| *place) {
             None => {
                 let what = format!(
                     "the columns {} are all names of joints, and none has the name of {position} but for its end: say \
@@ -102,6 +101,7 @@ pub(crate) fn names<'a>(
                 );
                 Err(LogError::request(path, what))
             }
+            place => Ok(place),
         },
     }
 }

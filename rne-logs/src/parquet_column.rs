@@ -59,15 +59,12 @@ impl Leaf {
         };
         let is_plain = matches!(leaf.logical_type_ref(), None | Some(LogicalType::Integer(_)))
             && !matches!(leaf.converted_type(), ConvertedType::DECIMAL);
+        let converted = leaf.converted_type();
         let is_signed = match leaf.logical_type_ref() {
             Some(LogicalType::Integer(integer)) => integer.is_signed,
-            _ => {
-                let converted = leaf.converted_type();
-                !matches!(
-                    converted,
-                    ConvertedType::UINT_8 | ConvertedType::UINT_16 | ConvertedType::UINT_32 | ConvertedType::UINT_64
-                )
-            }
+            _ if converted == ConvertedType::UINT_32 || converted == ConvertedType::UINT_64 => false,
+            // shorter ones are below the sign
+            _ => true,
         };
         let kind = match (leaf.physical_type(), stamp) {
             _ if leaf.max_rep_level() > 1 => Kind::Other,

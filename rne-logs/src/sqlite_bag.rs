@@ -1,5 +1,6 @@
 //! Bags of ROS 2 in SQLite: `*.db3`.
 
+use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -247,7 +248,9 @@ fn unchanging(path: &Path) -> String {
             b'\\' if cfg!(windows) => name.push('/'),
             b':' if cfg!(windows) => name.push(':'),
             byte if is_plain(*byte) => name.push(char::from(*byte)),
-            byte => name.push_str(&format!("%{byte:02X}")),
+            byte => {
+                let _ = write!(name, "%{byte:02X}");
+            }
         }
     }
     name + "?immutable=1"

@@ -187,7 +187,7 @@ fn a_channel_is_defined_once() {
     let bag = |second: &[u8]| {
         let messages = |from: i64, number| (from..from + 100).flat_map(|i| message(number, i)).collect::<Vec<u8>>();
         let first = [schema(1, own), channel(1, 1, "/a", "cdr")].concat();
-        [&mcap::MAGIC[..], &header, &first, &messages(0, 1), second, &messages(100, 1), &end, mcap::MAGIC].concat()
+        [mcap::MAGIC, &header, &first, &messages(0, 1), second, &messages(100, 1), &end, mcap::MAGIC].concat()
     };
     for (second, wanted) in [
         (vec![], None),

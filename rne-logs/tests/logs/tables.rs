@@ -168,7 +168,7 @@ fn integers_without_a_sign_have_none() {
         assert_eq!(found.positions[0], (4e9, 4e9 + 199.0), "{kind}");
     }
     // with a sign, as it was
-    let below: Vec<i32> = (0..ROWS as i32).map(|i| i - 100).collect();
+    let below: Vec<i32> = (-100..100).collect();
     let columns = [Column::Int32("t", "", below.clone()), Column::Int32("q1", "(INTEGER(32,true))", below)];
     let (_folder, path) = file("log.parquet", table(&columns));
     let (log, found) = survey(&[path], milliseconds).unwrap();
