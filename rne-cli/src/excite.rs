@@ -18,6 +18,7 @@ use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same};
+use crate::table_name::{self, Format};
 use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
@@ -130,6 +131,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         check_new(path, None, &sources, arguments.force)?;
         // before the search, not after it
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
+    }
+    if let Some(path) = out.filter(|_| !is_shown) {
+        table_name::format(path, &[Format::Csv])?;
     }
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();

@@ -15,6 +15,7 @@ use crate::motion_log::{check_units, open_by_names};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::robot_file;
+use crate::table_name::{self, Format};
 use crate::terminal::GOOD;
 
 /// Say what a log of an arm has; filter it, with accelerations
@@ -71,6 +72,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
         let sources: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
+        table_name::format(path, &[Format::Csv])?;
     }
     let log = arguments.open()?;
     let bar = progress("read", is_result_shown);

@@ -54,6 +54,7 @@ mod state;
 mod state_results;
 mod state_table;
 mod states;
+mod table_name;
 mod terminal;
 mod tour;
 mod trajectory_file;
@@ -62,6 +63,7 @@ mod worksheet;
 mod worksheet_file;
 
 use std::env;
+use std::panic;
 use std::process::ExitCode;
 
 use clap::Parser as _;
@@ -70,6 +72,7 @@ use crate::arguments::{Arguments, Command};
 use crate::outcome::{Failure, Outcome};
 
 fn main() -> ExitCode {
+    hush();
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -85,6 +88,16 @@ fn main() -> ExitCode {
         Ok(outcome) => terminal::show(&outcome),
         Err(failure) => terminal::complain(name, &failure),
     }
+}
+
+/// A panic of a library that reads a corrupt log becomes an error with the file's name: nothing is printed of it.
+fn hush() {
+    let usual = panic::take_hook();
+    panic::set_hook(Box::new(move |info| {
+        if !rne_logs::is_guarded() {
+            usual(info);
+        }
+    }));
 }
 
 /// The command's name, as its help is asked for, and what it returned.

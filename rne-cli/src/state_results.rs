@@ -9,6 +9,7 @@ use rne_logs::Npy;
 
 use crate::outcome::Failure;
 use crate::output_file::{self, Replacement};
+use crate::table_name::{self, Format};
 
 /// CSV or an array of numpy, as results come. The header of an array, which tells how many states there are, is written
 /// last, in the place that was kept for it.
@@ -39,10 +40,11 @@ impl Results {
             return Ok(Self::Csv { out, header, is_terminal, width, kept: None });
         };
         output_file::check_new(path, None, read, force)?;
+        let format = table_name::format(path, &[Format::Csv, Format::Npy])?;
         let unwritable = |error: io::Error| output_file::unwritable(path, &error);
         let kept = Replacement::begin(path).map_err(unwritable)?;
         let file = kept.file().map_err(unwritable)?;
-        if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("npy")) {
+        if format == Format::Npy {
             let mut out = BufWriter::new(file);
             out.write_all(&Npy::header(0, width as u64)).map_err(unwritable)?;
             return Ok(Self::Npy { out, width, states: 0, kept });

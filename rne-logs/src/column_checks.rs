@@ -1,21 +1,34 @@
 //! What names of columns must say, so that nothing is guessed.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 use crate::column_name::Quantity;
-use crate::columns::{Found, Header};
+use crate::columns::{Found, Header, by_joint};
+use crate::limits::{MOST_JOINTS, work};
 use crate::options::Angles;
 use crate::spelling::listed;
 use crate::unit::{Dimension, Unit};
 use crate::{LogError, Options};
 
 impl<'a> Header<'a> {
+    /// No quantity has more columns than joints may be.
+    pub(crate) fn check_count(&self, found: &[&Found]) -> Result<(), LogError> {
+        let Some(one) = found.first().filter(|_| found.len() > MOST_JOINTS) else { return Ok(()) };
+        let what = format!(
+            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read; --topic says how the names of those \
+             that are meant begin",
+            found.len(),
+            one.named.quantity.plural()
+        );
+        Err(LogError::request(self.path, what))
+    }
+
     /// No joint has two columns of one quantity.
     pub(crate) fn check_once(&self, found: &[&Found]) -> Result<(), LogError> {
-        for (at, second) in found.iter().enumerate() {
-            let Some(first) = found[..at].iter().find(|first| first.named.joint == second.named.joint) else {
-                continue;
-            };
+        work::add(found.len());
+        let mut seen: HashMap<&str, &Found> = HashMap::with_capacity(found.len());
+        for second in found {
+            let Some(first) = seen.insert(&second.named.joint, second) else { continue };
             let what = format!(
                 "the columns {} and {}, {} and {} of the table, are both {} of {}; say how the names of those that \
                  are meant begin, as in --topic actual, or take one away",
@@ -98,9 +111,9 @@ impl<'a> Header<'a> {
         efforts: &[&Found],
         options: &Options,
     ) -> Result<(), LogError> {
+        let others = [velocities, efforts].map(|found| by_joint(found));
         for position in positions {
-            let of_joint = |found: &&&Found| found.named.joint == position.named.joint;
-            let others = [velocities, efforts].into_iter().filter_map(|found| found.iter().find(of_joint));
+            let others = others.iter().filter_map(|found| found.get(position.named.joint.as_str()));
             let all: Vec<&Found> = [position].into_iter().chain(others).copied().collect();
             let says = |wanted: [Dimension; 2]| {
                 all.iter().any(|found| found.dimension().is_some_and(|dimension| wanted.contains(&dimension)))

@@ -1,6 +1,7 @@
 //! What a column of a table is, by its name.
 
 use crate::TimeUnit;
+use crate::limits::LONGEST_NAME;
 use crate::unit::{self, Unit};
 
 /// What a column has.
@@ -47,6 +48,14 @@ const SEPARATORS: [char; 7] = ['/', '.', '_', '[', ']', ' ', ':'];
 /// What stands before a unit that is not in brackets.
 const BEFORE_UNITS: [char; 3] = ['_', ' ', '.'];
 
+/// Words that a name has at most: each end of a name is looked at, whether it is a unit.
+const MOST_WORDS: usize = 32;
+
+/// Whether a name is too long to be that of a joint or of times.
+fn is_too_long(name: &str) -> bool {
+    name.len() > LONGEST_NAME || name.matches(BEFORE_UNITS).count() > MOST_WORDS
+}
+
 /// A column of a joint.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Named {
@@ -77,7 +86,7 @@ pub(crate) enum Meaning {
 pub(crate) fn meaning(name: &str) -> Meaning {
     let name = name.trim();
     // the tool centre point is no joint
-    if name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp")) {
+    if is_too_long(name) || name.split(SEPARATORS).any(|word| word.eq_ignore_ascii_case("tcp")) {
         return Meaning::Nothing;
     }
     if let (base, Some(text)) = bracketed(name)
@@ -219,6 +228,9 @@ fn bracketed(name: &str) -> (&str, Option<&str>) {
 
 /// Whether a name is that of times, and the unit that it says; a text that is no unit of time is an error.
 pub(crate) fn time(name: &str) -> Option<Result<Option<TimeUnit>, String>> {
+    if is_too_long(name) {
+        return None;
+    }
     if is_time(name) {
         return Some(Ok(None));
     }
@@ -241,6 +253,9 @@ fn is_time(name: &str) -> bool {
 /// error.
 #[cfg(feature = "parquet")]
 pub(crate) fn list(name: &str) -> Option<(Quantity, bool, Result<Option<Unit>, String>)> {
+    if is_too_long(name) {
+        return None;
+    }
     let of = |name: &str| {
         let last = name.rsplit(['/', '.', '_', ' ']).next().unwrap_or_default();
         // what collections for learning have

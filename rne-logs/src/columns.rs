@@ -1,10 +1,12 @@
 //! The columns of a table that are read, by their names.
 
-use std::fmt::Write as _;
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use crate::column_name::{Meaning, Named, Quantity, meaning, time};
+use crate::column_name::{Meaning, Named, Quantity, meaning};
+use crate::limits::work;
 use crate::spelling::listed;
+use crate::time_column::{TimeColumn, unread, within};
 use crate::unit::{Dimension, FileUnits, JointUnits, Unit};
 use crate::{LogError, Options, TimeUnit};
 
@@ -49,36 +51,36 @@ impl Columns {
         }
         let efforts = torques_or_currents(&efforts, !options.torque_constants.is_empty());
         for found in [&positions, &velocities, &efforts] {
+            named.check_count(found)?;
             named.check_once(found)?;
         }
         named.check_numbers(&positions, &[&velocities, &efforts], options)?;
         named.check_units(&positions, &velocities, &efforts, options)?;
         let mut joints = positions;
         joints.sort_by_key(|found| found.named.number.unwrap_or(u32::MAX));
-        let time = named.time(options)?;
+        let name = |place: usize| header[place].as_str();
+        let time = TimeColumn::choose(path, &named.times, name, options)?;
+        let mut notes = Vec::new();
+        note("other times that are not read", &unread(&named.times, time, name), &mut notes);
+        notes.extend(lacking(&joints, &velocities, &efforts));
         let mut columns = Self {
-            time,
+            time: time.map(|time| (time.place, time.unit)),
             converted: named.converted(time, &[&joints[..], &velocities, &efforts].concat()),
             unread: named.unread(&joints, &velocities, &efforts),
             names: joints.iter().map(|found| found.named.joint.clone()).collect(),
             position: joints.iter().map(|found| found.column()).collect(),
-            notes: named.notes(&joints, &velocities, &efforts),
+            notes,
             ..Self::default()
         };
-        let of_joint = |found: &[&Found], joint: &String| -> Option<Found> {
-            found.iter().find(|found| found.named.joint == *joint).map(|found| (*found).clone())
-        };
+        let [velocities, efforts] = [&velocities, &efforts].map(|found| by_joint(found));
         for (joint, position) in columns.names.iter().zip(&joints) {
-            let [velocity, effort] = [&velocities, &efforts].map(|found| of_joint(found, joint));
-            let dimension = |found: &Option<Found>| found.as_ref().and_then(Found::dimension);
-            let units = JointUnits {
-                position: position.dimension(),
-                velocity: dimension(&velocity),
-                effort: dimension(&effort),
-            };
-            columns.units.joints.push((joint.clone(), units));
-            columns.velocity.push(velocity.as_ref().map(Found::column));
-            columns.effort.push(effort.as_ref().map(Found::column));
+            let [velocity, effort] = [&velocities, &efforts].map(|found| found.get(joint.as_str()).copied());
+            let dimension = |found: Option<&Found>| found.and_then(Found::dimension);
+            let units =
+                JointUnits { position: position.dimension(), velocity: dimension(velocity), effort: dimension(effort) };
+            columns.units.joints.insert(joint.clone(), units);
+            columns.velocity.push(velocity.map(Found::column));
+            columns.effort.push(effort.map(Found::column));
         }
         for list in [&mut columns.velocity, &mut columns.effort] {
             if list.iter().all(Option::is_none) {
@@ -105,11 +107,31 @@ pub(crate) fn converted(names: &[String]) -> Option<String> {
 /// Of joints that have both, currents where the options have torque constants, else torques.
 fn torques_or_currents<'f>(efforts: &[&'f Found], has_constants: bool) -> Vec<&'f Found> {
     let is_current = |found: &Found| found.dimension() == Some(Dimension::Current);
+    let joints = |current: bool| -> HashSet<&str> {
+        work::add(efforts.len());
+        let found = efforts.iter().filter(|found| is_current(found) == current);
+        found.map(|found| found.named.joint.as_str()).collect()
+    };
+    let (currents, torques) = (joints(true), joints(false));
     let has_other = |found: &Found| {
-        efforts.iter().any(|other| other.named.joint == found.named.joint && is_current(other) != is_current(found))
+        let others = if is_current(found) { &torques } else { &currents };
+        others.contains(found.named.joint.as_str())
     };
     let is_meant = |found: &&&Found| !has_other(found) || is_current(found) == has_constants;
     efforts.iter().filter(is_meant).copied().collect()
+}
+
+/// Columns by the names of their joints.
+pub(crate) fn by_joint<'f>(found: &[&'f Found]) -> HashMap<&'f str, &'f Found> {
+    work::add(found.len());
+    found.iter().map(|found| (found.named.joint.as_str(), *found)).collect()
+}
+
+/// A remark on these names, if there are any.
+pub(crate) fn note(what: &str, names: &[&str], notes: &mut Vec<String>) {
+    if !names.is_empty() {
+        notes.push(format!("{what}: {}", listed(names.iter().copied())));
+    }
 }
 
 /// A column of a joint, and where it stands.
@@ -137,7 +159,7 @@ pub(crate) struct Header<'a> {
     names: &'a [String],
     prefix: Option<&'a str>,
     found: Vec<Found>,
-    times: Vec<(usize, Option<TimeUnit>)>,
+    times: Vec<TimeColumn>,
     /// Columns like those of joints.
     unread: Vec<usize>,
 }
@@ -147,18 +169,12 @@ impl<'a> Header<'a> {
         let prefix = options.topic.as_deref();
         let mut header = Self { path, names, prefix, found: Vec::new(), times: Vec::new(), unread: Vec::new() };
         for (place, name) in names.iter().enumerate() {
-            let inner = match prefix {
-                Some(prefix) => name.trim_start_matches('/').strip_prefix(prefix.trim_matches('/')),
-                None => Some(name.as_str()),
-            };
-            if let Some(unit) = time(name).or_else(|| inner.and_then(time)) {
-                let unit = unit.map_err(|text| {
-                    let what = format!("the column {name} has times in {text}, which is none of s, ms, us, ns");
-                    LogError::file(path, what)
-                })?;
-                header.times.push((place, unit));
+            work::add(1);
+            if let Some(time) = TimeColumn::of(path, place, name, options)? {
+                header.times.push(time);
                 continue;
             }
+            let inner = within(name, options);
             match inner.map_or(Meaning::Nothing, meaning) {
                 Meaning::Joint(named) => header.found.push(Found { named, place }),
                 Meaning::Unknown { quantity, unit } => {
@@ -196,85 +212,48 @@ impl<'a> Header<'a> {
         )
     }
 
-    /// The column of times, the first of them.
-    fn time(&self, options: &Options) -> Result<Option<(usize, Option<TimeUnit>)>, LogError> {
-        let Some(&(place, unit)) = self.times.first() else { return Ok(None) };
-        let name = &self.names[place];
-        if let (Some(said), Some(asked)) = (unit, options.time_unit)
-            && said != asked
-        {
-            let what = format!("the column {name} has times in {}, and --time-unit says {}", said.name(), asked.name());
-            return Err(LogError::request(self.path, what));
-        }
-        // stamp_sec and stamp_nanosec are one time in two columns
-        let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);
-        let other = self.times[1..].iter().find(|(other, of_other)| {
-            unit.is_some() && of_other.is_some() && *of_other != unit && stem(&self.names[*other]) == stem(name)
-        });
-        if let Some((other, _)) = other {
-            let what = format!(
-                "the columns {name} and {} are both times: if they are two parts of one, make one column of them, else \
-                 take one away",
-                self.names[*other]
-            );
-            return Err(LogError::file(self.path, what));
-        }
-        Ok(Some((place, unit)))
-    }
-
     /// The columns whose names say units that are not of SI.
-    fn converted(&self, time: Option<(usize, Option<TimeUnit>)>, read: &[&Found]) -> Vec<String> {
+    fn converted(&self, time: Option<TimeColumn>, read: &[&Found]) -> Vec<String> {
         let is_other = |found: &&&Found| found.named.unit.is_some_and(|unit| !unit.is_si());
-        let time = time.filter(|(_, unit)| unit.is_some_and(|unit| unit != TimeUnit::Seconds));
-        let places = time.map(|(place, _)| place).into_iter();
+        let time = time.filter(|time| time.unit.is_some_and(|unit| unit != TimeUnit::Seconds));
+        let places = time.map(|time| time.place).into_iter();
         let places = places.chain(read.iter().filter(is_other).map(|found| found.place));
         places.map(|place| self.names[place].clone()).collect()
     }
 
     /// The columns that are not read.
     fn unread(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
-        let has_position = |found: &Found| joints.iter().any(|joint| joint.named.joint == found.named.joint);
-        let is_read = |place: usize| {
-            let mut read = [joints, velocities, efforts].into_iter().flatten();
-            read.any(|read| read.place == place && has_position(read))
-        };
-        let lacks = |found: &[&Found]| !found.iter().any(|found| has_position(found));
+        let of_joints = by_joint(joints);
+        let has_position = |found: &&&Found| of_joints.contains_key(found.named.joint.as_str());
+        let read: HashSet<usize> =
+            [joints, velocities, efforts].into_iter().flatten().filter(has_position).map(|found| found.place).collect();
+        let lacks = |found: &[&Found]| !found.iter().any(|found| has_position(&found));
         let is_any = lacks(velocities) || lacks(efforts);
-        let is_like =
-            |place: usize| self.unread.contains(&place) || self.found.iter().any(|found| found.place == place);
-        let is_time = |place: usize| self.times.iter().any(|(time, _)| *time == place);
+        let like: HashSet<usize> =
+            self.unread.iter().copied().chain(self.found.iter().map(|found| found.place)).collect();
+        let times: HashSet<usize> = self.times.iter().map(|time| time.place).collect();
         let is_unread = |place: &usize| {
             let is_named = !self.names[*place].trim().is_empty();
-            !is_read(*place) && !is_time(*place) && (is_like(*place) || is_any && is_named)
+            !read.contains(place) && !times.contains(place) && (like.contains(place) || is_any && is_named)
         };
+        work::add(self.names.len());
         (0..self.names.len()).filter(is_unread).map(|place| self.names[place].clone()).collect()
     }
+}
 
-    /// What else a reader should know.
-    fn notes(&self, joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
-        let mut notes = Vec::new();
-        let mut note = |what: &str, names: &mut dyn Iterator<Item = &str>| {
-            let names = listed(names);
-            if !names.is_empty() {
-                notes.push(format!("{what}: {names}"));
-            }
-        };
-        note(
-            "other times that are not read",
-            &mut self.times.iter().skip(1).map(|(place, _)| self.names[*place].as_str()),
-        );
-        for found in [velocities, efforts] {
-            let has = |joint: &&&Found| found.iter().any(|found| found.named.joint == joint.named.joint);
-            if let Some(one) = found.first().filter(|_| joints.iter().any(|joint| has(&joint))) {
-                let without: Vec<&str> =
-                    joints.iter().filter(|joint| !has(joint)).map(|joint| joint.named.joint.as_str()).collect();
-                let mut what = String::new();
-                let _ = write!(what, "joints without a column of {}", one.named.quantity.plural());
-                note(&what, &mut without.into_iter());
-            }
+/// Joints that lack what others have.
+fn lacking(joints: &[&Found], velocities: &[&Found], efforts: &[&Found]) -> Vec<String> {
+    let mut notes = Vec::new();
+    for found in [velocities, efforts] {
+        let has = by_joint(found);
+        let has = |joint: &str| has.contains_key(joint);
+        let names = || joints.iter().map(|joint| joint.named.joint.as_str());
+        if let Some(one) = found.first().filter(|_| names().any(has)) {
+            let without: Vec<&str> = names().filter(|joint| !has(joint)).collect();
+            note(&format!("joints without a column of {}", one.named.quantity.plural()), &without, &mut notes);
         }
-        notes
     }
+    notes
 }
 
 #[cfg(test)]
@@ -428,6 +407,64 @@ mod tests {
                 (found, wanted) => panic!("{header:?}: {found:?} and not {wanted:?}"),
             }
         }
+    }
+
+    /// Columns of as many joints, with a torque and a current, with names and others.
+    fn wide(joints: usize) -> Vec<String> {
+        let of = |joint| [format!("a{joint}_position"), format!("a{joint}_torque"), format!("a{joint}_current")];
+        let others = (0..joints).map(|other| format!("temperature {other}"));
+        ["t".to_owned()].into_iter().chain((0..joints).flat_map(of)).chain(others).collect()
+    }
+
+    #[test]
+    fn the_work_on_columns_grows_as_they_do() {
+        let work = [300, 600].map(|joints| {
+            let header = wide(joints);
+            work::of(|| {
+                let columns = Columns::of(Path::new("log.csv"), &header, &Options::default()).unwrap();
+                assert_eq!((columns.names.len(), columns.unread.len()), (joints, 2 * joints));
+            })
+        });
+        assert!(work[0] > 4 * 300 && work[0] < 40 * 300, "{work:?}");
+        assert!(work[1] <= 2 * work[0], "{work:?}");
+    }
+
+    #[test]
+    fn a_table_has_1024_joints_at_most() {
+        let header = |quantity: &str, joints: usize| -> Vec<String> {
+            ["t".to_owned(), "q1".to_owned()]
+                .into_iter()
+                .chain((0..joints).map(|joint| format!("j{joint}_{quantity}")))
+                .collect()
+        };
+        let read = |header: &[String]| Columns::of(Path::new("log.csv"), header, &Options::default());
+        assert_eq!(read(&header("position", 1023)).unwrap().names.len(), 1024);
+        for (quantity, joints, plural) in [("position", 1024, "positions"), ("effort", 1025, "efforts")] {
+            let error = read(&header(quantity, joints)).unwrap_err().to_string();
+            assert!(error.contains(&format!("1025 columns of {plural}; at most 1024 joints are read")), "{error}");
+        }
+        // what is no name of a joint takes no time
+        let long = "q_1_".repeat(250_000);
+        assert!(read(&["t".into(), "q1".into(), long]).is_ok());
+    }
+
+    /// Of two arms in one table, times are those of the arm that is read.
+    #[test]
+    fn times_are_those_of_the_group() {
+        let right = Options { topic: Some("right".into()), ..Options::default() };
+        let time = |header: &[&str], options: &Options| columns(header, options).map(|columns| columns.time.unwrap().0);
+        for (header, place) in [
+            (["left/t", "left/q1", "right/t", "right/q1"], 2),
+            (["t", "left/q1", "right/t", "right/q1"], 2),
+            (["/left/stamp", "/left/q1", "/right/stamp", "/right/q1"], 2),
+            (["t", "left/q1", "x", "right/q1"], 0),
+        ] {
+            assert_eq!(time(&header, &right).unwrap(), place, "{header:?}");
+        }
+        let error = columns(&["t", "left/t", "right/q1"], &right).unwrap_err();
+        assert!(error.is_of_request(), "{error}");
+        assert!(error.to_string().contains("the columns t and left/t are both times, and neither begins"), "{error}");
+        assert_eq!(time(&["t", "stamp", "q1"], &Options::default()).unwrap(), 0);
     }
 
     #[test]

@@ -21,6 +21,7 @@ pub(crate) struct CsvTable {
     record: csv::ByteRecord,
     columns: Columns,
     clock: Clock,
+    is_time_unit_known: bool,
     size: u64,
     row: u64,
 }
@@ -105,7 +106,9 @@ impl CsvTable {
             (None, Some(rate)) => Clock::Step(1.0 / rate),
             (None, None) => return Err(no_time(path, header.iter().map(String::as_str))),
         };
-        Ok(Self { path: path.to_owned(), reader, record: csv::ByteRecord::new(), columns, clock, size, row: 0 })
+        let is_time_unit_known = columns.time.is_none_or(|(_, said)| said.is_some()) || options.time_unit.is_some();
+        let record = csv::ByteRecord::new();
+        Ok(Self { path: path.to_owned(), reader, record, columns, clock, is_time_unit_known, size, row: 0 })
     }
 
     fn wrong(&self, what: impl std::fmt::Display) -> LogError {
@@ -179,6 +182,10 @@ impl Source for CsvTable {
 
     fn units(&self) -> FileUnits {
         self.columns.units.clone()
+    }
+
+    fn is_time_unit_known(&self) -> bool {
+        self.is_time_unit_known
     }
 }
 

@@ -1,38 +1,45 @@
-//! Libraries that assert what a corrupt file need not keep: their panics become errors, and are not printed.
+//! Libraries that assert what a corrupt file need not keep: their panics become errors.
 
 use std::cell::Cell;
-use std::panic::{self, AssertUnwindSafe};
-use std::sync::Once;
 
 thread_local! {
     static GUARDED: Cell<bool> = const { Cell::new(false) };
 }
 
+/// Whether this thread is reading a file by a library whose panic is about to become a
+/// [`LogError`](crate::LogError). A program may ask in its panic hook, and print nothing then; this crate leaves the
+/// hook of its process alone.
+#[must_use]
+pub fn is_guarded() -> bool {
+    GUARDED.get()
+}
+
 /// What a call returned; none if it panicked. What it borrowed is of no use then.
+#[cfg(any(feature = "bags", feature = "parquet"))]
 pub(crate) fn guarded<T>(call: impl FnOnce() -> T) -> Option<T> {
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let usual = panic::take_hook();
-        panic::set_hook(Box::new(move |info| {
-            if !GUARDED.get() {
-                usual(info);
-            }
-        }));
-    });
-    GUARDED.set(true);
-    let returned = panic::catch_unwind(AssertUnwindSafe(call));
-    GUARDED.set(false);
+    let before = GUARDED.replace(true);
+    let returned = std::panic::catch_unwind(std::panic::AssertUnwindSafe(call));
+    GUARDED.set(before);
     returned.ok()
 }
 
-#[cfg(test)]
+#[cfg(all(test, any(feature = "bags", feature = "parquet")))]
 mod tests {
     use super::*;
 
+    thread_local! {
+        static HEARD: Cell<u32> = const { Cell::new(0) };
+    }
+
+    /// The hook of the process hears of it, and may ask whether it is one of these.
     #[test]
-    fn a_panic_is_nothing_and_leaves_no_trace() {
-        assert_eq!(guarded(|| 1), Some(1));
-        assert_eq!(guarded(|| -> i32 { panic!("a file is corrupt") }), None);
-        assert!(!GUARDED.get());
+    fn a_panic_is_nothing_and_leaves_the_hook_alone() {
+        let usual = std::panic::take_hook();
+        std::panic::set_hook(Box::new(|_| HEARD.set(HEARD.get() + u32::from(is_guarded()))));
+        let returned = guarded(|| -> i32 { panic!("a file is corrupt") });
+        std::panic::set_hook(usual);
+        assert_eq!((returned, HEARD.get()), (None, 1));
+        assert_eq!(guarded(|| i32::from(is_guarded())), Some(1));
+        assert!(!is_guarded());
     }
 }

@@ -3,6 +3,7 @@
 use byteorder::{BigEndian, LittleEndian};
 use serde::Deserialize;
 
+use crate::limits::{MOST_JOINTS, check_names};
 use crate::sample::Sample;
 
 /// The type of the messages that are read, as bags name it.
@@ -44,6 +45,12 @@ pub(crate) fn decode(bytes: &[u8], recorded: i64, sample: &mut Sample) -> Result
     };
     let (JointState { header, name, position, velocity, effort }, _) =
         decoded.map_err(|error| format!("it is no {TYPE}: {error}"))?;
+    check_names(name.iter().map(String::as_str))?;
+    for (list, numbers) in [("positions", &position), ("velocities", &velocity), ("efforts", &effort)] {
+        if numbers.len() > MOST_JOINTS {
+            return Err(format!("it has {} {list}; at most {MOST_JOINTS} are read", numbers.len()));
+        }
+    }
     sample.measured = i64::from(header.stamp.sec) * 1_000_000_000 + i64::from(header.stamp.nanosec);
     sample.recorded = recorded;
     (sample.names, sample.position, sample.velocity, sample.effort) = (name, position, velocity, effort);

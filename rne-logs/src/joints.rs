@@ -1,8 +1,10 @@
 //! Joints of a log by the names that were asked for.
 
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::LogError;
+use crate::limits::work;
 use crate::sample::Sample;
 use crate::spelling::{instead, listed};
 
@@ -11,16 +13,18 @@ use crate::spelling::{instead, listed};
 pub(crate) struct Joints {
     /// By the log's names, in the order of what is asked for.
     pub(crate) names: Vec<String>,
-    /// The names of the last sample, and where the joints stand in it; none if it does not have them all.
+    /// The names of the last sample, which of the joints it has, and where they stand; no places if it lacks one.
     last: Vec<String>,
+    presence: Presence,
     places: Option<Vec<usize>>,
 }
 
 /// Whether a sample has the joints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Presence {
     All,
     Some,
+    #[default]
     None,
 }
 
@@ -40,11 +44,12 @@ impl Joints {
             return Err(LogError::request(path, format_args!("the joint {twice} is asked for twice")));
         }
         let there = names(samples);
-        let missing: Vec<&String> = wanted.iter().filter(|name| !there.contains(name)).collect();
+        let known: HashSet<&String> = there.iter().collect();
+        let missing: Vec<&String> = wanted.iter().filter(|name| !known.contains(name)).collect();
         let Some(first) = missing.first() else {
             let joints = Self { names: wanted.to_vec(), ..Self::default() };
-            let together = samples.iter().any(|sample| wanted.iter().all(|name| sample.names.contains(name)));
-            if !together {
+            let mut found = joints.clone();
+            if samples.iter().all(|sample| found.find(sample) != Presence::All) {
                 let what = "the joints that are asked for are in different messages, of which none has all";
                 return Err(LogError::file(path, what));
             }
@@ -69,23 +74,29 @@ impl Joints {
 
     /// The joints of the log that are none of these.
     pub(crate) fn others(&self, samples: &[Sample]) -> Vec<String> {
-        names(samples).into_iter().filter(|name| !self.names.contains(name)).collect()
+        let own: HashSet<&String> = self.names.iter().collect();
+        names(samples).into_iter().filter(|name| !own.contains(name)).collect()
     }
 
     /// Finds the joints in a sample.
     pub(crate) fn find(&mut self, sample: &Sample) -> Presence {
-        if sample.names != self.last || self.places.is_none() {
-            self.last.clone_from(&sample.names);
-            let place = |name: &String| sample.names.iter().position(|other| other == name);
-            self.places = self.names.iter().map(place).collect();
+        if sample.names == self.last {
+            return self.presence;
         }
-        if self.places.is_some() {
-            Presence::All
-        } else if self.names.iter().any(|name| sample.names.contains(name)) {
-            Presence::Some
-        } else {
-            Presence::None
+        self.last.clone_from(&sample.names);
+        work::add(sample.names.len() + self.names.len());
+        let mut places: HashMap<&str, usize> = HashMap::with_capacity(sample.names.len());
+        for (place, name) in sample.names.iter().enumerate() {
+            places.entry(name).or_insert(place);
         }
+        let found: Vec<usize> = self.names.iter().filter_map(|name| places.get(name.as_str()).copied()).collect();
+        self.presence = match found.len() {
+            count if count == self.names.len() => Presence::All,
+            0 => Presence::None,
+            _ => Presence::Some,
+        };
+        self.places = (self.presence == Presence::All).then_some(found);
+        self.presence
     }
 
     /// Whether there is a number for each joint of a sample, finite for those that were found.
@@ -117,23 +128,78 @@ fn by_number(mut names: Vec<String>) -> Vec<String> {
 }
 
 fn twice(names: &[String]) -> Option<&String> {
-    names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)).map(|(_, name)| name)
+    work::add(names.len());
+    let mut seen = HashSet::with_capacity(names.len());
+    names.iter().find(|name| !seen.insert(*name))
 }
 
 /// Every joint of samples, in the order of their first mention.
 fn names(samples: &[Sample]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
+    let mut seen: HashSet<&str> = HashSet::new();
     let mut last: &[String] = &[];
     for sample in samples {
         if sample.names == last {
             continue;
         }
         last = &sample.names;
+        work::add(sample.names.len());
         for name in &sample.names {
-            if !names.contains(name) {
+            if seen.insert(name) {
                 names.push(name.clone());
             }
         }
     }
     names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Seventy messages, each with its own joints beside two that are in all.
+    fn samples(count: usize) -> Vec<Sample> {
+        let of = |message: usize| {
+            let others = (0..count).map(|joint| format!("other_{message}_{joint}"));
+            let names: Vec<String> = others.chain(["a".to_owned(), "b".to_owned()]).collect();
+            Sample { position: vec![0.0; names.len()], names, ..Sample::default() }
+        };
+        (0..70).map(of).collect()
+    }
+
+    fn survey(samples: &[Sample]) -> usize {
+        let wanted = ["b".to_owned(), "a".to_owned()];
+        let mut joints = Joints::of(Path::new("bag.mcap"), samples, Some(&wanted)).unwrap();
+        assert!(samples.iter().all(|sample| joints.find(sample) == Presence::All));
+        assert_eq!(joints.places.as_ref().unwrap()[1] + 1, joints.places.as_ref().unwrap()[0]);
+        joints.others(samples).len()
+    }
+
+    #[test]
+    fn the_work_on_names_grows_as_they_do() {
+        let work = [200, 400].map(|count| {
+            let samples = samples(count);
+            work::of(|| assert_eq!(survey(&samples), 70 * count))
+        });
+        // of each name some few steps, and twice as many of twice as many names
+        assert!(work[0] > 70 * 200 && work[0] < 70 * 203 * 6, "{work:?}");
+        assert!(work[1] < 2 * work[0], "{work:?}");
+    }
+
+    #[test]
+    fn a_sample_has_all_some_or_none_of_the_joints() {
+        let mut joints = Joints { names: vec!["a".into(), "b".into()], ..Joints::default() };
+        let sample = |names: &[&str]| Sample {
+            names: names.iter().map(|name| (*name).to_owned()).collect(),
+            ..Sample::default()
+        };
+        for (names, wanted, places) in [
+            (&[][..], Presence::None, None),
+            (&["c", "b", "a", "b"], Presence::All, Some(vec![2, 1])),
+            (&["c"], Presence::None, None),
+            (&["b"], Presence::Some, None),
+        ] {
+            assert_eq!((joints.find(&sample(names)), &joints.places), (wanted, &places), "{names:?}");
+        }
+    }
 }

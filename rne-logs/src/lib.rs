@@ -26,12 +26,12 @@ mod csv_table;
 mod error;
 mod format;
 mod grid;
-#[cfg(any(feature = "bags", feature = "parquet"))]
 mod guard;
 #[cfg(feature = "bags")]
 mod joint_state;
 mod joints;
 mod kernel;
+mod limits;
 #[cfg(feature = "parquet")]
 mod list_columns;
 mod log;
@@ -45,6 +45,10 @@ mod npy_array;
 mod number;
 mod options;
 #[cfg(feature = "parquet")]
+mod parquet_column;
+#[cfg(feature = "parquet")]
+mod parquet_pages;
+#[cfg(feature = "parquet")]
 mod parquet_table;
 mod pass;
 mod sample;
@@ -54,6 +58,7 @@ mod spikes;
 #[cfg(feature = "bags")]
 mod sqlite_bag;
 mod survey;
+mod time_column;
 mod time_unit;
 #[cfg(feature = "bags")]
 mod topic;
@@ -61,6 +66,7 @@ mod unit;
 
 pub use crate::error::LogError;
 pub use crate::format::Format;
+pub use crate::guard::is_guarded;
 pub use crate::log::{Layout, Log};
 pub use crate::median::median;
 pub use crate::motion::Motion;

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use crate::column_name::{Quantity, list};
 use crate::options::Angles;
+use crate::spelling::listed;
+use crate::time_column::within;
 use crate::unit::{Dimension, JointUnits, Unit};
 use crate::{LogError, Options};
 
@@ -70,12 +72,67 @@ impl ListColumns {
     }
 }
 
+/// The column of the joints' names among columns of texts: of several those of the prefix that is asked for, and of
+/// several of these the one whose name begins as that of the positions does.
+pub(crate) fn names<'a>(
+    path: &Path,
+    texts: impl Iterator<Item = (usize, &'a str)>,
+    position: &str,
+    options: &Options,
+) -> Result<Option<usize>, LogError> {
+    let stem = |name: &'a str| name.trim_end_matches("names").trim_end_matches("name");
+    let all: Vec<(usize, &str)> = texts.filter(|(_, name)| stem(name).len() < name.len()).collect();
+    let of_group: Vec<(usize, &str)> =
+        all.iter().filter(|(_, name)| within(name, options).is_some()).copied().collect();
+    let near = if of_group.is_empty() { &all } else { &of_group };
+    let begins = |(_, name): &&(usize, &'a str)| {
+        let end = position.rfind(['/', '.', '_', ' ']).map_or(0, |end| end + 1);
+        stem(name) == &position[..end]
+    };
+    match near.as_slice() {
+        [] => Ok(None),
+        [(place, _)] => Ok(Some(*place)),
+        several => match several.iter().find(begins).map(|(place, _)| *place) {
+            None => {
+                let what = format!(
+                    "the columns {} are all names of joints, and none has the name of {position} but for its end: say \
+                     how the names of those that are meant begin, as in --topic actual, or remove the others",
+                    listed(several.iter().map(|(_, name)| *name))
+                );
+                Err(LogError::request(path, what))
+            }
+            place => Ok(place),
+        },
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     fn lists(names: &[&str]) -> Result<ListColumns, LogError> {
         ListColumns::of(Path::new("log.parquet"), names.iter().copied().enumerate(), &Options::default())
+    }
+
+    #[test]
+    fn names_are_those_of_the_positions() {
+        let right = Options { topic: Some("/right".into()), ..Options::default() };
+        let (any, of) = (Options::default(), |texts: &[&'static str], position, options: &Options| {
+            names(Path::new("log.parquet"), texts.iter().copied().enumerate(), position, options)
+        });
+        for (texts, position, options, place) in [
+            (&["left.name", "right.name"][..], "right.position", &right, Some(1)),
+            (&["/left/name", "/right/name"], "/right/position", &right, Some(1)),
+            (&["left.name", "right.name"], "right.position", &any, Some(1)),
+            (&["name", "camera_name"], "position", &any, Some(0)),
+            (&["camera_name", "joint_names"], "joint_positions", &any, Some(1)),
+            (&["name"], "right.position", &right, Some(0)),
+            (&["frame", "label"], "position", &any, None),
+        ] {
+            assert_eq!(of(texts, position, options).unwrap(), place, "{texts:?}");
+        }
+        let error = of(&["left.name", "centre.name"], "right.position", &right).unwrap_err();
+        assert!(error.is_of_request() && error.to_string().contains("left.name, centre.name are all names"), "{error}");
     }
 
     #[test]

@@ -3,20 +3,26 @@
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
-use crate::LogError;
 use crate::format::{self, Format};
 use crate::joints::Joints;
 use crate::kernel::Kernel;
+use crate::limits::{LONGEST_GAP, MOST_BYTES};
 use crate::motions::Motions;
+use crate::number::short;
 use crate::options::{Angles, Options};
 use crate::pass::Pass;
 use crate::sample::{Sample, Source};
 use crate::spelling::listed;
 use crate::survey::Survey;
 use crate::unit::{Dimension, FileUnits, JointUnits};
+use crate::{LogError, TimeUnit};
 
 /// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
 const HEAD: usize = 1024;
+
+/// Samples that are further apart than this, s, are rare: such times are in another unit, unless somebody says that they
+/// are seconds.
+const SLOWEST: f64 = 0.5;
 
 /// Stamps this far from zero, ns, are since 1970 or the machine's start, and are shown since the log's first.
 const FAR: i64 = 10_000_000_000_000_000;
@@ -81,9 +87,12 @@ impl Log {
         // the first messages may be of several files
         let (topic, unread) = (chain.source.topic().map(str::to_owned), chain.source.unread());
         let mut notes = chain.source.notes();
+        let is_time_unit_known = chain.source.is_time_unit_known();
         let mut head: Vec<Sample> = Vec::new();
         let mut sample = Sample::default();
-        while head.len() < HEAD && chain.read(&mut sample)? {
+        let mut size = 0;
+        while head.len() < HEAD && size < MOST_BYTES && chain.read(&mut sample)? {
+            size += sample.size();
             head.push(sample.clone());
         }
         if head.is_empty() {
@@ -122,11 +131,8 @@ impl Log {
         let time = |sample: &&Sample| if recorded { sample.recorded } else { sample.measured };
         let times: Vec<i64> = states.iter().map(time).collect();
         let step = median_step(&times).ok_or_else(|| no_step(path, &times))?;
-        if step > 1.0 {
-            let what = format!(
-                "samples are {step} s apart, if times are seconds; --time-unit ms, us or ns says what they are"
-            );
-            return Err(LogError::request(path, what));
+        if step >= SLOWEST && !is_time_unit_known {
+            return Err(LogError::request(path, unknown_unit(step)));
         }
         let units: Vec<JointUnits> = joints.names.iter().map(|name| chain.units.of(name)).collect();
         notes.extend(slides_in_metres(&options, &joints.names, &units));
@@ -260,8 +266,8 @@ impl<'a> Chain<'a> {
             let Some(next) = self.others.pop_front() else { return Ok(false) };
             self.source = Format::of(next)?.open(next, self.options)?;
             let units = self.source.units();
-            let differ = |(joint, units): &&(String, JointUnits)| self.units.of(joint) != *units;
-            if let Some((joint, _)) = units.joints.iter().find(differ) {
+            let differ = |(joint, units): &(&String, &JointUnits)| self.units.of(joint) != **units;
+            if let Some(joint) = units.joints.iter().filter(differ).map(|(joint, _)| joint).min() {
                 let what = format!("the names of its columns say other units of {joint} than the first file says");
                 return Err(LogError::file(next, what));
             }
@@ -304,6 +310,31 @@ fn median_step(times: &[i64]) -> Option<f64> {
     Some(*steps.select_nth_unstable(middle).1 as f64 * 1e-9)
 }
 
+/// What is said of times that may be in any unit.
+fn unknown_unit(step: f64) -> String {
+    let of = |unit: TimeUnit, rate: f64| {
+        let (rate, prefix) = match rate {
+            rate if rate >= 1e9 => (rate * 1e-9, "G"),
+            rate if rate >= 1e6 => (rate * 1e-6, "M"),
+            rate if rate >= 1e3 => (rate * 1e-3, "k"),
+            rate => (rate, ""),
+        };
+        format!("{} {prefix}Hz in {}", short(rate), unit.name())
+    };
+    let units = [
+        (TimeUnit::Seconds, 1.0),
+        (TimeUnit::Milliseconds, 1e3),
+        (TimeUnit::Microseconds, 1e6),
+        (TimeUnit::Nanoseconds, 1e9),
+    ];
+    let rates = units.map(|(unit, each)| of(unit, each / step)).join(", ");
+    format!(
+        "the unit of the times is not known: they are {} apart, and samples are at {rates}; say which it is, as in \
+         --time-unit ms; if the times only count rows, remove their column and say --rate HZ",
+        short(step)
+    )
+}
+
 fn no_step(path: &Path, times: &[i64]) -> LogError {
     match times.len() {
         1 => LogError::file(path, "the log has one joint state; a motion needs many"),
@@ -335,6 +366,13 @@ fn check(path: &Path, options: &Options) -> Result<(), LogError> {
     }
     if !(options.gap >= 1.5 && options.gap.is_finite()) {
         return Err(LogError::request(path, "a gap is at least 1.5 steps, or intervals that jitter are gaps"));
+    }
+    if options.gap > LONGEST_GAP {
+        let what = format!(
+            "a gap is at most {LONGEST_GAP} steps, as in --gap {LONGEST_GAP}: what is missing in a shorter one is \
+             interpolated, row by row"
+        );
+        return Err(LogError::request(path, what));
     }
     if options.torque_constants.iter().any(|constant| !constant.is_finite() || *constant == 0.0) {
         return Err(LogError::request(path, "a torque constant is zero or no number"));

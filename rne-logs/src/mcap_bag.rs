@@ -1,6 +1,7 @@
 //! Bags of ROS 2 in MCAP.
 
 use std::collections::BTreeMap;
+use std::fmt;
 use std::fs::File;
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
@@ -12,6 +13,7 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use crate::LogError;
 use crate::guard::guarded;
 use crate::joint_state;
+use crate::limits::LONGEST_NAME;
 use crate::sample::{Sample, Source};
 use crate::topic::{self, is_joint_state};
 
@@ -33,6 +35,8 @@ pub(crate) struct McapBag {
     file: File,
     size: u64,
     given: u64,
+    /// Bytes of the records that were read, those of chunks with what is in them.
+    read: u64,
     reader: LinearReader,
     /// The chunk whose records are read.
     chunk: Option<Box<Chunk>>,
@@ -101,6 +105,12 @@ struct Channel {
     encoding: String,
 }
 
+impl fmt::Display for Channel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} ({}, {})", self.topic, self.kind, self.encoding)
+    }
+}
+
 impl McapBag {
     pub(crate) fn open(path: &Path, wanted: Option<&str>) -> Result<Self, LogError> {
         let wrong = |error| LogError::file(path, format_args!("the file cannot be read: {error}"));
@@ -111,6 +121,7 @@ impl McapBag {
             file,
             size,
             given: 0,
+            read: 0,
             reader: LinearReader::new_with_options(options().with_emit_chunks(true)),
             chunk: None,
             wanted: wanted.map(str::to_owned),
@@ -124,21 +135,30 @@ impl McapBag {
 
     /// A channel that begins: whether it is the topic's is known then.
     fn begin(&mut self, number: u16, channel: Channel) -> Result<(), LogError> {
-        if self.channels.get(&number) == Some(&channel) {
-            return Ok(());
+        let wrong = |what: String| Err(LogError::file(&self.path, what));
+        if let Some(known) = self.channels.get(&number) {
+            if *known == channel {
+                return Ok(());
+            }
+            return wrong(format!(
+                "channel {number} is defined twice, as {known} and as {channel}: whose its messages are is not known"
+            ));
         }
         let is_meant = match &self.wanted {
             Some(wanted) => *wanted == channel.topic,
             None => is_joint_state(&channel.kind),
         };
-        let name = channel.topic.clone();
-        let encoding = channel.encoding.clone();
+        let (name, encoding) = (channel.topic.clone(), channel.encoding.clone());
+        if self.topic.as_ref() == Some(&name) && !is_joint_state(&channel.kind) {
+            return wrong(format!("the topic {name} has joint states, and has {} in channel {number}", channel.kind));
+        }
         self.channels.insert(number, channel);
-        if !is_meant || self.topic.as_ref() == Some(&name) {
+        if !is_meant {
             return Ok(());
         }
-        let pairs = self.pairs();
-        topic::choose(&self.path, &pairs, self.wanted.as_deref())?;
+        if self.topic.as_ref() != Some(&name) {
+            topic::choose(&self.path, &self.pairs(), self.wanted.as_deref())?;
+        }
         if encoding != "cdr" {
             return Err(LogError::file(
                 &self.path,
@@ -147,6 +167,32 @@ impl McapBag {
         }
         self.topic = Some(name);
         Ok(())
+    }
+
+    /// Names of topics, types and encodings are kept.
+    fn check_length(&self, name: &str) -> Result<(), LogError> {
+        if name.len() <= LONGEST_NAME {
+            return Ok(());
+        }
+        let what = format!(
+            "the name of a topic, its type or its encoding has {} bytes; names of at most {LONGEST_NAME} are read",
+            name.len()
+        );
+        Err(LogError::file(&self.path, what))
+    }
+
+    /// Nothing is behind the end: of two files in one the second is not read.
+    fn check_end(&self) -> Result<(), LogError> {
+        let end = self.read + 2 * mcap::MAGIC.len() as u64;
+        if self.size <= end {
+            return Ok(());
+        }
+        let (size, count) = (self.size, self.count);
+        let what = format!(
+            "the bag ends at byte {end} of {size}, behind {count} joint states, and what follows is not read: if it is \
+             another bag, take both apart, and name both files"
+        );
+        Err(LogError::file(&self.path, what))
     }
 
     fn pairs(&self) -> Vec<(String, String)> {
@@ -190,12 +236,16 @@ enum Event {
 
 impl McapBag {
     fn event(&mut self, sample: &mut Sample) -> Result<Option<Event>, McapError> {
+        let is_outside = self.chunk.is_none();
         let reader = self.chunk.as_mut().map_or(&mut self.reader, |chunk| &mut chunk.reader);
         let Some(event) = reader.next_event() else { return Ok(None) };
         let (opcode, data) = match event? {
             LinearReadEvent::ReadRequest(needs) => return Ok(Some(Event::Needs(needs))),
             LinearReadEvent::Record { opcode, data } => (opcode, data),
         };
+        if is_outside {
+            self.read += (HEAD + data.len()) as u64;
+        }
         if opcode == op::CHUNK {
             return Ok(Some(Event::Chunk(Box::new(Chunk::of(data)?))));
         }
@@ -232,7 +282,10 @@ impl Source for McapBag {
             let event = guarded(|| self.event(sample)).unwrap_or(Err(McapError::UnexpectedEoc));
             match event.map_err(|error| self.wrong(&error))? {
                 None if self.chunk.is_some() => self.chunk = None,
-                None => self.ended = true,
+                None => {
+                    self.ended = true;
+                    self.check_end()?;
+                }
                 Some(Event::Chunk(chunk)) => self.chunk = Some(chunk),
                 Some(Event::Needs(needs)) => {
                     if let Some(chunk) = &mut self.chunk {
@@ -251,9 +304,16 @@ impl Source for McapBag {
                     self.reader.notify_read(count);
                 }
                 Some(Event::Schema(number, name)) => {
-                    self.schemas.insert(number, name);
+                    self.check_length(&name)?;
+                    let known = self.schemas.entry(number).or_insert_with(|| name.clone());
+                    if *known != name {
+                        let what = format!("schema {number} is defined twice, as {known} and as {name}");
+                        return Err(LogError::file(&self.path, what));
+                    }
                 }
                 Some(Event::Channel(number, schema, topic, encoding)) => {
+                    self.check_length(&topic)?;
+                    self.check_length(&encoding)?;
                     let kind = self.schemas.get(&schema).cloned().unwrap_or_else(|| "no type".to_owned());
                     self.begin(number, Channel { topic, kind, encoding })?;
                 }

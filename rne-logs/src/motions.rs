@@ -2,6 +2,7 @@
 
 use crate::grid::Grid;
 use crate::kernel::{HIGHEST, Kernel};
+use crate::limits::MOST_NUMBERS;
 use crate::number::short;
 use crate::pass::Pass;
 use crate::spelling::listed;
@@ -82,10 +83,20 @@ impl<'a> Motions<'a> {
         let pass = log.pass()?;
         let pass = if log.options.leave_out_spikes { pass.without(&survey.spikes) } else { pass };
         let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
+        let dropped = log.dropped(kernel.half());
+        if dropped.saturating_mul(2).saturating_mul(columns) > 2 * MOST_NUMBERS {
+            return Err(log.request(format_args!(
+                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns; a higher --cutoff \
+                 holds fewer, and --joints names those joints that are meant",
+                short(1.0 / layout.step),
+                short(hertz),
+                2 * dropped
+            )));
+        }
         let mut motions = Self {
             pass,
-            dropped: log.dropped(kernel.half()),
-            length: PIECE,
+            dropped,
+            length: PIECE.min(longest_piece(columns)),
             kernel,
             log,
             begun: 0,
@@ -105,10 +116,11 @@ impl<'a> Motions<'a> {
         Ok(motions)
     }
 
-    /// States of a piece at most, at least one: memory is this by the number of joints.
+    /// States of a piece at most, at least one: memory is this by the number of joints. Of hundreds of joints pieces are
+    /// shorter.
     #[must_use]
     pub fn with_length(mut self, states: usize) -> Self {
-        self.length = states.max(1);
+        self.length = states.clamp(1, longest_piece(self.rows.len()));
         self
     }
 
@@ -256,6 +268,11 @@ fn too_low(log: &Log, survey: &Survey, hertz: f64) -> LogError {
     } else {
         LogError::file(&log.files[0], format_args!("{what}; no cut-off that the rate allows leaves anything"))
     }
+}
+
+/// States of a piece, so that memory is bounded whatever the number of columns is.
+fn longest_piece(columns: usize) -> usize {
+    MOST_NUMBERS / columns.max(1)
 }
 
 fn append(columns: &mut [Vec<f64>], row: &[f64]) {

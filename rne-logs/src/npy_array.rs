@@ -1,10 +1,11 @@
 //! Arrays of numpy: `*.npy`.
 
 use std::fs::File;
-use std::io::{self, BufReader, ErrorKind};
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use crate::csv_table::no_time;
+use crate::limits::MOST_JOINTS;
 use crate::sample::{Sample, Source};
 use crate::{LogError, Npy, Options, TimeUnit};
 
@@ -19,6 +20,7 @@ pub(crate) struct NpyArray {
     rows: u64,
     read: u64,
     unit: TimeUnit,
+    is_time_unit_known: bool,
     step: Option<f64>,
     /// Where the first column of a quantity is: of times, positions, velocities, efforts.
     places: [Option<usize>; 4],
@@ -29,11 +31,20 @@ impl NpyArray {
     pub(crate) fn open(path: &Path, options: &Options) -> Result<Self, LogError> {
         let wrong = |what: &dyn std::fmt::Display| LogError::file(path, what);
         let file = File::open(path).map_err(|error| wrong(&format_args!("the file cannot be read: {error}")))?;
-        let npy = Npy::open(BufReader::with_capacity(1 << 16, file)).map_err(|error| wrong(&error))?;
+        let size = file.metadata().map_or(0, |metadata| metadata.len());
+        let npy = Npy::open(file).map_err(|error| wrong(&error))?;
         let [rows, width] = npy.shape[..] else {
             let axes = npy.shape.len();
             return Err(wrong(&format_args!("the array has {axes} axes, not 2: states, and their numbers")));
         };
+        if size > npy.length {
+            let (length, more) = (npy.length, size - npy.length);
+            let what = format!(
+                "the array ends at byte {length}, and {more} bytes follow: are they another array? A log is one array \
+                 in a file"
+            );
+            return Err(wrong(&what));
+        }
         let asked: Vec<&str> = match options.columns.as_slice() {
             [] => QUANTITIES.to_vec(),
             columns => columns.iter().map(String::as_str).collect(),
@@ -59,6 +70,7 @@ impl NpyArray {
             rows,
             read: 0,
             unit: options.time_unit.unwrap_or_default(),
+            is_time_unit_known: options.time_unit.is_some() || places[0].is_none(),
             step: options.rate.map(|rate| 1.0 / rate),
             places,
             names: (1..=joints).map(|joint| joint.to_string()).collect(),
@@ -116,6 +128,10 @@ impl Source for NpyArray {
     fn progress(&self) -> f64 {
         self.read as f64 / self.rows.max(1) as f64
     }
+
+    fn is_time_unit_known(&self) -> bool {
+        self.is_time_unit_known
+    }
 }
 
 /// Where quantities stand in a row, and how many joints there are.
@@ -138,7 +154,7 @@ fn places(path: &Path, columns: &[&str], width: u64) -> Result<([Option<usize>; 
     let each = order.len() - of_time;
     let width = usize::try_from(width).unwrap_or(usize::MAX);
     let joints = width.saturating_sub(of_time) / each;
-    if joints == 0 || joints > 1024 || joints * each + of_time != width {
+    if joints == 0 || joints > MOST_JOINTS || joints * each + of_time != width {
         let said = columns.join(",");
         let what = format!(
             "the array has {width} columns, which is not {said} of some joints; --columns says what there is, as in \

@@ -19,7 +19,8 @@ pub struct Options {
     /// By joint that is read, base to tip, whether it slides: its positions are lengths then, whatever `angles` is.
     /// Empty: nobody knows, and `angles` is of all.
     pub slides: Vec<bool>,
-    /// An interval of more than so many steps is a gap; 3.5 where nobody says: three samples that were lost are none.
+    /// An interval of more than so many steps is a gap, 1.5 to 1000; 3.5 where nobody says: three samples that were lost
+    /// are none.
     pub gap: f64,
     /// The cut-off of the filter, Hz; without it the spectrum chooses.
     pub cutoff: Option<f64>,
@@ -29,7 +30,8 @@ pub struct Options {
     pub derive_velocities: bool,
     /// Times are those of recording, also where messages have their own.
     pub recorded: bool,
-    /// The unit of a column of times, or of an array's; without it what the column's name or type says, else s.
+    /// The unit of a column of times, or of an array's; without it what the column's name or type says, else s, unless
+    /// samples are half a second or more apart then: such a log is refused.
     pub time_unit: Option<TimeUnit>,
     /// Rows per second of a table without times.
     pub rate: Option<f64>,

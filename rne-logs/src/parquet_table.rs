@@ -2,39 +2,40 @@
 
 use std::fs::File;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use parquet::basic::{ConvertedType, LogicalType, TimeUnit as OfStamp, Type as Physical};
-use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
-use parquet::data_type::DataType;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
-use parquet::schema::types::ColumnDescriptor;
 
-use crate::column_name::time;
-use crate::columns::Columns;
+use crate::columns::{self, Columns, note};
 use crate::csv_table::{no_time, two_times};
 use crate::guard::guarded;
-use crate::list_columns::ListColumns;
+use crate::list_columns::{self, ListColumns};
+use crate::parquet_column::{Column, Kind, Leaf};
+use crate::parquet_pages::{Refused, Room, column_reader};
 use crate::sample::{Sample, Source};
+use crate::time_column::{TimeColumn, unread, within};
 use crate::unit::FileUnits;
-use crate::{LogError, Options, TimeUnit, columns};
+use crate::{LogError, Options, TimeUnit};
 
-/// Rows that are taken from a column at once.
+/// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
 const BATCH: usize = 1024;
-
-/// Numbers of a list that are read: more joints than any arm has.
-const LONGEST_LIST: usize = 1024;
+const BATCH_OF_LISTS: usize = 64;
 
 /// A table, read by groups of rows.
 pub(crate) struct ParquetTable {
     path: PathBuf,
     file: SerializedFileReader<File>,
+    /// The same file, of which columns take their pages, and the room for these.
+    source: Arc<File>,
+    room: Arc<Room>,
     group: usize,
     /// Rows of this group that were not taken from its columns.
     left: usize,
     columns: Vec<Column>,
     roles: Roles,
     clock: Clock,
+    is_time_unit_known: bool,
     /// Of this batch.
     row: usize,
     rows: usize,
@@ -44,24 +45,6 @@ pub(crate) struct ParquetTable {
     units: FileUnits,
     unread: Vec<String>,
     notes: Vec<String>,
-}
-
-/// A column of the file that is read.
-struct Column {
-    leaf: usize,
-    name: String,
-    /// The level of definition that a number has.
-    defined: i16,
-    is_list: bool,
-    /// What its numbers are multiplied by, of a unit that its name says.
-    factor: f64,
-    reader: Option<ColumnReader>,
-    /// The numbers of this batch, as numbers and as the integers of stamps.
-    numbers: Vec<f64>,
-    integers: Vec<i64>,
-    texts: Vec<String>,
-    /// By row, where its list ends; empty of a column without lists.
-    ends: Vec<usize>,
 }
 
 /// What columns are, by their places among those that are read.
@@ -81,17 +64,21 @@ impl ParquetTable {
         let wrong =
             |error: &dyn std::fmt::Display| LogError::file(path, format_args!("the file cannot be read: {error}"));
         let file = File::open(path).map_err(|error| wrong(&error))?;
+        let source = file.try_clone().map_err(|error| wrong(&error))?;
         let file = guarded(|| SerializedFileReader::new(file)).unwrap_or_else(|| Err(corrupt()));
         let file = file.map_err(|error| LogError::file(path, reason(&error)))?;
         let schema = file.metadata().file_metadata().schema_descr_ptr();
         let leaves: Vec<Leaf> = schema.columns().iter().map(|leaf| Leaf::of(leaf)).collect();
         let mut table = Self {
             path: path.to_owned(),
+            source: Arc::new(source),
+            room: Arc::default(),
             group: 0,
             left: 0,
             columns: Vec::new(),
             roles: Roles::Scalars { position: Vec::new(), velocity: Vec::new(), effort: Vec::new() },
             clock: Clock::Step(0.0),
+            is_time_unit_known: true,
             row: 0,
             rows: 0,
             read: 0,
@@ -108,15 +95,13 @@ impl ParquetTable {
 
     /// Finds out what columns are: lists where there is one of positions, else single columns.
     fn assign(&mut self, leaves: &[Leaf], options: &Options) -> Result<(), LogError> {
-        let prefix = options.topic.as_deref().map(|prefix| prefix.trim_matches('/'));
-        let is_list = |leaf: &Leaf| {
-            leaf.is_list && leaf.kind.is_number() && prefix.is_none_or(|prefix| leaf.name.starts_with(prefix))
-        };
+        let is_list = |leaf: &Leaf| leaf.is_list && leaf.kind.is_number() && within(&leaf.name, options).is_some();
         let lists = leaves.iter().enumerate().filter(|(_, leaf)| is_list(leaf));
         let lists = ListColumns::of(&self.path, lists.map(|(place, leaf)| (place, leaf.name.as_str())), options)?;
         if let Some((position, factor)) = lists.position {
-            let is_names = |leaf: &Leaf| leaf.is_list && leaf.kind == Kind::Text && leaf.name.ends_with("name");
-            let names = leaves.iter().position(is_names);
+            let texts = leaves.iter().enumerate().filter(|(_, leaf)| leaf.is_list && leaf.kind == Kind::Text);
+            let texts = texts.map(|(place, leaf)| (place, leaf.name.as_str()));
+            let names = list_columns::names(&self.path, texts, &leaves[position].name, options)?;
             self.roles = Roles::Lists {
                 names: names.map(|leaf| self.column(leaves, leaf, 1.0)),
                 position: self.column(leaves, position, factor),
@@ -124,15 +109,20 @@ impl ParquetTable {
                 effort: lists.effort.map(|(leaf, factor)| self.column(leaves, leaf, factor)),
             };
             self.units.others = lists.units;
-            let of_leaf = |leaf: &Leaf| time(&leaf.name).filter(|_| !leaf.is_list);
-            let time = leaves.iter().enumerate().find_map(|(place, leaf)| Some((place, of_leaf(leaf)?.ok()?)));
+            let mut times = Vec::new();
+            for (place, leaf) in leaves.iter().enumerate().filter(|(_, leaf)| !leaf.is_list) {
+                times.extend(TimeColumn::of(&self.path, place, &leaf.name, options)?);
+            }
+            let name = |place: usize| leaves[place].name.as_str();
+            let time = TimeColumn::choose(&self.path, &times, name, options)?;
             let mut converted = lists.converted;
-            let is_other = |unit: Option<TimeUnit>| unit.is_some_and(|unit| unit != TimeUnit::Seconds);
-            if let Some((place, _)) = time.filter(|(place, unit)| is_other(*unit) && leaves[*place].kind.is_number()) {
-                converted.insert(0, leaves[place].name.clone());
+            let is_other = |time: &TimeColumn| time.unit.is_some_and(|unit| unit != TimeUnit::Seconds);
+            if let Some(time) = time.filter(|time| is_other(time) && leaves[time.place].kind.is_number()) {
+                converted.insert(0, leaves[time.place].name.clone());
             }
             self.notes.extend(columns::converted(&converted));
-            return self.tell_time(leaves, time, options);
+            note("other times that are not read", &unread(&times, time, name), &mut self.notes);
+            return self.tell_time(leaves, time.map(|time| (time.place, time.unit)), options);
         }
         let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
         let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
@@ -177,7 +167,11 @@ impl ParquetTable {
             (Some((leaf, said)), None) => {
                 let unit = match leaves[leaf].kind {
                     Kind::Stamp(unit) => unit,
-                    Kind::Real | Kind::Integer => said.or(options.time_unit).unwrap_or_default(),
+                    Kind::Real | Kind::Integer { .. } => {
+                        let unit = said.or(options.time_unit);
+                        self.is_time_unit_known = unit.is_some();
+                        unit.unwrap_or_default()
+                    }
                     Kind::Text | Kind::Other => {
                         let Leaf { name, words, .. } = &leaves[leaf];
                         let what = format!("the column {name} has {words}, not times");
@@ -192,42 +186,36 @@ impl ParquetTable {
 
     /// Adds a column to those that are read; its place among them.
     fn column(&mut self, leaves: &[Leaf], leaf: usize, factor: f64) -> usize {
-        let Leaf { name, defined, is_list, .. } = &leaves[leaf];
-        self.columns.push(Column {
-            leaf,
-            name: name.clone(),
-            defined: *defined,
-            is_list: *is_list,
-            factor,
-            reader: None,
-            numbers: Vec::new(),
-            integers: Vec::new(),
-            texts: Vec::new(),
-            ends: Vec::new(),
-        });
+        self.columns.push(Column::new(leaf, &leaves[leaf], factor));
         self.columns.len() - 1
     }
 
     /// Takes the next rows of all columns; false at the end.
     fn fill(&mut self) -> Result<bool, LogError> {
         let wrong = |path: &Path, read: u64, error: &ParquetError| {
-            LogError::file(path, format_args!("{}, behind {read} rows", reason(error)))
+            let behind = if Refused::of(error).is_some() { String::new() } else { format!(", behind {read} rows") };
+            LogError::file(path, reason(error) + &behind)
         };
         while self.left == 0 {
             if self.group == self.file.num_row_groups() {
                 return Ok(false);
             }
-            let group = guarded(|| self.file.get_row_group(self.group)).unwrap_or_else(|| Err(corrupt()));
-            let group = group.map_err(|error| wrong(&self.path, self.read, &error))?;
-            self.left = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
+            self.left = usize::try_from(self.file.metadata().row_group(self.group).num_rows()).unwrap_or(0);
             for column in &mut self.columns {
-                let reader = guarded(|| group.get_column_reader(column.leaf)).unwrap_or_else(|| Err(corrupt()));
+                // the pages of the last group give way
+                column.reader = None;
+            }
+            for column in &mut self.columns {
+                let leaf = (column.leaf, column.name.as_str());
+                let open = || column_reader(&self.file, &self.source, &self.room, self.group, leaf);
+                let reader = guarded(open).unwrap_or_else(|| Err(corrupt()));
                 column.reader = Some(reader.map_err(|error| wrong(&self.path, self.read, &error))?);
             }
             self.group += 1;
         }
         self.row = 0;
-        self.rows = self.left.min(BATCH);
+        let batch = if matches!(self.roles, Roles::Lists { .. }) { BATCH_OF_LISTS } else { BATCH };
+        self.rows = self.left.min(batch);
         for column in &mut self.columns {
             let filled = guarded(|| column.fill(self.rows)).unwrap_or_else(|| Err(corrupt()));
             filled.map_err(|error| wrong(&self.path, self.read, &error))?;
@@ -281,13 +269,17 @@ impl Source for ParquetTable {
                 for (list, place) in [(&mut sample.velocity, velocity), (&mut sample.effort, effort)] {
                     list.extend_from_slice(place.map_or(&[], |place| columns[place].list(row)));
                 }
-                let texts = names.map(|place| columns[place].texts_of(row));
-                match texts {
-                    Some(texts) if sample.names != texts => sample.names = texts.to_vec(),
+                match names {
+                    Some(place) => {
+                        let texts = || columns[*place].texts_of(row);
+                        if !texts().eq(sample.names.iter().map(String::as_str)) {
+                            sample.names = texts().map(str::to_owned).collect();
+                        }
+                    }
                     None if sample.names.len() != position.len() => {
                         sample.names = (1..=position.len()).map(|joint| joint.to_string()).collect();
                     }
-                    _ => {}
+                    None => {}
                 }
             }
         }
@@ -312,176 +304,9 @@ impl Source for ParquetTable {
     fn units(&self) -> FileUnits {
         self.units.clone()
     }
-}
 
-impl Column {
-    /// Takes the next rows.
-    fn fill(&mut self, rows: usize) -> Result<(), ParquetError> {
-        self.numbers.clear();
-        self.integers.clear();
-        self.texts.clear();
-        self.ends.clear();
-        let Some(reader) = &mut self.reader else { return Ok(()) };
-        let levels = (self.defined, self.is_list, &mut self.ends);
-        let filled = match reader {
-            ColumnReader::DoubleColumnReader(reader) => {
-                take(reader, rows, levels, |number| self.numbers.push(number.copied().unwrap_or(f64::NAN)))
-            }
-            ColumnReader::FloatColumnReader(reader) => {
-                take(reader, rows, levels, |number| self.numbers.push(number.map_or(f64::NAN, |x| f64::from(*x))))
-            }
-            ColumnReader::Int32ColumnReader(reader) => take(reader, rows, levels, |number| {
-                self.numbers.push(number.map_or(f64::NAN, |x| f64::from(*x)));
-                self.integers.push(number.map_or(i64::MIN, |x| i64::from(*x)));
-            }),
-            #[expect(clippy::cast_precision_loss, reason = "an integer in the place of a real number")]
-            ColumnReader::Int64ColumnReader(reader) => take(reader, rows, levels, |number| {
-                self.numbers.push(number.map_or(f64::NAN, |x| *x as f64));
-                self.integers.push(number.copied().unwrap_or(i64::MIN));
-            }),
-            ColumnReader::ByteArrayColumnReader(reader) => take(reader, rows, levels, |text| {
-                let text = text.and_then(|text| text.as_utf8().ok()).unwrap_or_default();
-                self.texts.push(text.to_owned());
-            }),
-            _ => Err(ParquetError::General(format!("the column {} has no numbers", self.name))),
-        };
-        self.numbers.iter_mut().for_each(|number| *number *= self.factor);
-        filled
-    }
-
-    /// How many rows were taken.
-    fn rows(&self) -> usize {
-        if self.is_list { self.ends.len() } else { self.numbers.len() }
-    }
-
-    fn span(&self, row: usize) -> std::ops::Range<usize> {
-        let begin = if row == 0 { 0 } else { self.ends[row - 1] };
-        begin..self.ends[row].min(begin + LONGEST_LIST)
-    }
-
-    fn list(&self, row: usize) -> &[f64] {
-        &self.numbers[self.span(row)]
-    }
-
-    fn texts_of(&self, row: usize) -> &[String] {
-        &self.texts[self.span(row)]
-    }
-
-    /// The time of a row, ns.
-    fn time(&self, row: usize, unit: TimeUnit) -> Option<i64> {
-        match self.integers.get(row) {
-            Some(&i64::MIN) => None,
-            Some(time) => time.checked_mul(unit.nanoseconds()),
-            None => unit.number(self.numbers[row]),
-        }
-    }
-}
-
-/// Takes rows of a column: `push` gets each number of each row, or none where it is missing; `ends` where lists end.
-fn take<T: DataType>(
-    reader: &mut ColumnReaderImpl<T>,
-    rows: usize,
-    (defined, is_list, ends): (i16, bool, &mut Vec<usize>),
-    mut push: impl FnMut(Option<&T::T>),
-) -> Result<(), ParquetError> {
-    let (mut definitions, mut repetitions, mut values) = (Vec::new(), Vec::new(), Vec::new());
-    let mut taken = 0;
-    while taken < rows {
-        let (records, ..) =
-            reader.read_records(rows - taken, Some(&mut definitions), Some(&mut repetitions), &mut values)?;
-        if records == 0 {
-            break;
-        }
-        taken += records;
-    }
-    let mut values = values.iter();
-    if defined == 0 {
-        values.for_each(|value| push(Some(value)));
-        return Ok(());
-    }
-    let mut count = 0;
-    for (place, definition) in definitions.iter().enumerate() {
-        if is_list && repetitions.get(place) == Some(&0) && place > 0 {
-            ends.push(count);
-        }
-        // of a list that is empty or missing there is one level, and no number
-        let is_there = *definition == defined;
-        if is_there || !is_list {
-            push(if is_there { values.next() } else { None });
-            count += 1;
-        } else if *definition + 1 == defined && repetitions.get(place) != Some(&0) {
-            push(None);
-            count += 1;
-        }
-    }
-    if is_list && !definitions.is_empty() {
-        ends.push(count);
-    }
-    Ok(())
-}
-
-/// A column of the schema.
-struct Leaf {
-    /// Its path without what only makes a list.
-    name: String,
-    kind: Kind,
-    /// Its type, for people.
-    words: String,
-    defined: i16,
-    is_list: bool,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Kind {
-    Real,
-    Integer,
-    Stamp(TimeUnit),
-    Text,
-    Other,
-}
-
-impl Kind {
-    fn is_number(self) -> bool {
-        matches!(self, Self::Real | Self::Integer)
-    }
-}
-
-impl Leaf {
-    fn of(leaf: &ColumnDescriptor) -> Self {
-        let is_list = leaf.max_rep_level() == 1;
-        let mut parts: Vec<&str> = leaf.path().parts().iter().map(String::as_str).collect();
-        // three levels, position.list.element, or two, position.array
-        while is_list
-            && parts.len() > 1
-            && matches!(parts[parts.len() - 1], "list" | "element" | "item" | "array" | "bag" | "array_element")
-        {
-            parts.pop();
-        }
-        let stamp = match (leaf.logical_type_ref(), leaf.converted_type()) {
-            (Some(LogicalType::Timestamp(stamp)), _) => Some(match stamp.unit {
-                OfStamp::MILLIS => TimeUnit::Milliseconds,
-                OfStamp::MICROS => TimeUnit::Microseconds,
-                OfStamp::NANOS => TimeUnit::Nanoseconds,
-            }),
-            (_, ConvertedType::TIMESTAMP_MILLIS) => Some(TimeUnit::Milliseconds),
-            (_, ConvertedType::TIMESTAMP_MICROS) => Some(TimeUnit::Microseconds),
-            _ => None,
-        };
-        let is_plain = matches!(leaf.logical_type_ref(), None | Some(LogicalType::Integer(_)))
-            && !matches!(leaf.converted_type(), ConvertedType::DECIMAL);
-        let kind = match (leaf.physical_type(), stamp) {
-            _ if leaf.max_rep_level() > 1 => Kind::Other,
-            (Physical::INT64, Some(unit)) => Kind::Stamp(unit),
-            (Physical::DOUBLE | Physical::FLOAT, _) => Kind::Real,
-            (Physical::INT32 | Physical::INT64, None) if is_plain => Kind::Integer,
-            (Physical::BYTE_ARRAY, _) => Kind::Text,
-            _ => Kind::Other,
-        };
-        let words = match kind {
-            Kind::Text => "texts".to_owned(),
-            _ => leaf.physical_type().to_string(),
-        };
-        Self { name: parts.join("."), kind, words, defined: leaf.max_def_level(), is_list }
+    fn is_time_unit_known(&self) -> bool {
+        self.is_time_unit_known
     }
 }
 
@@ -492,6 +317,9 @@ fn corrupt() -> ParquetError {
 
 /// What the library says, in a sentence.
 fn reason(error: &ParquetError) -> String {
+    if let Some(refused) = Refused::of(error) {
+        return refused.to_string();
+    }
     let error = error.to_string();
     let what = error.split_once(": ").map_or(error.as_str(), |(_, what)| what);
     let what = what.lines().next().unwrap_or_default().trim_end_matches('.');

@@ -20,6 +20,14 @@ pub(crate) struct Sample {
     pub(crate) effort: Vec<f64>,
 }
 
+impl Sample {
+    /// Bytes that it takes, about.
+    pub(crate) fn size(&self) -> usize {
+        let names: usize = self.names.iter().map(|name| name.len() + 32).sum();
+        names + 8 * (self.position.len() + self.velocity.len() + self.effort.len()) + size_of::<Self>()
+    }
+}
+
 /// A file that is read from its beginning to its end, in memory that does not grow with it.
 pub(crate) trait Source {
     /// Reads the next sample in the place of the last; false at the end.
@@ -41,6 +49,12 @@ pub(crate) trait Source {
     /// The units that the file says; its numbers are in SI units there.
     fn units(&self) -> FileUnits {
         FileUnits::default()
+    }
+
+    /// Whether the format, a type, a name or an option says in which unit times are. Where nothing does, they are taken
+    /// for seconds.
+    fn is_time_unit_known(&self) -> bool {
+        true
     }
 
     /// The topic that is read, where the format has topics.

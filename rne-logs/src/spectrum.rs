@@ -2,13 +2,15 @@
 //!
 //! The method of P. D. Welch (1967): segments of a power of two of rows, at least `seconds` long, half overlapping,
 //! their line of least squares subtracted, in a window of Blackman and Harris (F. J. Harris, 1978, four terms, side
-//! lobes at −92 dB).
+//! lobes at −92 dB). Segments of very high rates, and of more than 64 columns, are shorter, so that memory is bounded.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use rustfft::num_complex::Complex;
 use rustfft::{Fft, FftPlanner};
+
+use crate::limits::MOST_NUMBERS;
 
 /// Power above this many times the noise floor is motion.
 const ABOVE_FLOOR: f64 = 10.0;
@@ -25,7 +27,7 @@ pub(crate) struct Spectrum {
     window: Vec<f64>,
     /// By column: the rows of the segment that grows.
     rows: Vec<Vec<f64>>,
-    /// By column and frequency.
+    /// By column and frequency; empty before the first segment.
     power: Vec<Vec<f64>>,
     segments: u64,
     rate: f64,
@@ -35,7 +37,10 @@ impl Spectrum {
     /// Spectra of columns at a rate, Hz, by segments of at least so many seconds.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "bounded")]
     pub(crate) fn new(columns: usize, rate: f64, seconds: f64) -> Self {
-        let length = ((seconds * rate).clamp(64.0, 65_536.0).ceil() as usize).next_power_of_two();
+        let room = (MOST_NUMBERS / columns.max(1)).clamp(64, 65_536);
+        // the power of two below
+        let longest = 1 << room.ilog2();
+        let length = ((seconds * rate).clamp(64.0, 65_536.0).ceil() as usize).next_power_of_two().min(longest);
         let window = |i: usize| {
             let angle = 2.0 * PI * i as f64 / length as f64;
             0.358_75 - 0.488_29 * angle.cos() + 0.141_28 * (2.0 * angle).cos() - 0.011_68 * (3.0 * angle).cos()
@@ -43,8 +48,8 @@ impl Spectrum {
         Self {
             fft: FftPlanner::new().plan_fft_forward(length),
             window: (0..length).map(window).collect(),
-            rows: vec![Vec::with_capacity(length); columns],
-            power: vec![vec![0.0; length / 2 + 1]; columns],
+            rows: vec![Vec::new(); columns],
+            power: vec![Vec::new(); columns],
             segments: 0,
             rate,
         }
@@ -68,6 +73,7 @@ impl Spectrum {
                 *value = Complex::new((row - level - slope * i as f64) * weight, 0.0);
             }
             self.fft.process(&mut values);
+            power.resize(length / 2 + 1, 0.0);
             for (power, value) in power.iter_mut().zip(&values) {
                 *power += value.norm_sqr();
             }
@@ -132,6 +138,23 @@ mod tests {
         let ends = spectrum.ends().unwrap();
         assert!(ends[0] > 3.0 && ends[0] < 5.0, "{ends:?}");
         assert_eq!(ends[1], 0.0, "noise alone is no motion");
+    }
+
+    /// Numbers that are held, of a log at a megahertz that never ends.
+    #[test]
+    fn many_columns_hold_no_more_numbers_than_few() {
+        for columns in [1, 64, 65, 1024] {
+            let mut spectrum = Spectrum::new(columns, 1e6, 4.0);
+            let held =
+                |spectrum: &Spectrum| -> usize { spectrum.rows.iter().chain(&spectrum.power).map(Vec::capacity).sum() };
+            assert_eq!(held(&spectrum), 0, "nothing is held before there is a row");
+            let length = spectrum.window.len();
+            assert_eq!(length, if columns <= 64 { 65_536 } else { 4_194_304 / columns.next_power_of_two() });
+            let row = vec![1.0; columns];
+            (0..length + length / 2).for_each(|_| spectrum.push(&row));
+            assert!(held(&spectrum) <= 3 * MOST_NUMBERS / 2 + 2 * columns, "{columns}: {}", held(&spectrum));
+            assert_eq!(spectrum.segments, 2);
+        }
     }
 
     #[test]

@@ -17,14 +17,16 @@ const SIDE: usize = 2;
 /// A spike is off by so many times what nine of ten samples are.
 const FAR: f64 = 30.0;
 
-/// Candidates of a joint that are kept while the log is read.
+/// Candidates that are kept while the log is read: of a joint, and of all.
 const KEPT: usize = 10_000;
+const KEPT_OF_ALL: usize = 1 << 20;
 
 /// Spikes are rare: where more than this part of the states has one, efforts are so.
 const RARE: f64 = 0.02;
 
-/// Bins of a histogram in each octave.
+/// Bins of a histogram in each octave, and the least octave: what is smaller is the same to any arm.
 const BINS: f64 = 8.0;
+const LEAST_OCTAVE: f64 = -128.0;
 
 /// An effort that stands far out of those about it, for a sample or two.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -52,7 +54,7 @@ impl Histogram {
     #[expect(clippy::cast_possible_truncation, reason = "exponents of numbers, by eight")]
     fn push(&mut self, size: f64) {
         if size > 0.0 {
-            *self.bins.entry((size.log2() * BINS).floor() as i32).or_default() += 1;
+            *self.bins.entry((size.log2().max(LEAST_OCTAVE) * BINS).floor() as i32).or_default() += 1;
             self.count += 1;
         }
     }
@@ -86,7 +88,8 @@ struct Joint {
     distances: Histogram,
     /// The farthest samples, with their distances.
     candidates: Vec<(f64, Sample)>,
-    /// What is nearer is no candidate any more.
+    /// How many of them are kept, and the distance of the nearest: what is nearer is no candidate any more.
+    kept: usize,
     least: f64,
 }
 
@@ -125,9 +128,9 @@ impl Joint {
                 self.candidates.push((distance, sample));
             }
         }
-        if self.candidates.len() >= 2 * KEPT {
+        if self.candidates.len() >= 2 * self.kept {
             self.candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
-            self.candidates.truncate(KEPT);
+            self.candidates.truncate(self.kept);
             self.least = self.candidates.last().map_or(0.0, |last| last.0);
         }
     }
@@ -146,7 +149,8 @@ pub(crate) struct Spikes {
 
 impl Spikes {
     pub(crate) fn new(joints: usize) -> Self {
-        Self { joints: (0..joints).map(|_| Joint::default()).collect() }
+        let kept = KEPT.min(KEPT_OF_ALL / joints.max(1));
+        Self { joints: (0..joints).map(|_| Joint { kept, ..Joint::default() }).collect() }
     }
 
     /// Takes the efforts of a state.

@@ -1,33 +1,42 @@
 //! Bags of ROS 2 in SQLite: `*.db3`.
 
+use std::fmt::Write as _;
 use std::fs::File;
-use std::io::Read as _;
+use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 
+use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
 
 use crate::LogError;
 use crate::joint_state;
+use crate::limits::MOST_BYTES;
 use crate::sample::{Sample, Source};
 use crate::topic;
 
 /// Messages that are read at once. Their place is kept between: a statement cannot be kept beside its connection.
 const BATCH: u32 = 1024;
 
-const BY_TIME: &str = "SELECT timestamp, id, data FROM messages \
+/// The length is asked for first, and what is too long is not loaded.
+const BY_TIME: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                        WHERE topic_id = ?1 AND (timestamp, id) > (?2, ?3) ORDER BY timestamp, id LIMIT ?4";
 
 /// Of a bag whose index of times was left out: sorting all of it for each batch would take for ever.
-const BY_NUMBER: &str = "SELECT timestamp, id, data FROM messages \
+const BY_NUMBER: &str = "SELECT timestamp, id, length(data), CASE WHEN length(data) <= ?5 THEN data END FROM messages \
                          WHERE topic_id = ?1 AND id > ?3 AND ?2 IS NOT NULL ORDER BY id LIMIT ?4";
 
 /// The longest message that is taken for joint states, bytes.
-const LONGEST_MESSAGE: usize = 1 << 20;
+const LONGEST_MESSAGE: i32 = 1 << 20;
+
+/// What the head of a file begins with.
+const MAGIC: &[u8] = b"SQLite format 3\0";
 
 /// A bag, read by the time of recording, or as it was written where nothing tells their order.
 pub(crate) struct SqliteBag {
     path: PathBuf,
     connection: Connection,
+    /// What reading leaves beside the bag.
+    _rest: Rest,
     topic: String,
     topic_id: i64,
     query: &'static str,
@@ -43,8 +52,8 @@ pub(crate) struct SqliteBag {
 
 impl SqliteBag {
     pub(crate) fn open(path: &Path, wanted: Option<&str>) -> Result<Self, LogError> {
-        check_length(path)?;
-        let connection = connect(path).map_err(|error| unreadable(path, &error))?;
+        let head = head(path)?;
+        let (connection, rest) = connect(path, &head).map_err(|error| unreadable(path, &error))?;
         let topics = topics(path, &connection)?;
         let pairs: Vec<(String, String)> = topics.iter().map(|topic| (topic.1.clone(), topic.2.clone())).collect();
         let place = topic::choose(path, &pairs, wanted)?;
@@ -69,6 +78,7 @@ impl SqliteBag {
             query: if indices > 0 { BY_TIME } else { BY_NUMBER },
             path: path.to_owned(),
             connection,
+            _rest: rest,
             topic: name,
             topic_id,
             last: (i64::MIN, i64::MIN),
@@ -88,15 +98,23 @@ impl SqliteBag {
             LogError::file(&self.path, format_args!("{}, behind {before} messages or more", reason(&error)))
         };
         let mut statement = self.connection.prepare(self.query).map_err(wrong)?;
-        let mut rows = statement.query((self.topic_id, self.last.0, self.last.1, BATCH)).map_err(wrong)?;
+        let mut rows =
+            statement.query((self.topic_id, self.last.0, self.last.1, BATCH, LONGEST_MESSAGE)).map_err(wrong)?;
+        let mut size = 0;
         while let Some(row) = rows.next().map_err(wrong)? {
             self.last = (row.get(0).map_err(wrong)?, row.get(1).map_err(wrong)?);
-            let data = row.get_ref(2).map_err(wrong)?;
+            let length: Option<i64> = row.get(2).map_err(wrong)?;
+            let data = row.get_ref(3).map_err(wrong)?;
             let what = match data.as_blob() {
-                Ok(bytes) if bytes.len() > LONGEST_MESSAGE => Err(format!("it has {} bytes", bytes.len())),
                 Ok(bytes) => {
                     let mut sample = Sample::default();
-                    joint_state::decode(bytes, self.last.0, &mut sample).map(|()| self.batch.push(sample))
+                    joint_state::decode(bytes, self.last.0, &mut sample).map(|()| {
+                        size += sample.size();
+                        self.batch.push(sample);
+                    })
+                }
+                Err(_) if length.is_some_and(|length| length > i64::from(LONGEST_MESSAGE)) => {
+                    Err(format!("it has {} bytes", length.unwrap_or_default()))
                 }
                 Err(_) => Err(format!("its data is {}, not bytes", data.data_type())),
             };
@@ -105,6 +123,9 @@ impl SqliteBag {
                 let (count, topic) = (self.count, &self.topic);
                 LogError::file(&self.path, format_args!("message {count} of {topic} cannot be read: {what}"))
             })?;
+            if size > MOST_BYTES {
+                return Ok(());
+            }
         }
         self.at_end = self.batch.len() < BATCH as usize;
         Ok(())
@@ -137,8 +158,8 @@ impl Source for SqliteBag {
     }
 }
 
-/// Whether the file is as long as its head says. SQLite takes what is missing of the last page for zeros.
-fn check_length(path: &Path) -> Result<(), LogError> {
+/// The head of a file that is as long as it says. SQLite takes what is missing of the last page for zeros.
+fn head(path: &Path) -> Result<[u8; 100], LogError> {
     let wrong = |error| LogError::file(path, format_args!("the file cannot be read: {error}"));
     let mut file = File::open(path).map_err(wrong)?;
     let length = file.metadata().map_err(wrong)?.len();
@@ -159,15 +180,80 @@ fn check_length(path: &Path) -> Result<(), LogError> {
     if length < wanted {
         return Err(LogError::file(path, format_args!("the bag is cut off: it has {length} bytes of {wanted}")));
     }
-    Ok(())
+    let mut next = [0; MAGIC.len()];
+    if wanted > 0
+        && length > wanted
+        && file.seek(SeekFrom::Start(wanted)).and_then(|_| file.read_exact(&mut next)).is_ok()
+        && next == MAGIC
+    {
+        let what = format!(
+            "the bag ends at byte {wanted} of {length}, and another one follows, which is not read: take both apart, and \
+             name both files"
+        );
+        return Err(LogError::file(path, what));
+    }
+    Ok(head)
 }
 
-fn connect(path: &Path) -> rusqlite::Result<Connection> {
+/// A file that SQLite makes beside a bag to read it, removed when the bag is closed; none where it was there before.
+struct Rest(Option<PathBuf>);
+
+impl Drop for Rest {
+    fn drop(&mut self) {
+        if let Some(path) = &self.0 {
+            let _ = std::fs::remove_file(path);
+        }
+    }
+}
+
+/// The name of a file beside a bag.
+fn beside(path: &Path, end: &str) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(end);
+    name.into()
+}
+
+/// The bag, opened such that nothing new is left beside it.
+fn connect(path: &Path, head: &[u8; 100]) -> rusqlite::Result<(Connection, Rest)> {
     let flags = OpenFlags::SQLITE_OPEN_READ_ONLY | OpenFlags::SQLITE_OPEN_NO_MUTEX;
-    let connection = Connection::open_with_flags(path, flags)?;
+    let shared = beside(path, "-shm");
+    // a bag whose changes are written beside it first, in its WAL
+    let has_wal = head[18] == 2;
+    let is_wal_empty = || std::fs::metadata(beside(path, "-wal")).map_or(true, |wal| wal.len() == 0);
+    let (connection, rest) = if has_wal && is_wal_empty() && !shared.exists() {
+        // nobody writes, nothing is in the WAL, and none has to be made
+        let connection = Connection::open_with_flags(unchanging(path), flags | OpenFlags::SQLITE_OPEN_URI)?;
+        (connection, Rest(None))
+    } else {
+        // what reads a WAL makes an index of it, unless one who writes has made it
+        let rest = Rest((has_wal && !shared.exists()).then_some(shared));
+        (Connection::open_with_flags(path, flags)?, rest)
+    };
+    connection.set_limit(Limit::SQLITE_LIMIT_LENGTH, LONGEST_MESSAGE + 4096)?;
     // nothing that a file defines is run, and every page is looked at before it is believed
     connection.execute_batch("PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON; PRAGMA query_only = ON;")?;
-    Ok(connection)
+    Ok((connection, rest))
+}
+
+/// The name of a file by which SQLite takes it for one that nobody changes.
+fn unchanging(path: &Path) -> String {
+    let text = path.as_os_str().as_encoded_bytes();
+    let is_plain = |byte: u8| byte.is_ascii_alphanumeric() || b"/-_.~".contains(&byte);
+    let mut name = "file:".to_owned();
+    if path.is_absolute() {
+        name.push_str(if cfg!(windows) { "///" } else { "//" });
+    }
+    for byte in text {
+        match byte {
+            b'\\' if cfg!(windows) => name.push('/'),
+            b':' if cfg!(windows) => name.push(':'),
+            byte if is_plain(*byte) => name.push(char::from(*byte)),
+            byte => {
+                let _ = write!(name, "%{byte:02X}");
+            }
+        }
+    }
+    name + "?immutable=1"
 }
 
 /// The topics of a bag: number, name, type and encoding.
@@ -192,10 +278,11 @@ fn unreadable(path: &Path, error: &rusqlite::Error) -> LogError {
 
 /// What SQLite says, in a sentence.
 fn reason(error: &rusqlite::Error) -> String {
-    use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase};
+    use rusqlite::ErrorCode::{DatabaseCorrupt, NotADatabase, TooBig};
     match error.sqlite_error_code() {
         Some(DatabaseCorrupt) => "the bag is corrupt or cut off (SQLite: database disk image is malformed)".to_owned(),
         Some(NotADatabase) => "the bag is corrupt: its head is that of SQLite, the rest is not".to_owned(),
+        Some(TooBig) => format!("a message has more than {LONGEST_MESSAGE} bytes"),
         _ => format!("the bag cannot be read: {error}"),
     }
 }

@@ -1,5 +1,6 @@
 //! Units that the names of columns say.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use crate::TimeUnit;
@@ -36,13 +37,13 @@ pub struct JointUnits {
 /// The units of a file: of joints by their names, and of all others.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct FileUnits {
-    pub(crate) joints: Vec<(String, JointUnits)>,
+    pub(crate) joints: HashMap<String, JointUnits>,
     pub(crate) others: JointUnits,
 }
 
 impl FileUnits {
     pub(crate) fn of(&self, joint: &str) -> JointUnits {
-        self.joints.iter().find(|(name, _)| name == joint).map_or(self.others, |(_, units)| *units)
+        self.joints.get(joint).copied().unwrap_or(self.others)
     }
 }
 
@@ -54,6 +55,9 @@ pub(crate) struct Unit {
 }
 
 const DEGREE: f64 = PI / 180.0;
+
+/// Bytes of the longest text that is looked at for a unit.
+const LONGEST: usize = 40;
 
 /// Units of positions, which per second are units of velocities.
 const POSITIONS: [(&str, Dimension, f64); 15] = [
@@ -97,6 +101,9 @@ const TIMES: [(&[&str], TimeUnit); 4] = [
 impl Unit {
     /// The unit of a quantity, as in `deg`, `N·m`, `rad s^-1`; none where it is not one that is known.
     pub(crate) fn parse(quantity: Quantity, text: &str) -> Option<Self> {
+        if text.len() > LONGEST {
+            return None;
+        }
         let text = text.replace("s^-1", "/s").replace("s⁻¹", "/s").replace("s-1", "/s").replace("per", "/");
         // deg_s, where a name may have no stroke
         let text = match text.rsplit_once('_') {

@@ -320,3 +320,63 @@ fn columns_that_are_not_understood_are_named() {
     fs::write(&path, header + &rows.collect::<String>() + "\n").expect("a log");
     assert!(fine(&["log", log]).contains("note: numbers are converted from the units of columns' names: t [ms]\n"));
 }
+
+/// A table of three seconds at a hundred hertz.
+fn table(time: impl Fn(u32) -> String) -> String {
+    let row = |i: u32| {
+        let angle = f64::from(i) * 0.01;
+        format!("{},{:.6},{:.6}\n", time(i), angle.sin(), (2.0 * angle).cos())
+    };
+    format!("t,q1,tau1\n{}", (0..300).map(row).collect::<String>())
+}
+
+/// The end of a name says the format, and no other is written into it.
+#[test]
+fn a_motion_is_written_into_names_of_its_format() {
+    let folder = folder("log_names");
+    let path = |name: &str| folder.join(name).to_str().expect("UTF-8").to_owned();
+    fs::write(path("log.csv"), table(|i| format!("{}", f64::from(i) * 0.01))).expect("a file");
+    for (name, said) in [
+        ("x.parquet", "x.parquet ends with .parquet, which is not written; name a file that ends with .csv"),
+        ("x.mcap", "x.mcap ends with .mcap, which is not written"),
+        ("x.db3", "x.db3 ends with .db3, which is not written"),
+        ("x.npy", "x.npy ends with .npy, which is not written"),
+        ("x", "does not say its format; name a file that ends with .csv"),
+    ] {
+        fails(2, &["log", &path("log.csv"), "--cutoff", "8", "-o", &path(name)], &[said]);
+        assert!(!folder.join(name).exists(), "{name}");
+    }
+    assert_eq!(rne(&["log", &path("log.csv"), "--cutoff", "8", "-o", &path("x.CSV")]).status, 0);
+}
+
+/// Whole milliseconds are no seconds, and nobody has to guess what to do.
+#[test]
+fn the_unit_of_times_is_asked_for() {
+    let folder = folder("log_units");
+    let path = folder.join("log.csv").to_str().expect("UTF-8").to_owned();
+    fs::write(&path, table(|i| i.to_string())).expect("a file");
+    for command in [&["log", &path][..], &["identify", "planar2", &path, "-o", "-"], &["watch", "planar2", &path]] {
+        fails(2, command, &["the unit of the times is not known", "1 kHz in ms", "--time-unit ms"]);
+    }
+    assert!(fine(&["log", &path, "--time-unit", "ms"]).contains("1000 Hz"));
+}
+
+/// A header of 192 bytes, twelve types deep, took minutes.
+#[test]
+fn a_header_of_numpy_is_read_at_once() {
+    let folder = folder("log_npy");
+    let path = folder.join("deep.npy").to_str().expect("UTF-8").to_owned();
+    let kind = "[('a', ".repeat(12) + "'<f8'" + &")]".repeat(12);
+    let header = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': (1, 2)}}\n");
+    let length = u16::try_from(header.len()).expect("a short header").to_le_bytes();
+    fs::write(&path, [b"\x93NUMPY\x01\x00", &length[..], header.as_bytes()].concat()).expect("a file");
+    let said = "the numbers are `[('a', [('a', ";
+    for command in [
+        &["log", &path][..],
+        &["identify", "planar2", &path, "-o", "-"],
+        &["watch", "planar2", &path],
+        &["eval", "planar2", "--function", "gravity_torques", "--states", &path],
+    ] {
+        fails(1, command, &[said, "save them as float64"]);
+    }
+}

@@ -76,7 +76,7 @@ pub(crate) fn sqlite(times: &[f64], is_little: bool, is_indexed: bool) -> (TempD
     (folder, path)
 }
 
-fn parquet(
+pub(crate) fn parquet(
     schema: &str,
     properties: WriterProperties,
     groups: usize,
@@ -133,7 +133,7 @@ pub(crate) fn scalars(times: &[f64], properties: WriterProperties) -> Vec<u8> {
 }
 
 /// Lists, of names too.
-fn lists(times: &[f64], has_names: bool) -> Vec<u8> {
+pub(crate) fn lists(times: &[f64], has_names: bool) -> Vec<u8> {
     let names = "REQUIRED group name (LIST) { REPEATED group list { REQUIRED BINARY element (STRING); } }";
     let list =
         |name: &str| format!("OPTIONAL group {name} (LIST) {{ REPEATED group list {{ OPTIONAL DOUBLE element; }} }}");
@@ -460,4 +460,25 @@ fn stamps_of_recording_stand_in_for_missing_ones() {
     let (log, survey) = survey(&[path], options).unwrap();
     assert!(log.layout().recorded && !log.layout().has_efforts);
     assert_eq!((log.layout().step, survey.efforts.len()), (0.01, 0));
+}
+
+/// Times that may be in any unit are asked for theirs, and those of bags and types are not.
+#[test]
+fn the_unit_of_slow_times_is_known_or_asked_for() {
+    let milliseconds = Options { time_unit: Some(rne_logs::TimeUnit::Milliseconds), ..Options::default() };
+    let times: Vec<f64> = (0..200).map(f64::from).collect();
+    let (_folder, path) = file("log.npy", npy(&times, true, "<f8"));
+    assert!(survey(std::slice::from_ref(&path), Options::default()).err().unwrap().to_string().contains("--time-unit"));
+    assert_eq!(survey(&[path], milliseconds).unwrap().0.layout().step, 1e-3);
+    let (_folder, path) = file("log.npy", npy(&times, false, "<f8"));
+    let untimed =
+        Options { rate: Some(0.5), columns: ["q", "qd", "tau"].map(str::to_owned).to_vec(), ..Options::default() };
+    assert_eq!(survey(&[path], untimed).unwrap().0.layout().step, 2.0);
+    // bags and types say theirs: a log at 1 Hz is one
+    let (_folder, path) = sqlite(&times, true, true);
+    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
+    let (_folder, path) = file("log.parquet", scalars(&times, WriterProperties::builder().build()));
+    assert_eq!(survey(&[path], Options::default()).unwrap().0.layout().step, 1.0);
+    let (_folder, path) = file("log.parquet", lists(&times, true));
+    assert!(survey(&[path], Options::default()).err().unwrap().to_string().contains("--time-unit"));
 }

@@ -11,6 +11,8 @@
 
 #[cfg(feature = "full")]
 mod bags;
+#[cfg(feature = "full")]
+mod bounds;
 mod columns;
 #[cfg(feature = "full")]
 mod corrupt;
@@ -20,4 +22,6 @@ mod formats;
 #[cfg(not(feature = "full"))]
 mod left_out;
 mod runs;
+#[cfg(feature = "full")]
+mod tables;
 mod written;

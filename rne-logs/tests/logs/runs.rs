@@ -193,3 +193,65 @@ fn times_in_other_units_are_asked_for() {
     assert_eq!(found.runs[0].start, 0.0);
     assert_eq!(log.layout().origin, 1_700_000_000_000_000_000);
 }
+
+/// Times of a log of a kilohertz in whole milliseconds, of a megahertz in microseconds, or numbers of rows: taken for
+/// seconds they make a slow log of it, and accelerations a millionth.
+#[test]
+fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
+    let table = |step: f64, name: &str| {
+        let text = csv(&even(0.0, 400));
+        let rows = text.lines().skip(1).zip(0..).map(|(line, i)| {
+            let (_, cells) = line.split_once(',').unwrap();
+            format!("{},{cells}\n", step * f64::from(i))
+        });
+        format!("{name},q1,q2,qd1,qd2,tau1,tau2\n{}", rows.collect::<String>())
+    };
+    let open = |text: &str, options: Options| {
+        let (_folder, path) = file("log.csv", text);
+        survey(&[path], options).map(|(log, _)| log.layout().step)
+    };
+    let unit = |unit| Options { time_unit: Some(unit), ..Options::default() };
+    for step in [0.5, 1.0, 2.0, 8.0, 1e6] {
+        let error = open(&table(step, "t"), Options::default()).unwrap_err();
+        assert!(error.is_of_request(), "{error}");
+        assert!(error.to_string().contains("the unit of the times is not known: they are "), "{error}");
+        assert!(error.to_string().contains("as in --time-unit ms; if the times only count rows"), "{error}");
+        // who says it is believed
+        assert!((open(&table(step, "t"), unit(TimeUnit::Seconds)).unwrap() / step - 1.0).abs() < 1e-12);
+        assert!((open(&table(step, "t"), unit(TimeUnit::Milliseconds)).unwrap() / step - 1e-3).abs() < 1e-12);
+        assert!((open(&table(step, "t_s"), Options::default()).unwrap() / step - 1.0).abs() < 1e-12);
+        assert!((open(&table(step, "t [ms]"), Options::default()).unwrap() / step - 1e-3).abs() < 1e-12);
+    }
+    let error = open(&table(1.0, "t"), Options::default()).unwrap_err().to_string();
+    assert!(error.contains("1 apart, and samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
+    assert_eq!(open(&table(0.4, "t"), Options::default()).unwrap(), 0.4);
+}
+
+/// A thousand joints at a megahertz: the filter and the spectrum hold some rows of them, and not all.
+#[test]
+fn a_table_of_a_thousand_joints_is_read() {
+    let table = |joints: usize| {
+        let names = (1..=joints).map(|joint| format!(",q{joint}")).collect::<String>();
+        let rows = (0..100).map(|i| format!("{:.6}{}\n", f64::from(i) * 1e-6, ",0".repeat(joints)));
+        format!("t{names}\n{}", rows.collect::<String>())
+    };
+    let (_folder, path) = file("log.csv", table(1024));
+    let (log, found) = survey(&[path], Options::default()).unwrap();
+    assert_eq!((log.layout().joints.len(), found.counts.states), (1024, 100));
+    let (_folder, path) = file("log.csv", table(1025));
+    let error = survey(&[path], Options::default()).err().unwrap().to_string();
+    assert!(error.contains("the table has 1025 columns of positions; at most 1024 joints are read"), "{error}");
+}
+
+#[test]
+fn a_gap_has_a_limit() {
+    let (_folder, path) = file("log.csv", csv(&even(0.0, 100)));
+    let with = |gap| Options { gap, ..Options::default() };
+    for gap in [1000.5, 1e7, 1e15, f64::INFINITY, f64::NAN] {
+        let error = survey(std::slice::from_ref(&path), with(gap)).err().unwrap();
+        assert!(error.is_of_request() && error.to_string().contains("a gap is at "), "{gap}: {error}");
+    }
+    let error = survey(std::slice::from_ref(&path), with(1e7)).err().unwrap().to_string();
+    assert!(error.contains("a gap is at most 1000 steps"), "{error}");
+    assert!(survey(&[path], with(1000.0)).is_ok());
+}

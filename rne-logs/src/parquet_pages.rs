@@ -1,0 +1,353 @@
+//! The pages of a Parquet column, within bounds: a page of some bytes may claim gigabytes, and a list millions of numbers.
+
+use std::fmt;
+use std::fs::File;
+use std::io::BufRead as _;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
+use bytes::Bytes;
+use parquet::basic::{Compression, Encoding, Type as Physical};
+use parquet::column::page::{Page, PageMetadata, PageReader};
+use parquet::column::reader::{ColumnReader, get_column_reader};
+use parquet::errors::{ParquetError, Result};
+use parquet::file::reader::{ChunkReader, FileReader as _, Length, SerializedFileReader};
+use parquet::file::serialized_reader::SerializedPageReader;
+
+use crate::limits::MOST_JOINTS;
+
+/// Bytes of pages, unpacked, that all columns hold at once.
+const MOST_BYTES: u64 = 320 << 20;
+
+/// Bytes by which a text of a dictionary is larger in memory, by those that its length takes in the file.
+const OF_TEXT: u64 = 12;
+
+/// The kind of a page that has the values which others point to.
+const DICTIONARY: u64 = 2;
+
+/// What a file has that is in order, and that is not read.
+#[derive(Debug)]
+pub(crate) struct Refused(String);
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Refused {}
+
+impl Refused {
+    pub(crate) fn error(what: impl fmt::Display) -> ParquetError {
+        ParquetError::External(Box::new(Self(what.to_string())))
+    }
+
+    /// What was refused, if an error says so.
+    pub(crate) fn of(error: &ParquetError) -> Option<&Self> {
+        match error {
+            ParquetError::External(inner) => inner.downcast_ref(),
+            _ => None,
+        }
+    }
+}
+
+/// The room for pages that the columns of a table share.
+#[derive(Debug, Default)]
+pub(crate) struct Room {
+    used: AtomicU64,
+}
+
+/// Opens the reader of a column of a group of rows.
+pub(crate) fn column_reader(
+    file: &SerializedFileReader<File>,
+    source: &Arc<File>,
+    room: &Arc<Room>,
+    group: usize,
+    (leaf, name): (usize, &str),
+) -> Result<ColumnReader> {
+    let rows = file.metadata().row_group(group);
+    let chunk = rows.column(leaf);
+    let compression = chunk.compression();
+    if matches!(compression, Compression::BROTLI(_) | Compression::LZO) {
+        let what = format!(
+            "the column {name} is compressed with {}, which is not read: write the file with zstd, snappy, gzip or lz4, \
+             in pandas to_parquet(…, compression=\"zstd\")",
+            compression.to_string().split('(').next().unwrap_or_default().to_lowercase()
+        );
+        return Err(Refused::error(what));
+    }
+    let (start, length) = chunk.byte_range();
+    let bounds = Arc::new(Bounds {
+        file: Arc::clone(source),
+        room: Arc::clone(room),
+        of_texts: chunk.column_type() == Physical::BYTE_ARRAY,
+        next: AtomicU64::new(start),
+        page: AtomicU64::new(0),
+        dictionary: AtomicU64::new(0),
+    });
+    let total = usize::try_from(rows.num_rows()).unwrap_or(0);
+    let descriptor = chunk.column_descr_ptr();
+    let pages = Pages {
+        reader: SerializedPageReader::new(Arc::clone(&bounds), chunk, total, None)?,
+        bounds,
+        end: start.saturating_add(length),
+        is_list: descriptor.max_rep_level() == 1,
+        length: 0,
+        name: name.to_owned(),
+    };
+    Ok(get_column_reader(descriptor, Box::new(pages)))
+}
+
+/// The file of a column, whose pages are charged to the room before they are unpacked. The heads of pages are read from
+/// here one after another, and what follows a head is its page.
+struct Bounds {
+    file: Arc<File>,
+    room: Arc<Room>,
+    of_texts: bool,
+    /// Where the next head stands.
+    next: AtomicU64,
+    /// What this column was charged for: its page, and its dictionary.
+    page: AtomicU64,
+    dictionary: AtomicU64,
+}
+
+impl Bounds {
+    fn charge(&self, place: &AtomicU64, bytes: u64) -> Result<()> {
+        let before = place.swap(bytes, Relaxed);
+        let used = self.room.used.fetch_add(bytes, Relaxed).wrapping_add(bytes).wrapping_sub(before);
+        self.room.used.fetch_sub(before, Relaxed);
+        if used > MOST_BYTES {
+            let what = format!(
+                "its pages take more than {} MB at once: write the file in groups of fewer rows, in pandas \
+                 to_parquet(…, row_group_size=10000)",
+                MOST_BYTES >> 20
+            );
+            return Err(Refused::error(what));
+        }
+        Ok(())
+    }
+}
+
+impl Drop for Bounds {
+    fn drop(&mut self) {
+        let held = self.page.load(Relaxed) + self.dictionary.load(Relaxed);
+        self.room.used.fetch_sub(held, Relaxed);
+    }
+}
+
+impl Length for Bounds {
+    fn len(&self) -> u64 {
+        Length::len(&*self.file)
+    }
+}
+
+impl ChunkReader for Bounds {
+    type T = <File as ChunkReader>::T;
+
+    fn get_read(&self, start: u64) -> Result<Self::T> {
+        let mut read = self.file.get_read(start)?;
+        let (kind, size) = head(read.fill_buf()?)
+            .ok_or_else(|| ParquetError::General("a page does not begin as one does".to_owned()))?;
+        if kind == DICTIONARY {
+            self.charge(&self.dictionary, size.saturating_mul(if self.of_texts { OF_TEXT } else { 2 }))?;
+        } else {
+            self.charge(&self.page, size)?;
+        }
+        Ok(read)
+    }
+
+    fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
+        self.next.store(start.saturating_add(length as u64), Relaxed);
+        self.file.get_bytes(start, length)
+    }
+}
+
+/// The kind and the size of a page, bytes, packed or not, whatever is more: the first three numbers of its head, which is
+/// written in Thrift's compact protocol.
+fn head(mut bytes: &[u8]) -> Option<(u64, u64)> {
+    let mut number = || {
+        // a field with the next number, a 32-bit integer
+        let rest = bytes.strip_prefix(&[0x15])?;
+        let (number, rest) = varint(rest)?;
+        bytes = rest;
+        // signs alternate; none is negative
+        (number & 1 == 0).then_some(number >> 1)
+    };
+    let (kind, unpacked, packed) = (number()?, number()?, number()?);
+    Some((kind, unpacked.max(packed)))
+}
+
+/// An integer, seven bits a byte, the lowest first.
+fn varint(bytes: &[u8]) -> Option<(u64, &[u8])> {
+    let mut number = 0;
+    for (place, byte) in bytes.iter().enumerate().take(5) {
+        number |= u64::from(byte & 0x7F) << (7 * place);
+        if byte & 0x80 == 0 {
+            return Some((number, &bytes[place + 1..]));
+        }
+    }
+    None
+}
+
+/// The pages of a column. Of lists their lengths are looked at before any number is read.
+struct Pages {
+    reader: SerializedPageReader<Bounds>,
+    bounds: Arc<Bounds>,
+    /// Where the column ends in the file.
+    end: u64,
+    is_list: bool,
+    /// Of the list at the end of the last page.
+    length: usize,
+    name: String,
+}
+
+impl Pages {
+    /// Whether no list is longer than joints may be.
+    fn check(&mut self, page: &Page) -> Result<()> {
+        let (levels, count) = match page {
+            Page::DataPage { buf, num_values, rep_level_encoding, .. } => {
+                if *rep_level_encoding != Encoding::RLE {
+                    let what = format!("the lists of {} are written in a way that is no longer in use", self.name);
+                    return Err(Refused::error(what));
+                }
+                let length = buf.first_chunk().map_or(0, |length| u32::from_le_bytes(*length)) as usize;
+                (buf.get(4..length.saturating_add(4)), *num_values)
+            }
+            Page::DataPageV2 { buf, num_values, rep_levels_byte_len, .. } => {
+                (buf.get(..*rep_levels_byte_len as usize), *num_values)
+            }
+            Page::DictionaryPage { .. } => return Ok(()),
+        };
+        let levels = levels.ok_or_else(|| ParquetError::General("a page is not what its head says".to_owned()))?;
+        let longest = longest_list(levels, count as usize, &mut self.length);
+        if longest > MOST_JOINTS {
+            let what = format!("a list of {} has {longest} numbers or more; at most {MOST_JOINTS} are read", self.name);
+            return Err(Refused::error(what));
+        }
+        Ok(())
+    }
+}
+
+/// The longest list of so many values by their levels of repetition, 0 where a list begins, as runs and as bits. The list
+/// that goes on from the last page has a length, which becomes that of the last list. It stops where one is too long.
+fn longest_list(mut levels: &[u8], count: usize, length: &mut usize) -> usize {
+    let (mut seen, mut longest) = (0, 0);
+    while seen < count && longest <= MOST_JOINTS {
+        let Some((head, rest)) = varint(levels) else { break };
+        let head = usize::try_from(head).unwrap_or(usize::MAX);
+        if head & 1 == 0 {
+            let Some((level, rest)) = rest.split_first() else { break };
+            let run = (head >> 1).min(count - seen);
+            if level & 1 == 1 {
+                *length += run;
+            } else if run > 0 {
+                *length = 1;
+            }
+            longest = longest.max(*length);
+            (seen, levels) = (seen + run, rest);
+        } else {
+            let (bytes, rest) = rest.split_at((head >> 1).min(rest.len()));
+            for bit in bytes.iter().flat_map(|byte| (0..8).map(move |bit| byte >> bit & 1)).take(count - seen) {
+                *length = if bit == 1 { *length + 1 } else { 1 };
+                longest = longest.max(*length);
+            }
+            (seen, levels) = (seen.saturating_add(8 * bytes.len()), rest);
+            if bytes.is_empty() {
+                break;
+            }
+        }
+    }
+    longest
+}
+
+impl PageReader for Pages {
+    fn get_next_page(&mut self) -> Result<Option<Page>> {
+        let page = self.reader.get_next_page()?;
+        if let Some(page) = page.as_ref().filter(|_| self.is_list) {
+            self.check(page)?;
+        }
+        Ok(page)
+    }
+
+    /// Not from the library's reader, which reads a head for it and asks for its page without one.
+    fn peek_next_page(&mut self) -> Result<Option<PageMetadata>> {
+        Err(ParquetError::General("no page is skipped".to_owned()))
+    }
+
+    fn skip_next_page(&mut self) -> Result<()> {
+        Err(ParquetError::General("no page is skipped".to_owned()))
+    }
+
+    fn at_record_boundary(&mut self) -> Result<bool> {
+        Ok(self.bounds.next.load(Relaxed) >= self.end)
+    }
+}
+
+impl Iterator for Pages {
+    type Item = Result<Page>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        self.get_next_page().transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// All columns of a table share the room, and give back what they had.
+    #[test]
+    fn pages_are_charged_to_the_room() {
+        let room = Arc::new(Room::default());
+        let file = Arc::new(tempfile::tempfile().unwrap());
+        let column = || Bounds {
+            file: Arc::clone(&file),
+            room: Arc::clone(&room),
+            of_texts: false,
+            next: AtomicU64::new(0),
+            page: AtomicU64::new(0),
+            dictionary: AtomicU64::new(0),
+        };
+        let (one, two) = (column(), column());
+        one.charge(&one.dictionary, MOST_BYTES / 4).unwrap();
+        one.charge(&one.page, MOST_BYTES / 4).unwrap();
+        one.charge(&one.page, MOST_BYTES / 2).unwrap();
+        two.charge(&two.page, MOST_BYTES / 4).unwrap();
+        let error = two.charge(&two.page, MOST_BYTES / 4 + 1).unwrap_err().to_string();
+        assert!(error.contains("its pages take more than 320 MB at once: write the file in groups"), "{error}");
+        drop(one);
+        two.charge(&two.page, MOST_BYTES).unwrap();
+        drop(two);
+        assert_eq!(room.used.load(Relaxed), 0);
+    }
+
+    #[test]
+    fn heads_of_pages_say_their_sizes() {
+        assert_eq!(head(&[0x15, 0, 0x15, 0x80, 1, 0x15, 6]), Some((0, 64)));
+        assert_eq!(head(&[0x15, 4, 0x15, 2, 0x15, 0xFE, 0xFF, 0xFF, 0xFF, 0x0F]), Some((2, 0x7FFF_FFFF)));
+        for bytes in [&[][..], &[0x15, 0, 0x15, 1, 0x15, 2], &[0x18, 0, 0x15], &[0x15, 0x80, 0x80, 0x80, 0x80, 0x80, 0]]
+        {
+            assert_eq!(head(bytes), None, "{bytes:?}");
+        }
+    }
+
+    /// Lists of 2, 3, 1 and what follows.
+    #[test]
+    fn lists_are_as_long_as_their_levels_say() {
+        // 0 1 0 1 1 0 as bits, then 1 twice and 0 once as runs
+        let levels = [3, 0b01_1010, 4, 1, 2, 0];
+        let mut length = 0;
+        assert_eq!(longest_list(&levels, 6, &mut length), 3);
+        // eight bits are the last list of 1 and two more of 1, and runs are behind these
+        let mut length = 0;
+        assert_eq!(longest_list(&levels, 11, &mut length), 3);
+        assert_eq!(length, 1);
+        // a list goes on from page to page
+        let mut length = 1000;
+        assert_eq!(longest_list(&[60, 1], 30, &mut length), 1030);
+        // and whatever a page claims, it is looked at once
+        let mut length = 0;
+        assert!(longest_list(&[0xFE, 0xFF, 0xFF, 0xFF, 0x0F, 1], 50_000_000, &mut length) > MOST_JOINTS);
+        assert_eq!(longest_list(&[1, 0, 0], 50, &mut 0), 0);
+    }
+}

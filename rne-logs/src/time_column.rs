@@ -1,0 +1,94 @@
+//! Which column of a table has the times.
+
+use std::path::Path;
+
+use crate::column_name::time;
+use crate::{LogError, Options, TimeUnit};
+
+/// A column whose name is that of times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct TimeColumn {
+    pub(crate) place: usize,
+    /// The unit that its name says.
+    pub(crate) unit: Option<TimeUnit>,
+    /// Whether its name begins as those of the joints do that are asked for.
+    is_of_group: bool,
+}
+
+/// A name behind the prefix that the options ask for; none if it begins otherwise.
+pub(crate) fn within<'a>(name: &'a str, options: &Options) -> Option<&'a str> {
+    match &options.topic {
+        Some(prefix) => name.trim_start_matches('/').strip_prefix(prefix.trim_matches('/')),
+        None => Some(name),
+    }
+}
+
+impl TimeColumn {
+    /// The column of a name; none if it is not that of times.
+    pub(crate) fn of(path: &Path, place: usize, name: &str, options: &Options) -> Result<Option<Self>, LogError> {
+        let inner = within(name, options);
+        let Some(unit) = time(name).or_else(|| inner.and_then(time)) else { return Ok(None) };
+        let unit = unit.map_err(|text| {
+            let what = format!("the column {name} has times in {text}, which is none of s, ms, us, ns");
+            LogError::file(path, what)
+        })?;
+        Ok(Some(Self { place, unit, is_of_group: inner.is_some() }))
+    }
+
+    /// The column that is read of several: the first whose name begins as those of the joints do, or the only one.
+    pub(crate) fn choose<'a>(
+        path: &Path,
+        times: &[Self],
+        name: impl Fn(usize) -> &'a str,
+        options: &Options,
+    ) -> Result<Option<Self>, LogError> {
+        let mut of_group: Vec<Self> = times.iter().filter(|time| time.is_of_group).copied().collect();
+        if of_group.is_empty() {
+            if let [first, second, ..] = times {
+                let what = format!(
+                    "the columns {} and {} are both times, and neither begins with {}, as the columns of the joints \
+                     do: give the one that is meant such a name, or remove the others",
+                    name(first.place),
+                    name(second.place),
+                    options.topic.as_deref().unwrap_or_default()
+                );
+                return Err(LogError::request(path, what));
+            }
+            of_group.extend(times);
+        }
+        let Some((&chosen, others)) = of_group.split_first() else { return Ok(None) };
+        let said = name(chosen.place);
+        if let (Some(unit), Some(asked)) = (chosen.unit, options.time_unit)
+            && unit != asked
+        {
+            let what = format!("the column {said} has times in {}, and --time-unit says {}", unit.name(), asked.name());
+            return Err(LogError::request(path, what));
+        }
+        // stamp_sec and stamp_nanosec are one time in two columns
+        let stem = |name: &'a str| name.rsplit_once('_').map(|(stem, _)| stem);
+        let other = others.iter().find(|other| {
+            chosen.unit.is_some()
+                && other.unit.is_some()
+                && other.unit != chosen.unit
+                && stem(name(other.place)) == stem(said)
+        });
+        if let Some(other) = other {
+            let what = format!(
+                "the columns {said} and {} are both times: if they are two parts of one, make one column of them, else \
+                 remove one",
+                name(other.place)
+            );
+            return Err(LogError::file(path, what));
+        }
+        Ok(Some(chosen))
+    }
+}
+
+/// What a reader should know of the columns of times that are not read.
+pub(crate) fn unread<'a>(
+    times: &[TimeColumn],
+    chosen: Option<TimeColumn>,
+    name: impl Fn(usize) -> &'a str,
+) -> Vec<&'a str> {
+    times.iter().filter(|time| Some(**time) != chosen).map(|time| name(time.place)).collect()
+}
