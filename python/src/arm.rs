@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use rne::compiled::{CompiledArm, Form, Function};
 use rne_codegen::Compiler;
 use rne_codegen::plan::PlanFile;
@@ -53,7 +53,8 @@ impl std::str::FromStr for FormOr {
 /// Made by `rne.load` or `rne.robots`. Arguments are arrays of the shape `(n,)` for one state or `(N, n)` for many, a
 /// single row standing for all; revolute joints in rad, rad/s, rad/s² and N m, prismatic ones in m, m/s, m/s² and N.
 /// Arrays of float32 are computed in single precision, everything else in double. `out` is an array that the result is
-/// written to.
+/// written to; it shares no memory with an argument. `parameters` are the run-time parameters, in the order of the
+/// property `parameters`, or a dict of them by name.
 #[pyclass(frozen, module = "rne")]
 #[derive(Clone)]
 pub(crate) struct Arm {
@@ -136,6 +137,10 @@ impl Arm {
         let run_time = &self.robot().run_time;
         if !run_time.is_empty() {
             let value = match parameters {
+                Some(value) if value.is_instance_of::<PyDict>() => {
+                    let names = run_time.names.clone();
+                    py.import("rne.parameters")?.call_method1("in_order", (value, names))?
+                }
                 Some(value) => value.clone(),
                 // those of the file
                 None => pyo3::types::PyList::new(py, run_time.values(self.robot()))?.into_any(),

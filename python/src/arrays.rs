@@ -1,9 +1,13 @@
 //! numpy's arrays as the arguments and results of the machine.
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
+use std::ops::Range;
+
+use numpy::{BorrowError, Element, PyArrayDyn, PyArrayMethods};
+use numpy::{PyReadonlyArrayDyn, PyReadwriteArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::sync::PyOnceLock;
+use pyo3::types::{PyDict, PyFloat, PyList, PyTuple, PyType};
 use rne::compiled::{Array, Number};
 
 /// An argument: its name, how many elements it has for a state, and what was given.
@@ -12,6 +16,9 @@ pub(crate) struct Given<'py> {
     pub(crate) elements: usize,
     pub(crate) value: Bound<'py, PyAny>,
 }
+
+/// Numbers of a payload without inertia: its mass, and its centre of mass.
+const POINT_MASS: usize = 4;
 
 /// Whether all arrays among the arguments are of single precision; lists and numbers follow them.
 pub(crate) fn are_single(given: &[Given<'_>]) -> bool {
@@ -43,44 +50,58 @@ enum Layout<'py, T: Element> {
 
 impl<'py, T: Element + Number> Held<'py, T> {
     /// Takes an array as it is where its layout allows, a copy where not; of columns of Polars and PyArrow likewise.
-    pub(crate) fn of(given: &Given<'py>, dtype: &str) -> PyResult<Self> {
+    /// It has no byte of the memory that is `written`.
+    pub(crate) fn of(given: &Given<'py>, dtype: &str, written: &Range<usize>) -> PyResult<Self> {
         let &Given { name, elements, ref value } = given;
         let py = value.py();
         let value = match seen(given)? {
             None => value.clone(),
             Some(views) => match views.cast::<PyTuple>() {
-                Ok(columns) => return Self::of_columns(given, columns, dtype),
+                Ok(columns) => return Self::of_columns(given, columns, dtype, written),
                 Err(_) => views,
             },
         };
-        let array = taken(py, name, &value, dtype)?;
-        let shape = array.shape().to_vec();
+        let mut array = taken(py, name, &value, dtype, written)?;
+        let mut shape = array.shape().to_vec();
+        if name == "payload" && shape.last() == Some(&POINT_MASS) {
+            let mut widths = vec![(0, 0); shape.len()];
+            if let (Some(width), Some(numbers)) = (widths.last_mut(), shape.last_mut()) {
+                (width.1, *numbers) = (elements - POINT_MASS, elements);
+            }
+            array = py.import("numpy")?.call_method1("pad", (array, widths))?.cast_into()?;
+        }
         let states = match shape[..] {
             [found] if found == elements => None,
             [states, found] if found == elements => Some(states),
             _ => {
                 let shape: Vec<String> = shape.iter().map(ToString::to_string).collect();
+                let point = if name == "payload" { "; 4 numbers in place of 10 are a point mass" } else { "" };
                 let message = format!(
-                    "`{name}` has the shape ({}); it is ({elements},) for one state or (N, {elements}) for many",
+                    "`{name}` has the shape ({}); it is ({elements},) for one state or (N, {elements}) for many{point}",
                     shape.join(", ")
                 );
                 return Err(PyValueError::new_err(message));
             }
         };
-        let array =
-            if array.is_c_contiguous() || array.is_fortran_contiguous() { array } else { contiguous(py, array)? };
+        let is_in_order = array.is_c_contiguous() || array.is_fortran_contiguous();
+        let array = if is_in_order && array.is_aligned() { array } else { copied(py, &array)? };
         let is_fortran = !array.is_c_contiguous();
         let array = readable(name, &array)?;
         let layout = if is_fortran { Layout::Fortran(array) } else { Layout::Rows(array) };
         Ok(Self { name, elements, layout, states })
     }
 
-    fn of_columns(given: &Given<'py>, columns: &Bound<'py, PyTuple>, dtype: &str) -> PyResult<Self> {
+    fn of_columns(
+        given: &Given<'py>,
+        columns: &Bound<'py, PyTuple>,
+        dtype: &str,
+        written: &Range<usize>,
+    ) -> PyResult<Self> {
         let &Given { name, elements, .. } = given;
         let py = columns.py();
         let of_column = |column: Bound<'py, PyAny>| {
-            let array = taken(py, name, &column, dtype)?;
-            let array = if array.is_c_contiguous() { array } else { contiguous(py, array)? };
+            let array = taken(py, name, &column, dtype, written)?;
+            let array = if array.is_c_contiguous() && array.is_aligned() { array } else { copied(py, &array)? };
             readable(name, &array)
         };
         let columns: Vec<_> = columns.iter().map(of_column).collect::<PyResult<_>>()?;
@@ -91,7 +112,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
     /// The slices of its columns, which [`array`](Self::array) is given.
     pub(crate) fn columns(&self) -> PyResult<Vec<&[T]>> {
         let Layout::Columns(columns) = &self.layout else { return Ok(Vec::new()) };
-        columns.iter().map(|column| column.as_slice().map_err(|_| not_contiguous())).collect()
+        columns.iter().map(|column| column.as_slice().map_err(|_| no_slice(self.name))).collect()
     }
 
     /// The array for so many states: a single row is that of all.
@@ -112,7 +133,7 @@ impl<'py, T: Element + Number> Held<'py, T> {
             }
             Layout::Columns(_) => return Ok(Array::Columns(columns)),
         };
-        let numbers = array.as_slice().map_err(|_| not_contiguous())?;
+        let numbers = array.as_slice().map_err(|_| no_slice(self.name))?;
         match self.states {
             None | Some(1) if states != 1 => Ok(Array::Same(numbers)),
             Some(_) if is_fortran => Ok(Array::Strided { numbers, state: 1, element: states }),
@@ -129,8 +150,9 @@ impl<'py, T: Element + Number> Held<'py, T> {
     }
 }
 
-fn not_contiguous() -> PyErr {
-    PyValueError::new_err("an array is not contiguous")
+/// An array that cannot be a slice: it is copied before, or refused.
+fn no_slice(name: &str) -> PyErr {
+    PyValueError::new_err(format!("`{name}` is not contiguous, or not aligned"))
 }
 
 /// Whether it may be a column or a table of Polars or PyArrow.
@@ -153,23 +175,89 @@ fn seen<'py>(given: &Given<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
     Ok((!views.is_none()).then_some(views))
 }
 
+/// What is given as an array, whatever its layout: its own memory where it has the type already.
 fn taken<'py, T: Element>(
     py: Python<'py>,
     name: &'static str,
     value: &Bound<'py, PyAny>,
     dtype: &str,
+    written: &Range<usize>,
 ) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    match value.cast::<PyArrayDyn<T>>() {
-        Ok(array) => Ok(array.clone()),
-        Err(_) => converted(py, name, value, dtype),
+    refuse_masked(name, value)?;
+    let array = match value.cast::<PyArrayDyn<T>>() {
+        Ok(array) => array.clone(),
+        Err(_) => converted(py, name, value, dtype)?,
+    };
+    // numpy compares the owners of arrays, and one memory may have several: memoryviews, files, shared memory
+    let read = if written.is_empty() { 0..0 } else { memory(&array) };
+    if read.start < written.end && written.start < read.end {
+        let message = format!("`out` and `{name}` share memory: give `out` memory of its own");
+        return Err(PyValueError::new_err(message));
     }
+    Ok(array)
 }
 
-fn contiguous<'py, T: Element>(
-    py: Python<'py>,
-    array: Bound<'py, PyArrayDyn<T>>,
-) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
-    let copy = py.import("numpy")?.call_method1("ascontiguousarray", (array,))?;
+/// The addresses from the first byte of an array to its last one, gaps between its numbers included; none of an empty
+/// array.
+pub(crate) fn memory<T: Element>(array: &Bound<'_, PyArrayDyn<T>>) -> Range<usize> {
+    if array.is_empty() {
+        return 0..0;
+    }
+    let first = array.data().addr();
+    let (mut start, mut end) = (first, first.saturating_add(size_of::<T>()));
+    for (&length, &stride) in array.shape().iter().zip(array.strides()) {
+        let reach = stride.unsigned_abs().saturating_mul(length - 1);
+        if stride < 0 {
+            start = start.saturating_sub(reach);
+        } else {
+            end = end.saturating_add(reach);
+        }
+    }
+    start..end
+}
+
+/// Refuses what `numpy.ma` hides: a masked number is no number, as null of Polars and PyArrow is none.
+pub(crate) fn refuse_masked(name: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+    // most arguments are plain arrays: nothing more is asked of them
+    if value.is_exact_instance_of::<PyUntypedArray>() {
+        return Ok(());
+    }
+    let has_masked = match (value.cast::<PyList>(), value.cast::<PyTuple>()) {
+        (Ok(list), _) => any(list.iter(), is_masked)?,
+        (_, Ok(tuple)) => any(tuple.iter(), is_masked)?,
+        _ => is_masked(value)?,
+    };
+    if has_masked {
+        let message = format!("`{name}`: there are masked elements, which are no numbers: drop or fill them before");
+        return Err(PyValueError::new_err(message));
+    }
+    Ok(())
+}
+
+fn any<'py>(
+    mut values: impl Iterator<Item = Bound<'py, PyAny>>,
+    is: impl Fn(&Bound<'py, PyAny>) -> PyResult<bool>,
+) -> PyResult<bool> {
+    values.try_fold(false, |found, value| Ok(found || is(&value)?))
+}
+
+fn is_masked(value: &Bound<'_, PyAny>) -> PyResult<bool> {
+    static MASKED_ARRAY: PyOnceLock<Py<PyType>> = PyOnceLock::new();
+    if value.is_exact_instance_of::<PyFloat>() {
+        return Ok(false);
+    }
+    let py = value.py();
+    if !value.is_instance(MASKED_ARRAY.import(py, "numpy.ma", "MaskedArray")?)? {
+        return Ok(false);
+    }
+    py.import("numpy.ma")?.call_method1("is_masked", (value,))?.extract()
+}
+
+/// The numbers of an array in memory of their own, in C order and aligned.
+fn copied<'py, T: Element>(py: Python<'py>, array: &Bound<'py, PyArrayDyn<T>>) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    let keywords = PyDict::new(py);
+    keywords.set_item("order", "C")?;
+    let copy = py.import("numpy")?.call_method("array", (array,), Some(&keywords))?;
     Ok(copy.cast_into::<PyArrayDyn<T>>()?)
 }
 
@@ -192,7 +280,11 @@ fn converted<'py, T: Element>(
     let kind = numpy.call_method1("asarray", (value,)).and_then(|array| array.getattr("dtype")?.getattr("kind"));
     let kind: String = kind.and_then(|kind| kind.extract()).unwrap_or_default();
     if !["f", "i", "u", "b"].contains(&kind.as_str()) {
-        return Err(PyTypeError::new_err(format!("`{name}` is no array of real numbers")));
+        let order = match name {
+            "parameters" => ": write them in the order of `arm.parameters`, or as a dict by their names",
+            _ => "",
+        };
+        return Err(PyTypeError::new_err(format!("`{name}` is no array of real numbers{order}")));
     }
     Ok(numpy.call_method("asarray", (value,), Some(&keywords))?.cast_into::<PyArrayDyn<T>>()?)
 }
@@ -229,5 +321,20 @@ pub(crate) fn room<'py, T: Element>(
     if array.shape() != shape || !array.is_c_contiguous() {
         return Err(PyValueError::new_err(wanted()));
     }
+    if !array.is_aligned() {
+        let message = format!("`out` is not aligned: its address must be a multiple of {}", align_of::<T>());
+        return Err(PyValueError::new_err(message));
+    }
+    refuse_masked("out", out)?;
     Ok(array.clone())
+}
+
+/// The room as memory that nobody else reads or writes.
+pub(crate) fn writable<'py, T: Element>(room: &Bound<'py, PyArrayDyn<T>>) -> PyResult<PyReadwriteArrayDyn<'py, T>> {
+    room.try_readwrite().map_err(|error| {
+        PyValueError::new_err(match error {
+            BorrowError::NotWriteable => "`out` must be a writable array: this one is read-only",
+            _ => "`out` is in use, by another call or as an argument: give it memory of its own",
+        })
+    })
 }

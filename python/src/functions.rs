@@ -1,12 +1,12 @@
 //! A function of an arm over numpy's arrays.
 
-use numpy::{Element, PyArrayDyn, PyArrayMethods};
+use numpy::{Element, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rne::compiled::{Arguments, CompiledArm, Destination, Function, Number};
 use rne_codegen::{Layout, Record};
 
-use crate::arrays::{Given, Held, are_single, room, states};
+use crate::arrays::{Given, Held, are_single, memory, room, states, writable};
 use crate::errors::of_evaluation;
 
 /// The shape of a result for one state: what numpy users expect of it.
@@ -62,7 +62,9 @@ fn evaluate_in<'py, T: Element + Number>(
     out: Option<&Bound<'py, PyAny>>,
     dtype: &str,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let held: Vec<Held<'py, T>> = given.iter().map(|given| Held::of(given, dtype)).collect::<PyResult<_>>()?;
+    let written = out.and_then(|out| out.cast::<PyArrayDyn<T>>().ok()).map_or(0..0, memory);
+    let held: Vec<Held<'py, T>> =
+        given.iter().map(|given| Held::of(given, dtype, &written)).collect::<PyResult<_>>()?;
     let many = states(&held)?;
     let count = many.unwrap_or(1);
     let columns: Vec<Vec<&[T]>> = held.iter().map(Held::columns).collect::<PyResult<_>>()?;
@@ -86,9 +88,7 @@ fn evaluate_in<'py, T: Element + Number>(
     let whole: Vec<usize> = many.into_iter().chain(of_state.iter().copied()).collect();
     let result = room::<T>(py, out, &whole, dtype)?;
     {
-        let mut writable = result.try_readwrite().map_err(|_| {
-            PyValueError::new_err("`out` is one of the arguments, or cannot be written to: it needs memory of its own")
-        })?;
+        let mut writable = writable(&result)?;
         let numbers = writable.as_slice_mut().map_err(|_| PyValueError::new_err("`out` is not contiguous"))?;
         let computed = py.detach(|| match function {
             Function::ForwardKinematics | Function::LinkPoses => {

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 
-use pyo3::exceptions::{PyIndexError, PyValueError};
+use pyo3::exceptions::{PyIndexError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne::DynArm;
@@ -12,6 +12,7 @@ use rne_codegen::emit::{self, Precision, Prefix, Selection};
 use rne_diagnose::{Diagnosis, Observation};
 
 use crate::arm::{Arm, Origin, name};
+use crate::arrays::refuse_masked;
 use crate::errors::of_evaluation;
 use crate::notebook;
 
@@ -108,12 +109,18 @@ impl Arm {
     fn diagnose<'py>(
         &self,
         py: Python<'py>,
-        q: Vec<f64>,
-        qd: Vec<f64>,
-        qdd: Vec<f64>,
-        tau: Vec<f64>,
+        q: &Bound<'py, PyAny>,
+        qd: &Bound<'py, PyAny>,
+        qdd: &Bound<'py, PyAny>,
+        tau: &Bound<'py, PyAny>,
         tolerance: f64,
     ) -> PyResult<Bound<'py, PyDict>> {
+        let numbers = |name: &str, value: &Bound<'py, PyAny>| -> PyResult<Vec<f64>> {
+            refuse_masked(name, value)?;
+            value.extract().map_err(|_| PyTypeError::new_err(format!("`{name}` is no sequence of real numbers")))
+        };
+        let (q, qd, qdd) = (numbers("q", q)?, numbers("qd", qd)?, numbers("qdd", qdd)?);
+        let tau = numbers("tau", tau)?;
         let largest = tau.iter().fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
         let resolution = vec![tolerance * largest; tau.len()];
         let seen = Observation { q, qd, qdd, wrench: None, tau, resolution };

@@ -126,3 +126,59 @@ joints: [{type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: m, 
     assert np.allclose(arm.gravity_torques(q, parameters=masses), 9.81 * 0.5 * masses)
     assert np.allclose(arm.gravity_torques(q), 9.81 * 0.5 * 2)
     assert np.allclose(rne.load(text, settings={"m": 5}).gravity_torques(q), 9.81 * 0.5 * 5)
+
+
+def test_parameters_have_names():
+    text = """
+format: 1
+name: rod
+source: own
+convention: standard
+gravity: [0, -9.81, 0]
+parameters: {m: 2.0, half: 0.5}
+joints: [{type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: m, com: [-half, 0, 0]}}]
+"""
+    arm = rne.load(text, run_time=["half", "m"])
+    q, masses = np.zeros((4, 1)), np.array([1.0, 2.0, 3.0, 4.0])
+    of = lambda parameters, q=q: arm.gravity_torques(q, parameters=parameters)
+    assert np.allclose(of({"m": 3, "half": 0.5}), 9.81 * 0.5 * 3)
+    assert np.array_equal(of({"m": 3, "half": 0.5}), of({"half": 0.5, "m": 3.0}))
+    assert np.array_equal(of({"m": 3, "half": 0.5}), of([0.5, 3]))
+    assert np.allclose(of({"m": masses, "half": 0.5}), 9.81 * 0.5 * masses[:, None])
+    assert np.array_equal(of({"m": masses.tolist(), "half": [0.5]}), of({"m": masses, "half": 0.5}))
+    single = {"m": masses.astype("f4"), "half": 0.5}
+    assert of(single, q.astype("f4")).dtype == np.float32 == of({"m": 1, "half": 1}, q.astype("f4")).dtype
+    for wrong, says in [
+        ({"m": 3}, "the value of `half` is missing; this arm has half, m"),
+        ({"m": 3, "half": 0.5, "l": 1}, "there is no run-time parameter `l`; this arm has half, m"),
+        ({"m": masses, "half": masses[:3]}, "arrays have 3 and 4 states"),
+        ({"m": masses[:3], "half": 0.5}, "`parameters` has 3 states where others have 4"),
+        ({"m": "three", "half": 0.5}, "`m` is no real number"),
+        ({"m": q, "half": 0.5}, "`m` is no real number and no array"),
+        ({"m": np.ma.array(masses, mask=[0, 0, 1, 0]), "half": 0.5}, "`m`: there are masked elements"),
+        ("three", "no array of real numbers: write them in the order of `arm.parameters`, or as a dict by their names"),
+    ]:
+        with pytest.raises((TypeError, ValueError), match=says):
+            of(wrong)
+
+
+def test_payloads():
+    arm = rne.robots.panda
+    q, qd, qdd = random.normal(size=(3, N, 7))
+    com = random.normal(size=(N, 3))
+    of = lambda payload: arm.inverse_dynamics_with_payload(q, qd, qdd, payload)
+    points = np.hstack([np.linspace(0, 3, N)[:, None], com])
+    whole = np.hstack([points, np.zeros((N, 6))])
+    assert np.array_equal(of(points), of(whole))
+    assert np.array_equal(of(points[7]), of(rne.payload(points[7, 0], points[7, 1:])))
+    assert np.array_equal(of(points.tolist()), of(whole))
+    with pytest.raises(ValueError, match=r"shape \(5\); it is \(10,\) .* 4 numbers in place of 10 are a point mass"):
+        of([1.0] * 5)
+    points[5, 0] = -0.5
+    room = np.full((N, 7), 7.0)
+    with pytest.raises(ValueError, match="state 6 of 40: the payload's mass is -0.5 kg: no body has less than 0"):
+        arm.inverse_dynamics_with_payload(q, qd, qdd, points, out=room)
+    assert (room == 7).all()
+    for work in (lambda: of([-2.0] + [0.0] * 9), lambda: rne.payload(-2)):
+        with pytest.raises(ValueError, match="the payload's mass is -2 kg: no body has less than 0"):
+            work()

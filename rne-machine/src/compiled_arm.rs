@@ -1,7 +1,7 @@
 //! An arm that is known at run time only, with all its functions.
 
 use std::collections::VecDeque;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use rne_codegen::plan::{PlanFile, PlanSet};
@@ -65,6 +65,41 @@ struct Content {
     plan: Option<Vec<u8>>,
 }
 
+/// A robot file and the plan file beside it, where there is one, as they were when they were read.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RobotFiles {
+    path: PathBuf,
+    robot: Vec<u8>,
+    plan: Option<Vec<u8>>,
+}
+
+impl RobotFiles {
+    /// Reads both. A relative `path` starts at the working directory.
+    ///
+    /// # Errors
+    /// When a file cannot be read.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, ArmError> {
+        let path = path.as_ref().to_owned();
+        let read = |path: &Path| read_file(path).map_err(|error| ArmError::Unreadable { path: path.to_owned(), error });
+        let robot = read(&path)?;
+        let beside = plan_of(&path);
+        let plan = if beside.exists() { Some(read(&beside)?) } else { None };
+        Ok(Self { path, robot, plan })
+    }
+
+    /// The bytes of the robot file.
+    #[must_use]
+    pub fn robot(&self) -> &[u8] {
+        &self.robot
+    }
+
+    /// The bytes of the plan file.
+    #[must_use]
+    pub fn plan(&self) -> Option<&[u8]> {
+        self.plan.as_deref()
+    }
+}
+
 impl CompiledArm {
     /// The arm of the text of a robot file. An arm that this process has read before is there at once.
     ///
@@ -80,12 +115,17 @@ impl CompiledArm {
     /// # Errors
     /// When a file cannot be read, or everything that is wrong with it.
     pub fn from_file(path: impl AsRef<Path>) -> Result<Self, ArmError> {
-        let path = path.as_ref();
-        let read = |path: &Path| read_file(path).map_err(|error| ArmError::Unreadable { path: path.to_owned(), error });
-        let robot = read(path)?;
-        let beside = plan_of(path);
-        let plan = if beside.exists() { Some(read(&beside)?) } else { None };
-        Self::read(&path.display().to_string(), Content { robot, plan }, &beside.display().to_string())
+        Self::from_files(&RobotFiles::read(path)?)
+    }
+
+    /// The arm of files that have been read: for who asks for their bytes besides, of a hash say.
+    ///
+    /// # Errors
+    /// Everything that is wrong with them.
+    pub fn from_files(files: &RobotFiles) -> Result<Self, ArmError> {
+        let RobotFiles { path, robot, plan } = files;
+        let content = Content { robot: robot.clone(), plan: plan.clone() };
+        Self::read(&path.display().to_string(), content, &plan_of(path).display().to_string())
     }
 
     /// The arm of the text of a robot file, by the choices of the text of its plan file.

@@ -39,7 +39,7 @@ mod selection;
 mod translation;
 
 pub use arguments::{ARGUMENTS, Arguments, Array};
-pub use compiled_arm::CompiledArm;
+pub use compiled_arm::{CompiledArm, RobotFiles};
 pub use compiled_function::CompiledFunction;
 pub use error::{ArmError, EvaluationError};
 pub use one_state::Derivatives;

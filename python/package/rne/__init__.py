@@ -55,6 +55,12 @@ def payload(mass, com=(0.0, 0.0, 0.0), inertia=None):
     mass: kg. com: centre of mass (m) from the origin of the tip frame, in its axes. inertia: about the centre of mass
     (kg m²), the symmetric tensor of shape (3, 3), or None for a point mass.
     """
+    for name, value in (("mass", mass), ("com", com), ("inertia", inertia)):
+        if _numpy.ma.is_masked(value):
+            raise ValueError(f"`{name}`: there are masked elements, which are no numbers: drop or fill them before")
+    if mass < 0:
+        said = _numpy.format_float_positional(mass, trim="-")
+        raise ValueError(f"the payload's mass is {said} kg: no body has less than 0")
     tensor = _numpy.zeros((3, 3)) if inertia is None else _numpy.asarray(inertia, dtype=float)
     if tensor.shape != (3, 3) or not _numpy.allclose(tensor, tensor.T):
         raise ValueError("`inertia` is a symmetric tensor of shape (3, 3)")
