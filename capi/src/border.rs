@@ -267,12 +267,15 @@ pub unsafe extern "C" fn rne_function_argument(
     status::status(|| {
         // SAFETY: the caller's promise of the arm.
         let (found, count) = unsafe { reference(arm, "arm") }?.argument(id, argument)?;
+        // both places are looked at before one is written to
+        checked(name.cast_const(), usize::from(!name.is_null()), "name")?;
+        checked(elements.cast_const(), usize::from(!elements.is_null()), "elements")?;
         if !name.is_null() {
-            // SAFETY: the caller's promise of the place.
+            // SAFETY: it is aligned; for the rest the caller's promise of the place.
             unsafe { name.write(found.as_ptr()) };
         }
         if !elements.is_null() {
-            // SAFETY: the caller's promise of the place.
+            // SAFETY: it is aligned; for the rest the caller's promise of the place.
             unsafe { elements.write(count) };
         }
         Ok(())
@@ -486,10 +489,8 @@ fn of_input(index: usize, failure: Failure) -> Failure {
 /// `place` is NULL or a place for a pointer.
 unsafe fn made(place: *mut *mut Arm, make: impl FnOnce() -> Result<Arm, Failure>) -> Status {
     status::status(|| {
-        if place.is_null() {
-            return Err(Failure::null("arm"));
-        }
-        // SAFETY: the caller's promise of the place.
+        checked(place.cast_const(), 1, "arm")?;
+        // SAFETY: it is not NULL, and aligned; for the rest the caller's promise of the place.
         unsafe { place.write(ptr::null_mut()) };
         let arm = Box::new(make()?);
         // SAFETY: the same.
@@ -503,10 +504,8 @@ unsafe fn made(place: *mut *mut Arm, make: impl FnOnce() -> Result<Arm, Failure>
 /// # Safety
 /// `place` is NULL or a place for a value.
 unsafe fn give<T>(place: *mut T, what: &str, value: T) -> Result<(), Failure> {
-    if place.is_null() {
-        return Err(Failure::null(what));
-    }
-    // SAFETY: the caller's promise of the place.
+    checked(place.cast_const(), 1, what)?;
+    // SAFETY: it is not NULL, and aligned; for the rest the caller's promise of the place.
     unsafe { place.write(value) };
     Ok(())
 }
@@ -516,8 +515,9 @@ unsafe fn give<T>(place: *mut T, what: &str, value: T) -> Result<(), Failure> {
 /// # Safety
 /// It is NULL or points to a value that nobody changes as long as the reference is used.
 unsafe fn reference<'a, T>(pointer: *const T, what: &str) -> Result<&'a T, Failure> {
-    // SAFETY: the caller's promise.
-    unsafe { pointer.as_ref() }.ok_or_else(|| Failure::null(what))
+    checked(pointer, 1, what)?;
+    // SAFETY: it is not NULL, and aligned; for the rest the caller's promise.
+    Ok(unsafe { &*pointer })
 }
 
 /// A text of C's.

@@ -112,8 +112,7 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
     if states.checked_mul(width) != Some(outputs.len()) {
         return Err(EvaluationError::Room { outputs: width, states }.into());
     }
-    // what is missing: of no states everything else fits
-    function.run(VectorUnit::widest(), 0, &all, Destination::Rows(&mut []))?;
+    function.check(states, &all)?;
     let tasks = Mutex::new(outputs.chunks_mut((TASK * width).max(1)).enumerate());
     let work = || -> Result<(), Failure> {
         loop {
@@ -121,7 +120,9 @@ pub(crate) fn on_threads<'a, T: Number + Send + Sync>(
             let Some((index, room)) = task else { return Ok(()) };
             let (first, count) = (index * TASK, room.len() / width.max(1));
             let part = given.iter().map(|given| {
-                Ok(Given { numbers: given.numbers.get(first * given.state..).unwrap_or_default(), ..*given })
+                // an input that the function does not take may have any stride
+                let start = first.saturating_mul(given.state);
+                Ok(Given { numbers: given.numbers.get(start..).unwrap_or_default(), ..*given })
             });
             let arguments = arguments(function, part, count)?;
             function.run(VectorUnit::widest(), count, &arguments, Destination::Rows(room))?;

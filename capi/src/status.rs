@@ -23,13 +23,13 @@ pub enum Status {
     InvalidFile = 4,
     /// There is no robot, function or argument of this name: the message lists those there are.
     UnknownName = 5,
-    /// A function's id or the index of a joint or an argument is none.
+    /// There is no function of this id, no joint or argument of this index; or the mass of a payload is below zero.
     OutOfRange = 6,
     /// An argument that the function takes is not among the inputs.
     MissingArgument = 7,
     /// An input has too few numbers, is there twice, or the room for the outputs has another size.
     WrongSize = 8,
-    /// An array is not aligned for its numbers, larger than memory can be, or outputs and an input share memory.
+    /// An array or a place is not aligned for its values, larger than memory can be, or outputs and an input share memory.
     WrongMemory = 9,
     /// The function cannot be compiled for this arm: the message says why.
     CannotCompile = 10,
@@ -76,6 +76,7 @@ impl From<EvaluationError> for Failure {
         let status = match error {
             EvaluationError::Compile(_) => Status::CannotCompile,
             EvaluationError::Missing { .. } => Status::MissingArgument,
+            EvaluationError::NegativeMass { .. } => Status::OutOfRange,
             _ => Status::WrongSize,
         };
         Self::new(status, error.to_string())

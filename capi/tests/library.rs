@@ -319,6 +319,84 @@ fn every_failure_of_a_call_has_its_status_and_writes_nothing() {
     }
 }
 
+/// An address that is no multiple of what the type asks for is refused before anything is written there.
+#[test]
+fn places_are_aligned() {
+    fn odd<T>(place: &mut [T; 2]) -> *mut T {
+        place.as_mut_ptr().wrapping_byte_add(1)
+    }
+    let arm = puma();
+    let id = id(c"bias_torques");
+    let check = |status: Status, what: &str| {
+        assert_eq!(status, Status::WrongMemory, "{}", words());
+        assert!(words().starts_with(&format!("`{what}` is not aligned")), "{}", words());
+    };
+    let (mut arms, mut ids, mut sizes) = ([null_mut(); 2], [7; 2], [7; 2]);
+    let (mut kinds, mut names) = ([JointKind::Prismatic; 2], [null(); 2]);
+    let mut limits = [Limits { lower: 7.0, upper: 7.0, velocity: 7.0, effort: 7.0 }; 2];
+    // SAFETY: pointers that are looked at before they are used.
+    unsafe {
+        check(rne_arm_builtin(c"puma560".as_ptr(), odd(&mut arms)), "arm");
+        check(rne_arm_load_text(c"".as_ptr(), odd(&mut arms)), "arm");
+        check(rne_arm_joint_kind(arm.0, 0, odd(&mut kinds)), "kind");
+        check(rne_arm_joint_limits(arm.0, 0, odd(&mut limits)), "limits");
+        check(rne_function_find(c"jacobian".as_ptr(), odd(&mut ids)), "id");
+        check(rne_function_outputs(arm.0, id, odd(&mut sizes)), "outputs");
+        check(rne_function_arguments(arm.0, id, odd(&mut sizes)), "arguments");
+        check(rne_function_argument(arm.0, id, 0, odd(&mut names), null_mut()), "name");
+        check(rne_function_argument(arm.0, id, 0, names.as_mut_ptr(), odd(&mut sizes)), "elements");
+        check(rne_function_prepare(arm.0.wrapping_byte_add(1), id), "arm");
+        assert_eq!(rne_arm_dof(arm.0.wrapping_byte_add(1)), 0);
+    }
+    assert!(arms.iter().all(|arm| arm.is_null()) && names.iter().all(|name| name.is_null()));
+    assert_eq!((ids, sizes, kinds), ([7; 2], [7; 2], [JointKind::Prismatic; 2]));
+    assert!(limits.iter().all(|limits| limits.lower == 7.0 && limits.effort == 7.0));
+}
+
+#[test]
+fn a_payload_of_negative_mass_has_its_status_and_writes_nothing() {
+    // the mass is in the last of three tasks
+    const STATES: usize = 3 * 4096;
+    let (arm, id) = (puma(), id(c"inverse_dynamics_with_payload"));
+    let zeros = [0.0; 6];
+    let mut payload = vec![1.0; 10 * STATES];
+    payload[10 * (STATES - 1)] = -0.5;
+    let names = [c"q", c"qd", c"qdd"];
+    let mut inputs = names.map(|name| input(name, &zeros, 0, 0)).to_vec();
+    inputs.push(input(c"payload", &payload, 10, 1));
+    let mut tau = vec![7.0; 6 * STATES];
+    assert_eq!(many(&arm, id, STATES, &inputs, &mut tau), Status::OutOfRange);
+    assert_eq!(words(), "state 12288 of 12288: the payload's mass is -0.5 kg: no body has less than 0");
+    let (room, count) = (tau.as_mut_ptr(), tau.len());
+    // SAFETY: slices.
+    let status = unsafe { rne_evaluate_batch_threads(arm.0, id, 2, STATES, inputs.as_ptr(), 4, room, count) };
+    assert_eq!(status, Status::OutOfRange);
+    assert_eq!(words(), "state 12288 of 12288: the payload's mass is -0.5 kg: no body has less than 0");
+    assert!(tau.iter().all(|torque| *torque == 7.0));
+    inputs[3] = input(c"payload", &payload[10 * (STATES - 1)..], 0, 0);
+    assert_eq!(one(&arm, id, &inputs, &mut tau[..6]), Status::OutOfRange);
+    assert_eq!(words(), "the payload's mass is -0.5 kg: no body has less than 0");
+}
+
+/// What a function does not take is not looked at, whatever it says of itself.
+#[test]
+fn an_input_that_is_not_taken_may_have_any_stride() {
+    const STATES: usize = 3 * 4096;
+    let (arm, id) = (puma(), id(c"gravity_torques"));
+    let q: Vec<f64> = (0_u32..).map(|index| f64::from(index % 1009) * 0.003).take(6 * STATES).collect();
+    let [mut expected, mut found] = [(); 2].map(|()| vec![f64::NAN; 6 * STATES]);
+    assert_eq!(many(&arm, id, STATES, &[input(c"q", &q, 6, 1)], &mut expected), Status::Ok, "{}", words());
+    for stride in [usize::MAX, usize::MAX / 2 + 3, usize::MAX / 4096] {
+        let inputs = [input(c"q", &q, 6, 1), input(c"tau", &q[..6], stride, stride)];
+        let (room, count) = (found.as_mut_ptr(), found.len());
+        // SAFETY: slices.
+        let status = unsafe { rne_evaluate_batch_threads(arm.0, id, 2, STATES, inputs.as_ptr(), 2, room, count) };
+        assert_eq!(status, Status::Ok, "{}", words());
+        assert!(found == expected, "another number with a stride of {stride}");
+        found.fill(f64::NAN);
+    }
+}
+
 /// However many threads, and however arrays lie: the bits of one thread. Mistakes are told, and nothing is written
 /// then.
 #[test]

@@ -26,9 +26,9 @@ const STRICT: [&str; 4] = ["-Wall", "-Wextra", "-Wpedantic", "-Werror"];
 
 /// Builds the C library, lays it out below a prefix, and runs programs of C and C++ against it
 ///
-/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples
-/// and a program of sixteen threads are compiled against it and run, under valgrind where it is there, and with the
-/// compiler's sanitizers of addresses, leaks and undefined behaviour.
+/// The prefix gets include/rne.h, lib/librne.so, lib/librne.a, and what pkg-config and CMake read. Then the examples,
+/// a program of sixteen threads and one that forks are compiled against it and run, under valgrind where it is there,
+/// and with the compiler's sanitizers of addresses, leaks and undefined behaviour.
 #[derive(Args)]
 #[command(after_help = "\
 Needs cc and c++; skips valgrind, the sanitizers, pkg-config and CMake, each with one line, where they are not there.
@@ -131,6 +131,7 @@ fn holds(shell: &Shell, prefix: &Path, programs: &Path) -> Result<bool> {
         ("capi/examples/torque.cpp", "c++", "-std=c++17"),
         ("capi/examples/controller.c", "cc", "-std=c11"),
         ("capi/tests/threads.c", "cc", "-std=c11"),
+        ("capi/tests/fork.c", "cc", "-std=c11"),
     ];
     let sanitized = programs.join("sanitized");
     fs::create_dir_all(&sanitized)?;
