@@ -226,6 +226,19 @@ def links(driver, address, heavier):
     for damaged in ("#text=AAAA", "#text=%%%", "#robot=nobody"):
         opened(driver, address + damaged)
         check(re.search("damaged|is shipped", status(driver)), f"{damaged}: {status(driver)!r}")
+    # 64 MB in a link of 85 kB
+    bomb = zlib.compress(bytes(64 << 20), 9, wbits=-15)
+    opened(driver, address + "#text=" + base64.urlsafe_b64encode(bomb).decode().rstrip("="))
+    check("more than 1048576 bytes" in status(driver), f"a link that inflates: {status(driver)!r}")
+
+
+def apart(driver):
+    """The page of the arm has an origin of its own: nothing of the playground is in its reach, or the other way."""
+    frame = "document.querySelector('#shown iframe')"
+    sandbox, document = driver.execute_script(f"return [{frame}.getAttribute('sandbox'), {frame}.contentDocument]")
+    check((sandbox, document) == ("allow-scripts", None), f"the frame has the sandbox {sandbox!r}")
+    reached = inner(driver, "try { return parent.document.title } catch (error) { return error.name }")
+    check(reached == "SecurityError", f"the frame reaches the playground: {reached!r}")
 
 
 def every_robot(driver):
@@ -269,6 +282,7 @@ def main():
         check("name: puma560" in puma, "it does not begin with the PUMA 560")
         print(f"from a file: {status(driver)}")
         torques(driver, rne, "puma560", 6, "puma560")
+        apart(driver)
         accessible(driver, "playground, light")
         mistakes(driver, rne, puma)
         accessible(driver, "playground with mistakes")

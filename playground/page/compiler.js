@@ -3,11 +3,23 @@
 /** How long a text may take before a newer one stops it, ms. */
 const PATIENCE = 5000;
 
-/** Base64 of deflated or gzipped bytes, as bytes. */
-async function unpacked(text, format) {
+/** Base64 of deflated or gzipped bytes, as bytes; null when there are more than `most`. */
+async function unpacked(text, format, most = Infinity) {
   const packed = Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream(format));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  const reader = new Blob([packed]).stream().pipeThrough(new DecompressionStream(format)).getReader();
+  const parts = [];
+  let length = 0;
+  for (;;) {
+    const { done, value } = await reader.read();
+    if (done) return new Uint8Array(await new Blob(parts).arrayBuffer());
+    length += value.length;
+    if (length > most) {
+      // a thousand times the letters of a link may come out: what is not asked for is not inflated
+      reader.cancel();
+      return null;
+    }
+    parts.push(value);
+  }
 }
 
 class Compiler {

@@ -28,6 +28,7 @@ class Playground {
       const button = event.target.closest("button");
       if (button) this.editor.goTo(Number(button.dataset.goto));
     });
+    window.addEventListener("message", ({ source, data }) => this.told(source, data));
     window.addEventListener("hashchange", () => { if (location.hash !== this.fragment) this.open(); });
     this.open();
   }
@@ -156,44 +157,62 @@ class Playground {
   show(page, isOther) {
     const next = document.createElement("iframe");
     next.title = "the arm, its equations, its code and its torques";
-    next.srcdoc = page;
+    // an origin of its own: no script of the page reaches this document, its address, or other pages of this site
+    next.sandbox = "allow-scripts";
+    next.srcdoc = `${page}<script>${byId("bridge").textContent}<\/script>`;
     next.className = "next";
     this.next?.remove();
     this.next = next;
-    next.addEventListener("load", () => {
-      if (next !== this.next) return;
-      const inner = next.contentWindow;
-      try {
-        if (this.frame) {
-          const view = this.frame.contentWindow.rne.view();
-          inner.rne.show(isOther ? { ...view, kinds: null } : view);
-        }
-      } finally {
-        this.frame?.remove();
-        this.frame = next;
-        this.next = null;
-        next.className = "";
-        byId("shown").dataset.state = "good";
-        document.title = `${inner.document.title} – rne playground`;
-        this.follow(inner);
-        document.documentElement.dataset.shown = String(Number(document.documentElement.dataset.shown || 0) + 1);
-      }
-    });
+    this.isOther = isOther;
     byId("shown").append(next);
   }
 
-  /** The frame is as high as its page where the screen is narrow; its colours are those of the whole. */
-  follow(inner) {
-    const root = inner.document.documentElement;
-    const colours = () => {
-      const { theme } = root.dataset;
-      if (theme) document.documentElement.dataset.theme = theme;
-      else delete document.documentElement.dataset.theme;
-    };
-    new inner.MutationObserver(colours).observe(root, { attributes: true, attributeFilter: ["data-theme"] });
-    colours();
-    const frame = this.frame;
-    new inner.ResizeObserver(() => { frame.style.setProperty("--height", `${inner.document.body.scrollHeight}px`); }).observe(inner.document.body);
+  /** What the frames tell: bridge.js. */
+  told(source, said) {
+    const { frame, next, isOther } = this;
+    if (source === next?.contentWindow) {
+      if (said.title !== undefined) {
+        next.dataset.title = said.title;
+        if (frame) frame.contentWindow.postMessage({ ask: "view" }, "*");
+        else this.put();
+      }
+      if (said.shown) this.put();
+      this.follow(next, said);
+    } else if (source === frame?.contentWindow) {
+      const { view } = said;
+      // for a next page that is not loaded yet the view is asked once more
+      if (view !== undefined && next?.dataset.title !== undefined) {
+        if (view) next.contentWindow.postMessage({ show: isOther ? { ...view, kinds: null } : view }, "*");
+        else this.put();
+      }
+      this.follow(frame, said);
+    }
+  }
+
+  /** The next page takes the place of the one before. */
+  put() {
+    const { next } = this;
+    this.frame?.remove();
+    this.frame = next;
+    this.next = null;
+    next.className = "";
+    byId("shown").dataset.state = "good";
+    document.title = `${next.dataset.title} – rne playground`;
+    this.colour(next.dataset.theme);
+    document.documentElement.dataset.shown = String(Number(document.documentElement.dataset.shown || 0) + 1);
+  }
+
+  /** A frame is as high as its page where the screen is narrow; its colours are those of the whole. */
+  follow(frame, { height, theme }) {
+    if (height !== undefined) frame.style.setProperty("--height", `${Number(height)}px`);
+    if (theme === undefined) return;
+    frame.dataset.theme = theme;
+    if (frame === this.frame) this.colour(theme);
+  }
+
+  colour(theme) {
+    if (theme) document.documentElement.dataset.theme = theme;
+    else delete document.documentElement.dataset.theme;
   }
 
   async copyLink() {

@@ -1,5 +1,8 @@
 // A text in the fragment of an address, which no server sees: `#robot=NAME` or `#text=` and the deflated text.
 
+/** What the compiler takes of a robot file, bytes. */
+const LARGEST_TEXT = 1 << 20;
+
 /** Bytes in the letters of base64 that an address can have. */
 function base64url(bytes) {
   let letters = "";
@@ -12,7 +15,7 @@ async function fragmentOf(text) {
   return `#text=${base64url(new Uint8Array(await new Response(stream).arrayBuffer()))}`;
 }
 
-/** The text of a fragment; null when it has none, an error when it is damaged. */
+/** The text of a fragment; null when it has none, an error when it is damaged or too large. */
 async function textOf(fragment, robots) {
   const [, kind, value] = /^#(robot|text)=(.*)$/.exec(fragment) || [];
   if (kind === "robot") {
@@ -23,9 +26,10 @@ async function textOf(fragment, robots) {
   }
   if (kind !== "text") return null;
   try {
-    const bytes = await unpacked(value.replaceAll("-", "+").replaceAll("_", "/"), "deflate-raw");
-    return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
+    const bytes = await unpacked(value.replaceAll("-", "+").replaceAll("_", "/"), "deflate-raw", LARGEST_TEXT);
+    if (bytes) return new TextDecoder("utf-8", { fatal: true }).decode(bytes);
   } catch {
     throw new Error("the link is damaged: its text cannot be read; copy it once more as a whole");
   }
+  throw new Error(`the link has a text of more than ${LARGEST_TEXT} bytes (1 MiB), the most that a robot file may have`);
 }

@@ -29,19 +29,19 @@ pub extern "C" fn push(byte: u32) {
 
 /// Compiles the text. Returns the length of the answer in bytes; it is JSON in UTF-8, as [`crate::answer`] has it.
 #[unsafe(export_name = "rne_compile")]
-pub extern "C" fn compile() -> u32 {
+pub extern "C" fn compile() -> usize {
     let text = String::from_utf8_lossy(&BYTES.take()).into_owned();
     let answer = crate::answer(&text).to_string().into_bytes();
-    let length = u32::try_from(answer.len()).unwrap_or(u32::MAX);
+    let length = answer.len();
     BYTES.set(answer);
     length
 }
 
 /// Four bytes of the answer, the first one lowest: those from `4 * index` on. Behind its end there are zeros.
 #[unsafe(export_name = "rne_word")]
-pub extern "C" fn word(index: u32) -> u32 {
+pub extern "C" fn word(index: usize) -> u32 {
     BYTES.with_borrow(|bytes| {
-        let start = usize::try_from(index).unwrap_or(usize::MAX).saturating_mul(4);
+        let start = index.saturating_mul(4);
         let byte = |at: usize| bytes.get(start.saturating_add(at)).copied().unwrap_or(0);
         u32::from_le_bytes([byte(0), byte(1), byte(2), byte(3)])
     })

@@ -174,10 +174,10 @@ fn page(module: &[u8]) -> Result<String> {
     for name in SCRIPTS {
         let _ = write!(script, "\n// ---- {name}\n\n{}", read(name)?);
     }
-    let worker = read("worker.js")?;
+    let (worker, bridge) = (read("worker.js")?, read("bridge.js")?);
     println!("  {:>7} the compiler: {} bytes of WebAssembly, compressed, in base64", packed.len(), module.len());
     println!("  {:>7} the shipped robots", files.len());
-    println!("  {:>7} scripts", script.len() + worker.len());
+    println!("  {:>7} scripts", script.len() + worker.len() + bridge.len());
     // colours, controls and the head; the panels below are those of the page inside
     let report_style = machine::read("rne-report/page/style.css")?;
     let end = "/* ---- panels */";
@@ -188,6 +188,7 @@ fn page(module: &[u8]) -> Result<String> {
         ("module", packed),
         ("files", files),
         ("worker", worker),
+        ("bridge", bridge),
         ("script", script),
     ];
     // each gap stands in a part of the template of its own: what is put in is not searched
