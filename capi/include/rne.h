@@ -49,7 +49,7 @@ typedef enum rne_status {
    */
   RNE_STATUS_UNKNOWN_NAME = 5,
   /**
-   * A function's id or the index of a joint or an argument is none.
+   * There is no function of this id, no joint or argument of this index; or the mass of a payload is below zero.
    */
   RNE_STATUS_OUT_OF_RANGE = 6,
   /**
@@ -61,7 +61,7 @@ typedef enum rne_status {
    */
   RNE_STATUS_WRONG_SIZE = 8,
   /**
-   * An array is not aligned for its numbers, larger than memory can be, or outputs and an input share memory.
+   * An array or a place is not aligned for its values, larger than memory can be, or outputs and an input share memory.
    */
   RNE_STATUS_WRONG_MEMORY = 9,
   /**

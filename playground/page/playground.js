@@ -159,7 +159,7 @@ class Playground {
     next.title = "the arm, its equations, its code and its torques";
     // an origin of its own: no script of the page reaches this document, its address, or other pages of this site
     next.sandbox = "allow-scripts";
-    next.srcdoc = `${page}<script>${byId("bridge").textContent}</script>`;
+    next.srcdoc = `${page}<script>${byId("bridge").textContent}<\/script>`;
     next.className = "next";
     this.next?.remove();
     this.next = next;
