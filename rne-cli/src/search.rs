@@ -139,7 +139,8 @@ impl Searched<'_> {
             return Ok(());
         }
         Err(Failure::input(format_args!(
-            "{} has changed during the search: what was found is of the arm as it was, so {} is not written. Search again",
+            "{} has changed during the search: what was found is of the arm as it was, so {} is not written. Search \
+             again",
             self.file.display(),
             plan_of(self.file).display()
         )))
