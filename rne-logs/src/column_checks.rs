@@ -15,8 +15,8 @@ impl<'a> Header<'a> {
     pub(crate) fn check_count(&self, found: &[&Found]) -> Result<(), LogError> {
         let Some(one) = found.first().filter(|_| found.len() > MOST_JOINTS) else { return Ok(()) };
         let what = format!(
-            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read; --topic says how the names of those \
-             that are meant begin",
+            "the table has {} columns of {}; at most {MOST_JOINTS} joints are read; --topic says how the names of \
+             those that are meant begin",
             found.len(),
             one.named.quantity.plural()
         );

@@ -20,8 +20,8 @@ use crate::{LogError, TimeUnit};
 /// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
 const HEAD: usize = 1024;
 
-/// Samples that are further apart than this, s, are rare: such times are in another unit, unless somebody says that they
-/// are seconds.
+/// Samples that are so far apart, s, or further, are rare: such times are in another unit, unless somebody says that
+/// they are seconds.
 const SLOWEST: f64 = 0.5;
 
 /// Stamps this far from zero, ns, are since 1970 or the machine's start, and are shown since the log's first.

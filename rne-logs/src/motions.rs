@@ -86,8 +86,8 @@ impl<'a> Motions<'a> {
         let dropped = log.dropped(kernel.half());
         if dropped.saturating_mul(2).saturating_mul(columns) > 2 * MOST_NUMBERS {
             return Err(log.request(format_args!(
-                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns; a higher --cutoff \
-                 holds fewer, and --joints names those joints that are meant",
+                "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns; a higher \
+                 --cutoff holds fewer, and --joints names those joints that are meant",
                 short(1.0 / layout.step),
                 short(hertz),
                 2 * dropped
@@ -116,8 +116,8 @@ impl<'a> Motions<'a> {
         Ok(motions)
     }
 
-    /// States of a piece at most, at least one: memory is this by the number of joints. Of hundreds of joints pieces are
-    /// shorter.
+    /// States of a piece at most, at least one: memory is this by the number of joints. Pieces of hundreds of joints
+    /// are shorter.
     #[must_use]
     pub fn with_length(mut self, states: usize) -> Self {
         self.length = states.clamp(1, longest_piece(self.rows.len()));

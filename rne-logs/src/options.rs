@@ -19,8 +19,8 @@ pub struct Options {
     /// By joint that is read, base to tip, whether it slides: its positions are lengths then, whatever `angles` is.
     /// Empty: nobody knows, and `angles` is of all.
     pub slides: Vec<bool>,
-    /// An interval of more than so many steps is a gap, 1.5 to 1000; 3.5 where nobody says: three samples that were lost
-    /// are none.
+    /// An interval of more than so many steps is a gap, 1.5 to 1000; 3.5 where nobody says: three samples that were
+    /// lost are none.
     pub gap: f64,
     /// The cut-off of the filter, Hz; without it the spectrum chooses.
     pub cutoff: Option<f64>,

@@ -1,4 +1,5 @@
-//! The pages of a Parquet column, within bounds: a page of some bytes may claim gigabytes, and a list millions of numbers.
+//! The pages of a Parquet column, within bounds: a page of some bytes may claim gigabytes, and a list millions of
+//! numbers.
 
 use std::fmt;
 use std::fs::File;
@@ -70,8 +71,8 @@ pub(crate) fn column_reader(
     let compression = chunk.compression();
     if matches!(compression, Compression::BROTLI(_) | Compression::LZO) {
         let what = format!(
-            "the column {name} is compressed with {}, which is not read: write the file with zstd, snappy, gzip or lz4, \
-             in pandas to_parquet(…, compression=\"zstd\")",
+            "the column {name} is compressed with {}, which is not read: write the file with zstd, snappy, gzip or \
+             lz4, in pandas to_parquet(…, compression=\"zstd\")",
             compression.to_string().split('(').next().unwrap_or_default().to_lowercase()
         );
         return Err(Refused::error(what));
@@ -162,8 +163,8 @@ impl ChunkReader for Bounds {
     }
 }
 
-/// The kind and the size of a page, bytes, packed or not, whatever is more: the first three numbers of its head, which is
-/// written in Thrift's compact protocol.
+/// The kind of a page and its bytes, packed or unpacked, whatever is more: the first three numbers of its head, which
+/// is written in Thrift's compact protocol.
 fn head(mut bytes: &[u8]) -> Option<(u64, u64)> {
     let mut number = || {
         // a field with the next number, a 32-bit integer
@@ -228,8 +229,9 @@ impl Pages {
     }
 }
 
-/// The longest list of so many values by their levels of repetition, 0 where a list begins, as runs and as bits. The list
-/// that goes on from the last page has a length, which becomes that of the last list. It stops where one is too long.
+/// The longest list of a page with so many values, by their levels of repetition, which are 0 where a list begins and
+/// are written as runs and as bits. `length` is that of the list that goes on from the page before, and becomes that of
+/// the last one. It stops where one is too long.
 fn longest_list(mut levels: &[u8], count: usize, length: &mut usize) -> usize {
     let (mut seen, mut longest) = (0, 0);
     while seen < count && longest <= MOST_JOINTS {

@@ -187,8 +187,8 @@ fn head(path: &Path) -> Result<[u8; 100], LogError> {
         && next == MAGIC
     {
         let what = format!(
-            "the bag ends at byte {wanted} of {length}, and another one follows, which is not read: take both apart, and \
-             name both files"
+            "the bag ends at byte {wanted} of {length}, and another one follows, which is not read: take both apart, \
+             and name both files"
         );
         return Err(LogError::file(path, what));
     }

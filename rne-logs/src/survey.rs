@@ -39,7 +39,8 @@ pub struct Survey {
     /// States of the longest run on an even grid, as the filter takes them.
     pub longest: u64,
     /// Efforts that stand far out of those about them for a sample or two, the farthest ten thousand of each joint, and
-    /// fewer of more than a hundred joints; in the motions, unless [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
+    /// fewer of more than a hundred joints; in the motions, unless
+    /// [`Options::leave_out_spikes`](crate::Options::leave_out_spikes) says otherwise.
     pub spikes: Vec<Spike>,
     /// The first number that made a message unusable, of those that [`Counts::not_finite`] counts.
     pub unusable: Option<Unusable>,
