@@ -1,8 +1,10 @@
 //! Tools that are no part of this repository.
 
+use std::path::Path;
+
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
-use xshell::cmd;
+use xshell::{Shell, cmd};
 
 use crate::Verdict;
 use crate::machine::{self, Missing};
@@ -13,7 +15,8 @@ use crate::machine::{self, Missing};
 Exit status: 1 when the tool finds fault.
 
 Examples:
-  cargo xtask tool deny --install        licences, sources and duplicates of dependencies: deny.toml; takes minutes
+  cargo xtask tool deny --install        licences, sources and duplicates of what every lock file has: deny.toml;
+                                         takes minutes to install
   cargo xtask tool semver --install      the public interface against the last tag; takes minutes to install
   cargo xtask tool book --install        docs/lecture as a book in target/book; takes minutes to install")]
 pub(crate) struct Tool {
@@ -65,16 +68,7 @@ impl Tool {
             }
         }
         let run = match self.tool {
-            Name::Deny => {
-                // they are a repository elsewhere
-                let fetch = cmd!(shell, "cargo deny --workspace --log-level off fetch db");
-                let has_advisories = fetch.quiet().ignore_stdout().ignore_stderr().run().is_ok();
-                if !has_advisories {
-                    println!("advisories: skipped, their database cannot be fetched");
-                }
-                let advisories = has_advisories.then_some("advisories");
-                cmd!(shell, "cargo deny --workspace --log-level error check bans licenses sources {advisories...}")
-            }
+            Name::Deny => return deny(&shell),
             Name::Book => {
                 // the live pages that chapters show
                 let book = machine::target_folder("target")?.join("book");
@@ -95,4 +89,43 @@ impl Tool {
         };
         Ok(Verdict::from(machine::without_flags(run).run().is_ok()))
     }
+}
+
+/// Checks the dependencies of every lock file of the repository.
+fn deny(shell: &Shell) -> Result<Verdict> {
+    // they are a repository elsewhere
+    let fetch = cmd!(shell, "cargo deny --workspace --log-level off fetch db");
+    let has_advisories = fetch.quiet().ignore_stdout().ignore_stderr().run().is_ok();
+    if !has_advisories {
+        println!("advisories: skipped, their database cannot be fetched");
+    }
+    let advisories = has_advisories.then_some("advisories");
+    let locks = cmd!(shell, "git ls-files Cargo.lock */Cargo.lock").quiet().read()?;
+    let mut verdict = Verdict::Holds;
+    for lock in locks.lines() {
+        let manifest = Path::new(lock).with_file_name("Cargo.toml");
+        let fetch = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}");
+        let fetched = machine::without_flags(fetch).quiet().ignore_status().output()?;
+        let said = String::from_utf8_lossy(&fetched.stderr);
+        if said.contains("lock file") {
+            // nothing that a network would mend
+            anyhow::bail!("{lock} is not that of its manifest: {}", said.trim());
+        }
+        if !fetched.status.success() {
+            println!("{lock}: skipped, its crates cannot be downloaded");
+            continue;
+        }
+        println!("{lock}:");
+        // two versions of a crate cost who compiles this library; what else is built here may have them
+        let allowed = if lock == "Cargo.lock" { None } else { Some("--allow=duplicate") };
+        let check = cmd!(
+            shell,
+            "cargo deny --manifest-path {manifest} --workspace --all-features --locked --log-level error
+                check --config deny.toml {allowed...} bans licenses sources {advisories...}"
+        );
+        if machine::without_flags(check).quiet().run().is_err() {
+            verdict = Verdict::Fails;
+        }
+    }
+    Ok(verdict)
 }
