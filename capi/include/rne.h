@@ -61,7 +61,8 @@ typedef enum rne_status {
    */
   RNE_STATUS_WRONG_SIZE = 8,
   /**
-   * An array or a place is not aligned for its values, larger than memory can be, or outputs and an input share memory.
+   * An array or a place is not aligned for its values, an array is larger than memory can be, or outputs and an
+   * input share memory.
    */
   RNE_STATUS_WRONG_MEMORY = 9,
   /**

@@ -29,7 +29,8 @@ pub enum Status {
     MissingArgument = 7,
     /// An input has too few numbers, is there twice, or the room for the outputs has another size.
     WrongSize = 8,
-    /// An array or a place is not aligned for its values, larger than memory can be, or outputs and an input share memory.
+    /// An array or a place is not aligned for its values, an array is larger than memory can be, or outputs and an
+    /// input share memory.
     WrongMemory = 9,
     /// The function cannot be compiled for this arm: the message says why.
     CannotCompile = 10,

@@ -45,8 +45,8 @@ impl Arm {
     /// Torques when a payload is fixed to the tip.
     ///
     /// `payload`: mass (kg); centre of mass x, y, z (m) from the origin of the tip frame; inertia about it xx, yy, zz,
-    /// xy, xz, yz (kg m², elements of the tensor), in tip axes; shape (10,) or (N, 10). `rne.payload` makes one. A point
-    /// mass has the first four numbers alone: shape (4,) or (N, 4).
+    /// xy, xz, yz (kg m², elements of the tensor), in tip axes; shape (10,) or (N, 10). `rne.payload` makes one.
+    /// A point mass has the first four numbers alone: shape (4,) or (N, 4).
     #[pyo3(signature = (q, qd, qdd, payload, *, parameters=None, out=None))]
     fn inverse_dynamics_with_payload<'py>(
         &self,
