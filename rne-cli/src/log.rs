@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let out = arguments.out.as_deref();
     let is_result_shown = out.is_some_and(is_standard_output);
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
-        let sources: Vec<&Path> = arguments.files.iter().map(PathBuf::as_path).collect();
+        let sources: Vec<&Path> = arguments.files.iter().chain(&arguments.robot).map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
         table_name::format(path, &[Format::Csv])?;
     }

@@ -103,6 +103,18 @@ fn a_format_that_is_left_out_names_the_command_that_has_it() {
     }
 }
 
+/// Not even with `--force`.
+#[test]
+fn the_robot_file_of_a_log_is_not_overwritten() {
+    let folder = folder("log_robot");
+    let (arm, log) = (folder.join("arm.csv"), "docs/desk_arm_log.csv");
+    let yaml = fs::read_to_string(format!("{}/docs/desk_arm.yaml", crate::call::ROOT)).expect("the arm");
+    fs::write(&arm, &yaml).expect("a file");
+    let path = arm.to_str().expect("UTF-8");
+    fails(2, &["log", log, "--robot", path, "-o", path, "--force"], &["is the file that is read"]);
+    assert_eq!(fs::read_to_string(&arm).expect("it is there"), yaml);
+}
+
 /// Degrees are asked for, not taken.
 #[test]
 fn degrees_are_asked_for() {
