@@ -61,7 +61,7 @@ const STEPS: &[Step] = &[
         about: "torques enclosed by intervals, where this processor rounds as told",
         variables: &[("RUSTFLAGS", "-C target-cpu=native"), ("CARGO_TARGET_DIR", "target/native")],
         command: &["cargo", "test", "--package", "rne", "--test", "scalars"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "formats",
@@ -97,15 +97,8 @@ const STEPS: &[Step] = &[
         needs: Needs::Time,
     },
     Step {
-        name: "random_arms",
-        about: "random arms by the hundred, every function in both forms, and the C of some",
-        variables: &[("RNE_EXHAUSTIVE", "3")],
-        command: &["cargo", "test", "--release", "--package", "rne", "--test", "functions", "--", "random_arms"],
-        needs: Needs::Nothing,
-    },
-    Step {
         name: "all_arms",
-        about: "the same by the thousand",
+        about: "random arms by the thousand, every function in both forms, and the C of some",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne", "--test", "functions", "--", "random_arms"],
         needs: Needs::Time,
@@ -115,7 +108,7 @@ const STEPS: &[Step] = &[
         about: "shipped and random robots at thousands of states",
         variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne", "--test", "robots", "--test", "random"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "robot_texts",
@@ -147,17 +140,24 @@ const STEPS: &[Step] = &[
     },
     Step {
         name: "python",
-        about: "the wheel in a clean environment, against numpy and Pinocchio, and the notebooks",
+        about: "the wheel in a clean environment, against numpy",
+        variables: &[],
+        command: &["cargo", "xtask", "python", "--install"],
+        needs: Needs::Nothing,
+    },
+    Step {
+        name: "python_peers",
+        about: "the wheel against Pinocchio, and the notebooks",
         variables: &[],
         command: &["cargo", "xtask", "python", "--install", "--peers", "--notebooks"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "page",
         about: "the page of `rne report` in headless Chromium, which is fetched",
         variables: &[],
         command: &["cargo", "xtask", "page", "--install"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "playground",
@@ -230,7 +230,7 @@ const STEPS: &[Step] = &[
         about: "packages as a registry takes them, and a crate that has nothing else",
         variables: &[],
         command: &["cargo", "xtask", "package"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "msrv",
