@@ -55,8 +55,8 @@ impl fmt::Display for NoUrdf {
             ),
             Self::TooLarge { what, number } => write!(
                 f,
-                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; check \
-                 the units of the robot file: lengths are metres and masses kilograms"
+                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; \
+                 check the units of the robot file: lengths are metres and masses kilograms"
             ),
         }
     }

@@ -47,8 +47,8 @@ pub struct BaseParameter {
     pub regrouped: Vec<(f64, LinkParameter)>,
     /// Its value for the robot: kg m², kg m or kg, as `kept` has it.
     pub value: f64,
-    /// Whether torques in double precision tell it from the other base parameters, by the tolerance [`BaseParameters::VISIBLE`]. The
-    /// torques see only combinations of those that they do not tell apart.
+    /// Whether torques in double precision tell it from the other base parameters, by the tolerance
+    /// [`BaseParameters::VISIBLE`]. The torques see only combinations of those that they do not tell apart.
     pub is_visible: bool,
 }
 
@@ -209,8 +209,8 @@ impl Basis {
         None
     }
 
-    /// Which columns differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of themselves. How far a
-    /// column is from them is one over the length of its row of the inverse of the triangle.
+    /// Which columns differ from every combination of the others by more than [`BaseParameters::VISIBLE`] of
+    /// themselves. How far a column is from them is one over the length of its row of the inverse of the triangle.
     fn visible(&self) -> Vec<bool> {
         let mut rows = vec![0.0; self.triangle.len()];
         for column in 0..self.triangle.len() {

@@ -150,7 +150,8 @@ fn rank_in_double(arm: &DynArm) -> usize {
     values.iter().filter(|value| **value > 1e-12 * values.max()).count()
 }
 
-/// `alpha: 1.5708` and a tilt of 1e-7 are no right angles. What they let the torques see on paper is less than rounding.
+/// `alpha: 1.5708` and a tilt of 1e-7 are no right angles. What they let the torques see on paper is less than
+/// rounding.
 #[test]
 fn what_no_double_can_see_is_marked() {
     for (name, rank) in [("alphas_of_1.5708", 34), ("tilts_of_1e-7", 24)] {
