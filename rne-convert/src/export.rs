@@ -55,8 +55,8 @@ impl fmt::Display for NoUrdf {
             ),
             Self::TooLarge { what, number } => write!(
                 f,
-                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; check \
-                 the units of the robot file: lengths are metres and masses kilograms"
+                "{what} would be {number:e}, and no number of a URDF that `rne import` reads is above {LARGEST:e}; \
+                 check the units of the robot file: lengths are metres and masses kilograms"
             ),
         }
     }
@@ -116,10 +116,11 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
 
 /// Refuses numbers that an import would refuse.
 fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
-    let check = |what: String, numbers: &[f64]| match numbers.iter().find(|number| !(number.abs() <= LARGEST)) {
-        Some(&number) => Err(NoUrdf::TooLarge { what, number }),
-        None => Ok(()),
-    };
+    let check =
+        |what: String, numbers: &[f64]| match numbers.iter().find(|number| number.is_nan() || number.abs() > LARGEST) {
+            Some(&number) => Err(NoUrdf::TooLarge { what, number }),
+            None => Ok(()),
+        };
     check("a coordinate of `base`".to_owned(), &chain.base.translation.to_f64())?;
     check("a coordinate of the tip".to_owned(), &chain.tip.translation.to_f64())?;
     for (index, joint) in chain.joints.iter().enumerate() {

@@ -5,8 +5,8 @@ use core::f64::consts::FRAC_PI_2;
 /// How many units in the last place an angle may lie from a multiple of π/2 and still be that right angle.
 const RIGHT_ANGLE_ULPS: f64 = 4.0;
 
-/// Angles of a table, placement or lock are below this, 2^23 rad: from here on neighbouring numbers are more than 1e-9 rad
-/// apart, and beyond 1e13 rad the units in the last place of a right angle would be angles of their own.
+/// Angles of a table, placement or lock are below this, 2^23 rad: from here on neighbouring numbers are more than 1e-9
+/// rad apart, and beyond 1e13 rad the units in the last place of a right angle would be angles of their own.
 pub const LARGEST_ANGLE: f64 = 8_388_608.0;
 
 /// A rotation by a whole number of right angles, modulo a full turn: 0, 1, 2 or 3.

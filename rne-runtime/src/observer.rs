@@ -59,8 +59,8 @@ impl<const DOF: usize, T: Scalar> ObserverState<DOF, T> {
     /// An observer with a low-pass of `gain` Hz (its time constant is 1/(2π gain) s), updated every `period` s.
     ///
     /// It is stable and does not overshoot for every `gain` and `period` above zero: the larger the product of both,
-    /// the nearer is what an update returns to the mean external torque of its tick. With a `gain` or a `period` that is
-    /// not above zero, and with a `period` below 1e-30 s, the observer returns zeros. In single precision noise of
+    /// the nearer is what an update returns to the mean external torque of its tick. With a `gain` or a `period` that
+    /// is not above zero, and with a `period` below 1e-30 s, the observer returns zeros. In single precision noise of
     /// rounding asks for a gain below a tenth of the rate of the ticks.
     #[must_use]
     pub fn new(gain: f64, period: f64) -> Self {

@@ -38,8 +38,8 @@ pub(super) fn declarations(file: &File) -> String {
     text.push_str(&comment(
         "///",
         "Begins an observer whose low-pass has a gain of `gain` Hz (a time constant of 1/(2 pi gain) s), to be updated \
-         every `period` s. Stable for every gain and period above zero. With a gain or a period that is not above zero, \
-         and with a period below 1e-30 s, every update writes zeros.",
+         every `period` s. Stable for every gain and period above zero. With a gain or a period that is not above \
+         zero, and with a period below 1e-30 s, every update writes zeros.",
     ));
     let _ = writeln!(text, "{};\n", begin_head(file));
     text.push_str(&comment(
