@@ -116,10 +116,11 @@ pub fn export(robot: &Robot) -> Result<Exported, NoUrdf> {
 
 /// Refuses numbers that an import would refuse.
 fn refuse_too_large(chain: &Chain) -> Result<(), NoUrdf> {
-    let check = |what: String, numbers: &[f64]| match numbers.iter().find(|number| !(number.abs() <= LARGEST)) {
-        Some(&number) => Err(NoUrdf::TooLarge { what, number }),
-        None => Ok(()),
-    };
+    let check =
+        |what: String, numbers: &[f64]| match numbers.iter().find(|number| number.is_nan() || number.abs() > LARGEST) {
+            Some(&number) => Err(NoUrdf::TooLarge { what, number }),
+            None => Ok(()),
+        };
     check("a coordinate of `base`".to_owned(), &chain.base.translation.to_f64())?;
     check("a coordinate of the tip".to_owned(), &chain.tip.translation.to_f64())?;
     for (index, joint) in chain.joints.iter().enumerate() {

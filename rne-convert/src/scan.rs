@@ -334,26 +334,23 @@ impl Scanner<'_> {
             return Ok(());
         }
         let key = (what == "attribute", of.name, name.to_owned());
-        let kind = match self.kinds.get(&key) {
-            Some(&kind) => kind,
-            None => {
-                let meant = did_you_mean(name, matter.iter().chain(others).copied());
-                if let Some(meant) = meant.filter(|meant| matter.contains(meant)) {
-                    let message = format!("there is no {what} {} {between} `{}`", quoted(name), of.name);
-                    let help =
-                        format!("did you mean `{meant}`? A name is not guessed: correct it, or delete what it names");
-                    return Err(self.source.error(place, message, help));
-                }
-                let kind = self.scanned.unknown.len();
-                if kind >= MAX_UNKNOWN {
-                    let message = format!("more than {MAX_UNKNOWN} names of elements and attributes that no URDF has");
-                    return Err(self.source.error(place, message, None));
-                }
-                self.scanned.unknown.push(format!("{what} {} {between} `{}`", quoted(name), of.name));
-                self.kinds.insert(key, kind);
-                kind
-            }
-        };
+        if let Some(&kind) = self.kinds.get(&key) {
+            self.owner(of).unknown.insert(kind);
+            return Ok(());
+        }
+        let meant = did_you_mean(name, matter.iter().chain(others).copied());
+        if let Some(meant) = meant.filter(|meant| matter.contains(meant)) {
+            let message = format!("there is no {what} {} {between} `{}`", quoted(name), of.name);
+            let help = format!("did you mean `{meant}`? A name is not guessed: correct it, or delete what it names");
+            return Err(self.source.error(place, message, help));
+        }
+        let kind = self.scanned.unknown.len();
+        if kind >= MAX_UNKNOWN {
+            let message = format!("more than {MAX_UNKNOWN} names of elements and attributes that no URDF has");
+            return Err(self.source.error(place, message, None));
+        }
+        self.scanned.unknown.push(format!("{what} {} {between} `{}`", quoted(name), of.name));
+        self.kinds.insert(key, kind);
         self.owner(of).unknown.insert(kind);
         Ok(())
     }

@@ -174,8 +174,7 @@ fn values() {
     ]);
 }
 
-/// From 2^23 rad on neighbouring numbers are more than 1e-9 rad apart; beyond 1e13 rad every angle would be a right
-/// one.
+/// From 2^23 rad on neighbouring numbers are more than 1e-9 rad apart; beyond 1e16 rad every angle was a right one.
 #[test]
 fn angles_are_so_small_that_their_digits_count() {
     for (old, at) in [("theta: 0, d: 0.4", "theta: "), ("alpha: pi/2", "alpha: ")] {

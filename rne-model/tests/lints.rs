@@ -5,6 +5,17 @@ mod common;
 use common::{BASE, found, the_one, with};
 use rne_model::{Reader, Severity};
 
+/// Its size is told where its squares overflow or vanish.
+#[test]
+fn gravity_of_any_size_is_told() {
+    for (gravity, size) in
+        [("[0, -1e300, 0]", "1e300"), ("[3e-300, -4e-300, 0]", "5e-300"), ("[1.7e308, 1.7e308, 0]", "1.79769e308")]
+    {
+        let message = the_one("[0, 0, -9.81]", gravity).message;
+        assert!(message.contains(&format!("gravity accelerates by {size} m/s²")), "{message}");
+    }
+}
+
 #[test]
 fn lints() {
     for (old, new, line, column, message, help) in [
@@ -41,9 +52,6 @@ fn lints() {
             "gravity accelerates by 9810 m/s²; on Earth it is 9.81 m/s²",
             "an acceleration in m/s²",
         ),
-        ("[0, 0, -9.81]", "[0, -1e300, 0]", 5, 10, "gravity accelerates by 1e300 m/s²", "such as"),
-        ("[0, 0, -9.81]", "[3e-300, -4e-300, 0]", 5, 10, "gravity accelerates by 5e-300 m/s²", "such as"),
-        ("[0, 0, -9.81]", "[1.7e308, 1.7e308, 0]", 5, 10, "gravity accelerates by 1.79769e308 m/s²", "such as"),
         ("[0, 0, -9.81]", "[0, 0, -1]", 5, 10, "gravity accelerates by 1 m/s²", "such as `[0, 0, -9.81]`"),
         (
             "[0, 0, -9.81]",
