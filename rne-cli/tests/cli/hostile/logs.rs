@@ -58,6 +58,9 @@ fn nested(depth: usize) -> String {
     format!("{}'<f8'{}", "[('a', ".repeat(depth), ")]".repeat(depth))
 }
 
+/// What it is, the name of the file, what is in it, options, what shall become of it.
+type Input<Content> = (&'static str, &'static str, Content, &'static [&'static str], Expected);
+
 pub(super) fn cases(folder: &Path) -> Vec<Case> {
     let refused = |words| Expected::Refused(1, words);
     let good = csv(400, |row| format!("{row}e-2"));
@@ -66,7 +69,7 @@ pub(super) fn cases(folder: &Path) -> Vec<Case> {
         csv(400, |row| if row < 200 { format!("{row}e-2") } else { format!("{}", 3_000_000_000_usize + row) });
     let stamped = |step: usize| csv(400, move |row| (row * step).to_string());
     let named = |name: &str| good.replace("q1,q2", &format!("{name}/position,other/position"));
-    let inputs: Vec<(&str, &str, Vec<u8>, &[&str], Expected)> = vec![
+    let inputs: Vec<Input<Vec<u8>>> = vec![
         ("a good log", "a.csv", good.clone().into(), &[], Expected::Taken),
         ("nothing", "a.csv", vec![], &[], refused("")),
         ("a header alone", "a.csv", good.lines().next().expect("a header").into(), &[], refused("")),
@@ -104,24 +107,22 @@ pub(super) fn cases(folder: &Path) -> Vec<Case> {
 /// The files of formats that are features: `tests/doors` says how such are made.
 fn formats(folder: &Path) -> Vec<Case> {
     let refused = |words| Expected::Refused(1, words);
-    let files: [(&str, &str, &[&str], Expected); 7] = [
-        ("one list of 50 million numbers", "long_list.parquet", &[], refused("")),
-        ("a compression that is not read", "brotli.parquet", &[], refused("brotli")),
-        ("whole milliseconds in u4", "milliseconds.parquet", &[], refused("time-unit")),
-        ("two arms", "two_arms.parquet", &[], Expected::Failed),
-        ("a channel of two topics", "channel_again.mcap", &[], Expected::Either),
-        ("a chunk of 1 GB", "large_chunk.mcap", &[], Expected::Either),
-        ("data that SQLite computes", "computed.db3", &[], refused("")),
+    // whether this build reads them
+    let (parquet, bags) = (cfg!(feature = "parquet"), cfg!(feature = "bags"));
+    let files: [Input<bool>; 7] = [
+        ("one list of 50 million numbers", "long_list.parquet", parquet, &[], refused("")),
+        ("a compression that is not read", "brotli.parquet", parquet, &[], refused("brotli")),
+        ("whole milliseconds in u4", "milliseconds.parquet", parquet, &[], refused("time-unit")),
+        ("two arms", "two_arms.parquet", parquet, &[], Expected::Failed),
+        ("a channel of two topics", "channel_again.mcap", bags, &[], Expected::Either),
+        ("a chunk of 1 GB", "large_chunk.mcap", bags, &[], Expected::Either),
+        ("data that SQLite computes", "computed.db3", bags, &[], refused("")),
     ];
-    let is_read = |name: &str| {
-        let is_table = Path::new(name).extension().is_some_and(|extension| extension == "parquet");
-        if is_table { cfg!(feature = "parquet") } else { cfg!(feature = "bags") }
-    };
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/cli/hostile/files");
     let mut cases = Vec::new();
-    for (index, (what, name, options, expected)) in files.into_iter().enumerate() {
+    for (index, (what, name, is_read, options, expected)) in files.into_iter().enumerate() {
         // what is not read is refused, with the command that has it
-        let expected = if is_read(name) { expected } else { refused("--features") };
+        let expected = if is_read { expected } else { refused("--features") };
         let bytes = fs::read(source.join(name)).expect("a file of the project");
         cases.extend(every_command(what, &written(folder, 1000 + index, name, bytes), options, expected));
     }
