@@ -48,7 +48,10 @@ fn main() {
     };
     let mut samples: Vec<Sample> = (0..arms).flat_map(measured).collect();
     samples.sort_by(|a, b| b.call().total_cmp(&a.call()));
-    println!("| of {} calls of {arms} arms | median, s | largest, s | above {MOST} s |\n|---|---|---|---|", samples.len());
+    println!(
+        "| of {} calls of {arms} arms | median, s | largest, s | above {MOST} s |\n|---|---|---|---|",
+        samples.len()
+    );
     let parts = ["choices", "compilation", "Rust", "C", "listing"];
     for (index, part) in parts.into_iter().enumerate() {
         row(part, samples.iter().map(|sample| sample.parts[index]).collect());
@@ -98,7 +101,9 @@ fn texts<'a>(robot: &'a Robot, program: &'a Program) -> [Text<'a>; 3] {
     let what = Selection { explain: true, ..Selection::default() };
     [
         Box::new(move || drop(std::hint::black_box(emit::rust_file(robot, programs)))),
-        Box::new(move || drop(std::hint::black_box(emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))))),
+        Box::new(move || {
+            drop(std::hint::black_box(emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))))
+        }),
         Box::new(move || drop(std::hint::black_box(emit::listing(robot, program, what).to_string()))),
     ]
 }
