@@ -143,7 +143,7 @@ fn rank_in_double(arm: &DynArm) -> usize {
         let mut random = |most: f64| (0..arm.dof()).map(|_| most * (2.0 * rng.f64() - 1.0)).collect::<Vec<f64>>();
         let (q, qd, qdd) = (random(3.0), random(3.0), random(10.0));
         let matrix = arm.regressor(&q, &qd, &qdd).expect("a number per joint");
-        rows.extend(matrix.into_iter().map(|torque| torque.into_flattened()));
+        rows.extend(matrix.into_iter().map(Vec::into_flattened));
     }
     let matrix = nalgebra::DMatrix::from_fn(rows.len(), rows[0].len(), |row, column| rows[row][column]);
     let values = matrix.singular_values();
