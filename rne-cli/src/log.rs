@@ -22,11 +22,12 @@ use crate::terminal::GOOD;
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
-  rne log rne-logs/tests/data/ur10.db3
-  rne log rne-logs/tests/data/panda.db3 --cutoff 4 -o motion.csv
-  rne log rne-logs/tests/data/ur10.db3 --robot ur10 --json
+  rne log docs/desk_arm_log.csv
+  rne log docs/desk_arm_log.csv --cutoff 4 -o motion.csv
+  rne log docs/desk_arm_log.csv --robot docs/desk_arm.yaml --json
 
-Bags of ROS 2 (*.db3, *.mcap), Parquet, CSV, npy; their columns: docs/logs.md.")]
+CSV, npy; with their features bags of ROS 2 (*.db3, *.mcap) and Parquet. Their
+columns: docs/logs.md.")]
 #[allow(clippy::struct_excessive_bools)] // each is an option
 pub(crate) struct Arguments {
     /// Files, one behind another; of a folder the bags inside

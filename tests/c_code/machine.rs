@@ -40,9 +40,12 @@ struct States {
 impl States {
     fn random(rng: &mut Rng, dof: usize, count: usize) -> Self {
         let mut between = |range: f64| (2.0 * rng.f64() - 1.0) * range;
-        let mut state = || State {
-            joints: [3.2, 2.0, 5.0, 50.0].map(|range| (0..dof).map(|_| between(range)).collect()),
-            vectors: [(); 10].map(|()| [(); 3].map(|()| between(10.0))),
+        let mut state = || {
+            let joints = [3.2, 2.0, 5.0, 50.0].map(|range| (0..dof).map(|_| between(range)).collect());
+            let mut vectors = [(); 10].map(|()| [(); 3].map(|()| between(10.0)));
+            // a payload of negative mass is refused
+            vectors[6][2] = vectors[6][2].abs();
+            State { joints, vectors }
         };
         let each: Vec<State> = (0..count).map(|_| state()).collect();
         let rows = |of: &dyn Fn(&State) -> Vec<f64>| each.iter().flat_map(of).collect();

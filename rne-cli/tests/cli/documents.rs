@@ -62,6 +62,8 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
+    ("cargo xtask frozen", ".ci/run", "step cargo xtask frozen\n"),
+    ("cargo xtask light", ".ci/run", "step cargo xtask light\n"),
     // its page is checked, and it breaks sources
     ("cargo xtask mutate", "tests/documents.rs", "fn the_page_of_mutations_is_of_the_mutants()"),
     // it measures times

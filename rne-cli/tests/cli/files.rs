@@ -171,6 +171,15 @@ mod unix {
         assert!(sent.expect("a shell's command").success(), "{name} is sent");
     }
 
+    /// Whether this process was started with a signal ignored, as a shell starts what runs behind it; then what it starts
+    /// ignores the signal too.
+    fn is_ignored(number: i32) -> bool {
+        let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+        let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+        let mask = ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0);
+        mask >> (number - 1) & 1 == 1
+    }
+
     /// Waits until something is so; a child that ends before has failed, and so has one that never gets there.
     fn until(child: &mut Child, mut is_so: impl FnMut(&Child) -> bool) {
         const LOOKS: usize = 60_000;
@@ -189,7 +198,8 @@ mod unix {
     /// States that never end come through a pipe, so the file is being written when the signal comes.
     #[test]
     fn a_signal_leaves_no_temporary_file() {
-        for (name, number) in [("INT", 2), ("TERM", 15), ("HUP", 1)] {
+        let signals = [("INT", 2), ("TERM", 15), ("HUP", 1)];
+        for (name, number) in signals.into_iter().filter(|(_, number)| !is_ignored(*number)) {
             for out in ["out.csv", "out.npy"] {
                 let folder = folder(&format!("signal_{name}_{out}"));
                 let arguments = ["eval", "planar2", "--function", "gravity_torques", "--states", "-", "-o", out];
@@ -246,7 +256,8 @@ mod unix {
     #[test]
     #[cfg(target_os = "linux")]
     fn a_search_keeps_its_best_after_ctrl_c_alone() {
-        for (name, status, number) in [("INT", Some(0), None), ("TERM", None, Some(15)), ("HUP", None, Some(1))] {
+        let signals = [("INT", 2, Some(0)), ("TERM", 15, None), ("HUP", 1, None)];
+        for (name, number, status) in signals.into_iter().filter(|(_, number, _)| !is_ignored(*number)) {
             let folder = folder(&format!("signal_search_{name}"));
             fs::copy(format!("{}/robots/planar2.yaml", crate::call::ROOT), folder.join("arm.yaml")).expect("a copy");
             let mut child = command(&["search", "arm.yaml", "--seconds", "100000"])
@@ -258,7 +269,7 @@ mod unix {
             until(&mut child, blocks_interrupt);
             signal(&child, name);
             let ended = child.wait().expect("it ends");
-            assert_eq!((ended.code(), ended.signal()), (status, number), "{name}");
+            assert_eq!((ended.code(), ended.signal()), (status, status.is_none().then_some(number)), "{name}");
             let expected: &[&str] = if status.is_some() { &["arm.plan.yaml", "arm.yaml"] } else { &["arm.yaml"] };
             assert_eq!(names(&folder), expected, "{name}");
         }
