@@ -100,7 +100,14 @@ for command in STREAMS:
 def started(trial, *command):
     words = [os.fspath(harness.RNE), *map(str, command)]
     trial.verdict.commands += 1
-    return subprocess.Popen(words, cwd=trial.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(
+        words,
+        cwd=trial.folder,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        preexec_fn=harness.heed_signals,  # noqa: PLW1509
+    )
 
 
 def ended(trial, child):
@@ -338,10 +345,11 @@ def full_disk(command, kilobytes):
             trial.write("big.csv", states_of(20_000))
         with small_disk(trial) as place:
             (place / "old.html").write_text("old\n")
+            (place / "man").mkdir()
             fill(place, kilobytes << 10)
-            before = set(os.listdir(place))
+            before = harness.digests(place)
             answer = trial.rne(*command, folder=place, writes=["old.html", *small_outputs(command)])
-            left = set(os.listdir(place)) - before
+            left = harness.digests(place).keys() - before.keys()
             if answer.status != 0 and left:
                 trial.fault(f"status {answer.status}, and it leaves {sorted(left)}")
             if answer.status != 0 and (place / "old.html").read_text() != "old\n":

@@ -172,7 +172,9 @@ def folder_of_somebody(folder):
 
 for writer in FOLDERS:
     onto(writer, "a file of somebody", "user.txt", "refused")
-    onto(writer, "a new folder", writer, "taken", writes=[writer])
+onto("man", "a folder that is not there", "man", "refused")
+onto("man", "a folder", "man", "taken", lambda folder: (folder / "man").mkdir(), writes=["man"])
+onto("firmware", "a folder that is not there", "firmware", "taken", writes=["firmware"])
 onto("firmware", "a folder of somebody", "mine", "refused", folder_of_somebody)
 
 # A format of tables that `rne log` does not write must not get a table of another format under its name.

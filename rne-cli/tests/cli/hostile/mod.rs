@@ -36,6 +36,8 @@ enum Expected {
     Refused(u8, &'static str),
     /// Status 1 or 2.
     Failed,
+    /// Status 1 or 2, and a message with these words.
+    FailedSaying(&'static str),
     /// Any of the three: what a valid robot can be used for, its numbers decide.
     Either,
 }
@@ -115,6 +117,7 @@ fn fault(case: &Case, output: &Output) -> Option<String> {
         Expected::Refused(1, words) => (&[1], words),
         Expected::Refused(_, words) => (&[2], words),
         Expected::Failed => (&[1, 2], ""),
+        Expected::FailedSaying(words) => (&[1, 2], words),
         Expected::Either => (&[0, 1, 2], ""),
     };
     let status = output.status.code().unwrap_or_default();
