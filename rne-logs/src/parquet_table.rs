@@ -1,6 +1,7 @@
 //! Tables in Parquet, with a column per number, or with lists.
 
 use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,6 +22,9 @@ use crate::{LogError, Options, TimeUnit};
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
 const BATCH: usize = 1024;
 const BATCH_OF_LISTS: usize = 64;
+
+/// Bytes of a file's end, which describes its columns and groups of rows: in memory it takes some ten times as many.
+const LONGEST_FOOTER: u32 = 16 << 20;
 
 /// A table, read by groups of rows.
 pub(crate) struct ParquetTable {
@@ -65,6 +69,12 @@ impl ParquetTable {
             |error: &dyn std::fmt::Display| LogError::file(path, format_args!("the file cannot be read: {error}"));
         let file = File::open(path).map_err(|error| wrong(&error))?;
         let source = file.try_clone().map_err(|error| wrong(&error))?;
+        if let Some(length) = footer(&source).filter(|length| *length > LONGEST_FOOTER) {
+            let what = format!(
+                "the description of its columns and groups of rows has {length} bytes; at most {LONGEST_FOOTER} are read"
+            );
+            return Err(LogError::file(path, what));
+        }
         let file = guarded(|| SerializedFileReader::new(file)).unwrap_or_else(|| Err(corrupt()));
         let file = file.map_err(|error| LogError::file(path, reason(&error)))?;
         let schema = file.metadata().file_metadata().schema_descr_ptr();
@@ -308,6 +318,13 @@ impl Source for ParquetTable {
     fn is_time_unit_known(&self) -> bool {
         self.is_time_unit_known
     }
+}
+
+/// Bytes of what stands at the end of a file; none of one that is too short.
+fn footer(mut file: &File) -> Option<u32> {
+    let mut length = [0; 4];
+    file.seek(SeekFrom::End(-8)).and_then(|_| file.read_exact(&mut length)).ok()?;
+    Some(u32::from_le_bytes(length))
 }
 
 /// What is said where the library asserted something.

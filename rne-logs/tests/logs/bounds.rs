@@ -94,6 +94,21 @@ fn lists_of_parquet_are_as_long_as_joints_are_many() {
     assert!(refused(path, Options::default()).contains("at most 1024 are read"));
 }
 
+/// A file whose end claims more than it has is cut off, and one that claims too much is not tried.
+#[test]
+fn the_end_of_parquet_has_a_limit() {
+    let bytes = lists(&[2; 80], None, plain());
+    for (length, wanted) in [(20_000_000_u32, "has 20000000 bytes; at most 16777216 are read"), (10_000_000, "cut off")]
+    {
+        let mut bytes = bytes.clone();
+        let place = bytes.len() - 8;
+        bytes[place..place + 4].copy_from_slice(&length.to_le_bytes());
+        let (_folder, path) = file("log.parquet", bytes);
+        let error = refused(path, Options::default());
+        assert!(error.contains(wanted), "{error}");
+    }
+}
+
 #[test]
 fn names_are_of_some_length() {
     let long = |length: usize| "a".repeat(length);
