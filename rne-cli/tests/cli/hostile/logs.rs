@@ -13,7 +13,7 @@ const COMMANDS: [&[&str]; 3] = [&["log"], &["identify", "planar2"], &["watch", "
 pub(super) fn every_command(what: &str, path: &str, options: &[&str], expected: Expected) -> Vec<Case> {
     let name = Path::new(path).file_name().expect("a name").to_str().expect("UTF-8");
     let case = |command: &&[&str]| {
-        let arguments = [command, &[path], options].concat();
+        let arguments = [*command, &[path], options].concat();
         // a log that can be listed need not be enough to identify an arm, and an arm may be refused before its log
         let expected = match expected {
             Expected::Taken if command[0] != "log" => Expected::Either,
