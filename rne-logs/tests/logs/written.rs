@@ -92,6 +92,7 @@ fn joined(pieces: Motions<'_>) -> Result<Vec<(u64, Motion)>, LogError> {
 
 /// A message of `sensor_msgs/msg/JointState`, written by the rules of CDR: numbers stand at multiples of their size,
 /// counted from behind the four bytes of the encoding.
+#[cfg(feature = "full")]
 pub(crate) fn joint_state(time: i64, names: &[&str], lists: [&[f64]; 3], is_little: bool) -> Vec<u8> {
     let mut bytes = vec![];
     let align = |bytes: &mut Vec<u8>, to: usize| bytes.resize(bytes.len().next_multiple_of(to), 0);
@@ -122,6 +123,7 @@ pub(crate) fn joint_state(time: i64, names: &[&str], lists: [&[f64]; 3], is_litt
 }
 
 /// The rows of [`csv`]: time, positions, velocities, torques.
+#[cfg(feature = "full")]
 pub(crate) fn rows(times: &[f64]) -> Vec<(f64, [[f64; 2]; 3])> {
     let row = |time: &f64| {
         let [a, b] = SINES.map(|sine| sine.at(*time));
