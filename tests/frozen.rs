@@ -107,7 +107,10 @@ fn emitted_code_is_the_frozen_one() {
     let now = frozen_now(&robots);
     if std::env::var_os("RNE_FROZEN_UPDATE").is_some() {
         assert_eq!(robots.len(), ROBOTS.len(), "the list is written of all robots: set RNE_EXHAUSTIVE, too");
-        let text: String = now.iter().map(|(key, hash)| format!("{hash}  {key}\n")).collect();
+        let text = now.iter().fold(String::new(), |mut text, (key, hash)| {
+            let _ = writeln!(text, "{hash}  {key}");
+            text
+        });
         std::fs::write(list(), text).expect("the list can be written");
     }
     let is_asked = |key: &String| {
