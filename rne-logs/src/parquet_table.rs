@@ -71,7 +71,8 @@ impl ParquetTable {
         let source = file.try_clone().map_err(|error| wrong(&error))?;
         if let Some(length) = footer(&source).filter(|length| *length > LONGEST_FOOTER) {
             let what = format!(
-                "the description of its columns and groups of rows has {length} bytes; at most {LONGEST_FOOTER} are read"
+                "the description of its columns and groups of rows has {length} bytes; at most {LONGEST_FOOTER} are \
+                 read"
             );
             return Err(LogError::file(path, what));
         }

@@ -171,8 +171,8 @@ mod unix {
         assert!(sent.expect("a shell's command").success(), "{name} is sent");
     }
 
-    /// Whether this process was started with a signal ignored, as a shell starts what runs behind it; then what it starts
-    /// ignores the signal too.
+    /// Whether this process was started with a signal ignored, as a shell starts what runs in the background; then what
+    /// it starts ignores the signal too.
     fn is_ignored(number: i32) -> bool {
         let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
         let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
