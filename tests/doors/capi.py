@@ -1,4 +1,4 @@
-"""The C library under capi.c: one case for each part of that program, which also runs with the sanitizers of the compiler.
+"""The C library under capi.c: one case for each part of that program, which also runs with the compiler's sanitizers.
 
 Needs cc and the prefix that `cargo xtask capi` makes, in PREFIX.
 """
