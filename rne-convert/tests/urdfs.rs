@@ -557,6 +557,20 @@ fn what_no_row_can_say_is_refused_with_a_reason() {
     }
 }
 
+/// Half of a body is not guessed.
+#[test]
+fn an_inertial_has_a_mass_and_an_inertia() {
+    for (part, element) in [("mass", "<mass value=\"2\"/>"), ("inertia", "<inertia ixx")] {
+        let text = pendulum("");
+        let at = text.find(element).expect("the rod has it");
+        let end = at + text[at..].find("/>").expect("its end") + 2;
+        let message = Urdf::read("arm.urdf", &format!("{}{}", &text[..at], &text[end..])).unwrap_err().to_string();
+        for words in [&format!("the `inertial` of the link `rod` has no element `{part}`"), "arm.urdf:3:1"] {
+            assert!(message.contains(words), "no `{words}` in {message}");
+        }
+    }
+}
+
 /// XML takes a line break within an attribute for a space.
 #[test]
 fn numbers_of_an_attribute_may_stand_in_several_lines() {
