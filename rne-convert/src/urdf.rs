@@ -162,8 +162,8 @@ impl Urdf {
                 let message = format!("the link {} is there already, in line {}", quoted(name), self.line(first));
                 return Err(self.source.error(span, message, "names of links must differ".to_owned()));
             }
-            let lacks = |part: &&str| seen.elements.contains("inertial") && !seen.elements.contains(part);
-            if let Some(part) = ["mass", "inertia"].iter().find(lacks) {
+            let is_there = |part: &str| !seen.elements.contains("inertial") || seen.elements.contains(part);
+            if let Some(part) = ["mass", "inertia"].into_iter().find(|part| !is_there(part)) {
                 let message = format!("the `inertial` of the link {} has no element `{part}`", quoted(name));
                 let help = "write both `mass` and `inertia`, or leave `inertial` out: the link has no mass then";
                 return Err(self.source.error(span, message, help.to_owned()));
