@@ -43,7 +43,7 @@ fn over_the_border(text: &[u8]) -> String {
         border::push(u32::from(*byte));
     }
     let length = border::compile();
-    let words = (0..length.div_ceil(4)).map(border::word);
+    let words = (0..length.div_ceil(4)).map(|index| border::word(index));
     let mut bytes: Vec<u8> = words.flat_map(u32::to_le_bytes).collect();
     assert!(bytes[length..].iter().all(|byte| *byte == 0));
     bytes.truncate(length);
