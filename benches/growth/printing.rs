@@ -102,7 +102,7 @@ fn texts<'a>(robot: &'a Robot, program: &'a Program) -> [Text<'a>; 3] {
     [
         Box::new(move || drop(std::hint::black_box(emit::rust_file(robot, programs)))),
         Box::new(move || {
-            drop(std::hint::black_box(emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))))
+            drop(std::hint::black_box(emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))));
         }),
         Box::new(move || drop(std::hint::black_box(emit::listing(robot, program, what).to_string()))),
     ]
