@@ -140,7 +140,7 @@ macro_rules! pairs {
         }
     };
 }
-shipped::for_each_robot!(pairs!);
+shipped::for_each_tried_robot!(pairs!);
 
 trait Visitor {
     fn visit<const DOF: usize, P: Pair<DOF>>(&mut self, pair: &P);

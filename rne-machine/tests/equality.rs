@@ -94,9 +94,9 @@ fn are_same(a: &[f64], b: &[f64]) -> bool {
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.to_bits() == b.to_bits() || a.is_nan() && b.is_nan())
 }
 
-/// The shipped robots as they are shipped: by their plans.
+/// The shipped robots that are tried, as they are shipped: by their plans.
 fn arms() -> impl Iterator<Item = CompiledArm> {
-    rne_robots::ROBOTS.iter().map(|file| {
+    shipped::tried().map(|file| {
         let arm = match file.plan {
             Some(plan) => CompiledArm::with_plan(file.yaml, plan),
             None => CompiledArm::from_yaml(file.yaml),

@@ -5,8 +5,8 @@ use rne_model::Robot;
 use rne_plot::{TorqueHistory, TorqueParts, Trajectory, TrajectoryError, svg};
 use rne_runtime::DynArm;
 
-fn shipped() -> impl Iterator<Item = Robot> {
-    rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).unwrap())
+fn robots() -> impl Iterator<Item = Robot> {
+    shipped::tried().map(|file| Robot::from_yaml(file.yaml).unwrap())
 }
 
 fn robot(name: &str) -> Robot {
@@ -56,7 +56,7 @@ fn the_parts_of_two_links_are_those_of_lagrange() {
 #[test]
 fn parts_add_up_and_velocities_are_quadratic() {
     let mut rng = Rng::with_seed(2);
-    for robot in shipped().flat_map(|robot| [robot.clone(), robot.with_rotors()]) {
+    for robot in robots().flat_map(|robot| [robot.clone(), robot.with_rotors()]) {
         let (arm, dof) = (DynArm::from_robot(&robot), robot.dof());
         for _ in 0..5 {
             let (q, qd, qdd) = (numbers(&mut rng, dof, 2.0), numbers(&mut rng, dof, 3.0), numbers(&mut rng, dof, 6.0));
@@ -170,7 +170,7 @@ fn trajectories_that_are_none() {
 
 #[test]
 fn postures_are_inside_the_limits_and_speeds_too() {
-    for robot in shipped() {
+    for robot in robots() {
         let [from, to] = Trajectory::postures(&robot);
         let least = Trajectory::least_duration(&robot, &from, &to);
         let motion = Trajectory::quintic(&from, &to, least.max(0.1), 101).unwrap();

@@ -179,7 +179,7 @@ fn a_table_in_numbers_gets_the_letters_of_textbooks_and_no_letter_has_two_meanin
 /// No line is wider than a terminal, whatever the arm.
 #[test]
 fn lines_fit_on_a_terminal() {
-    for file in rne_robots::ROBOTS {
+    for file in shipped::tried() {
         let robot = shipped(file.name);
         for joints in [2, robot.dof()] {
             let form = ClosedForm::of(&robot, joints);

@@ -7,18 +7,11 @@ use rne_codegen::Function;
 
 use crate::arm::{Arm, Given, Maker};
 use crate::case::sum;
-use crate::check::{ROOT, Worst, error_on_scale, flat, json, numbers, product, relative_error, wrench};
+use crate::check::{Worst, error_on_scale, flat, json, numbers, product, relative_error, wrench};
 
-/// The robots that are shipped: every file of `robots/` that is no plan.
-pub(crate) static ROBOTS: LazyLock<Vec<String>> = LazyLock::new(|| {
-    let files = std::fs::read_dir(format!("{ROOT}/robots")).expect("the folder");
-    let names = files.map(|file| file.expect("a file").file_name().into_string().expect("a name in Unicode"));
-    let names = names.filter_map(|name| name.strip_suffix(".yaml").map(str::to_owned));
-    let mut names: Vec<String> = names.filter(|name| name.strip_suffix(".plan").is_none()).collect();
-    names.sort_unstable();
-    assert!(!names.is_empty());
-    names
-});
+/// The shipped robots that are tried.
+pub(crate) static ROBOTS: LazyLock<Vec<String>> =
+    LazyLock::new(|| shipped::tried().map(|robot| robot.name.to_owned()).collect());
 
 #[test]
 fn functions_of_the_shipped_robots_are_the_independent_ones() {

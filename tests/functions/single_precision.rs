@@ -111,7 +111,8 @@ fn single_precision_of_every_function_is_as_documented() {
     let page = std::fs::read_to_string(&path).expect("the page");
     let (head, rest) = page.split_once(BEGIN).expect("the block of the table");
     let (written, tail) = rest.split_once(END).expect("its end");
-    if std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
+    // not that of a sample
+    if shipped::is_exhaustive() && std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
         std::fs::write(&path, format!("{head}{BEGIN}{}{END}{tail}", table(&rows))).expect("a writable page");
         return;
     }
@@ -122,13 +123,19 @@ fn single_precision_of_every_function_is_as_documented() {
         let cells = line.strip_prefix(&start).unwrap_or_else(|| panic!("{PAGE}: {line}, where {start} is measured"));
         let [median, worst, robot] =
             cells.trim_end_matches(" |").split(" | ").collect::<Vec<_>>().try_into().expect("three cells");
-        let of_robot = ROBOTS.iter().position(|name| name == robot).map(|index| row.errors[index]).expect("a robot");
-        // another robot may be the worst on another machine, where theirs are close
-        for (figure, measured) in [(median, row.median()), (worst, row.worst().1), (worst, of_robot)] {
-            let figure: f64 = figure.parse().expect("a figure");
+        let [median, worst]: [f64; 2] = [median, worst].map(|figure| figure.parse().expect("a figure"));
+        let is_below = |measured: f64, figure: f64| {
             // they differ from machine to machine as far as sine and cosine do
             assert!(measured <= 3.0 * figure, "{PAGE}: {line} has {figure:e}, measured {measured:e}");
-            assert!(figure <= 3.0 * measured, "{PAGE}: {line} has {figure:e}, measured {measured:e}");
+        };
+        is_below(row.worst().1, worst);
+        // another robot may be the worst on another machine, where theirs are close
+        if let Some(index) = ROBOTS.iter().position(|name| name == robot) {
+            is_below(worst, row.errors[index]);
+        }
+        if shipped::is_exhaustive() {
+            is_below(row.median(), median);
+            is_below(median, row.median());
         }
     }
 }

@@ -69,7 +69,7 @@ fn single_precision_is_close_to_double() {
     println!("{table}");
     let page = std::fs::read_to_string(PAGE).expect("the page");
     // not those of a sample
-    if states::is_exhaustive() && std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
+    if shipped::is_exhaustive() && std::env::var_os("RNE_WRITE_DOCUMENTS").is_some() {
         let (head, _) = page.split_once(HEADER).expect("a table, the last thing on the page");
         std::fs::write(PAGE, format!("{head}{table}")).expect("a writable page");
         return;
@@ -77,7 +77,7 @@ fn single_precision_is_close_to_double() {
     for (robot, worst) in measured.worst {
         let ratio = worst / documented(&page, robot);
         // the worst of a sample may be anywhere below the worst of all states
-        let least = if states::is_exhaustive() { 0.5 } else { 0.0 };
+        let least = if shipped::is_exhaustive() { 0.5 } else { 0.0 };
         assert!((least..=2.0).contains(&ratio), "{robot}: {worst:.1e} is not what {PAGE} says");
     }
 }

@@ -6,14 +6,9 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::shipped::Shipped;
 
-/// Whether everything is asked for, and not a sample: `RNE_EXHAUSTIVE=1 cargo test --release --test robots`.
-pub(crate) fn is_exhaustive() -> bool {
-    std::env::var_os("RNE_EXHAUSTIVE").is_some()
-}
-
 /// States per robot.
 pub(crate) fn count() -> usize {
-    if is_exhaustive() { 10_000 } else { 500 }
+    if shipped::is_exhaustive() { 10_000 } else { 500 }
 }
 
 /// Joint arrays and a wrench.

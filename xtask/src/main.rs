@@ -115,7 +115,7 @@ impl Task {
             Self::Frozen(task) => ("frozen", false, task.run()),
             Self::Doors(task) => ("doors", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),
-            Self::Features(_) => ("features", false, features::Features::run()),
+            Self::Features(features) => ("features", false, features.run()),
             Self::Urdf(task) => ("urdf", task.install, task.run()),
             Self::Python(task) => ("python", task.install, task.run()),
             Self::Capi(task) => ("capi", task.install, task.run()),

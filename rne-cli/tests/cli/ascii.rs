@@ -5,15 +5,13 @@ use unicode_width::UnicodeWidthStr;
 
 use crate::call::{fails, fine, folder};
 
-/// The arms that are shipped, with their joints.
+/// The shipped arms that are tried, with their joints.
 fn robots() -> Vec<(String, usize)> {
     let joints = |name: &str| {
         let json: Value = serde_json::from_str(&fine(&["show", name, "--json"])).expect("JSON");
         json["robot"]["joints"].as_array().expect("joints").len()
     };
-    let list = fine(&["list"]);
-    let names = list.lines().filter_map(|line| line.split_whitespace().next());
-    names.map(|name| (name.to_owned(), joints(name))).collect()
+    shipped::tried().map(|robot| (robot.name.to_owned(), joints(robot.name))).collect()
 }
 
 /// The views of an arm, each as a command without `--ascii`.

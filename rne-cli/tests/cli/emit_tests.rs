@@ -16,6 +16,13 @@ const ROBOTS: [&[&str]; 5] = [
     &["docs/every-key.yaml", "--run-time", "upper,rod"],
 ];
 
+/// Each robot with one of the two ways to write its code, in turns; with both where all is asked for.
+fn calls<'a>(ways: [&'a [&'a str]; 2]) -> impl Iterator<Item = (&'static [&'static str], &'a [&'a str])> {
+    let in_turns = move |robot: usize, way: usize| shipped::is_exhaustive() || robot % 2 == way;
+    let pairs = ROBOTS.into_iter().enumerate().flat_map(move |(robot, of)| [0, 1].map(|way| (robot, of, way)));
+    pairs.filter(move |&(robot, _, way)| in_turns(robot, way)).map(move |(_, of, way)| (of, ways[way]))
+}
+
 /// What the tests of a file of Rust say.
 fn tested_rust(folder: &Path, code: &str, options: &[&str]) -> Output {
     fs::write(folder.join("arm.rs"), code).expect("written");
@@ -72,14 +79,12 @@ fn broken(code: &str, start: &str, end: &str) -> Vec<String> {
 #[test]
 fn rust_passes_its_tests() {
     let folder = folder("tests_rust");
-    for robot in ROBOTS {
-        for options in [&[][..], &["--with-sin-cos", "--ascii"]] {
-            let code = fine(&[&["emit", "--tests", "--function", "all"], robot, options].concat());
-            let output = tested_rust(&folder, &code, &[]);
-            assert!(output.status.success(), "{robot:?}: {}", said(&output));
-            let tests = code.matches("#[test]").count();
-            assert!(tests >= 27 && said(&output).contains(&format!("{tests} passed; 0 failed")), "{}", said(&output));
-        }
+    for (robot, options) in calls([&[], &["--with-sin-cos", "--ascii"]]) {
+        let code = fine(&[&["emit", "--tests", "--function", "all"], robot, options].concat());
+        let output = tested_rust(&folder, &code, &[]);
+        assert!(output.status.success(), "{robot:?}: {}", said(&output));
+        let tests = code.matches("#[test]").count();
+        assert!(tests >= 27 && said(&output).contains(&format!("{tests} passed; 0 failed")), "{}", said(&output));
     }
     // tests change nothing else, and those of a crate without `std` have it
     let plain = fine(&["emit", "robots/planar2.yaml"]);
@@ -92,16 +97,10 @@ fn rust_passes_its_tests() {
 #[test]
 fn c_passes_its_tests() {
     let folder = folder("tests_c");
-    for robot in ROBOTS {
-        for options in [&[][..], &["--real", "double", "--prefix", "arm"]] {
-            let code = fine(&[&["emit", "--tests", "--lang", "c", "--function", "all"], robot, options].concat());
-            let Some(output) = tested_c(&folder, &code) else { return };
-            assert!(
-                output.status.success() && said(&output).contains(" tests, 0 wrong"),
-                "{robot:?}: {}",
-                said(&output)
-            );
-        }
+    for (robot, options) in calls([&[], &["--real", "double", "--prefix", "arm"]]) {
+        let code = fine(&[&["emit", "--tests", "--lang", "c", "--function", "all"], robot, options].concat());
+        let Some(output) = tested_c(&folder, &code) else { return };
+        assert!(output.status.success() && said(&output).contains(" tests, 0 wrong"), "{robot:?}: {}", said(&output));
     }
     let plain = fine(&["emit", "robots/planar2.yaml", "--lang", "c"]);
     assert!(fine(&["emit", "robots/planar2.yaml", "--lang", "c", "--tests"]).starts_with(&plain));

@@ -6,28 +6,9 @@ use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::Robot;
 
-/// Every robot of `robots/`, in the order of their names.
+/// The shipped robots that are tried, by the order of names.
 pub(crate) fn shipped() -> Vec<Robot> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../robots");
-    let mut paths: Vec<_> = std::fs::read_dir(folder)
-        .expect("the folder of robots")
-        .map(|entry| entry.expect("an entry").path())
-        .filter(|path| path.extension().is_some_and(|extension| extension == "yaml"))
-        .filter(|path| !path.to_string_lossy().ends_with(".plan.yaml"))
-        .collect();
-    paths.sort();
-    assert!(!paths.is_empty(), "the shipped robots");
-    let read = |path| Robot::from_yaml(&std::fs::read_to_string(path).expect("a readable file"));
-    let robots = paths.iter().map(|path| read(path).unwrap_or_else(|report| panic!("{report}")));
-    // those of few joints, of the textbooks, and every third of the others; `cargo xtask verify robot_texts` takes all
-    let is_exhaustive = std::env::var_os("RNE_EXHAUSTIVE").is_some();
-    let is_asked = |(index, robot): &(usize, Robot)| {
-        is_exhaustive
-            || robot.dof() <= 4
-            || ["puma560", "puma560_mdh", "stanford"].contains(&&*robot.name)
-            || index % 3 == 0
-    };
-    robots.enumerate().filter(is_asked).map(|(_, robot)| robot).collect()
+    shipped::tried().map(|file| Robot::from_yaml(file.yaml).unwrap_or_else(|report| panic!("{report}"))).collect()
 }
 
 /// The robots of the other tests as well: dense and random ones.
