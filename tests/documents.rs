@@ -556,7 +556,7 @@ fn unsafe_stands_in_two_modules() {
         "capi/src/border.rs",
         "playground/src/border.rs",
         "rne-machine/src/native.rs",
-        "rne-runtime/src/batch/x86_register.rs",
+        "rne-runtime/src/registers/mod.rs",
     ];
     assert_eq!(found, expected);
 }

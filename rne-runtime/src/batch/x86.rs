@@ -21,7 +21,9 @@ impl Detected {
     }
 
     pub(super) fn all() -> impl Iterator<Item = Self> {
-        [registers::Avx2::try_new().map(Self::Avx2), registers::Avx512::try_new().map(Self::Avx512)].into_iter().flatten()
+        [registers::Avx2::try_new().map(Self::Avx2), registers::Avx512::try_new().map(Self::Avx512)]
+            .into_iter()
+            .flatten()
     }
 
     pub(super) fn name(self) -> &'static str {

@@ -52,9 +52,7 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
     const BLOCK: usize = 8;
     const REGISTERS: usize = 4;
 
-    let block_length = const {
-        if REGISTERS * V::LANES < BLOCK { REGISTERS * V::LANES } else { BLOCK }
-    };
+    let block_length = const { if REGISTERS * V::LANES < BLOCK { REGISTERS * V::LANES } else { BLOCK } };
 
     let mut start = 0;
     while start < N {
