@@ -77,7 +77,3 @@ macro_rules! vector {
     };
 }
 pub(crate) use vector;
-
-// Where there are no registers numbers come one by one.
-vector!(f64, (), [f64; 1], |[number]: [f64; 1]| number, |number| [number]);
-vector!(f32, (), [f32; 1], |[number]: [f32; 1]| number, |number| [number]);

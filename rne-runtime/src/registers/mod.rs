@@ -26,6 +26,7 @@
 //!   - A processor that has a unit keeps it.
 #![allow(unsafe_code)]
 
+mod number;
 #[cfg(all(feature = "std", any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
 mod register;
 

@@ -3,7 +3,7 @@
 //! Written out as registers rather than left to LLVM's vectorisers: those succeed or fail with the code around the
 //! kernel.
 
-use super::{Float, Lanes};
+use super::Lanes;
 
 /// Lanes that are filled from an array and written to one.
 pub trait Register: Lanes {
@@ -17,26 +17,4 @@ pub trait Register: Lanes {
 
     /// Whether the kernel is correct for all of these angles.
     fn are_within_limit(angles: &[Self]) -> bool;
-}
-
-/// A number is a register of one lane, where there is no other.
-impl<T: Float> Register for T {
-    const LANES: usize = 1;
-
-    #[inline(always)]
-    fn padded<const N: usize>(numbers: &[T; N], start: usize) -> T {
-        if start < N { numbers[start] } else { T::ZERO }
-    }
-
-    #[inline(always)]
-    fn write<const N: usize>(self, numbers: &mut [T; N], start: usize) {
-        if start < N {
-            numbers[start] = self;
-        }
-    }
-
-    #[inline(always)]
-    fn are_within_limit(angles: &[T]) -> bool {
-        angles.iter().fold(true, |all, angle| all & angle.is_within_limit())
-    }
 }
