@@ -176,3 +176,12 @@ pub mod compiled {
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]
 pub mod robot_file {}
+
+/// Runs the examples in the documentation of the derives.
+#[cfg(doctest)]
+mod derives {
+    #[doc = include_str!("../rne-macro/src/inverse_dynamics.md")]
+    mod inverse_dynamics {}
+    #[doc = include_str!("../rne-macro/src/batch_inverse_dynamics.md")]
+    mod batch_inverse_dynamics {}
+}
