@@ -1,7 +1,7 @@
 //! The derive macros of `rne`; use them through that crate.
 //!
-//! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`. The examples in
-//! the documentation use `rne`, which runs them.
+//! A shell: the attribute, the file and the messages are handled here, everything else is `rne-codegen`. The examples
+//! in the documentation use `rne`, which runs them.
 #![forbid(unsafe_code)]
 
 mod attribute;

@@ -1,8 +1,8 @@
 //! A register, written once for all units: what it does, from a table of their instructions.
 
-/// Defines a register. The functions and expressions are of `core::arch`. `odd` is a where the integer n is odd, else b;
-/// `one` has 1 in each lane. `within` is a mask of the lanes whose angle, without its sign, is no larger than the limit,
-/// and `all` whether it has all lanes; single calls ask that. `sign` has -0 in each lane.
+/// Defines a register. The functions and expressions are of `core::arch`. `odd` is a where the integer n is odd, else
+/// b; `one` has 1 in each lane. `within` is a mask of the lanes whose angle, without its sign, is no larger than the
+/// limit, and `all` whether it has all lanes; single calls ask that. `sign` has -0 in each lane.
 macro_rules! register {
     (
         $Register:ident: [$element:ident; $LANES:literal], $lanes:ident, $bits:ident;
