@@ -84,7 +84,7 @@
 //! | feature | |
 //! |---|---|
 //! | `arm` (default) | the robot that is known at run time: [`Arm`], `DynArm`; it brings nalgebra |
-//! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own |
+//! | `simba` (default) | computing in every scalar that simba knows; without it in `f32`, `f64` and types of your own. The lanes `WideF64x4` and their like come with simba's own feature `std`, which `simba = "0.10"` in your `Cargo.toml` has |
 //! | `std` (default) | robot files at run time |
 //! | `batch` (default) | instructions of the processor found at run time, for batches and single calls; without it they are those of the compiled target |
 //! | `compiled` | any arm at run time, nearly as fast as a derived one: `compiled::CompiledArm`; it brings the compiler |
@@ -176,3 +176,12 @@ pub mod compiled {
 #[cfg(doc)]
 #[doc = include_str!("../docs/robot-file.md")]
 pub mod robot_file {}
+
+/// Runs the examples in the documentation of the derives.
+#[cfg(doctest)]
+mod derives {
+    #[doc = include_str!("../rne-macro/src/inverse_dynamics.md")]
+    mod inverse_dynamics {}
+    #[doc = include_str!("../rne-macro/src/batch_inverse_dynamics.md")]
+    mod batch_inverse_dynamics {}
+}

@@ -459,6 +459,7 @@ fn pages_name_sources_that_are_there() {
             if is_path
                 && Path::new(word).extension() == Some("rs".as_ref())
                 && !word.starts_with('.')
+                && !word.starts_with("target/") // what a build writes
                 && page.file_name() != Some("CHANGELOG.md".as_ref())
             {
                 named += 1;
@@ -556,7 +557,7 @@ fn unsafe_stands_in_two_modules() {
         "capi/src/border.rs",
         "playground/src/border.rs",
         "rne-machine/src/native.rs",
-        "rne-runtime/src/batch/x86_register.rs",
+        "rne-runtime/src/registers/mod.rs",
     ];
     assert_eq!(found, expected);
 }

@@ -61,6 +61,7 @@ mod per_joint;
 mod pose;
 #[doc(hidden)]
 pub mod processor;
+mod registers;
 #[cfg(feature = "arm")]
 mod regressor;
 mod scalar;

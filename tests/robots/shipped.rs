@@ -58,17 +58,23 @@ pub(crate) mod reduced {
 
 #[test]
 fn every_robot_that_is_tried_is_here() {
-    struct Names(Vec<String>);
+    struct Names(Vec<&'static str>);
     impl Visitor for Names {
         fn visit<const DOF: usize, R: Shipped<DOF>>(&mut self, _: &R) {
-            self.0.push(R::NAME.to_owned());
+            self.0.push(R::NAME);
         }
     }
     let mut derived = Names(Vec::new());
     seven_steps::visit_all(&mut derived);
     let tried: Vec<&str> = shipped::tried().map(|robot| robot.name).collect();
     assert_eq!(derived.0, tried, "each is named as its file");
+}
+
+#[test]
+fn every_shipped_robot_has_a_plan_and_golden_values() {
     for robot in rne_robots::ROBOTS {
-        assert!(robot.plan.is_some(), "{} is shipped without a plan", robot.name);
+        assert!(robot.plan.is_some(), "{}: there is no plan file", robot.name);
+        let golden = format!("{}/tests/reference/{}.golden.json", env!("CARGO_MANIFEST_DIR"), robot.name);
+        assert!(std::path::Path::new(&golden).is_file(), "there is no {golden}");
     }
 }

@@ -47,7 +47,6 @@
 #![allow(clippy::inline_always)] // what a vector unit computes must be compiled with its instructions
 
 mod blocks;
-mod compiled;
 #[cfg_attr(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")), path = "x86.rs")]
 #[cfg_attr(not(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64"))), path = "undetected.rs")]
 mod detected;
@@ -57,8 +56,6 @@ mod parallel;
 mod scalar;
 mod unit;
 pub(crate) mod vector;
-#[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-pub(crate) mod x86_register;
 
 pub use mismatch::LengthMismatch;
 pub use scalar::BatchScalar;

@@ -93,15 +93,18 @@ impl<V: Vector> One for Register<V> {
 
 mod sealed {
     use super::super::vector::Vector;
+    use crate::registers;
     use crate::sin_cos::Float;
 
     /// The registers of a number.
     pub trait Machine: Float {
         /// Those of the compiled target.
         type Compiled: Vector<Element = Self, Unit = ()>;
-        /// Those of a unit that was looked for.
+        /// Those of units that were looked for.
         #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-        type Detected<S: super::super::x86_register::Shift>: Vector<Element = Self, Unit = S>;
+        type Avx2: Vector<Element = Self, Unit = registers::Avx2>;
+        #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
+        type Avx512: Vector<Element = Self, Unit = registers::Avx512>;
         /// Lends so many numbers of memory, aligned to a line of the cache, which the thread keeps.
         #[cfg(feature = "machine")]
         fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R;
@@ -114,12 +117,11 @@ mod sealed {
     macro_rules! machine {
         ($type:ident, $Register:ident) => {
             impl Machine for $type {
-                #[cfg(feature = "std")]
-                type Compiled = <$type as Float>::Register;
-                #[cfg(not(feature = "std"))]
-                type Compiled = $type;
+                type Compiled = registers::compiled::$Register;
                 #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
-                type Detected<S: super::super::x86_register::Shift> = super::super::x86_register::$Register<S>;
+                type Avx2 = registers::avx2::$Register;
+                #[cfg(all(feature = "batch", any(target_arch = "x86", target_arch = "x86_64")))]
+                type Avx512 = registers::avx512::$Register;
 
                 #[cfg(feature = "machine")]
                 fn with_memory<R>(length: usize, work: impl FnOnce(&mut [Self]) -> R) -> R {

@@ -5,6 +5,7 @@ use core::fmt;
 use super::BatchScalar;
 use super::detected::Detected;
 use super::vector::Work;
+use crate::registers::compiled;
 
 /// A vector unit of the processor this runs on. To have one is to have looked: every value can be computed with.
 ///
@@ -44,11 +45,7 @@ impl VectorUnit {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self.0 {
-            Unit::Target if !cfg!(feature = "std") => "one by one",
-            Unit::Target if cfg!(target_arch = "aarch64") => "NEON",
-            Unit::Target if cfg!(target_feature = "avx") => "AVX (compiled)",
-            Unit::Target if cfg!(target_feature = "sse2") => "SSE2",
-            Unit::Target => "compiled target",
+            Unit::Target => compiled::NAME,
             Unit::Detected(unit) => unit.name(),
         }
     }

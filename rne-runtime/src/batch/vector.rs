@@ -36,3 +36,44 @@ pub(crate) trait Work<T: BatchScalar> {
     /// Does it in registers `V`, `#[inline(always)]`.
     fn run<V: Vector<Element = T>>(self, unit: V::Unit);
 }
+
+/// Registers that are arrays of their numbers in memory.
+macro_rules! vector {
+    ($Vector:ty, $Unit:ty, [$element:ident; $LANES:literal], $of_numbers:expr, $numbers:expr) => {
+        impl crate::batch::vector::Vector for $Vector {
+            type Unit = $Unit;
+            type Numbers = [$element; $LANES];
+
+            #[inline(always)]
+            fn split(numbers: &[$element]) -> (&[Self::Numbers], &[$element]) {
+                numbers.as_chunks()
+            }
+
+            #[inline(always)]
+            fn split_mut(numbers: &mut [$element]) -> (&mut [Self::Numbers], &mut [$element]) {
+                numbers.as_chunks_mut()
+            }
+
+            #[inline(always)]
+            fn each(numbers: &Self::Numbers) -> &[$element] {
+                numbers
+            }
+
+            #[inline(always)]
+            fn each_mut(numbers: &mut Self::Numbers) -> &mut [$element] {
+                numbers
+            }
+
+            #[inline(always)]
+            fn load(_: $Unit, numbers: &Self::Numbers) -> Self {
+                $of_numbers(*numbers)
+            }
+
+            #[inline(always)]
+            fn store(self) -> Self::Numbers {
+                $numbers(self)
+            }
+        }
+    };
+}
+pub(crate) use vector;

@@ -2,29 +2,28 @@
 
 use core::marker::PhantomData;
 
-use pulp::NullaryFnOnce;
-use pulp::x86::{V3, V4};
-
 use super::BatchScalar;
 use super::vector::Work;
-use super::x86_register::Shift;
+use crate::registers::{self, Computation};
 
-/// A unit and, in pulp's token, the proof that the processor has it.
+/// A unit and the proof that the processor has it.
 #[derive(Clone, Copy)]
 pub(super) enum Detected {
     /// AVX2 and fused multiply-add (x86-64-v3): registers of 4 `f64` or 8 `f32`.
-    Avx2(V3),
+    Avx2(registers::Avx2),
     /// AVX-512 F, BW, CD, DQ and VL (x86-64-v4): registers of 8 `f64` or 16 `f32`.
-    Avx512(V4),
+    Avx512(registers::Avx512),
 }
 
 impl Detected {
     pub(super) fn widest() -> Option<Self> {
-        V4::try_new().map(Self::Avx512).or_else(|| V3::try_new().map(Self::Avx2))
+        registers::Avx512::try_new().map(Self::Avx512).or_else(|| registers::Avx2::try_new().map(Self::Avx2))
     }
 
     pub(super) fn all() -> impl Iterator<Item = Self> {
-        [V3::try_new().map(Self::Avx2), V4::try_new().map(Self::Avx512)].into_iter().flatten()
+        [registers::Avx2::try_new().map(Self::Avx2), registers::Avx512::try_new().map(Self::Avx512)]
+            .into_iter()
+            .flatten()
     }
 
     pub(super) fn name(self) -> &'static str {
@@ -42,18 +41,23 @@ impl Detected {
     }
 }
 
-/// Work and a unit as what pulp calls. Not a closure: this can be inlined always.
+/// Work and its unit.
 struct Call<W, Unit, T> {
     work: W,
     unit: Unit,
     number: PhantomData<T>,
 }
 
-impl<T: BatchScalar, W: Work<T>, S: Shift> NullaryFnOnce for Call<W, S, T> {
-    type Output = ();
+macro_rules! calls {
+    ($($Unit:ident)*) => {$(
+        impl<T: BatchScalar, W: Work<T>> Computation for Call<W, registers::$Unit, T> {
+            type Result = ();
 
-    #[inline(always)]
-    fn call(self) {
-        self.work.run::<T::Detected<S>>(self.unit);
-    }
+            #[inline(always)]
+            fn compute(self) {
+                self.work.run::<T::$Unit>(self.unit);
+            }
+        }
+    )*};
 }
+calls! { Avx2 Avx512 }

@@ -3,12 +3,9 @@
 use core::any::{Any, TypeId};
 use core::marker::PhantomData;
 
-use pulp::NullaryFnOnce;
-use pulp::x86::V3;
-
 use super::{Arithmetic, Call, Compiled, OfType};
 use crate::Scalar;
-use crate::batch::x86_register::{Doubles, Singles};
+use crate::registers::{self, Computation, avx2};
 use crate::sin_cos::array::in_registers;
 
 /// The body by AVX2 where numbers are `f64` or `f32` and the processor has it.
@@ -20,7 +17,7 @@ pub(super) fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Resu
             if const { size_of::<T>() == size_of::<$float>() }
                 && TypeId::of::<T>() == TypeId::of::<$float>()
                 && let Some(arguments) = OfType::<C::Arguments<'_, $float>>::of_type(arguments)
-                && let Some(unit) = V3::try_new()
+                && let Some(unit) = registers::Avx2::try_new()
             {
                 return unit.vectorize(Body::<C, $float, T> { arguments, returns: PhantomData });
             }
@@ -30,21 +27,20 @@ pub(super) fn run<C: Call, T: Scalar>(arguments: C::Arguments<'_, T>) -> C::Resu
     C::run::<T, Compiled>(arguments)
 }
 
-/// A body and its arguments as what pulp calls, which returns numbers of the type `T`: the same, by another name. Not a
-/// closure: this can be inlined always.
+/// A body and its arguments as a computation that returns numbers of the type `T`: the same, by another name.
 struct Body<'a, C: Call, F: Scalar, T> {
     arguments: C::Arguments<'a, F>,
     returns: PhantomData<T>,
 }
 
-impl<C: Call, F: Scalar, T: Scalar> NullaryFnOnce for Body<'_, C, F, T>
+impl<C: Call, F: Scalar, T: Scalar> Computation for Body<'_, C, F, T>
 where
     Avx2: Arithmetic<F>,
 {
-    type Output = C::Result<T>;
+    type Result = C::Result<T>;
 
     #[inline(always)]
-    fn call(self) -> Self::Output {
+    fn compute(self) -> Self::Result {
         // in here the result is not yet in memory, from where it would be copied
         let result = C::run::<F, Avx2>(self.arguments);
         let result = (&result as &dyn Any).downcast_ref().copied();
@@ -72,7 +68,7 @@ macro_rules! detected {
             #[inline(always)]
             fn sin_cos_array<const N: usize>(angles: [$float; N]) -> ([$float; N], [$float; N]) {
                 let (mut sines, mut cosines) = (angles, angles);
-                in_registers::<$Register<V3>, N>(&angles, &mut sines, &mut cosines);
+                in_registers::<avx2::$Register, N>(&angles, &mut sines, &mut cosines);
                 (sines, cosines)
             }
         }
@@ -87,9 +83,10 @@ detected! {
 mod tests {
     use core::ops::{Add, Div, Mul, Neg, Sub};
 
-    use super::{Arithmetic, Avx2, Call, V3};
+    use super::{Arithmetic, Avx2, Call};
     use crate::Scalar;
     use crate::processor;
+    use crate::registers;
     use crate::sin_cos::{Float, Lanes, kernel};
 
     /// a b + c, and the sines and cosines of three angles.
@@ -174,7 +171,7 @@ mod tests {
 
     #[test]
     fn the_processor_has_the_bits_of_a_target_with_its_instructions() {
-        if V3::try_new().is_none() {
+        if registers::Avx2::try_new().is_none() {
             println!("skipped: this processor has no AVX2 with fused multiply-add");
             return;
         }
@@ -208,7 +205,7 @@ mod tests {
 
     #[test]
     fn many_angles_are_several_blocks() {
-        if V3::try_new().is_none() {
+        if registers::Avx2::try_new().is_none() {
             println!("skipped: this processor has no AVX2 with fused multiply-add");
             return;
         }

@@ -48,13 +48,15 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
     sines: &mut [V::Element; N],
     cosines: &mut [V::Element; N],
 ) {
-    /// Angles in a block, registers in a block: small enough to be unrolled and to stay in registers.
+    /// Angles in a block at most, registers in a block: small enough to be unrolled and to stay in registers.
     const BLOCK: usize = 8;
     const REGISTERS: usize = 4;
 
+    let block_length = const { if REGISTERS * V::LANES < BLOCK { REGISTERS * V::LANES } else { BLOCK } };
+
     let mut start = 0;
     while start < N {
-        let count = (N - start).min(BLOCK).div_ceil(V::LANES);
+        let count = (N - start).min(block_length).div_ceil(V::LANES);
         let mut block = [V::splat(V::Element::ZERO); REGISTERS];
         for (index, register) in block[..count].iter_mut().enumerate() {
             *register = V::padded(angles, start + index * V::LANES);
@@ -72,15 +74,15 @@ pub(crate) fn in_registers<V: Register, const N: usize>(
             for (index, register) in block[..count].iter().enumerate() {
                 register.write(&mut copies[0], index * V::LANES);
             }
-            for (index, at) in (start..N.min(start + BLOCK)).enumerate() {
+            for (index, at) in (start..N.min(start + block_length)).enumerate() {
                 (copies[1][index], copies[2][index]) = (sines[at], cosines[at]);
             }
             let (exact_sines, exact_cosines) = beyond_limit(copies[0], copies[1], copies[2]);
-            for (index, at) in (start..N.min(start + BLOCK)).enumerate() {
+            for (index, at) in (start..N.min(start + block_length)).enumerate() {
                 (sines[at], cosines[at]) = (exact_sines[index], exact_cosines[index]);
             }
         }
-        start += BLOCK;
+        start += block_length;
     }
 }
 
@@ -113,6 +115,8 @@ mod tests {
             let (mut in_registers, mut cosines_in_registers) = ([0.0; 20], [0.0; 20]);
             super::sin_cos(&angles, &mut in_registers, &mut cosines_in_registers);
             assert_eq!((sines, cosines), (in_registers, cosines_in_registers));
+            super::in_registers::<f64, 20>(&angles, &mut in_registers, &mut cosines_in_registers);
+            assert_eq!((sines, cosines), (in_registers, cosines_in_registers), "registers of one number");
         }
     }
 }

@@ -36,6 +36,8 @@ pub(crate) use lanes::Lanes;
 
 use core::fmt::Debug;
 
+#[cfg(feature = "std")]
+use crate::registers::compiled;
 use reduction::Reduced;
 
 /// Whether there is a fused multiply-add to ask for: in `std`, or in a `core` that has it.
@@ -66,9 +68,7 @@ pub trait Float: Lanes<Element = Self> + Debug + PartialEq + 'static {
     const ONE: Self;
     const P: &'static [Self];
     const Q: &'static [Self];
-    /// A SIMD register of the compiled target: the widest one up to 256 bits. A call has too few angles for more, and
-    /// while an instruction of 512 bits is on its way, Intel's processors close one of their three units for all
-    /// others.
+    /// A register of the compiled target.
     #[cfg(feature = "std")]
     type Register: registers::Register<Element = Self>;
 
@@ -95,7 +95,7 @@ pub(crate) const LIMIT: f32 = 1e5;
 pub(crate) const SQUARE_LIMIT: f32 = 0.99 * LIMIT * LIMIT;
 
 macro_rules! float {
-    ($type:ident, $reduction:ident, $P:ident, $Q:ident, [$avx:ident, $other:ident]) => {
+    ($type:ident, $reduction:ident, $P:ident, $Q:ident, $Register:ident) => {
         impl Float for $type {
             const ZERO: Self = 0.0;
             const MINUS_TWO: Self = -2.0;
@@ -104,10 +104,8 @@ macro_rules! float {
             const P: &'static [Self] = &polynomial::$P;
             const Q: &'static [Self] = &polynomial::$Q;
 
-            #[cfg(all(feature = "std", target_feature = "avx"))]
-            type Register = wide::$avx;
-            #[cfg(all(feature = "std", not(target_feature = "avx")))]
-            type Register = wide::$other;
+            #[cfg(feature = "std")]
+            type Register = compiled::$Register;
 
             #[inline(always)]
             #[allow(clippy::cast_possible_truncation, trivial_numeric_casts)]
@@ -137,8 +135,8 @@ macro_rules! float {
         }
     };
 }
-float!(f64, double, P_F64, Q_F64, [f64x4, f64x2]);
-float!(f32, single, P_F32, Q_F32, [f32x8, f32x4]);
+float!(f64, double, P_F64, Q_F64, Doubles);
+float!(f32, single, P_F32, Q_F32, Singles);
 
 /// Sine and cosine, correct up to the limit: no branch.
 #[inline(always)]
