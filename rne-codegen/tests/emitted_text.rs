@@ -215,14 +215,17 @@ fn emitted_files_build_alone_without_std() {
     let folder = tempfile::tempdir_in(env!("CARGO_TARGET_TMPDIR")).expect("a folder");
     let mut library = "#![no_std]\n#![deny(warnings)]\n".to_owned();
     let files = [emit::rust_file, emit::rust_file_with_sin_cos];
-    for (robot, programs) in emitted().iter().filter(|(_, programs)| programs.len() == Function::ALL.len()) {
+    let is_small = |robot: &Robot| shipped::is_exhaustive() || robot.dof() <= 3 || robot.name == "puma560";
+    let all = emitted().iter().filter(|(_, programs)| programs.len() == Function::ALL.len());
+    for (robot, programs) in all.filter(|(robot, _)| is_small(robot)) {
         let module = format!("{}_{}", robot.name, programs[0].form);
         let is_reduced = programs[0].form == Form::Reduced;
         let text = files[usize::from(is_reduced)](robot, programs);
         fs::write(folder.path().join(format!("{module}.rs")), text).expect("written");
         let _ = writeln!(library, "pub mod {module};");
     }
-    assert_eq!(library.matches("pub mod ").count(), 2 * common::shipped().len(), "every robot in two forms");
+    let robots = common::shipped().into_iter().filter(is_small).count();
+    assert_eq!(library.matches("pub mod ").count(), 2 * robots, "every robot in two forms");
     fs::write(folder.path().join("lib.rs"), library).expect("written");
     let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
     let built = Command::new(rustc)

@@ -109,7 +109,7 @@ fn without_blanks(text: &str) -> String {
 #[test]
 fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitted() {
     let mut random = fastrand::Rng::with_seed(38);
-    let robots = rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
+    let robots = shipped::tried().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
     let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
     let Some(answers) = answers(&questions) else { return };
     assert_eq!(answers.len(), asked.len());
@@ -144,7 +144,7 @@ fn the_page_computes_the_torques_of_the_runtime_and_shows_the_code_that_is_emitt
         }
     }
     println!("{} slips of {} are named by what they are; two are named at most", named.0, named.1);
-    assert!(named.1 > 100 && named.0 * 10 >= named.1 * 9, "{named:?}");
+    assert!(named.1 > 30 && named.0 * 10 >= named.1 * 9, "{named:?}");
 }
 
 /// Rz(yaw) Ry(pitch) Rx(roll), column by column, times a vector.
@@ -166,7 +166,7 @@ fn vectors(link: &LinkTrace<f64>) -> [[f64; 3]; 7] {
 #[test]
 fn links_and_arrows_are_where_the_runtime_has_them() {
     let mut random = fastrand::Rng::with_seed(40);
-    let robots = rne_robots::ROBOTS.iter().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
+    let robots = shipped::tried().map(|file| Robot::from_yaml(file.yaml).expect("shipped robots are valid"));
     let (asked, questions): (Vec<Asked>, Vec<Value>) = robots.map(|robot| question(robot, &mut random)).unzip();
     let Some(answers) = answers(&questions) else { return };
     for (Asked { robot, traces, .. }, answer) in asked.iter().zip(&answers) {

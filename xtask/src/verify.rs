@@ -110,7 +110,7 @@ const STEPS: &[Step] = &[
     Step {
         name: "hostile",
         about: "hundreds of hostile inputs within 200 MB and 2 s each",
-        variables: &[],
+        variables: &[("RNE_EXHAUSTIVE", "1")],
         command: &["cargo", "test", "--release", "--package", "rne-cli", "--test", "cli", "--", "hostile"],
         needs: Needs::Time,
     },

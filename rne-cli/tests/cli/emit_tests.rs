@@ -16,9 +16,9 @@ const ROBOTS: [&[&str]; 5] = [
     &["docs/every-key.yaml", "--run-time", "upper,rod"],
 ];
 
-/// Each robot with one of the two ways to write its code, in turns; with both where all is asked for.
+/// Every second robot, with the two ways to write its code in turns; each with both where all is asked for.
 fn calls<'a>(ways: [&'a [&'a str]; 2]) -> impl Iterator<Item = (&'static [&'static str], &'a [&'a str])> {
-    let in_turns = move |robot: usize, way: usize| shipped::is_exhaustive() || robot % 2 == way;
+    let in_turns = move |robot: usize, way: usize| shipped::is_exhaustive() || robot % 2 == 0 && robot / 2 % 2 == way;
     let pairs = ROBOTS.into_iter().enumerate().flat_map(move |(robot, of)| [0, 1].map(|way| (robot, of, way)));
     pairs.filter(move |&(robot, _, way)| in_turns(robot, way)).map(move |(_, of, way)| (of, ways[way]))
 }
@@ -115,7 +115,8 @@ fn a_wrong_constant_is_noticed() {
     let emit = ["emit", "robots/planar2.yaml", "--tests", "--function", "inverse_dynamics,mass_matrix"];
     let copies = broken(&fine(&emit), "let ", ");");
     assert!(copies.len() > 4, "{}", copies.len());
-    for code in &copies {
+    let one_in = if shipped::is_exhaustive() { 1 } else { 4 };
+    for code in copies.iter().step_by(one_in) {
         let output = tested_rust(&folder, code, &[]);
         assert!(!output.status.success(), "{code}");
         assert!(said(&output).contains("_has_the_values_of_the_runtime ... FAILED"), "{}", said(&output));
@@ -123,7 +124,7 @@ fn a_wrong_constant_is_noticed() {
     for real in ["float", "double"] {
         let copies = broken(&fine(&[&emit[..], &["--lang", "c", "--real", real]].concat()), "const ", ";");
         assert!(copies.len() > 4, "{}", copies.len());
-        for code in &copies {
+        for code in copies.iter().step_by(one_in) {
             let Some(output) = tested_c(&folder, code) else { return };
             assert_eq!(output.status.code(), Some(1), "{code}");
             assert!(said(&output).contains(", number "), "{}", said(&output));

@@ -21,14 +21,12 @@ fn arm(name: &str) -> (String, String) {
 #[test]
 fn what_a_search_writes_is_in_order() {
     for name in ["massless_link", "point_masses", "count", "singular"] {
-        for seed in ["1", "3"] {
-            let (robot, plan) = arm(name);
-            fine(&["search", &robot, "--seconds", "0.3", "--seed", seed]);
-            assert!(fine(&["check", &plan]).contains("proved"), "{name}");
-            fine(&["search", &robot, "--seconds", "0.5", "--rewrite", "--function", "all", "--seed", seed]);
-            assert!(fine(&["check", &plan]).contains("proved"), "{name}");
-            fine(&["emit", &robot, "--form", "reduced", "--function", "all"]);
-        }
+        let (robot, plan) = arm(name);
+        fine(&["search", &robot, "--seconds", "0.3", "--seed", "3"]);
+        assert!(fine(&["check", &plan]).contains("proved"), "{name}");
+        fine(&["search", &robot, "--seconds", "0.5", "--rewrite", "--function", "all", "--seed", "3"]);
+        assert!(fine(&["check", &plan]).contains("proved"), "{name}");
+        fine(&["emit", &robot, "--form", "reduced", "--function", "all"]);
     }
 }
 

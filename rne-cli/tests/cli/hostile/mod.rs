@@ -176,11 +176,12 @@ fn hostile_inputs() {
     .flatten()
     .collect();
     assert!(cases.len() >= 200, "{} inputs", cases.len());
+    let one_in = if shipped::is_exhaustive() { 1 } else { 3 };
 
     // where the commands run: what they write stays there
     let here = place("here/below");
     let beside = names(&place("here"));
-    let rest = Mutex::new(cases.iter());
+    let rest = Mutex::new(cases.iter().step_by(one_in));
     let faults = Mutex::new(Vec::new());
     std::thread::scope(|scope| {
         for _ in 0..std::thread::available_parallelism().map_or(1, usize::from) {

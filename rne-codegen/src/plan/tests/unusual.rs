@@ -97,7 +97,7 @@ fn every_function_survives_rewriting_and_its_text() {
         // few plans, some rounds for every function
         let mut over = 0.0;
         let mut clock = |_: &Progress| {
-            over += if over < 0.45 { 0.02 } else { 0.001 };
+            over += if over < 0.45 { 0.02 } else { 0.002 };
             (over < 1.0).then_some(over)
         };
         let found = search(&robot, None, &options, &mut clock).unwrap();
