@@ -8,7 +8,7 @@ mod common;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use common::shipped;
+use common::robot;
 use rne_codegen::{Axis, Cause, Compiler, Component, Form, Function, Name, Quantity, ResolvedAs};
 use rne_model::{Angle, Entry, Formula, InertiaElement, JointKind, Robot};
 
@@ -141,15 +141,14 @@ fn try_all(robot: &Robot, function: Function) -> [usize; 2] {
 
 #[test]
 fn the_causes_of_a_zero_suffice_and_each_is_needed() {
-    let robots = shipped();
     for (name, functions, least) in [
         ("planar1", &[Function::InverseDynamics, Function::GravityTorques][..], [20, 20]),
         ("planar2", &[Function::InverseDynamics, Function::BiasTorques], [20, 20]),
         ("puma560", &[Function::InverseDynamics], [40, 40]),
         ("stanford", &[Function::InverseDynamics], [40, 40]),
     ] {
-        let robot = robots.iter().find(|robot| robot.name == name).expect("a shipped robot");
-        let tried = functions.iter().map(|&function| try_all(robot, function));
+        let robot = robot(name);
+        let tried = functions.iter().map(|&function| try_all(&robot, function));
         let tried = tried.fold([0, 0], |sum, tried| [sum[0] + tried[0], sum[1] + tried[1]]);
         println!("{name}: {} sets of causes, {} causes left out", tried[0], tried[1]);
         assert!(tried[0] >= least[0] && tried[1] >= least[1], "{name}: {tried:?}");
@@ -159,8 +158,7 @@ fn the_causes_of_a_zero_suffice_and_each_is_needed() {
 /// As a teacher's question had it: gravity along -y has to do with no x.
 #[test]
 fn gravity_has_no_z_where_the_arm_moves_in_a_plane() {
-    let robots = shipped();
-    let planar = robots.iter().find(|robot| robot.name == "planar1").expect("a shipped robot");
+    let planar = robot("planar1");
     for (gravity, named) in [([0.0, -9.81, 0.0], "z"), ([9.81, 0.0, 0.0], "z"), ([9.81, -9.81, 0.0], "z")] {
         let robot = Robot { gravity, ..planar.clone() };
         let found = zeros(&robot, Function::InverseDynamics);

@@ -1,10 +1,17 @@
 //! The shipped robots, for the tests of the compiler.
+#![allow(dead_code)] // no test needs all of it
 
 use std::sync::OnceLock;
 
 use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Compiler, Form, Function, Program};
 use rne_model::Robot;
+
+/// A shipped robot.
+pub(crate) fn robot(name: &str) -> Robot {
+    let file = rne_robots::find(name).unwrap_or_else(|| panic!("{name} is not shipped"));
+    Robot::from_yaml(file.yaml).unwrap_or_else(|report| panic!("{report}"))
+}
 
 /// The robots of few joints and the PUMA 560, or all shipped ones where all is asked for; by the order of names.
 pub(crate) fn shipped() -> Vec<Robot> {
@@ -40,7 +47,6 @@ pub(crate) fn programs(robot: &Robot) -> Vec<Program> {
 }
 
 /// The plan file of a shipped robot.
-#[allow(dead_code)] // not every test needs it
 pub(crate) fn plans(robot: &Robot) -> PlanSet {
     let path = format!("{}/../robots/{}.plan.yaml", env!("CARGO_MANIFEST_DIR"), robot.name);
     let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
@@ -50,7 +56,6 @@ pub(crate) fn plans(robot: &Robot) -> PlanSet {
 
 /// All functions of a shipped robot in the reduced form of its plan file, and `inverse_dynamics` as its plan gives it
 /// before it is rewritten.
-#[allow(dead_code)] // not every test needs them
 pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
     let plans = plans(robot);
     let compiled = |plans: &PlanSet, function| {
@@ -63,7 +68,6 @@ pub(crate) fn reduced_programs(robot: &Robot) -> Vec<Program> {
 }
 
 /// Every robot with its programs: the seven steps of all, and the reduced forms of those that are shipped.
-#[allow(dead_code)] // not every test needs them
 pub(crate) fn compiled() -> Vec<(Robot, Vec<Program>)> {
     let faithful = all().into_iter().map(|robot| {
         let programs = programs(&robot);
