@@ -18,7 +18,8 @@ const ROBOTS: [&[&str]; 5] = [
 
 /// Every second robot, with the two ways to write its code in turns; each with both where all is asked for.
 fn calls<'a>(ways: [&'a [&'a str]; 2]) -> impl Iterator<Item = (&'static [&'static str], &'a [&'a str])> {
-    let in_turns = move |robot: usize, way: usize| shipped::is_exhaustive() || robot % 2 == 0 && robot / 2 % 2 == way;
+    let in_turns =
+        move |robot: usize, way: usize| shipped::is_exhaustive() || robot.is_multiple_of(2) && robot / 2 % 2 == way;
     let pairs = ROBOTS.into_iter().enumerate().flat_map(move |(robot, of)| [0, 1].map(|way| (robot, of, way)));
     pairs.filter(move |&(robot, _, way)| in_turns(robot, way)).map(move |(_, of, way)| (of, ways[way]))
 }

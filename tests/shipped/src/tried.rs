@@ -2,7 +2,7 @@
 
 use rne_robots::RobotFile;
 
-/// Robots of six and seven joints that are tried: each has a structure of its own, or golden values of several programs.
+/// Robots of six and seven joints that are tried: their structures differ, and several programs have computed them.
 const LARGE: [&str; 3] = ["panda", "puma560", "stanford"];
 
 /// Whether a test tries this robot where it does not try all: the robots of few joints, and some others.
