@@ -22,7 +22,8 @@ pub struct RobotFile {
 }
 
 /// Every shipped robot, by the order of names.
-pub const ROBOTS: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/robots.rs"));
+// A constant would be in every crate that names it, with all its texts.
+pub static ROBOTS: &[RobotFile] = include!(concat!(env!("OUT_DIR"), "/robots.rs"));
 
 /// The shipped robot of a name; `None` when there is none.
 #[must_use]

@@ -1,11 +1,11 @@
 //! `rne log`: what a log of an arm has, and its motion, filtered.
 
 use std::fmt::Write as _;
-use std::io::{self, BufWriter, IsTerminal as _, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::ProgressBar;
 use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
 
 use crate::input_file::is_standard_input;
@@ -14,6 +14,7 @@ use crate::log_report::{self, Reply};
 use crate::motion_log::{check_units, open_by_names};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
+use crate::reading;
 use crate::robot_file;
 use crate::table_name::{self, Format};
 use crate::terminal::GOOD;
@@ -76,10 +77,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         table_name::format(path, &[Format::Csv])?;
     }
     let log = arguments.open()?;
-    let bar = progress("read", is_result_shown);
-    let survey = log.survey(|share| bar.set_position(thousandths(share)));
-    bar.finish_and_clear();
-    let survey = survey.map_err(|error| failure(&error))?;
+    let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error))?;
     let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
     let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
     let text = if is_result_shown {
@@ -127,7 +125,7 @@ fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
     let unwritable = |error: io::Error| unwritable(path, &error);
     let replacement = Replacement::begin(path).map_err(unwritable)?;
     let mut out = BufWriter::new(replacement.file().map_err(unwritable)?);
-    let bar = progress("filtered", false);
+    let bar = reading::bar("filtered", false);
     let written = write(log, survey, &bar, &mut out);
     bar.finish_and_clear();
     let states = written.map_err(|stopped| match stopped {
@@ -156,7 +154,7 @@ fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) ->
     let mut line = String::new();
     while let Some(piece) = motions.next() {
         let piece = piece.map_err(Stopped::Unreadable)?;
-        bar.set_position(thousandths(motions.progress()));
+        reading::show(bar, motions.progress());
         if states == 0 {
             writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
         }
@@ -172,21 +170,4 @@ fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) ->
         states += time.len() as u64;
     }
     Ok(states)
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a share of 0 to 1")]
-fn thousandths(share: f64) -> u64 {
-    (share.clamp(0.0, 1.0) * 1000.0) as u64
-}
-
-/// A bar on a terminal that shows nothing else.
-fn progress(word: &str, is_result_shown: bool) -> ProgressBar {
-    if is_result_shown && io::stdout().is_terminal() {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::new(1000);
-    match ProgressStyle::with_template(&format!("{{bar:30}} {{percent}} % {word}, {{eta}} to go")) {
-        Ok(style) => bar.with_style(style.progress_chars("=> ")),
-        Err(_) => bar,
-    }
 }

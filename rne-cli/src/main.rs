@@ -45,6 +45,7 @@ mod output_folder;
 mod physics;
 mod plan_file;
 mod plot;
+mod reading;
 mod report;
 mod robot_file;
 mod search;

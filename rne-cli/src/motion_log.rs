@@ -12,6 +12,7 @@ use crate::log_arguments::{self, LogArguments};
 use crate::log_report::{left_out, notes_of_motion};
 use crate::numbers::rounded;
 use crate::outcome::Failure;
+use crate::reading;
 use crate::terminal::{TITLE, TYPED, WARNING};
 
 /// States that are read at once: memory is this by the number of joints.
@@ -89,7 +90,7 @@ impl MotionLog {
         let log = Log::open(paths, options.clone()).map_err(failure)?;
         check_units(robot, log.layout())?;
         check_efforts(&log)?;
-        let survey = log.survey(|_| ()).map_err(failure)?;
+        let survey = reading::survey(&log, false).map_err(failure)?;
         let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
         if let (true, Err(error)) = (is_unsaid, log.motions(&survey)) {
             return Err(failure(error));
@@ -112,7 +113,7 @@ impl MotionLog {
         let read_to = (wider * cutoff).min(highest);
         options.cutoff = Some(read_to);
         let log = Log::open(paths, options.clone()).map_err(failure)?;
-        let survey = log.survey(|_| ()).map_err(failure)?;
+        let survey = reading::survey(&log, false).map_err(failure)?;
         remarks.extend(notes_of_motion(&log, &survey));
         for (joint, (least, greatest)) in log.layout().joints.iter().zip(&survey.efforts) {
             if least == greatest {
@@ -131,7 +132,7 @@ impl MotionLog {
         let read_to = (WIDER * self.cutoff).min(self.read_to);
         let options = Options { cutoff: Some(read_to), ..self.options.clone() };
         let log = Log::open(self.log.files(), options.clone()).map_err(failure)?;
-        let survey = log.survey(|_| ()).map_err(failure)?;
+        let survey = reading::survey(&log, false).map_err(failure)?;
         Ok(Self { log, options, survey, cutoff: self.cutoff, read_to, remarks: Vec::new() })
     }
 
@@ -205,8 +206,11 @@ impl MotionLog {
             // of runs that are not listed nothing is known: they are behind
             runs.get(run).map_or(f64::NEG_INFINITY, |run| run.start + edge * total - before)
         };
-        for piece in motions.with_length(PIECE) {
+        let bar = reading::bar("read", false);
+        let mut motions = motions.with_length(PIECE);
+        while let Some(piece) = motions.next() {
             let piece = piece.map_err(failure)?;
+            reading::show(&bar, motions.progress());
             let run = usize::try_from(piece.run).unwrap_or(usize::MAX);
             let motion = match part {
                 Part::All => piece.motion,

@@ -3,11 +3,12 @@
 
 use std::fmt;
 use std::fs::File;
-use std::io::BufRead as _;
+use std::io::{BufRead as _, Read, copy, sink};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
 use bytes::Bytes;
+use flate2::read::MultiGzDecoder;
 use parquet::basic::{Compression, Encoding, Type as Physical};
 use parquet::column::page::{Page, PageMetadata, PageReader};
 use parquet::column::reader::{ColumnReader, get_column_reader};
@@ -25,6 +26,12 @@ const OF_TEXT: u64 = 12;
 
 /// The kind of a page that has the values which others point to.
 const DICTIONARY: u64 = 2;
+
+/// The kind of a page whose levels are not packed.
+const DATA_PAGE_V2: u64 = 3;
+
+/// The first bytes of a frame of LZ4, which tells nobody its length.
+const LZ4_FRAME: [u8; 4] = [0x04, 0x22, 0x4D, 0x18];
 
 /// What a file has that is in order, and that is not read.
 #[derive(Debug)]
@@ -82,7 +89,10 @@ pub(crate) fn column_reader(
         file: Arc::clone(source),
         room: Arc::clone(room),
         of_texts: chunk.column_type() == Physical::BYTE_ARRAY,
+        compression,
         next: AtomicU64::new(start),
+        unpacked: AtomicU64::new(0),
+        levels: AtomicU64::new(0),
         page: AtomicU64::new(0),
         dictionary: AtomicU64::new(0),
     });
@@ -105,8 +115,13 @@ struct Bounds {
     file: Arc<File>,
     room: Arc<Room>,
     of_texts: bool,
+    compression: Compression,
     /// Where the next head stands.
     next: AtomicU64,
+    /// The bytes of the next page, unpacked, as its head says.
+    unpacked: AtomicU64,
+    /// The bytes before the values of the next page, which are never packed.
+    levels: AtomicU64,
     /// What this column was charged for: its page, and its dictionary.
     page: AtomicU64,
     dictionary: AtomicU64,
@@ -123,6 +138,27 @@ impl Bounds {
                  to_parquet(…, row_group_size=10000)",
                 MOST_BYTES >> 20
             );
+            return Err(Refused::error(what));
+        }
+        Ok(())
+    }
+
+    /// Whether a page unpacks to what its head says and no more. The library asks this of Snappy and zstd, but unpacks
+    /// gzip and frames of LZ4 to their ends, wherever these are.
+    fn check_unpacked(&self, page: &[u8]) -> Result<()> {
+        let levels = self.levels.load(Relaxed);
+        let unpacked = self.unpacked.load(Relaxed).saturating_sub(levels);
+        let packed = usize::try_from(levels).ok().and_then(|levels| page.get(levels..)).unwrap_or_default();
+        let is_more = match self.compression {
+            // an error on the way is the library's to tell
+            Compression::GZIP(_) => copy(&mut MultiGzDecoder::new(packed).take(unpacked + 1), &mut sink())
+                .is_ok_and(|bytes| bytes > unpacked),
+            Compression::LZ4 => packed.starts_with(&LZ4_FRAME),
+            _ => false,
+        };
+        if is_more {
+            let what = "a page unpacks to more bytes than its head says: write the file again, in pandas \
+                        to_parquet(…, compression=\"zstd\")";
             return Err(Refused::error(what));
         }
         Ok(())
@@ -147,8 +183,11 @@ impl ChunkReader for Bounds {
 
     fn get_read(&self, start: u64) -> Result<Self::T> {
         let mut read = self.file.get_read(start)?;
-        let (kind, size) = head(read.fill_buf()?)
+        let Head { kind, unpacked, packed, levels } = Head::read(read.fill_buf()?)
             .ok_or_else(|| ParquetError::General("a page does not begin as one does".to_owned()))?;
+        let size = unpacked.max(packed);
+        self.unpacked.store(unpacked, Relaxed);
+        self.levels.store(levels, Relaxed);
         if kind == DICTIONARY {
             self.charge(&self.dictionary, size.saturating_mul(if self.of_texts { OF_TEXT } else { 2 }))?;
         } else {
@@ -159,23 +198,53 @@ impl ChunkReader for Bounds {
 
     fn get_bytes(&self, start: u64, length: usize) -> Result<Bytes> {
         self.next.store(start.saturating_add(length as u64), Relaxed);
-        self.file.get_bytes(start, length)
+        let page = self.file.get_bytes(start, length)?;
+        self.check_unpacked(&page)?;
+        Ok(page)
     }
 }
 
-/// The kind of a page and its bytes, packed or unpacked, whatever is more: the first three numbers of its head, which
-/// is written in Thrift's compact protocol.
-fn head(mut bytes: &[u8]) -> Option<(u64, u64)> {
-    let mut number = || {
-        // a field with the next number, a 32-bit integer
-        let rest = bytes.strip_prefix(&[0x15])?;
-        let (number, rest) = varint(rest)?;
-        bytes = rest;
-        // signs alternate; none is negative
-        (number & 1 == 0).then_some(number >> 1)
-    };
-    let (kind, unpacked, packed) = (number()?, number()?, number()?);
-    Some((kind, unpacked.max(packed)))
+/// What the head of a page says of its bytes.
+#[derive(Debug, PartialEq)]
+struct Head {
+    kind: u64,
+    unpacked: u64,
+    packed: u64,
+    /// The bytes before the values, which are never packed.
+    levels: u64,
+}
+
+impl Head {
+    /// Reads a head, which is written in Thrift's compact protocol: a number tells how far its field is from the one
+    /// before, and of what type it is.
+    fn read(mut bytes: &[u8]) -> Option<Self> {
+        /// The field after the one before, a 32-bit integer.
+        const NEXT: u8 = 0x15;
+        let (kind, unpacked, packed) = (number(&mut bytes)?, number(&mut bytes)?, number(&mut bytes)?);
+        let mut levels = 0;
+        if kind == DATA_PAGE_V2 {
+            // the fourth field is a check sum, if there is one, and the eighth what this kind has of its own
+            let to_own = if bytes.first() == Some(&NEXT) {
+                bytes = varint(&bytes[1..])?.1;
+                0x4C
+            } else {
+                0x5C
+            };
+            bytes = bytes.strip_prefix(&[to_own])?;
+            for _ in ["values", "nulls", "rows", "encoding"] {
+                number(&mut bytes)?;
+            }
+            levels = number(&mut bytes)?.saturating_add(number(&mut bytes)?);
+        }
+        return Some(Self { kind, unpacked, packed, levels });
+
+        fn number(bytes: &mut &[u8]) -> Option<u64> {
+            let (number, rest) = varint(bytes.strip_prefix(&[NEXT])?)?;
+            *bytes = rest;
+            // signs alternate; none is negative
+            (number & 1 == 0).then_some(number >> 1)
+        }
+    }
 }
 
 /// An integer, seven bits a byte, the lowest first.
@@ -297,19 +366,25 @@ impl Iterator for Pages {
 mod tests {
     use super::*;
 
+    fn column(room: Arc<Room>, compression: Compression) -> Bounds {
+        Bounds {
+            file: Arc::new(tempfile::tempfile().unwrap()),
+            room,
+            of_texts: false,
+            compression,
+            next: AtomicU64::new(0),
+            unpacked: AtomicU64::new(0),
+            levels: AtomicU64::new(0),
+            page: AtomicU64::new(0),
+            dictionary: AtomicU64::new(0),
+        }
+    }
+
     /// All columns of a table share the room, and give back what they had.
     #[test]
     fn pages_are_charged_to_the_room() {
         let room = Arc::new(Room::default());
-        let file = Arc::new(tempfile::tempfile().unwrap());
-        let column = || Bounds {
-            file: Arc::clone(&file),
-            room: Arc::clone(&room),
-            of_texts: false,
-            next: AtomicU64::new(0),
-            page: AtomicU64::new(0),
-            dictionary: AtomicU64::new(0),
-        };
+        let column = || column(Arc::clone(&room), Compression::UNCOMPRESSED);
         let (one, two) = (column(), column());
         one.charge(&one.dictionary, MOST_BYTES / 4).unwrap();
         one.charge(&one.page, MOST_BYTES / 4).unwrap();
@@ -325,12 +400,41 @@ mod tests {
 
     #[test]
     fn heads_of_pages_say_their_sizes() {
-        assert_eq!(head(&[0x15, 0, 0x15, 0x80, 1, 0x15, 6]), Some((0, 64)));
-        assert_eq!(head(&[0x15, 4, 0x15, 2, 0x15, 0xFE, 0xFF, 0xFF, 0xFF, 0x0F]), Some((2, 0x7FFF_FFFF)));
+        let read = |bytes: &[u8]| Head::read(bytes).map(|head| (head.kind, head.unpacked, head.packed, head.levels));
+        assert_eq!(read(&[0x15, 0, 0x15, 0x80, 1, 0x15, 6]), Some((0, 64, 3, 0)));
+        assert_eq!(read(&[0x15, 4, 0x15, 2, 0x15, 0xFE, 0xFF, 0xFF, 0xFF, 0x0F]), Some((2, 1, 0x7FFF_FFFF, 0)));
         for bytes in [&[][..], &[0x15, 0, 0x15, 1, 0x15, 2], &[0x18, 0, 0x15], &[0x15, 0x80, 0x80, 0x80, 0x80, 0x80, 0]]
         {
-            assert_eq!(head(bytes), None, "{bytes:?}");
+            assert_eq!(read(bytes), None, "{bytes:?}");
         }
+        // levels of 5 and 7 bytes, without and with a check sum
+        let own = [0x15, 20, 0x15, 0, 0x15, 20, 0x15, 0, 0x15, 10, 0x15, 14];
+        let with = |middle: &[u8]| [&[0x15, 6, 0x15, 80, 0x15, 60][..], middle, &own[..]].concat();
+        assert_eq!(read(&with(&[0x5C])), Some((3, 40, 30, 12)));
+        assert_eq!(read(&with(&[0x15, 0xFF, 1, 0x4C])), Some((3, 40, 30, 12)));
+        assert_eq!(read(&with(&[0x15, 2])), None);
+    }
+
+    /// Gzip says nowhere how long it becomes: a page is unpacked to nothing first.
+    #[test]
+    fn pages_unpack_to_what_their_heads_say() {
+        let mut gzip = flate2::read::GzEncoder::new(&[7; 5000][..], flate2::Compression::default());
+        let mut page = b"levels".to_vec();
+        gzip.read_to_end(&mut page).unwrap();
+        let of = |compression, unpacked: u64| {
+            let bounds = column(Arc::default(), compression);
+            bounds.unpacked.store(unpacked, Relaxed);
+            bounds.levels.store(6, Relaxed);
+            bounds
+        };
+        let gzip = Compression::GZIP(parquet::basic::GzipLevel::default());
+        of(gzip, 5006).check_unpacked(&page).unwrap();
+        let error = of(gzip, 5005).check_unpacked(&page).unwrap_err();
+        assert!(error.to_string().contains("a page unpacks to more bytes than its head says"), "{error}");
+        // cut off, it is the library that says so
+        of(gzip, 5005).check_unpacked(&page[..20]).unwrap();
+        of(Compression::LZ4, 9000).check_unpacked(b"levels\x04\x22\x4D\x18").unwrap_err();
+        of(Compression::LZ4, 9000).check_unpacked(b"levels\0\0\x10\0").unwrap();
     }
 
     /// Lists of 2, 3, 1 and what follows.
