@@ -30,6 +30,9 @@ const DICTIONARY: u64 = 2;
 /// The kind of a page whose levels are not packed.
 const DATA_PAGE_V2: u64 = 3;
 
+/// A field that comes next after the one before, and is a 32-bit integer.
+const NEXT: u8 = 0x15;
+
 /// The first bytes of a frame of LZ4, which tells nobody its length.
 const LZ4_FRAME: [u8; 4] = [0x04, 0x22, 0x4D, 0x18];
 
@@ -218,8 +221,6 @@ impl Head {
     /// Reads a head, which is written in Thrift's compact protocol: a number tells how far its field is from the one
     /// before, and of what type it is.
     fn read(mut bytes: &[u8]) -> Option<Self> {
-        /// The field after the one before, a 32-bit integer.
-        const NEXT: u8 = 0x15;
         let (kind, unpacked, packed) = (number(&mut bytes)?, number(&mut bytes)?, number(&mut bytes)?);
         let mut levels = 0;
         if kind == DATA_PAGE_V2 {
@@ -236,15 +237,16 @@ impl Head {
             }
             levels = number(&mut bytes)?.saturating_add(number(&mut bytes)?);
         }
-        return Some(Self { kind, unpacked, packed, levels });
-
-        fn number(bytes: &mut &[u8]) -> Option<u64> {
-            let (number, rest) = varint(bytes.strip_prefix(&[NEXT])?)?;
-            *bytes = rest;
-            // signs alternate; none is negative
-            (number & 1 == 0).then_some(number >> 1)
-        }
+        Some(Self { kind, unpacked, packed, levels })
     }
+}
+
+/// The number of the next field.
+fn number(bytes: &mut &[u8]) -> Option<u64> {
+    let (number, rest) = varint(bytes.strip_prefix(&[NEXT])?)?;
+    *bytes = rest;
+    // signs alternate; none is negative
+    (number & 1 == 0).then_some(number >> 1)
 }
 
 /// An integer, seven bits a byte, the lowest first.
