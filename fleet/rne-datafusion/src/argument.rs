@@ -2,7 +2,7 @@
 
 use datafusion::arrow::array::{Array, ArrayRef, AsArray, Float64Array};
 use datafusion::arrow::buffer::NullBuffer;
-use datafusion::arrow::datatypes::{DataType, Field, Float64Type};
+use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Float64Type};
 use datafusion::common::{Result, exec_err, plan_err};
 use rne::compiled;
 
@@ -37,24 +37,41 @@ impl Argument<'_> {
     }
 }
 
-/// The types that columns are brought to: lists of `Float64`, or `Float64`.
-pub(crate) fn coerced(function: &str, position: usize, given: &DataType) -> Result<DataType> {
+/// A column of a call: its name, for messages, and its type.
+pub(crate) struct Column<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) of: &'a DataType,
+}
+
+/// The columns of a call after the robot.
+pub(crate) fn columns(fields: &[FieldRef]) -> Vec<Column<'_>> {
+    fields.iter().skip(1).map(|field| Column { name: field.name(), of: field.data_type() }).collect()
+}
+
+/// The type that a column is brought to: lists of `Float64`, or `Float64`. What is neither stays as it is, and is
+/// refused by [`check`], which knows the name of the column.
+pub(crate) fn coerced(given: &DataType) -> DataType {
     let item = |field: &Field| field.clone().with_data_type(DataType::Float64).into();
-    let refused = || {
-        plan_err!(
-            "{function}: argument {} is {given}; lists of numbers are wanted, or a column of numbers per joint",
-            position + 1
-        )
-    };
     let is_number = |of: &DataType| of.is_numeric() || *of == DataType::Null;
     match given {
-        of if is_number(of) => Ok(DataType::Float64),
-        DataType::List(field) if is_number(field.data_type()) => Ok(DataType::List(item(field))),
-        DataType::LargeList(field) if is_number(field.data_type()) => Ok(DataType::LargeList(item(field))),
+        of if is_number(of) => DataType::Float64,
+        DataType::List(field) if is_number(field.data_type()) => DataType::List(item(field)),
+        DataType::LargeList(field) if is_number(field.data_type()) => DataType::LargeList(item(field)),
         DataType::FixedSizeList(field, length) if is_number(field.data_type()) => {
-            Ok(DataType::FixedSizeList(item(field), *length))
+            DataType::FixedSizeList(item(field), *length)
         }
-        _ => refused(),
+        other => other.clone(),
+    }
+}
+
+/// Whether a column has a type that numbers are brought to.
+fn has_numbers(of: &DataType) -> bool {
+    match of {
+        DataType::Float64 => true,
+        DataType::List(field) | DataType::LargeList(field) | DataType::FixedSizeList(field, _) => {
+            *field.data_type() == DataType::Float64
+        }
+        _ => false,
     }
 }
 
@@ -63,25 +80,29 @@ pub(crate) fn coerced(function: &str, position: usize, given: &DataType) -> Resu
 pub(crate) fn width(
     function: &str,
     argument: &str,
-    types: &[&DataType],
+    columns: &[Column<'_>],
     first: usize,
     robot: &str,
     joints: usize,
 ) -> Result<usize> {
-    let Some(of) = types.get(first) else {
+    let Some(Column { name, of }) = columns.get(first) else {
         return plan_err!("{function}: `{argument}` is missing: a list of {joints} numbers, or {joints} columns");
     };
     match of {
         DataType::FixedSizeList(_, length) if usize::try_from(*length) != Ok(joints) => {
-            plan_err!("{function}: `{argument}` is a list of {length} numbers, and {robot} has {joints} joints")
+            plan_err!(
+                "{function}: column `{name}`, given as `{argument}`, has lists of {length} numbers, and {robot} has \
+                 {joints} joints"
+            )
         }
         DataType::List(_) | DataType::LargeList(_) | DataType::FixedSizeList(..) => Ok(1),
         _ => {
-            let columns = types[first..].iter().take(joints).take_while(|of| **of == &DataType::Float64).count();
-            if columns == joints {
+            let found = columns[first..].iter().take(joints).take_while(|column| *column.of == DataType::Float64);
+            let found = found.count();
+            if found == joints {
                 Ok(joints)
             } else {
-                plan_err!("{function}: `{argument}` has {columns} columns, and {robot} has {joints} joints")
+                plan_err!("{function}: `{argument}` has {found} columns, and {robot} has {joints} joints")
             }
         }
     }
@@ -201,11 +222,12 @@ pub(crate) fn all<'a>(
     robot: &str,
     joints: usize,
 ) -> Result<(Vec<Argument<'a>>, Option<NullBuffer>)> {
-    let types: Vec<&DataType> = arrays.iter().map(Array::data_type).collect();
+    let given = columns.iter().zip(arrays).map(|(&name, array)| Column { name, of: array.data_type() });
+    let given: Vec<Column<'_>> = given.collect();
     let (mut first, mut nulls) = (0, None);
     let mut arguments = Vec::with_capacity(names.len());
     for name in names {
-        let width = width(function, name, &types, first, robot, joints)?;
+        let width = width(function, name, &given, first, robot, joints)?;
         let (these, called) = (&arrays[first..first + width], &columns[first..first + width]);
         let place = |column| Place { function, column, robot };
         let is_list = !matches!(these[0].data_type(), DataType::Float64);
@@ -235,16 +257,21 @@ pub(crate) fn all<'a>(
     Ok((arguments, nulls))
 }
 
-/// Whether columns of such types are the arguments of a function: what [`all`] says of a batch, before there is one.
-pub(crate) fn check(function: &str, names: &[&str], types: &[&DataType], robot: &str, joints: usize) -> Result<()> {
+/// Whether columns are the arguments of a function: what [`all`] says of a batch, before there is one.
+pub(crate) fn check(function: &str, names: &[&str], columns: &[Column<'_>], robot: &str, joints: usize) -> Result<()> {
+    if let Some(Column { name, of }) = columns.iter().find(|column| !has_numbers(column.of)) {
+        return plan_err!(
+            "{function}: column `{name}` is {of}; lists of numbers are wanted, or a column of numbers per joint"
+        );
+    }
     let mut first = 0;
     for name in names {
-        first += width(function, name, types, first, robot, joints)?;
+        first += width(function, name, columns, first, robot, joints)?;
     }
-    if first < types.len() {
+    if first < columns.len() {
         return plan_err!(
             "{function}: {} columns too many: each of {} is a list, or {joints} columns",
-            types.len() - first,
+            columns.len() - first,
             names.join(", ")
         );
     }

@@ -166,8 +166,7 @@ pub(crate) fn coerced(function: &str, given: &[DataType]) -> Result<Vec<DataType
     if !matches!(robot, DataType::Utf8 | DataType::LargeUtf8 | DataType::Utf8View) {
         return plan_err!("{function}: the first argument is the robot, a literal of text, not {robot}");
     }
-    let columns = columns.iter().enumerate().map(|(at, of)| argument::coerced(function, at + 1, of));
-    [Ok(robot.clone())].into_iter().chain(columns).collect()
+    Ok([robot.clone()].into_iter().chain(columns.iter().map(argument::coerced)).collect())
 }
 
 impl ScalarUDFImpl for DynamicsFunction {
@@ -189,9 +188,9 @@ impl ScalarUDFImpl for DynamicsFunction {
 
     fn return_field_from_args(&self, given: ReturnFieldArgs<'_>) -> Result<FieldRef> {
         let held = self.held(given.scalar_arguments.first().copied().flatten())?;
-        let types: Vec<&DataType> = given.arg_fields.iter().skip(1).map(|field| field.data_type()).collect();
+        let columns = argument::columns(given.arg_fields);
         let robot = held.arm.robot();
-        argument::check(self.name(), &self.computation.arguments(), &types, &robot.name, robot.dof())?;
+        argument::check(self.name(), &self.computation.arguments(), &columns, &robot.name, robot.dof())?;
         let of = result::data_type(&self.computation.layout(robot.dof()));
         Ok(Arc::new(Field::new(self.name(), of, true)))
     }

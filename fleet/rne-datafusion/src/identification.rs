@@ -75,11 +75,10 @@ impl AggregateUDFImpl for IdentificationFunction {
         }
         let robot = given.exprs.first().and_then(|robot| robot.downcast_ref::<Literal>());
         let held = self.robots.get(key(NAME, robot.map(Literal::value))?)?;
-        let fields = given.expr_fields.get(1..).unwrap_or_default();
-        let types: Vec<&DataType> = fields.iter().map(|field| field.data_type()).collect();
+        let columns = argument::columns(given.expr_fields);
         let robot = held.arm.robot();
-        argument::check(NAME, &ARGUMENTS, &types, &robot.name, robot.dof())?;
-        let columns = fields.iter().map(|field| field.name().clone()).collect();
+        argument::check(NAME, &ARGUMENTS, &columns, &robot.name, robot.dof())?;
+        let columns = columns.iter().map(|column| column.name.to_owned()).collect();
         Ok(Box::new(Gathered::new(held, columns)))
     }
 

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use datafusion::common::{DataFusionError, Result, plan_err};
-use rne::compiled::CompiledArm;
+use rne::compiled::{CompiledArm, RobotFiles};
 use rne_identify::{Options, Structure};
 use sha2::{Digest, Sha256};
 
@@ -15,9 +15,10 @@ const DIGITS: usize = 16;
 
 /// The robots that the functions of a process compute.
 ///
-/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file,
-/// as `sha256sum` prints it. Functions travel to other machines by name alone, so a process that holds another file
-/// under the same name would compute other torques, and nobody would notice: by the key it refuses.
+/// A query names a robot by its *key*, `NAME@HASH`: the hash is the first 16 digits of the SHA-256 of its robot file
+/// and the plan file after it, where there is one, as `cat NAME.yaml NAME.plan.yaml | sha256sum` prints it. Functions
+/// travel to other machines by name alone, so a process that holds another file under the same name would compute
+/// other torques, or other bits of them, and nobody would notice: by the key it refuses.
 #[derive(Clone, Debug)]
 pub struct Robots(Arc<BTreeMap<String, Held>>);
 
@@ -64,21 +65,21 @@ impl Robots {
                 Some(plan) => CompiledArm::with_plan(file.yaml, plan),
                 None => CompiledArm::from_yaml(file.yaml),
             };
-            Ok(robots.with(file.name, file.yaml.as_bytes(), arm.map_err(external)?))
+            let texts = [file.yaml, file.plan.unwrap_or_default()];
+            Ok(robots.with(file.name, texts.map(str::as_bytes), arm.map_err(external)?))
         })
     }
 
-    /// These and that of a robot file, under the name that it gives itself.
+    /// These and that of a robot file, with the plan file beside it, under the name that it gives itself.
     ///
     /// # Errors
     /// When the file cannot be read, or everything that is wrong with it.
     pub fn with_file(self, path: impl AsRef<Path>) -> Result<Self> {
-        let path = path.as_ref();
-        // what is hashed is what is read: a file that changes in between is read again
-        let arm = CompiledArm::from_file(path).map_err(external)?;
-        let bytes = std::fs::read(path)?;
+        // read once: a file that is replaced meanwhile must not give the hash of one and the torques of the other
+        let files = RobotFiles::read(path).map_err(external)?;
+        let arm = CompiledArm::from_files(&files).map_err(external)?;
         let name = arm.robot().name.clone();
-        Ok(self.with(&name, &bytes, arm))
+        Ok(self.with(&name, [files.robot(), files.plan().unwrap_or_default()], arm))
     }
 
     /// These and that of the text of a robot file, under the name that it gives itself.
@@ -88,11 +89,12 @@ impl Robots {
     pub fn with_yaml(self, text: &str) -> Result<Self> {
         let arm = CompiledArm::from_yaml(text).map_err(external)?;
         let name = arm.robot().name.clone();
-        Ok(self.with(&name, text.as_bytes(), arm))
+        Ok(self.with(&name, [text.as_bytes(), &[]], arm))
     }
 
-    fn with(mut self, name: &str, bytes: &[u8], arm: CompiledArm) -> Self {
-        let mut hash = Sha256::digest(bytes).iter().fold(String::new(), |mut hash, byte| {
+    /// `files`: the robot file, and the plan file or nothing.
+    fn with(mut self, name: &str, files: [&[u8]; 2], arm: CompiledArm) -> Self {
+        let mut hash = Sha256::digest(files.concat()).iter().fold(String::new(), |mut hash, byte| {
             let _ = write!(hash, "{byte:02x}");
             hash
         });

@@ -6,12 +6,14 @@ use datafusion::arrow::array::{
     Array, ArrayRef, AsArray, FixedSizeListArray, Float32Array, Float64Array, Int64Array, LargeListArray, ListArray,
     RecordBatch, StringArray,
 };
+use datafusion::arrow::buffer::OffsetBuffer;
 use datafusion::arrow::datatypes::{DataType, Field, Float64Type, Int64Type};
 use datafusion::common::Result;
 use datafusion::datasource::MemTable;
 use datafusion::prelude::SessionContext;
 use rne::compiled::{Arguments, CompiledArm, Destination, Function};
 use rne_datafusion::{Robots, register};
+use sha2::{Digest, Sha256};
 
 /// A rod on one hinge: its torque at rest is known in closed form.
 const ROD: &str = "
@@ -285,8 +287,15 @@ async fn what_is_wrong_is_said_with_the_columns_name() -> Result<()> {
     let (context, puma) = (context(), key("puma560"));
     let ragged =
         ListArray::from_iter_primitive::<Float64Type, _, _>([Some(vec![Some(0.0); 6]), Some(vec![Some(0.0); 5])]);
-    let columns: [(&str, ArrayRef); 4] = [
+    let words = ListArray::new(
+        Arc::new(Field::new_list_field(DataType::Utf8, true)),
+        OffsetBuffer::from_lengths([1, 1]),
+        Arc::new(StringArray::from(vec!["a", "b"])),
+        None,
+    );
+    let columns: [(&str, ArrayRef); 5] = [
         ("ragged", Arc::new(ragged)),
+        ("words", Arc::new(words)),
         ("word", Arc::new(StringArray::from(vec!["a", "b"]))),
         ("q1", Arc::new(Float64Array::from(vec![0.0, 0.0]))),
         ("fixed", Arc::new(FixedSizeListArray::from_iter_primitive::<Float64Type, _, _>([Some([Some(0.0); 5]); 2], 5))),
@@ -297,8 +306,11 @@ async fn what_is_wrong_is_said_with_the_columns_name() -> Result<()> {
         ("gravity_torques('puma560@0000000000000000', ragged)".to_owned(), vec!["is not the puma560", puma.as_str()]),
         ("gravity_torques('puma', ragged)".to_owned(), vec!["no robot `puma`", "puma560"]),
         (format!("gravity_torques('{puma}', ragged)"), vec!["`ragged`", "row 2", "5 numbers", "6 joints"]),
-        (format!("gravity_torques('{puma}', word)"), vec!["argument 2", "Utf8"]),
-        (format!("gravity_torques('{puma}', fixed)"), vec!["`q`", "5 numbers", "6 joints"]),
+        (format!("gravity_torques('{puma}', word)"), vec!["column `word` is Utf8", "lists of numbers"]),
+        (format!("gravity_torques('{puma}', q1, q1, q1, q1, q1, word)"), vec!["column `word` is Utf8"]),
+        (format!("gravity_torques('{puma}', words)"), vec!["column `words` is List"]),
+        (format!("identification('{puma}', ragged, ragged, ragged, word)"), vec!["column `word` is Utf8"]),
+        (format!("gravity_torques('{puma}', fixed)"), vec!["column `fixed`", "`q`", "5 numbers", "6 joints"]),
         (format!("gravity_torques('{puma}', q1, q1, q1)"), vec!["`q`", "3 columns", "6 joints"]),
         (format!("gravity_torques('{puma}', q1, q1, q1, q1, q1, q1, q1)"), vec!["1 columns too many"]),
         (format!("inverse_dynamics('{puma}', ragged, ragged)"), vec!["`qdd` is missing"]),
@@ -313,4 +325,29 @@ async fn what_is_wrong_is_said_with_the_columns_name() -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// The key is that of the robot file and of the plan beside it: another plan computes other bits.
+#[test]
+fn a_key_is_that_of_the_files_that_are_read() {
+    let shipped = rne_robots::find("planar2").expect("it is shipped");
+    let plan = shipped.plan.expect("it has one");
+    let key = |text: &str| {
+        let digits = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+        format!("planar2@{}", &digits[..16])
+    };
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("planar2.yaml");
+    let held = || Robots::none().with_file(&path).map(|robots| robots.key("planar2").expect("it is held"));
+    std::fs::write(&path, shipped.yaml).expect("a file");
+    assert_eq!(held().expect("a robot"), key(shipped.yaml));
+    assert_eq!(Robots::none().with_yaml(shipped.yaml).expect("a robot").key("planar2"), Some(key(shipped.yaml)));
+    std::fs::write(folder.path().join("planar2.plan.yaml"), plan).expect("a file");
+    assert_eq!(held().expect("a robot"), key(&format!("{}{plan}", shipped.yaml)));
+    assert_eq!(Robots::shipped().expect("robots").key("planar2"), Some(key(&format!("{}{plan}", shipped.yaml))));
+    // mistakes are told with the name of the file
+    std::fs::write(folder.path().join("planar2.plan.yaml"), "nonsense").expect("a file");
+    assert!(held().expect_err("no plan").to_string().contains("planar2.plan.yaml"));
+    std::fs::write(&path, "format: 2").expect("a file");
+    assert!(held().expect_err("no robot").to_string().contains("planar2.yaml:1:"));
 }
