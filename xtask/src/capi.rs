@@ -75,7 +75,7 @@ pub(crate) fn prefix() -> Result<PathBuf> {
 /// The library, built and laid out below a prefix; the absolute path of that.
 pub(crate) fn built(prefix: &Path) -> Result<PathBuf> {
     let shell = machine::shell()?;
-    let folder = machine::target_folder("target")?.join("capi");
+    let folder = machine::target_folder("target")?;
     fs::create_dir_all(prefix).with_context(|| prefix.display().to_string())?;
     let prefix = prefix.canonicalize()?;
     let build =

@@ -143,13 +143,13 @@ impl Place {
 
     /// The wheel, built.
     pub(crate) fn wheel(&self, install: bool) -> Result<PathBuf> {
-        let (shell, folder, maturin) = (&self.shell, &self.folder, self.maturin(install)?);
-        let wheels = folder.join("wheels");
+        let (shell, maturin) = (&self.shell, self.maturin(install)?);
+        let (wheels, target) = (self.folder.join("wheels"), machine::target_folder("target")?);
         let _ = fs::remove_dir_all(&wheels);
         let build = cmd!(
             shell,
             "{maturin} build --quiet --release --locked --manifest-path python/Cargo.toml
-                --target-dir {folder} --out {wheels}"
+                --target-dir {target} --out {wheels}"
         );
         machine::without_flags(build).quiet().run()?;
         only_file(&wheels)
@@ -184,7 +184,9 @@ impl Place {
         }
         let shell = &self.shell;
         let first = cmd!(shell, "{python} -c {FIRST}").env("PATH", alone);
-        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests").env("PATH", alone);
+        // all of them have passed with one on PATH
+        let tests = if std::env::var_os("CI_FULL").is_some() { "" } else { "test_functions.py" };
+        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests/{tests}").env("PATH", alone);
         Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
     }
 
