@@ -333,8 +333,8 @@ fn a_key_is_that_of_the_files_that_are_read() {
     let shipped = rne_robots::find("planar2").expect("it is shipped");
     let plan = shipped.plan.expect("it has one");
     let key = |text: &str| {
-        let digits = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-        format!("planar2@{}", &digits[..16])
+        let digest = Sha256::digest(text);
+        format!("planar2@{:016x}", u64::from_be_bytes(digest[..8].try_into().expect("eight bytes")))
     };
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("planar2.yaml");
