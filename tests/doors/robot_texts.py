@@ -138,8 +138,9 @@ def rust_code(trial, path):
         capture_output=True,
         text=True,
     )
-    ran = re.search(r"running (\d+) tests?", tested.stdout)
-    if (ran and ran[1] != "0") or os.path.exists(trial.folder / "PWNED"):
+    ran = re.search(r"(\d+) passed; (\d+) failed; (\d+) ignored", tested.stdout)
+    # the head of the file has one example of its own, which is not run
+    if not ran or ran.groups() != ("0", "0", "1") or os.path.exists(trial.folder / "PWNED"):
         trial.fault(f"the Rust has tests in its documentation: {tested.stdout[:300]}")
 
 

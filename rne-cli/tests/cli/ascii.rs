@@ -11,7 +11,8 @@ fn robots() -> Vec<(String, usize)> {
         let json: Value = serde_json::from_str(&fine(&["show", name, "--json"])).expect("JSON");
         json["robot"]["joints"].as_array().expect("joints").len()
     };
-    shipped::tried().map(|robot| (robot.name.to_owned(), joints(robot.name))).collect()
+    let one_in = if shipped::is_exhaustive() { 1 } else { 2 };
+    shipped::tried().step_by(one_in).map(|robot| (robot.name.to_owned(), joints(robot.name))).collect()
 }
 
 /// The views of an arm, each as a command without `--ascii`.
@@ -61,7 +62,7 @@ fn views_of_every_arm_are_ascii() {
             letters += plain.chars().filter(|c| !c.is_ascii()).count();
         }
     }
-    assert!(letters > 10_000, "{letters} letters");
+    assert!(letters > 5_000, "{letters} letters");
 }
 
 #[test]

@@ -176,7 +176,7 @@ fn hostile_inputs() {
     .flatten()
     .collect();
     assert!(cases.len() >= 200, "{} inputs", cases.len());
-    let one_in = if shipped::is_exhaustive() { 1 } else { 3 };
+    let one_in = if shipped::is_exhaustive() { 1 } else { 8 };
 
     // where the commands run: what they write stays there
     let here = place("here/below");
