@@ -23,6 +23,11 @@ const PART: usize = 1 << 16;
 /// The longest record of any topic, and the longest chunk: an image of some megabytes has to pass.
 const LONGEST_RECORD: usize = 32 << 20;
 
+/// Bytes that a chunk unpacks to at most for each of its own: states that never change take a hundred. And the size of
+/// chunks that nobody waits for, however small they are packed.
+const MOST_UNPACKED: u64 = 256;
+const SMALL_CHUNK: u64 = 1 << 20;
+
 /// A record begins with its kind, a byte, and its length, eight.
 const HEAD: usize = 9;
 
@@ -63,10 +68,14 @@ struct Chunk {
 impl Chunk {
     /// Of what stands in the record of a chunk.
     fn of(body: &[u8]) -> Result<Self, McapError> {
-        if let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, body)?
-            && header.compression.is_empty()
-        {
-            check_records(&data)?;
+        if let Record::Chunk { header, data } = mcap::parse_record(op::CHUNK, body)? {
+            let unpacked = header.uncompressed_size;
+            if unpacked > SMALL_CHUNK && unpacked / MOST_UNPACKED > data.len() as u64 {
+                return Err(McapError::ChunkTooLarge(unpacked));
+            }
+            if header.compression.is_empty() {
+                check_records(&data)?;
+            }
         }
         let mut bytes = Vec::with_capacity(HEAD + body.len());
         bytes.push(op::CHUNK);
@@ -214,6 +223,12 @@ impl McapBag {
                 }
                 McapError::RecordTooLarge { len, .. } => {
                     format!("a record of {len} bytes, {at}: the file is corrupt, or has larger messages than are read")
+                }
+                McapError::ChunkTooLarge(bytes) => {
+                    format!(
+                        "a chunk says that it unpacks to {bytes} bytes, {at}: more than {MOST_UNPACKED} times its own \
+                         are not read"
+                    )
                 }
                 McapError::UnsupportedCompression(name) => {
                     format!("chunks are compressed with {name:?}: zstd and lz4 are read")

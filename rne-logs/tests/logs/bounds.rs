@@ -184,6 +184,25 @@ fn text(text: &str) -> Vec<u8> {
     [&(text.len() as u32).to_le_bytes(), text.as_bytes()].concat()
 }
 
+/// Zeros are packed ten thousand to one, and unpacking them takes as long as if they were numbers.
+#[test]
+fn chunks_unpack_to_what_logs_are_packed_from() {
+    let header = record(1, &[&text("ros2"), &text("test")]);
+    for (unpacked, wanted) in [
+        (1_u64 << 32, "a chunk says that it unpacks to 4294967296 bytes"),
+        (256 * 8192 + 256, "a chunk says that it unpacks to 2097408 bytes"),
+        (256 * 8192, "the file is corrupt"),
+        (1 << 20, "the file is corrupt"),
+    ] {
+        let zeros = vec![0; 8192];
+        let (size, length) = (unpacked.to_le_bytes(), 8192_u64.to_le_bytes());
+        let chunk = record(6, &[&[0; 16], &size, &[0; 4], &text("zstd"), &length, &zeros]);
+        let (_folder, path) = file("bag.mcap", [mcap::MAGIC, &header, &chunk].concat());
+        let error = refused(path, Options::default());
+        assert!(error.contains(wanted), "{unpacked}: {error}");
+    }
+}
+
 #[test]
 fn a_channel_is_defined_once() {
     let schema =
