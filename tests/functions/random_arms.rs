@@ -26,7 +26,7 @@ use crate::states::{self, Numbers, State};
 const ARMS: u64 = 2400;
 
 /// Where not all are asked for: one in so many of those with at most so many joints.
-const SOME: [(usize, u64); 3] = [(2, 10), (3, 40), (usize::MAX, 1100)];
+const SOME: [(usize, u64); 3] = [(2, 20), (3, 80), (usize::MAX, 1100)];
 
 /// Arms of whose variables two once had one name; they are always asked for.
 const TWICE: [u64; 3] = [549, 661, 1810];
