@@ -142,20 +142,24 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         _ => failure(&error),
     })?;
     let account = account(arguments, &robot, &found);
-    let mut remark = String::new();
-    if let Some(path) = &arguments.plot {
-        let svg = picture(arguments, &robot, &found);
-        remark += &output_file::write_new(path, &svg, &sources, arguments.force)?;
-    }
     let trajectory = || csv(&found.motion, robot.dof(), arguments);
-    match out {
-        Some(_) if is_shown => Ok(Outcome { text: trajectory(), remark: account + &remark, ..Outcome::default() }),
-        Some(path) => {
-            remark += &output_file::write_new(path, &trajectory(), &sources, arguments.force)?;
-            Ok(Outcome { text: account, remark, ..Outcome::default() })
-        }
-        None => Ok(Outcome { text: account, remark, ..Outcome::default() }),
+    // both files or none
+    let mut files = Vec::new();
+    if let Some(path) = &arguments.plot {
+        files.push((path.as_path(), picture(arguments, &robot, &found)));
     }
+    if let Some(path) = out.filter(|_| !is_shown) {
+        files.push((path, trajectory()));
+    }
+    for (path, text) in &files {
+        check_new(path, Some(text), &sources, arguments.force)?;
+    }
+    let remark = output_file::write_all(&files)?;
+    Ok(if is_shown {
+        Outcome { text: trajectory(), remark: account + &remark, ..Outcome::default() }
+    } else {
+        Outcome { text: account, remark, ..Outcome::default() }
+    })
 }
 
 fn failure(error: &ExcitationError) -> Failure {

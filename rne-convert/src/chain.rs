@@ -536,6 +536,10 @@ impl Walk<'_> {
                 "the joint {name} has a lower limit, {lower}, that is above its upper one, {upper}; both are left out"
             ));
         }
+        for (limit, value) in &joint.negative {
+            let what = format!("the joint {name} has a limit of {limit} below zero, {value}; it is left out");
+            self.told.remarks.push(what);
+        }
     }
 
     /// The link and all that is fixed to it, but for what hangs on the joint `next`, seen from the frame in which the

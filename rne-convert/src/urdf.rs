@@ -105,6 +105,8 @@ pub(crate) struct Joint {
     pub(crate) has_axis: bool,
     /// Limits of position of which the lower one is above the upper one.
     pub(crate) crossed: Option<(f64, f64)>,
+    /// Limits of effort and velocity that are below zero.
+    pub(crate) negative: Vec<(&'static str, f64)>,
     pub(crate) kind: Kind,
     pub(crate) mimic: Option<Mimic>,
     /// The link on which it stands.
@@ -296,6 +298,11 @@ impl Joint {
             span: seen.span.clone(),
             unknown: seen.unknown.clone(),
             has_axis: seen.elements.contains("axis"),
+            negative: ["effort", "velocity"]
+                .into_iter()
+                .map(|limit| (limit, number("limit", limit)))
+                .filter(|(_, value)| *value < 0.0)
+                .collect(),
             crossed: (lower > upper && kind != Kind::Continuous).then_some((lower, upper)),
             kind,
             mimic,

@@ -124,6 +124,8 @@ fn what_is_not_known_is_noted() {
     assert_eq!(no_axis, ["the joint j has no element `axis`; its axis is then 1 0 0"]);
     let crossed = remarks(&axis(with("effort=", "lower=\"2\" upper=\"-1\" effort=")));
     assert_eq!(crossed, ["the joint j has a lower limit, 2, that is above its upper one, -1; both are left out"]);
+    let negative = remarks(&axis(with("effort=\"1\"", "effort=\"-1\"")));
+    assert_eq!(negative, ["the joint j has a limit of effort below zero, -1; it is left out"]);
 }
 
 /// As many names as a text has room for take no time and no room of their own.

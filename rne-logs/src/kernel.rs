@@ -9,6 +9,9 @@
 //! is symmetric, so its phase is zero. Derivatives are central differences of eighth order (B. Fornberg, 1988) of what
 //! it returns; they are short of the derivative of a sine by less than (ωT)⁸/630 of it.
 
+use crate::convolution::Convolution;
+use crate::limits::work;
+
 /// What the stop band lets pass, dB: half a thousandth. The pass band may ripple as much about a gain that ripples
 /// itself.
 const ATTENUATION: f64 = 66.0;
@@ -19,11 +22,16 @@ const HALF_TRANSITION: f64 = 1.0 / 3.0;
 /// Central differences of eighth order; those on the left are their negatives.
 const DIFFERENCES: [f64; 4] = [4.0 / 5.0, -1.0 / 5.0, 4.0 / 105.0, -1.0 / 280.0];
 
+/// A filter of more numbers on each side is applied by Fourier transforms.
+const WIDE: usize = 1024;
+
 /// A symmetric filter.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// From the middle outwards.
     weights: Vec<f64>,
+    /// How it is applied, if it is wide.
+    convolution: Option<Convolution>,
     /// s
     step: f64,
 }
@@ -49,8 +57,9 @@ impl Kernel {
         };
         let weights: Vec<f64> = (0..=half).map(at).collect();
         let sum = weights[0] + 2.0 * weights[1..].iter().sum::<f64>();
-        let weights = weights.into_iter().map(|weight| weight / sum).collect();
-        Self { weights, step }
+        let weights: Vec<f64> = weights.into_iter().map(|weight| weight / sum).collect();
+        let convolution = (half > WIDE).then(|| Convolution::new(&weights));
+        Self { weights, convolution, step }
     }
 
     /// How many numbers on each side the low-pass of a cut-off, Hz, at a step, s, needs: told before it is made, for a
@@ -77,15 +86,29 @@ impl Kernel {
         DIFFERENCES.len()
     }
 
-    /// The numbers that have all their neighbours, filtered: `half()` fewer at each end.
-    pub(crate) fn smooth(&self, numbers: &[f64]) -> Vec<f64> {
+    /// Pieces have a multiple of so many numbers.
+    pub(crate) fn block(&self) -> usize {
+        self.convolution.as_ref().map_or(1, Convolution::block)
+    }
+
+    /// How many numbers there must be behind a piece, if the run has as many, so that pieces are the whole.
+    pub(crate) fn behind(&self) -> usize {
+        self.convolution.as_ref().map_or(0, Convolution::length)
+    }
+
+    /// The first `count` numbers that have all their neighbours, `half()` on each side, filtered.
+    pub(crate) fn smooth(&self, numbers: &[f64], count: usize) -> Vec<f64> {
         let half = self.half();
+        if let Some(convolution) = &self.convolution {
+            return convolution.smooth(numbers, count);
+        }
+        work::add(count * half);
         // the same order of additions wherever a piece begins, so that pieces are the whole bit for bit
         let at = |window: &[f64]| {
             let pairs = (1..=half).map(|k| self.weights[k] * (window[half - k] + window[half + k]));
             self.weights[0] * window[half] + pairs.sum::<f64>()
         };
-        numbers.windows(2 * half + 1).map(at).collect()
+        numbers[..count + 2 * half].windows(2 * half + 1).map(at).collect()
     }
 
     /// The derivative of numbers that have all their neighbours: four fewer at each end.
@@ -135,6 +158,32 @@ mod tests {
                 assert!(gain(&kernel, stopped).abs() < 1e-3, "{cutoff} of {rate} at {stopped}");
             }
             assert!((gain(&kernel, cutoff) - 0.5).abs() < 0.01, "{}", gain(&kernel, cutoff));
+        }
+    }
+
+    /// By Fourier transforms the numbers are those of the sum, and the work hardly grows with the filter.
+    #[test]
+    #[expect(clippy::cast_precision_loss, reason = "small")]
+    fn wide_filters_are_applied_as_narrow_ones_are() {
+        let mut random = fastrand::Rng::with_seed(5);
+        for cutoff in [2.0, 0.7] {
+            let wide = Kernel::low_pass(cutoff, 1e-3);
+            assert!(wide.half() > WIDE, "{}", wide.half());
+            let direct = Kernel { convolution: None, ..wide.clone() };
+            let count = 2 * wide.block() + 77;
+            let numbers: Vec<f64> =
+                (0..count + 2 * wide.half()).map(|i| 3.0 + 1e-4 * i as f64 + random.f64()).collect();
+            let (mut found, mut expected) = (Vec::new(), Vec::new());
+            let work = work::of(|| found = wide.smooth(&numbers, count));
+            let of_sums = work::of(|| expected = direct.smooth(&numbers, count));
+            assert_eq!(found.len(), count);
+            for (found, expected) in found.iter().zip(&expected) {
+                assert!((found - expected).abs() < 1e-13, "{found} {expected}");
+            }
+            assert!(work < 100 * count as u64 && of_sums == (count * wide.half()) as u64, "{work} {of_sums}");
+            // what stands still, does so to the last bit
+            let still = vec![0.1; wide.behind()];
+            assert!(wide.smooth(&still, 50).iter().all(|number| *number == 0.1));
         }
     }
 

@@ -22,6 +22,7 @@
 mod column_checks;
 mod column_name;
 mod columns;
+mod convolution;
 mod csv_table;
 mod error;
 mod format;

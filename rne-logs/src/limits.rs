@@ -12,8 +12,14 @@ pub(crate) const MOST_NUMBERS: usize = 1 << 22;
 /// Bytes of messages that are held at once.
 pub(crate) const MOST_BYTES: usize = 32 << 20;
 
-/// Steps of a gap that is filled: the rows of a grid are at most so many times the rows of the log.
+/// Steps of a gap that is filled.
 pub(crate) const LONGEST_GAP: f64 = 1000.0;
+
+/// Rows of a grid for each state of the log, once there are more than [`FEW_ROWS`]: what is filled is not measured.
+pub(crate) const MOST_FILLED: u64 = 20;
+
+/// Rows of a grid that nobody waits for.
+pub(crate) const FEW_ROWS: u64 = 100_000;
 
 /// Why a message or a row has too many joints, if it has.
 #[cfg(any(feature = "bags", feature = "parquet"))]

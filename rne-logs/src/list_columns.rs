@@ -84,6 +84,16 @@ pub(crate) fn names<'a>(
     let all: Vec<(usize, &str)> = texts.filter(|(_, name)| stem(name).len() < name.len()).collect();
     let of_group: Vec<(usize, &str)> =
         all.iter().filter(|(_, name)| within(name, options).is_some()).copied().collect();
+    if let (true, [(_, name)]) = (of_group.is_empty(), all.as_slice())
+        && stem(name).ends_with(['/', '.'])
+    {
+        let what = format!(
+            "the column {name} has names of joints, and does not begin with {} as the positions do: whose names they \
+             are is not known; give it such a name, or one without a prefix if they are those of every arm",
+            options.topic.as_deref().unwrap_or_default()
+        );
+        return Err(LogError::request(path, what));
+    }
     let near = if of_group.is_empty() { &all } else { &of_group };
     let begins = |(_, name): &&(usize, &'a str)| {
         let end = position.rfind(['/', '.', '_', ' ']).map_or(0, |end| end + 1);
@@ -131,6 +141,8 @@ mod tests {
         ] {
             assert_eq!(of(texts, position, options).unwrap(), place, "{texts:?}");
         }
+        let error = of(&["left.name"], "right.position", &right).unwrap_err();
+        assert!(error.to_string().contains("left.name has names of joints, and does not begin with /right"), "{error}");
         let error = of(&["left.name", "centre.name"], "right.position", &right).unwrap_err();
         assert!(error.is_of_request() && error.to_string().contains("left.name, centre.name are all names"), "{error}");
     }

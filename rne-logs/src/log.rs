@@ -24,6 +24,9 @@ const HEAD: usize = 1024;
 /// they are seconds.
 const SLOWEST: f64 = 0.5;
 
+/// Samples that are so far apart, s, or further, are taken for seconds, and a note says so: 0.1 may be ms at 10 kHz.
+const SLOW: f64 = 0.0999;
+
 /// Stamps this far from zero, ns, are since 1970 or the machine's start, and are shown since the log's first.
 const FAR: i64 = 10_000_000_000_000_000;
 
@@ -133,6 +136,12 @@ impl Log {
         let step = median_step(&times).ok_or_else(|| no_step(path, &times))?;
         if step >= SLOWEST && !is_time_unit_known {
             return Err(LogError::request(path, unknown_unit(step)));
+        }
+        if step >= SLOW && !is_time_unit_known {
+            notes.push(format!(
+                "times have no unit and are read as seconds: samples are at {}; --time-unit says another unit",
+                rates(step)
+            ));
         }
         let units: Vec<JointUnits> = joints.names.iter().map(|name| chain.units.of(name)).collect();
         notes.extend(slides_in_metres(&options, &joints.names, &units));
@@ -312,6 +321,16 @@ fn median_step(times: &[i64]) -> Option<f64> {
 
 /// What is said of times that may be in any unit.
 fn unknown_unit(step: f64) -> String {
+    format!(
+        "the unit of the times is not known: they are {} apart, and samples are at {}; say which it is, as in \
+         --time-unit ms; if the times only count rows, remove their column and say --rate HZ",
+        short(step),
+        rates(step)
+    )
+}
+
+/// The rate of samples by the unit of their times.
+fn rates(step: f64) -> String {
     let of = |unit: TimeUnit, rate: f64| {
         let (rate, prefix) = match rate {
             rate if rate >= 1e9 => (rate * 1e-9, "G"),
@@ -327,12 +346,7 @@ fn unknown_unit(step: f64) -> String {
         (TimeUnit::Microseconds, 1e6),
         (TimeUnit::Nanoseconds, 1e9),
     ];
-    let rates = units.map(|(unit, each)| of(unit, each / step)).join(", ");
-    format!(
-        "the unit of the times is not known: they are {} apart, and samples are at {rates}; say which it is, as in \
-         --time-unit ms; if the times only count rows, remove their column and say --rate HZ",
-        short(step)
-    )
+    units.map(|(unit, each)| of(unit, each / step)).join(", ")
 }
 
 fn no_step(path: &Path, times: &[i64]) -> LogError {

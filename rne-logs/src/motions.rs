@@ -84,7 +84,7 @@ impl<'a> Motions<'a> {
         let pass = if log.options.leave_out_spikes { pass.without(&survey.spikes) } else { pass };
         let columns = layout.joints.len() * (1 + usize::from(layout.has_velocities) + usize::from(layout.has_efforts));
         let dropped = log.dropped(kernel.half());
-        if dropped.saturating_mul(2).saturating_mul(columns) > 2 * MOST_NUMBERS {
+        if dropped.saturating_mul(2).saturating_mul(columns) > MOST_NUMBERS {
             return Err(log.request(format_args!(
                 "at {} Hz a cut-off of {} Hz holds {} states at once, too many for {columns} columns; a higher \
                  --cutoff holds fewer, and --joints names those joints that are meant",
@@ -96,7 +96,7 @@ impl<'a> Motions<'a> {
         let mut motions = Self {
             pass,
             dropped,
-            length: PIECE.min(longest_piece(columns)),
+            length: 0,
             kernel,
             log,
             begun: 0,
@@ -108,7 +108,8 @@ impl<'a> Motions<'a> {
             begin: 0,
             next: None,
             ended: false,
-        };
+        }
+        .with_length(PIECE);
         match motions.pass.next()? {
             Some((state, _)) => motions.next = Some((state.time, state.numbers.clone())),
             None => motions.ended = true,
@@ -120,7 +121,7 @@ impl<'a> Motions<'a> {
     /// are shorter.
     #[must_use]
     pub fn with_length(mut self, states: usize) -> Self {
-        self.length = states.clamp(1, longest_piece(self.rows.len()));
+        self.length = states.clamp(1, longest_piece(self.rows.len())).next_multiple_of(self.kernel.block());
         self
     }
 
@@ -147,7 +148,7 @@ impl<'a> Motions<'a> {
             grid.push(time, &numbers, &mut |row| append(&mut self.rows, row));
             self.grid = Some(grid);
         }
-        let needed = self.length + 2 * self.dropped;
+        let needed = self.length + self.kernel.behind().max(2 * self.dropped);
         while self.rows.first().is_some_and(|rows| rows.len() < needed) {
             let mut emit = |row: &[f64]| append(&mut self.rows, row);
             match self.pass.next()? {
@@ -212,8 +213,8 @@ impl<'a> Motions<'a> {
         }
         let layout = &self.log.layout;
         let joints = layout.joints.len();
-        let needed = count + 2 * self.dropped;
-        let smooth = |rows: &Vec<f64>| self.kernel.smooth(&rows[..needed]);
+        let more = self.dropped - self.kernel.half();
+        let smooth = |rows: &Vec<f64>| self.kernel.smooth(rows, count + 2 * more);
         // the numbers of the states themselves, of lists that reach further
         let inner = |numbers: &Vec<f64>| {
             let beyond = (numbers.len() - count) / 2;

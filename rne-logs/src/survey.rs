@@ -4,6 +4,7 @@ use std::fmt;
 
 use crate::grid::Grid;
 use crate::kernel::{HIGHEST, Kernel, PASSED};
+use crate::limits::{FEW_ROWS, MOST_FILLED};
 use crate::number::short;
 use crate::options::Angles;
 use crate::pass::Unusable;
@@ -183,7 +184,7 @@ impl Survey {
         let mut runs = Runs::default();
         let mut grid: Option<Grid> = None;
         let mut pass = log.pass()?;
-        let mut count = 0_u64;
+        let (mut count, mut rows) = (0_u64, 0_u64);
         loop {
             count += 1;
             if count.is_multiple_of(4096) {
@@ -210,8 +211,16 @@ impl Survey {
             spikes.push(message, log.seconds(state.time), &state.numbers[efforts..]);
             let grid = grid.get_or_insert_with(|| Grid::new(layout.step * 1e9, state.time));
             grid.push(state.time, &state.numbers, &mut |row| {
+                rows += 1;
                 push(&mut spectra, row);
             });
+            if rows > FEW_ROWS && rows / MOST_FILLED > count {
+                return Err(log.request(format_args!(
+                    "more than {MOST_FILLED} states are filled in for each of the first {count}, up to {} s of the \
+                     log: a lower --gap leaves long intervals out",
+                    short(log.seconds(state.time))
+                )));
+            }
         }
         if let Some(grid) = grid {
             grid.finish(&mut |row| push(&mut spectra, row));

@@ -288,8 +288,13 @@ mod unix {
     fn without_room_for_all_files_there_is_none() {
         let folder = folder("room");
         let emit = ["emit", "puma560", "--lang", "c", "--function", "all", "-o", "arm.c"];
-        let commands: [(&[&str], usize); 3] =
-            [(&emit, 32), (&["firmware", "torque", "--robot", "puma560"], 16), (&["man", "-o", "pages"], 2)];
+        let excite = ["excite", "planar2", "--evaluations", "50", "-o", "motion.csv", "--plot", "motion.svg"];
+        let commands: [(&[&str], usize); 4] = [
+            (&emit, 32),
+            (&["firmware", "torque", "--robot", "puma560"], 16),
+            (&["man", "-o", "pages"], 2),
+            (&excite, 128),
+        ];
         fs::create_dir(folder.join("pages")).expect("a folder");
         let before = [names(&folder), names(&folder.join("pages"))];
         for (arguments, blocks) in commands {

@@ -116,6 +116,23 @@ fn pieces_joined_are_the_whole() {
     }
 }
 
+/// So they are where the filter is so wide that it is applied by blocks, which pieces are made of.
+#[test]
+fn pieces_of_a_wide_filter_are_the_whole() {
+    let rate = 1000.0;
+    let mut stamps = times(12_000, rate);
+    stamps.extend((0..24_001).map(|i| 20.0 + f64::from(i) / rate));
+    let (_folder, path) = file("wide.csv", csv(&stamps));
+    let options = Options { cutoff: Some(2.0), ..Options::default() };
+    for read in [runs, whole_runs] {
+        let whole = read(std::slice::from_ref(&path), options.clone(), usize::MAX / 2).unwrap();
+        assert_eq!(whole.len(), 2);
+        for length in [1, 9000] {
+            assert_eq!(read(std::slice::from_ref(&path), options.clone(), length).unwrap(), whole, "{length}");
+        }
+    }
+}
+
 /// With their ends runs have all their states: the inner ones as they were, and at the ends what the run's own point
 /// reflection makes of them: the last state itself, and its slope.
 #[test]

@@ -225,6 +225,13 @@ fn times_that_may_be_in_any_unit_are_asked_for_theirs() {
     let error = open(&table(1.0, "t"), Options::default()).unwrap_err().to_string();
     assert!(error.contains("1 apart, and samples are at 1 Hz in s, 1 kHz in ms, 1 MHz in us, 1 GHz in ns"), "{error}");
     assert_eq!(open(&table(0.4, "t"), Options::default()).unwrap(), 0.4);
+    // ms of a log at 4 kHz look like that: it is read, and said
+    for (step, name, is_said) in [(0.25, "t", true), (0.1, "t", true), (0.25, "t_s", false), (0.05, "t", false)] {
+        let (_folder, path) = file("log.csv", table(step, name));
+        let (log, _) = survey(&[path], Options::default()).unwrap();
+        let said = log.layout().notes.iter().any(|note| note.contains("times have no unit and are read as seconds"));
+        assert_eq!(said, is_said, "{name} {step}: {:?}", log.layout().notes);
+    }
 }
 
 /// A thousand joints at a megahertz: the filter and the spectrum hold some rows of them, and not all.
@@ -241,6 +248,19 @@ fn a_table_of_a_thousand_joints_is_read() {
     let (_folder, path) = file("log.csv", table(1025));
     let error = survey(&[path], Options::default()).err().unwrap().to_string();
     assert!(error.contains("the table has 1025 columns of positions; at most 1024 joints are read"), "{error}");
+}
+
+/// A small log with long intervals would be a long one that nobody measured.
+#[test]
+fn what_is_filled_in_is_bounded() {
+    let mut times = even(0.0, 1500);
+    times.extend((0..20_000).map(|i| 15.0 + 9.9 * f64::from(i)));
+    let (_folder, path) = file("sparse.csv", csv(&times));
+    let with = |gap| Options { gap, ..Options::default() };
+    let error = survey(std::slice::from_ref(&path), with(1000.0)).err().unwrap();
+    assert!(error.is_of_request(), "{error}");
+    assert!(error.to_string().contains("more than 20 states are filled in for each of the first"), "{error}");
+    survey(&[path], with(100.0)).unwrap();
 }
 
 #[test]
