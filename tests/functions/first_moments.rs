@@ -71,8 +71,8 @@ fn a_first_moment_without_mass_is_a_difference_of_bodies() {
         // what is compiled is so for this alone
         let number = match maker {
             Maker::Runtime => 200,
-            _ if shipped::is_exhaustive() => 24,
-            _ => 12,
+            Maker::Code(_) if shipped::is_exhaustive() => 24,
+            Maker::Code(_) => 12,
         };
         for case in cases(Maker::Runtime).iter().take(number).filter(|case| maker == Maker::Runtime || case.q.len() < 5)
         {
