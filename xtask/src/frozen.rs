@@ -27,7 +27,7 @@ pub(crate) struct Frozen {
 impl Frozen {
     pub(crate) fn run(&self) -> Result<Verdict> {
         let shell = machine::shell()?;
-        let test = cmd!(shell, "cargo test --package rne --test frozen -- --nocapture").quiet();
+        let test = cmd!(shell, "cargo test --test frozen -- --nocapture").quiet();
         let mut test = machine::without_flags(test).env("RNE_EXHAUSTIVE", "1");
         if self.update {
             test = test.env("RNE_FROZEN_UPDATE", "1");

@@ -133,7 +133,7 @@ const STEPS: &[Step] = &[
         about: "single calls of an arm at run time as instructions of the processor",
         variables: &[],
         command: &["cargo", "test", "--features", "rne-machine/native", "--test", "native"],
-        needs: Needs::Nothing,
+        needs: Needs::Time,
     },
     Step {
         name: "python",
