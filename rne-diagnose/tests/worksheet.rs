@@ -464,9 +464,11 @@ fn the_first_wrong_component_is_named() {
         let at = state(robot.dof());
         let sheet = Worksheet::new(&robot, &at, axes).unwrap();
         let right = all_of(&sheet);
-        // every third, and every component of the middle joints
-        for (index, wrong) in
-            right.iter().enumerate().filter(|(i, value)| i % 29 == 0 || (value.joint == 3 && axes == Axes::Joint))
+        // some of all, and more of a joint in the middle
+        for (index, wrong) in right
+            .iter()
+            .enumerate()
+            .filter(|(i, value)| i % 58 == 0 || (i % 3 == 0 && value.joint == 3 && axes == Axes::Joint))
         {
             let mut given = right.clone();
             for value in &mut given[index..] {
@@ -495,9 +497,11 @@ fn a_term_that_is_left_out_is_named() {
     let robot = six("standard");
     let at = Situation { wrench: Some(WRENCH), ..state(6) };
     let mut named = 0;
-    for axes in ALL_AXES {
+    for (turn, axes) in ALL_AXES.into_iter().enumerate() {
         let sheet = Worksheet::new(&robot, &at, axes).unwrap();
-        for (index, line) in sheet.lines.iter().enumerate().filter(|(_, line)| line.quantity.step() > 0) {
+        // each line in one of the three
+        let lines = sheet.lines.iter().enumerate().filter(|(index, _)| index % 3 == turn);
+        for (index, line) in lines.filter(|(_, line)| line.quantity.step() > 0) {
             for term in line.terms.iter().filter(|term| term.values.iter().any(|x| x.abs() > 0.05 * line.size())) {
                 if line.terms.len() < 2 {
                     continue;
@@ -515,7 +519,7 @@ fn a_term_that_is_left_out_is_named() {
             }
         }
     }
-    assert!(named > 200, "{named}");
+    assert!(named > 70, "{named}");
 }
 
 /// Who makes a slip everywhere hears of it, not of a term.
