@@ -8,6 +8,7 @@ use rne_convert::Converted;
 use rne_model::Convention;
 
 use crate::arguments::convention;
+use crate::file_name::Format;
 use crate::import::rounding;
 use crate::outcome::{Failure, Outcome};
 use crate::terminal::QUIET;
@@ -47,5 +48,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let _ = writeln!(remark, "{line}");
     }
     let _ = writeln!(remark, "{QUIET}{}{QUIET:#}", rounding(&difference));
-    output_file::deliver(arguments.out.as_deref(), text, remark, &[&arguments.file], arguments.force)
+    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
 }

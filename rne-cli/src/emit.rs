@@ -10,6 +10,7 @@ use rne_model::Robot;
 
 use crate::arguments::FunctionOrAll;
 use crate::arm::Rotors;
+use crate::file_name::{self, Format};
 use crate::input_file::is_stream;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Existing, is_standard_output};
@@ -104,6 +105,13 @@ impl Language {
         match self {
             Self::Rust => "rs",
             Self::C => "c",
+        }
+    }
+
+    const fn format(self) -> Format {
+        match self {
+            Self::Rust => Format::Rust,
+            Self::C => Format::C,
         }
     }
 }
@@ -312,6 +320,7 @@ fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
         let message = format!("{} is the robot file itself; the code needs a file of its own", out.display());
         return Err(Failure::usage(message));
     }
+    file_name::check(out, arguments.lang.format())?;
     match output_file::existing(out) {
         Existing::Nothing => {
             let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());

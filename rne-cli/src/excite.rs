@@ -14,11 +14,11 @@ use rne_machine::{CompiledArm, Form};
 use rne_model::{Joint, Robot, one_line};
 use rne_plot::{Panel, PanelCurve, panels};
 
+use crate::file_name::{self, Format};
 use crate::layout::{Align, push_table, shortened, wrap};
 use crate::numbers::{List, exact, rounded};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same};
-use crate::table_name::{self, Format};
 use crate::terminal::{GOOD, TITLE, WARNING};
 use crate::{interruption, robot_file};
 
@@ -127,14 +127,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
     }
     check_picture(arguments.plot.as_deref())?;
-    for path in out.filter(|_| !is_shown).into_iter().chain(arguments.plot.as_deref()) {
+    let trajectory = out.filter(|_| !is_shown);
+    let plot = arguments.plot.as_deref();
+    for path in trajectory.into_iter().chain(plot) {
         check_new(path, None, &sources, arguments.force)?;
         // before the search, not after it
         drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
     }
-    if let Some(path) = out.filter(|_| !is_shown) {
-        table_name::format(path, &[Format::Csv])?;
-    }
+    trajectory.map(|path| file_name::format(path, &[Format::Csv])).transpose()?;
+    plot.map(|path| file_name::check(path, Format::Svg)).transpose()?;
     let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
     interruption::expect();
     let found = watched(&robot, &limits, &options(arguments)).map_err(|error| match &error {

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use crate::file_name::Format;
 use crate::outcome::{Failure, Outcome};
 use crate::{output_file, robot_file};
 
@@ -42,5 +43,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     for line in exported.remarks {
         let _ = writeln!(remark, "{line}");
     }
-    output_file::deliver(arguments.out.as_deref(), exported.text, remark, &[&arguments.file], arguments.force)
+    output_file::deliver(
+        arguments.out.as_deref(),
+        Format::Urdf,
+        exported.text,
+        remark,
+        &[&arguments.file],
+        arguments.force,
+    )
 }

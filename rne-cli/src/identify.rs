@@ -11,6 +11,7 @@ use rne_logs::{Motion, median};
 use rne_model::{JointKind, Reversal, Robot, one_line};
 use rne_plot::comparison_svg;
 
+use crate::file_name::Format;
 use crate::layout::{Align, columns, push_table, shortened, wrap};
 use crate::log_arguments::LogArguments;
 use crate::motion_log::{MotionLog, Part};
@@ -168,9 +169,9 @@ fn check_places(arguments: &Arguments, sources: &[&Path]) -> Result<(), Failure>
         return Err(Failure::usage(format_args!("{shown} is both the robot file and the picture; name two files")));
     }
     check_picture(plot)?;
-    for (path, begins) in [(output, "# Identified"), (plot, "<svg")] {
+    for (path, kind) in [(output, (Format::RobotFile, "# Identified")), (plot, (Format::Svg, "<svg"))] {
         if let Some(path) = path {
-            check_place(path, begins, sources, arguments.force)?;
+            check_place(path, kind, sources, arguments.force)?;
         }
     }
     Ok(())

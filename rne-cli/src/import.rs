@@ -9,6 +9,7 @@ use rne_convert::{Account, Difference, Imported, Options, Selection, Urdf};
 use rne_model::Convention;
 
 use crate::arguments::{convention, robot_name};
+use crate::file_name::Format;
 use crate::input_file::{self, is_standard_input};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
@@ -93,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     };
     let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
     let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
-    output_file::deliver(arguments.out.as_deref(), text, remark, &[&arguments.file], arguments.force)
+    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
 }
 
 /// The text, and what messages call its file.

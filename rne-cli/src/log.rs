@@ -8,6 +8,7 @@ use clap::Args;
 use indicatif::ProgressBar;
 use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
 
+use crate::file_name::{self, Format};
 use crate::input_file::is_standard_input;
 use crate::log_arguments::{LogArguments, failure};
 use crate::log_report::{self, Reply};
@@ -16,7 +17,6 @@ use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Replacement, check_new, is_standard_output, unwritable};
 use crate::reading;
 use crate::robot_file;
-use crate::table_name::{self, Format};
 use crate::terminal::GOOD;
 
 /// Say what a log of an arm has; filter it, with accelerations
@@ -74,7 +74,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     if let Some(path) = out.filter(|path| !is_standard_output(path)) {
         let sources: Vec<&Path> = arguments.files.iter().chain(&arguments.robot).map(PathBuf::as_path).collect();
         check_new(path, None, &sources, arguments.force)?;
-        table_name::format(path, &[Format::Csv])?;
+        file_name::format(path, &[Format::Csv])?;
     }
     let log = arguments.open()?;
     let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error))?;

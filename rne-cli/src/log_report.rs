@@ -209,7 +209,7 @@ fn filter(log: &Log, survey: &Survey) -> String {
     let long_enough = survey.runs.iter().filter(|run| run.duration / log.layout().step > 2.0 * survey.dropped as f64);
     let text = format!(
         "cut-off {} Hz, {why}: passes below {} Hz, stops above {} Hz, drops {:.3} s at both ends of a run; {} of {} \
-         runs are longer",
+         runs are longer than that",
         short(hertz),
         short(hertz * 2.0 / 3.0),
         short(hertz * 4.0 / 3.0),

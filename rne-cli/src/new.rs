@@ -7,6 +7,7 @@ use clap::Args;
 use rne_model::Convention;
 
 use crate::arguments::{convention, robot_name};
+use crate::file_name::{self, Format};
 use crate::outcome::{Failure, Outcome};
 use crate::output_file::{Existing, existing, is_standard_output, replace, unreadable};
 use crate::terminal::TYPED;
@@ -62,6 +63,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
             )));
         }
     }
+    file_name::check(&path, Format::RobotFile)?;
     replace(&path, &text)?;
     Ok(Outcome::remark(format!(
         "{shown} is written; put your numbers in it, then\n\n  {TYPED}rne check {shown}{TYPED:#}\n  {TYPED}rne show \

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use tempfile::NamedTempFile;
 
+use crate::file_name::{self, Format};
 use crate::interruption::{self, Registered};
 use crate::layout::shortened;
 use crate::outcome::{Failure, Outcome};
@@ -198,6 +199,7 @@ pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool)
 /// there stays, as [`write_new`] has it.
 pub(crate) fn deliver(
     out: Option<&Path>,
+    format: Format,
     text: String,
     mut remark: String,
     sources: &[&Path],
@@ -206,7 +208,9 @@ pub(crate) fn deliver(
     let Some(out) = out.filter(|out| !is_standard_output(out)) else {
         return Ok(Outcome { text, remark, ..Outcome::default() });
     };
-    remark += &write_new(out, &text, sources, force)?;
+    check_new(out, Some(&text), sources, force)?;
+    file_name::check(out, format)?;
+    remark += &write_all(&[(out, &text)])?;
     Ok(Outcome::remark(remark))
 }
 
@@ -250,12 +254,18 @@ pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], forc
 
 /// Whether a file can be written, before there is anything to write: where it cannot, nobody should wait for the work
 /// that makes it. A text of the same kind, that `begins` as the new one will, may be the same: [`write_new`] knows.
-pub(crate) fn check_place(path: &Path, begins: &str, sources: &[&Path], force: bool) -> Result<(), Failure> {
+pub(crate) fn check_place(
+    path: &Path,
+    (format, begins): (Format, &str),
+    sources: &[&Path],
+    force: bool,
+) -> Result<(), Failure> {
     let alike = match existing(path) {
         Existing::Text(text) if text.starts_with(begins) => Some(text),
         _ => None,
     };
     check_new(path, alike.as_deref(), sources, force)?;
+    file_name::check(path, format)?;
     // a file beside it, which is gone at once
     Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
 }

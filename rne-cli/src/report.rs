@@ -6,6 +6,7 @@ use clap::Args;
 use rne_codegen::{Form, Function};
 
 use crate::arm::Rotors;
+use crate::file_name::Format;
 use crate::outcome::{Failure, Outcome};
 use crate::output_file;
 use crate::plan_file::Compiler;
@@ -40,5 +41,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let reduced = Compiler::new(&arguments.file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
     let page = rne_report::page(&robot, Some(&reduced))
         .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
-    output_file::deliver(Some(&arguments.out), page, String::new(), &[&arguments.file], arguments.force)
+    output_file::deliver(Some(&arguments.out), Format::Html, page, String::new(), &[&arguments.file], arguments.force)
 }

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::fs;
 use std::io::ErrorKind;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use rne_model::{Checked, MAX_BYTES, Reader, Robot, did_you_mean, robot_of};
@@ -30,10 +31,13 @@ pub(crate) fn shipped(name: &str) -> Result<&'static RobotFile, Failure> {
     })
 }
 
-/// The shipped robot whose name is meant by another.
+/// The shipped robot whose name is meant by another, which may have its maker's name before it.
 fn near(name: &str) -> Option<&'static str> {
-    let mut names = rne_robots::ROBOTS.iter().map(|robot| robot.name);
-    did_you_mean(name, names.clone()).or_else(|| names.find(|known| known.starts_with(name) && !name.is_empty()))
+    let names = rne_robots::ROBOTS.iter().map(|robot| robot.name);
+    let separators = name.match_indices(['_', '-', ' ']).map(|(at, _)| &name[at + 1..]);
+    iter::once(name).chain(separators).filter(|name| !name.is_empty()).find_map(|name| {
+        did_you_mean(name, names.clone()).or_else(|| names.clone().find(|known| known.starts_with(name)))
+    })
 }
 
 /// A valid robot with its lints. The path `-` is standard input.

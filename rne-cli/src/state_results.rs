@@ -7,9 +7,9 @@ use std::path::Path;
 
 use rne_logs::Npy;
 
+use crate::file_name::{self, Format};
 use crate::outcome::Failure;
 use crate::output_file::{self, Replacement};
-use crate::table_name::{self, Format};
 
 /// CSV or an array of numpy, as results come. The header of an array, which tells how many states there are, is written
 /// last, in the place that was kept for it.
@@ -40,7 +40,7 @@ impl Results {
             return Ok(Self::Csv { out, header, is_terminal, width, kept: None });
         };
         output_file::check_new(path, None, read, force)?;
-        let format = table_name::format(path, &[Format::Csv, Format::Npy])?;
+        let format = file_name::format(path, &[Format::Csv, Format::Npy])?;
         let unwritable = |error: io::Error| output_file::unwritable(path, &error);
         let kept = Replacement::begin(path).map_err(unwritable)?;
         let file = kept.file().map_err(unwritable)?;

@@ -9,6 +9,7 @@ use rne_model::{Robot, one_line};
 use rne_watch::{Baseline, Event, Report, Settings, Signals, WatchError, svg, watch};
 use serde::Serialize;
 
+use crate::file_name::Format;
 use crate::identify::{errors_table, prediction};
 use crate::layout::{Align, columns, shortened, wrap};
 use crate::log_arguments::LogArguments;
@@ -100,7 +101,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     output_file::check_picture(arguments.plot.as_deref())?;
     if let Some(path) = &arguments.plot {
-        output_file::check_place(path, "<svg", &sources, arguments.force)?;
+        output_file::check_place(path, (Format::Svg, "<svg"), &sources, arguments.force)?;
     }
     let robot = robot_file::robot(&arguments.file)?;
     let log = MotionLog::open_wide(&arguments.logs, &robot, &arguments.reading)?;

@@ -360,9 +360,33 @@ impl Walk<'_> {
             return Ok(None);
         }
         self.look_at_follower(index);
-        let (mimics, leader) = self.follows(index)?;
+        let value = self.held_by(self.follows(index)?);
+        self.look_at_locked(index, value);
+        Ok(Some(value))
+    }
+
+    /// Where what decides it holds a joint.
+    fn held_by(&self, (mimics, leader): (Vec<&Mimic>, usize)) -> f64 {
         let start = self.locks.get(&leader).copied().unwrap_or(0.0);
-        Ok(Some(mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)))
+        mimics.iter().rev().fold(start, |value, mimic| mimic.multiplier * value + mimic.offset)
+    }
+
+    /// A joint that is held by name elsewhere than where the held joint that it follows has it: no state of the robot.
+    fn look_at_locked(&mut self, index: usize, value: f64) {
+        let joint = &self.urdf.joints[index];
+        let leader = joint.mimic.as_ref().filter(|_| self.locks.contains_key(&index)).and_then(|mimic| {
+            let (mut mimics, leader) = self.follows(mimic.leader?).ok()?;
+            mimics.insert(0, mimic);
+            (!self.moving.contains(&leader)).then_some((mimics, leader))
+        });
+        let Some((mimics, leader)) = leader else { return };
+        let followed = self.held_by((mimics, leader));
+        if (followed - value).abs() > 1e-9 * followed.abs().max(1.0) {
+            let [name, leader] = [&joint.name, &self.urdf.joints[leader].name].map(|name| rne_model::one_line(name));
+            self.told.remarks.push(format!(
+                "the joint {name} is held at {value}, although it follows {leader}, which holds it at {followed}"
+            ));
+        }
     }
 
     /// What decides where a joint is: those that it follows, one after the other, up to one that is held by name or

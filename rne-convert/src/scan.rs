@@ -341,7 +341,7 @@ impl Scanner<'_> {
         let meant = did_you_mean(name, matter.iter().chain(others).copied());
         if let Some(meant) = meant.filter(|meant| matter.contains(meant)) {
             let message = format!("there is no {what} {} {between} `{}`", quoted(name), of.name);
-            let help = format!("did you mean `{meant}`? A name is not guessed: correct it, or delete what it names");
+            let help = format!("did you mean `{meant}`? Correct the name, or delete what it names");
             return Err(self.source.error(place, message, help));
         }
         let kind = self.scanned.unknown.len();

@@ -416,8 +416,8 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
     let held = import(&with_follower("arm", 2.0, still), &select(&[], true)).account;
     assert_eq!((held.held, held.remarks), (vec![("k".to_owned(), 0.25)], Vec::new()));
     // a joint of the chain that is held does not move either
-    let locked = import(
-        &robot(&[
+    let locked = |lock: &[(&str, f64)]| {
+        let text = robot(&[
             bare(&["base"]),
             link("arm", 1.0, "0 0 0", [0.1; 3]),
             link("hand", 1.0, "0 0 0", [0.1; 3]),
@@ -425,13 +425,15 @@ fn a_follower_of_a_moving_joint_is_refused_unless_it_is_held_by_name() {
             joint("i", "continuous", ("base", "arm"), "", "<axis xyz=\"0 1 0\"/>"),
             joint("j", "continuous", ("arm", "hand"), "", "<axis xyz=\"0 1 0\"/>"),
             joint("k", "continuous", ("arm", "rod"), "", &format!("<axis xyz=\"0 1 0\"/>{mimic}")),
-        ]),
-        &Options {
-            selection: Selection { tip: Some("hand".to_owned()), ..select(&[("j", 0.3)], true).selection },
-            ..Options::default()
-        },
-    );
-    assert_eq!(locked.account.held, [("k".to_owned(), -0.3), ("j".to_owned(), 0.3)]);
+        ]);
+        let selection = Selection { tip: Some("hand".to_owned()), ..select(lock, true).selection };
+        import(&text, &Options { selection, ..Options::default() }).account
+    };
+    assert_eq!(locked(&[("j", 0.3)]).held, [("k".to_owned(), -0.3), ("j".to_owned(), 0.3)]);
+    // and where it is held by name, too, the two agree or a remark tells that they do not
+    assert_eq!(locked(&[("j", 0.3), ("k", -0.3)]).remarks, [""; 0]);
+    let note = "the joint k is held at 0.5, although it follows j, which holds it at -0.3";
+    assert_eq!(locked(&[("j", 0.3), ("k", 0.5)]).remarks, [note]);
 }
 
 /// What a follower follows must be there, and must not follow it.

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::fmt;
 use std::fs::{self, File};
-use std::io::Read as _;
+use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
 use crate::csv_table::CsvTable;
@@ -65,7 +65,10 @@ const OTHERS: [(&[u8], &str); 6] = [
 impl Format {
     /// The format of a file.
     pub(crate) fn of(path: &Path) -> Result<Self, LogError> {
-        let wrong = |error: std::io::Error| LogError::file(path, format_args!("the file cannot be read: {error}"));
+        let wrong = |error: std::io::Error| match error.kind() {
+            ErrorKind::NotFound => LogError::file(path, "there is no such file"),
+            _ => LogError::file(path, format_args!("the file cannot be read: {error}")),
+        };
         if !fs::metadata(path).map_err(wrong)?.is_file() {
             return Err(LogError::file(
                 path,
@@ -145,7 +148,14 @@ pub(crate) fn files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, LogError> {
             }
         }
         if inside.is_empty() {
-            return Err(LogError::file(path, "the folder has no bags, *.db3 or *.mcap"));
+            let example = path.join("*.csv");
+            return Err(LogError::file(
+                path,
+                format_args!(
+                    "the folder has no bag of rosbag2, *.db3 or *.mcap; name other logs by their files, such as {}",
+                    example.display()
+                ),
+            ));
         }
         inside.sort_by_key(|file| part(file));
         files.append(&mut inside);

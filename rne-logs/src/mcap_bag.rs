@@ -150,7 +150,8 @@ impl McapBag {
                 return Ok(());
             }
             return wrong(format!(
-                "channel {number} is defined twice, as {known} and as {channel}: whose its messages are is not known"
+                "channel {number} is defined twice, as {known} and as {channel}, so nobody can tell whose its messages \
+                 are; `mcap recover` or a new recording makes a file that can be read"
             ));
         }
         let is_meant = match &self.wanted {

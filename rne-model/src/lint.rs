@@ -218,6 +218,11 @@ pub(crate) fn inertias(cx: &Context, root: &Node, convention: Convention, joints
     for (index, ((item, joint), unresisted)) in items.iter().zip(joints).zip(unresisted).enumerate() {
         turns |= joint.row.kind == JointKind::Revolute;
         match unresisted {
+            // which asks for the mass of a sliding joint
+            Some(unresisted) if joint.row.kind == JointKind::Prismatic => {
+                no_resistance(cx, item, convention, (index, joint), unresisted);
+            }
+            _ if centre_without_mass(cx, item, index, joint) => {}
             Some(unresisted) => no_resistance(cx, item, convention, (index, joint), unresisted),
             None if turns => mass_without_inertia(cx, item, index, joint),
             None => {}
@@ -263,6 +268,20 @@ fn no_resistance(
     }
     let help = format!("give link {number} {missing}, {consequence}");
     cx.report(Diagnostic::lint(place, message).label("resists nothing").help(help));
+}
+
+/// A centre of mass of a link whose mass is not even said to be zero; whether there is one. An inertia without mass is
+/// what published tables give of light links.
+fn centre_without_mass(cx: &Context, item: &Node, index: usize, joint: &Joint) -> bool {
+    let is_centre = joint.row.link.com != [0.0; 3];
+    let Some(link) = item.get("link").filter(|link| is_centre && link.get("mass").is_none()) else { return false };
+    let Some(com) = link.get("com") else { return false };
+    cx.report(
+        Diagnostic::lint(com.head(), format!("link {} has a centre of mass and no mass", index + 1))
+            .label("of what mass?")
+            .help("add the `mass` in kg; if the link is without mass, write `mass: 0`"),
+    );
+    true
 }
 
 /// A mass whose inertia is not even said to be zero.

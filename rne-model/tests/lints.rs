@@ -5,6 +5,20 @@ mod common;
 use common::{BASE, found, the_one, with};
 use rne_model::{Reader, Severity};
 
+/// A mass that is forgotten, unless it is said to be zero.
+#[test]
+fn a_centre_of_mass_has_a_mass() {
+    let diagnostic = the_one("      mass: 2.5\n", "");
+    assert_eq!(diagnostic.message, "link 1 has a centre of mass and no mass");
+    assert!(diagnostic.help.is_some_and(|help| help.contains("write `mass: 0`")));
+    assert!(
+        found(&with("      mass: 2.5\n      com: [0, 0, 0.3]\n", "")).diagnostics.is_empty(),
+        "an inertia is no slip"
+    );
+    let said = found(&with("mass: 2.5", "mass: 0"));
+    assert!(said.diagnostics.iter().all(|diagnostic| !diagnostic.message.contains("no mass")), "{said}");
+}
+
 /// Its size is told where its squares overflow or vanish.
 #[test]
 fn gravity_of_any_size_is_told() {

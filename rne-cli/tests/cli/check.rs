@@ -36,6 +36,7 @@ fn errors_name_file_line_and_column() {
 #[test]
 fn a_file_that_is_not_there() {
     fails(1, &["show", "puma"], &["no robot file puma", "did you mean the shipped robot puma560?"]);
+    fails(1, &["show", "kuka_iiwa"], &["did you mean the shipped robot iiwa14?"]);
     fails(1, &["show", "excavator"], &["no robot file excavator", "rne list"]);
     fails(1, &["ops", "robots/puma.yaml"], &["no robot file robots/puma.yaml", "puma560.yaml"]);
     fails(1, &["eval", "robots", "--q", "0"], &["folder"]);

@@ -18,6 +18,39 @@ fn in_folder(folder: &Path, arguments: &[&str]) -> Called {
     called(command(arguments).current_dir(folder).output().expect("rne starts"))
 }
 
+/// A name that says another format than what is written is refused, and nothing is written.
+#[test]
+fn files_are_not_named_for_what_they_do_not_hold() {
+    let folder = folder("named_for_others");
+    let log = env!("CARGO_MANIFEST_DIR").to_owned() + "/../docs/desk_arm_log.csv";
+    let arm = env!("CARGO_MANIFEST_DIR").to_owned() + "/../docs/desk_arm_identified.yaml";
+    in_folder(&folder, &["export", "planar2", "--urdf", "-o", "arm.urdf"]);
+    let commands: [(&[&str], &[&str]); 10] = [
+        (&["report", "planar2", "-o"], &["x.parquet", "x.yaml"]),
+        (&["convert", "puma560", "--convention", "modified", "-o"], &["x.parquet", "x.urdf"]),
+        (&["export", "planar2", "--urdf", "-o"], &["x.yaml"]),
+        (&["import", "arm.urdf", "-o"], &["x.PARQUET", "x.csv"]),
+        (&["emit", "planar2", "-o"], &["x.parquet", "x.yaml", "x.c"]),
+        (&["emit", "planar2", "--lang", "c", "-o"], &["x.parquet", "x.rs"]),
+        (&["new", "elbow", "--dof", "2", "-o"], &["x.csv"]),
+        (&["identify", &arm, &log, "-o"], &["x.parquet", "x.json"]),
+        (&["identify", &arm, &log, "--plot"], &["x.png", "x.yaml"]),
+        (&["watch", &arm, &log, "--plot"], &["x.png", "x.csv"]),
+    ];
+    for (arguments, names) in commands {
+        for name in names {
+            let called = in_folder(&folder, &[arguments, &[name]].concat());
+            assert_eq!(called.status, 2, "{arguments:?} {name}: {called:?}");
+            assert!(called.err.contains("name it"), "{arguments:?} {name}: {}", called.err);
+            assert!(!folder.join(name).exists(), "{name}");
+        }
+    }
+    // a name may say nothing
+    for (arguments, name) in [(&["emit", "planar2", "-o"][..], "arm.inc"), (&["report", "planar2", "-o"], "page")] {
+        assert_eq!(in_folder(&folder, &[arguments, &[name]].concat()).status, 0, "{name}");
+    }
+}
+
 /// Every command that writes a text takes `-` and `/dev/stdout` for standard output, and prints what it would write.
 #[test]
 fn a_dash_is_standard_output_everywhere() {

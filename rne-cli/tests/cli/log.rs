@@ -62,6 +62,8 @@ fn a_motion_is_what_other_commands_read() {
 #[test]
 #[cfg(feature = "bags")]
 fn what_is_wrong_is_said() {
+    fails(1, &["log", "nowhere.csv"], &["nowhere.csv: there is no such file"]);
+    fails(1, &["log", "docs"], &["docs: the folder has no bag of rosbag2", "such as docs/*.csv"]);
     let folder = folder("log_wrong");
     let write = |name: &str, bytes: &[u8]| {
         let path = folder.join(name);
