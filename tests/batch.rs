@@ -44,7 +44,7 @@ reduced! {
 struct Tooled<'a, T>(#[robot(skip)] std::cell::RefCell<&'a T>);
 
 /// Around the lengths of a register, and beyond those for which threads are used.
-const LENGTHS: [usize; 10] = [0, 1, 7, 8, 9, 16, 17, 1000, 1003, 20_011];
+const LENGTHS: [usize; 10] = [0, 1, 7, 8, 9, 16, 17, 1000, 1003, 8_203];
 
 /// Structure of arrays.
 struct States<T, const DOF: usize>([[Vec<T>; DOF]; 3]);

@@ -36,7 +36,7 @@ const SAME_BITS: [Function; 15] = [
 const TOLERANCE: f64 = 1e-13;
 
 /// States per robot that has its own code.
-const STATES: usize = 8;
+const STATES: usize = 5;
 
 /// Numbers that vanish but for rounding are measured by those that they are parts of: this part of the forces and
 /// moments at the joints, of the energy at the farthest reach.

@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-11;
 
 /// How many arms, and how many joints the longest has: with `RNE_EXHAUSTIVE` set, more than anybody waits for.
 fn extent() -> (u64, usize) {
-    if std::env::var_os("RNE_EXHAUSTIVE").is_some() { (640, 7) } else { (104, 3) }
+    if std::env::var_os("RNE_EXHAUSTIVE").is_some() { (640, 7) } else { (56, 3) }
 }
 
 /// An integer of so many decimal places as text, exactly.

@@ -10,7 +10,7 @@ use rne_model::Robot;
 mod arms;
 
 /// Of random arms, besides the shipped ones.
-const ARMS: u64 = 120;
+const ARMS: u64 = 60;
 
 fn compare(robot: &Robot, name: &str) {
     let exact = Compiler::new(robot).identifiability(false);

@@ -129,7 +129,7 @@ fn intermediates_agree(yaml: &str, seed: u64) -> Result<(), TestCaseError> {
 
 /// How many robots: with `RNE_EXHAUSTIVE` set, more.
 fn cases() -> u32 {
-    if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 1000 } else { 60 }
+    if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 1000 } else { 40 }
 }
 
 proptest! {

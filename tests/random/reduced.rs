@@ -99,7 +99,7 @@ fn read(seed: u64, dof: usize) -> (Robot, DynArm) {
 fn reduced_forms_of_random_robots_are_the_runtime() {
     let mut rng = Rng::with_seed(60);
     let mut planned = 0_u64;
-    let robots = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 60 } else { 20 };
+    let robots = if std::env::var_os("RNE_EXHAUSTIVE").is_some() { 60 } else { 12 };
     for seed in 1000..1000 + robots {
         let dof = rng.usize(1..=8);
         let (robot, arm) = read(seed, dof);

@@ -22,9 +22,9 @@ fn arm(name: &str) -> (String, String) {
 fn what_a_search_writes_is_in_order() {
     for name in ["massless_link", "point_masses", "count", "singular"] {
         let (robot, plan) = arm(name);
-        fine(&["search", &robot, "--seconds", "0.3", "--seed", "3"]);
+        fine(&["search", &robot, "--seconds", "0.1", "--seed", "3"]);
         assert!(fine(&["check", &plan]).contains("proved"), "{name}");
-        fine(&["search", &robot, "--seconds", "0.5", "--rewrite", "--function", "all", "--seed", "3"]);
+        fine(&["search", &robot, "--seconds", "0.3", "--rewrite", "--function", "all", "--seed", "3"]);
         assert!(fine(&["check", &plan]).contains("proved"), "{name}");
         fine(&["emit", &robot, "--form", "reduced", "--function", "all"]);
     }

@@ -27,7 +27,7 @@ fn totals(out: &str) -> Vec<u64> {
 #[test]
 fn a_plan_is_written_replayed_and_never_becomes_worse() {
     let (robot, plan) = arm("search");
-    let first = fine(&["search", &robot, "--seconds", "1", "--rewrite"]);
+    let first = fine(&["search", &robot, "--seconds", "0.5", "--rewrite"]);
     assert!(first.ends_with("arm.plan.yaml is written\n"), "{first}");
     shipped_plan(&plan);
     let first = fine(&["search", &robot, "--seconds", "0"]);
@@ -51,7 +51,7 @@ fn a_plan_is_written_replayed_and_never_becomes_worse() {
         assert_eq!(generated.split_whitespace().nth(2), Some(total.to_string().as_str()), "{line}");
     }
 
-    let again = fine(&["search", &robot, "--seconds", "1", "--rewrite", "--seed", "2"]);
+    let again = fine(&["search", &robot, "--seconds", "0.5", "--rewrite", "--seed", "2"]);
     let better = totals(&again);
     assert!(better.len() == found.len() && better.iter().zip(&found).all(|(a, b)| a <= b), "{first}{again}");
     let is_anew = again.contains("is written anew");
