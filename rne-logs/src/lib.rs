@@ -19,63 +19,27 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod column_checks;
-mod column_name;
 mod columns;
-mod convolution;
-mod csv_table;
 mod error;
-mod format;
-mod grid;
-mod guard;
-#[cfg(feature = "bags")]
-mod joint_state;
-mod joints;
-mod kernel;
+mod formats;
 mod limits;
-#[cfg(feature = "parquet")]
-mod list_columns;
 mod log;
-#[cfg(feature = "bags")]
-mod mcap_bag;
-mod median;
-mod motion;
-mod motions;
-mod npy;
-mod npy_array;
 mod number;
 mod options;
-#[cfg(feature = "parquet")]
-mod parquet_column;
-#[cfg(feature = "parquet")]
-mod parquet_pages;
-#[cfg(feature = "parquet")]
-mod parquet_table;
-mod pass;
-mod sample;
-mod spectrum;
+mod signal;
 mod spelling;
-mod spikes;
-#[cfg(feature = "bags")]
-mod sqlite_bag;
-mod survey;
-mod time_column;
-mod time_unit;
-#[cfg(feature = "bags")]
-mod topic;
-mod unit;
 
+pub use crate::columns::time_unit::TimeUnit;
+pub use crate::columns::unit::{Dimension, JointUnits};
 pub use crate::error::LogError;
-pub use crate::format::Format;
-pub use crate::guard::is_guarded;
+pub use crate::formats::format::Format;
+pub use crate::formats::guard::is_guarded;
+pub use crate::formats::npy::Npy;
+pub use crate::log::motion::Motion;
+pub use crate::log::motions::{Motions, Piece};
+pub use crate::log::pass::Unusable;
+pub use crate::log::survey::{Counts, Cutoff, Interruption, Run, Survey};
 pub use crate::log::{Layout, Log};
-pub use crate::median::median;
-pub use crate::motion::Motion;
-pub use crate::motions::{Motions, Piece};
-pub use crate::npy::Npy;
 pub use crate::options::{Angles, Options};
-pub use crate::pass::Unusable;
-pub use crate::spikes::Spike;
-pub use crate::survey::{Counts, Cutoff, Interruption, Run, Survey};
-pub use crate::time_unit::TimeUnit;
-pub use crate::unit::{Dimension, JointUnits};
+pub use crate::signal::median::median;
+pub use crate::signal::spikes::Spike;

@@ -9,8 +9,8 @@
 //! is symmetric, so its phase is zero. Derivatives are central differences of eighth order (B. Fornberg, 1988) of what
 //! it returns; they are short of the derivative of a sine by less than (ωT)⁸/630 of it.
 
-use crate::convolution::Convolution;
 use crate::limits::work;
+use crate::signal::convolution::Convolution;
 
 /// What the stop band lets pass, dB: half a thousandth. The pass band may ripple as much about a gain that ripples
 /// itself.

@@ -1,35 +1,9 @@
 //! What a column of a table is, by its name.
 
 use crate::TimeUnit;
+use crate::columns::quantity::Quantity;
+use crate::columns::unit::{self, Unit};
 use crate::limits::LONGEST_NAME;
-use crate::unit::{self, Unit};
-
-/// What a column has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Quantity {
-    Position,
-    Velocity,
-    Effort,
-}
-
-impl Quantity {
-    /// The word for it in messages.
-    pub(crate) fn word(self) -> &'static str {
-        match self {
-            Self::Position => "position",
-            Self::Velocity => "velocity",
-            Self::Effort => "effort",
-        }
-    }
-
-    pub(crate) fn plural(self) -> &'static str {
-        match self {
-            Self::Position => "positions",
-            Self::Velocity => "velocities",
-            Self::Effort => "efforts",
-        }
-    }
-}
 
 /// The words by which columns are known: at the end of a name or at its beginning, and before the number of a joint.
 const WORDS: [(Quantity, &[&str]); 3] = [

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::LogError;
-use crate::joint_state::TYPE;
+use crate::formats::joint_state::TYPE;
 use crate::spelling::{instead, listed};
 
 /// The place of the topic that is read: the one asked for, or the only one with joint states. `topics` are names and

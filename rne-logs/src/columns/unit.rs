@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use crate::TimeUnit;
-use crate::column_name::Quantity;
+use crate::columns::quantity::Quantity;
 
 /// What a quantity of a joint is measured as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

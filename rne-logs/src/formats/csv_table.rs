@@ -5,10 +5,10 @@ use std::io::{self, BufRead as _, BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use crate::Options;
-use crate::columns::{Column, Columns};
-use crate::sample::{Sample, Source};
+use crate::columns::table::{Column, Columns};
+use crate::columns::unit::FileUnits;
+use crate::formats::sample::{Sample, Source};
 use crate::spelling::listed;
-use crate::unit::FileUnits;
 use crate::{LogError, TimeUnit};
 
 /// The longest line, bytes.

@@ -4,8 +4,8 @@ use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 use crate::LogError;
+use crate::formats::sample::Sample;
 use crate::limits::work;
-use crate::sample::Sample;
 use crate::spelling::{instead, listed};
 
 /// Where the joints stand in samples.

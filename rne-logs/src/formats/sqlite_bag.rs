@@ -9,10 +9,10 @@ use rusqlite::limits::Limit;
 use rusqlite::{Connection, OpenFlags, OptionalExtension as _};
 
 use crate::LogError;
-use crate::joint_state;
+use crate::formats::joint_state;
+use crate::formats::sample::{Sample, Source};
+use crate::formats::topic;
 use crate::limits::MOST_BYTES;
-use crate::sample::{Sample, Source};
-use crate::topic;
 
 /// Messages that are read at once. Their place is kept between: a statement cannot be kept beside its connection.
 const BATCH: u32 = 1024;

@@ -2,15 +2,36 @@
 
 use std::fmt;
 
-use crate::grid::Grid;
-use crate::kernel::{HIGHEST, Kernel, PASSED};
 use crate::limits::{FEW_ROWS, MOST_FILLED};
+use crate::log::pass::Unusable;
 use crate::number::short;
 use crate::options::Angles;
-use crate::pass::Unusable;
-use crate::spectrum::Spectrum;
-use crate::spikes::{Spike, Spikes};
+use crate::signal::grid::Grid;
+use crate::signal::kernel::{HIGHEST, Kernel, PASSED};
+use crate::signal::spectrum::Spectrum;
+use crate::signal::spikes::{Spike, Spikes};
 use crate::{Log, LogError};
+
+impl Log {
+    /// Reads the log once: runs, ranges, what is missing, and the cut-off that its spectrum chooses. `progress` is told
+    /// the share that was read, 0 to 1.
+    ///
+    /// # Errors
+    ///
+    /// If a file cannot be read to its end.
+    pub fn survey(&self, progress: impl FnMut(f64)) -> Result<Survey, LogError> {
+        Survey::of(self, progress)
+    }
+
+    /// How much of the longest run a filter of a cut-off, Hz, leaves, s: zero, where it drops all of it. The survey is
+    /// of this log, by whatever filter.
+    #[must_use]
+    #[expect(clippy::cast_precision_loss, reason = "states of a run")]
+    pub fn left(&self, survey: &Survey, cutoff: f64) -> f64 {
+        let dropped = self.dropped(Kernel::half_of(cutoff, self.layout.step)).saturating_mul(2);
+        survey.longest.saturating_sub((dropped as u64).saturating_add(1)) as f64 * self.layout.step
+    }
+}
 
 /// Runs that are listed; of others only the number is kept.
 const LISTED: usize = 1000;

@@ -6,15 +6,15 @@ use std::fs::{self, File};
 use std::io::{ErrorKind, Read as _};
 use std::path::{Path, PathBuf};
 
-use crate::csv_table::CsvTable;
+use crate::formats::csv_table::CsvTable;
 #[cfg(feature = "bags")]
-use crate::mcap_bag::McapBag;
-use crate::npy_array::NpyArray;
+use crate::formats::mcap_bag::McapBag;
+use crate::formats::npy_array::NpyArray;
 #[cfg(feature = "parquet")]
-use crate::parquet_table::ParquetTable;
-use crate::sample::Source;
+use crate::formats::parquet_table::ParquetTable;
+use crate::formats::sample::Source;
 #[cfg(feature = "bags")]
-use crate::sqlite_bag::SqliteBag;
+use crate::formats::sqlite_bag::SqliteBag;
 use crate::{LogError, Options};
 
 /// What a log is written in.

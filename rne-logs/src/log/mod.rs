@@ -1,20 +1,22 @@
 //! A log: its files, what is read of them and by which names.
 
+pub(crate) mod joints;
+pub(crate) mod motion;
+pub(crate) mod motions;
+pub(crate) mod pass;
+pub(crate) mod survey;
+
 use std::collections::VecDeque;
 use std::path::{Path, PathBuf};
 
-use crate::format::{self, Format};
-use crate::joints::Joints;
-use crate::kernel::Kernel;
+use crate::columns::unit::{Dimension, FileUnits, JointUnits};
+use crate::formats::format::{self, Format};
+use crate::formats::sample::{Sample, Source};
 use crate::limits::{LONGEST_GAP, MOST_BYTES};
-use crate::motions::Motions;
+use crate::log::joints::Joints;
 use crate::number::short;
 use crate::options::{Angles, Options};
-use crate::pass::Pass;
-use crate::sample::{Sample, Source};
 use crate::spelling::listed;
-use crate::survey::Survey;
-use crate::unit::{Dimension, FileUnits, JointUnits};
 use crate::{LogError, TimeUnit};
 
 /// Messages by which it is decided what a log has: joints, times, velocities, efforts, its step.
@@ -115,7 +117,7 @@ impl Log {
         let mut states: Vec<&Sample> = Vec::new();
         let mut whole = [0; 3];
         for sample in &head {
-            if joints.find(sample) == crate::joints::Presence::All {
+            if joints.find(sample) == crate::log::joints::Presence::All {
                 states.push(sample);
                 for (count, numbers) in whole.iter_mut().zip([&sample.position, &sample.velocity, &sample.effort]) {
                     *count += usize::from(joints.are_whole(numbers, sample));
@@ -175,43 +177,10 @@ impl Log {
         !self.options.torque_constants.is_empty()
     }
 
-    /// How much of the longest run a filter of a cut-off, Hz, leaves, s: zero, where it drops all of it. The survey is
-    /// of this log, by whatever filter.
-    #[must_use]
-    #[expect(clippy::cast_precision_loss, reason = "states of a run")]
-    pub fn left(&self, survey: &Survey, cutoff: f64) -> f64 {
-        let dropped = self.dropped(Kernel::half_of(cutoff, self.layout.step)).saturating_mul(2);
-        survey.longest.saturating_sub((dropped as u64).saturating_add(1)) as f64 * self.layout.step
-    }
-
     /// The files, in the order in which they are read.
     #[must_use]
     pub fn files(&self) -> &[PathBuf] {
         &self.files
-    }
-
-    /// Reads the log once: runs, ranges, what is missing, and the cut-off that its spectrum chooses. `progress` is told
-    /// the share that was read, 0 to 1.
-    ///
-    /// # Errors
-    ///
-    /// If a file cannot be read to its end.
-    pub fn survey(&self, progress: impl FnMut(f64)) -> Result<Survey, LogError> {
-        Survey::of(self, progress)
-    }
-
-    /// Reads the log again and hands out its runs, filtered, in pieces of some thousand states.
-    ///
-    /// # Errors
-    ///
-    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow, or
-    /// that leaves nothing of any run.
-    pub fn motions(&self, survey: &Survey) -> Result<Motions<'_>, LogError> {
-        Motions::of(self, survey)
-    }
-
-    pub(crate) fn pass(&self) -> Result<Pass<'_>, LogError> {
-        Pass::of(self)
     }
 
     /// What is wrong, said of the first file.

@@ -11,11 +11,11 @@ use mcap::records::{Record, op};
 use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
 use crate::LogError;
-use crate::guard::guarded;
-use crate::joint_state;
+use crate::formats::guard::guarded;
+use crate::formats::joint_state;
+use crate::formats::sample::{Sample, Source};
+use crate::formats::topic::{self, is_joint_state};
 use crate::limits::LONGEST_NAME;
-use crate::sample::{Sample, Source};
-use crate::topic::{self, is_joint_state};
 
 /// Bytes that are asked for at once.
 const PART: usize = 1 << 16;

@@ -1,13 +1,25 @@
 //! The runs of a log, filtered, in pieces.
 
-use crate::grid::Grid;
-use crate::kernel::{HIGHEST, Kernel};
 use crate::limits::MOST_NUMBERS;
+use crate::log::pass::Pass;
+use crate::log::survey::Survey;
 use crate::number::short;
-use crate::pass::Pass;
+use crate::signal::grid::Grid;
+use crate::signal::kernel::{HIGHEST, Kernel};
 use crate::spelling::listed;
-use crate::survey::Survey;
 use crate::{Log, LogError, Motion};
+
+impl Log {
+    /// Reads the log again and hands out its runs, filtered, in pieces of some thousand states.
+    ///
+    /// # Errors
+    ///
+    /// If positions may be degrees and nobody said, if there is no cut-off, or one that the rate does not allow, or
+    /// that leaves nothing of any run.
+    pub fn motions(&self, survey: &Survey) -> Result<Motions<'_>, LogError> {
+        Motions::of(self, survey)
+    }
+}
 
 /// States of a piece, of whatever length its run is: some megabytes.
 const PIECE: usize = 16_384;

@@ -1,7 +1,7 @@
 //! What every format is read into: one message, or one row.
 
 use crate::LogError;
-use crate::unit::FileUnits;
+use crate::columns::unit::FileUnits;
 
 /// What a log says of one instant: the joints that a message or a row names, in its order.
 #[derive(Clone, Debug, Default, PartialEq)]

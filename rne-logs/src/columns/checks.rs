@@ -2,12 +2,12 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use crate::column_name::Quantity;
-use crate::columns::{Found, Header, by_joint};
+use crate::columns::quantity::Quantity;
+use crate::columns::table::{Found, Header, by_joint};
+use crate::columns::unit::{Dimension, Unit};
 use crate::limits::{MOST_JOINTS, work};
 use crate::options::Angles;
 use crate::spelling::listed;
-use crate::unit::{Dimension, Unit};
 use crate::{LogError, Options};
 
 impl<'a> Header<'a> {

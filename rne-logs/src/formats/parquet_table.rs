@@ -8,15 +8,15 @@ use std::sync::Arc;
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader as _, SerializedFileReader};
 
-use crate::columns::{self, Columns, note};
-use crate::csv_table::{no_time, two_times};
-use crate::guard::guarded;
-use crate::list_columns::{self, ListColumns};
-use crate::parquet_column::{Column, Kind, Leaf};
-use crate::parquet_pages::{Refused, Room, column_reader};
-use crate::sample::{Sample, Source};
-use crate::time_column::{TimeColumn, unread, within};
-use crate::unit::FileUnits;
+use crate::columns::table::{self, Columns, note};
+use crate::columns::time_column::{TimeColumn, unread, within};
+use crate::columns::unit::FileUnits;
+use crate::formats::csv_table::{no_time, two_times};
+use crate::formats::guard::guarded;
+use crate::formats::list_columns::{self, ListColumns};
+use crate::formats::parquet_column::{Column, Kind, Leaf};
+use crate::formats::parquet_pages::{Refused, Room, column_reader};
+use crate::formats::sample::{Sample, Source};
 use crate::{LogError, Options, TimeUnit};
 
 /// Rows that are taken from a column at once, and those of a column of lists: each may have a thousand numbers.
@@ -131,14 +131,14 @@ impl ParquetTable {
             if let Some(time) = time.filter(|time| is_other(time) && leaves[time.place].kind.is_number()) {
                 converted.insert(0, leaves[time.place].name.clone());
             }
-            self.notes.extend(columns::converted(&converted));
+            self.notes.extend(table::converted(&converted));
             note("other times that are not read", &unread(&times, time, name), &mut self.notes);
             return self.tell_time(leaves, time.map(|time| (time.place, time.unit)), options);
         }
         let scalars: Vec<usize> = (0..leaves.len()).filter(|leaf| !leaves[*leaf].is_list).collect();
         let header: Vec<String> = scalars.iter().map(|leaf| leaves[*leaf].name.clone()).collect();
         let mut columns = Columns::of(&self.path, &header, options)?;
-        let mut column = |column: columns::Column| -> Result<usize, LogError> {
+        let mut column = |column: table::Column| -> Result<usize, LogError> {
             let leaf = &leaves[scalars[column.place]];
             if leaf.kind.is_number() {
                 return Ok(self.column(leaves, scalars[column.place], column.factor));
@@ -147,7 +147,7 @@ impl ParquetTable {
             Err(LogError::file(&self.path, what))
         };
         let position = columns.position.iter().map(|place| column(*place)).collect::<Result<_, _>>()?;
-        let mut optional = |found: &[Option<columns::Column>]| -> Result<Vec<Option<usize>>, LogError> {
+        let mut optional = |found: &[Option<table::Column>]| -> Result<Vec<Option<usize>>, LogError> {
             found.iter().map(|found| found.map(&mut column).transpose()).collect()
         };
         let velocity = optional(&columns.velocity)?;

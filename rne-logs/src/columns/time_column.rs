@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::column_name::time;
+use crate::columns::name::time;
 use crate::{LogError, Options, TimeUnit};
 
 /// A column whose name is that of times.

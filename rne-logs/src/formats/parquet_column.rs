@@ -7,8 +7,8 @@ use parquet::errors::ParquetError;
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::TimeUnit;
+use crate::formats::parquet_pages::Refused;
 use crate::limits::LONGEST_NAME;
-use crate::parquet_pages::Refused;
 
 /// A column of the schema.
 pub(crate) struct Leaf {

@@ -4,9 +4,9 @@ use std::fs::File;
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
-use crate::csv_table::no_time;
+use crate::formats::csv_table::no_time;
+use crate::formats::sample::{Sample, Source};
 use crate::limits::MOST_JOINTS;
-use crate::sample::{Sample, Source};
 use crate::{LogError, Npy, Options, TimeUnit};
 
 /// What an array may have, in the order that it has unless somebody says another.

@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use crate::column_name::{Quantity, list};
+use crate::columns::name::list;
+use crate::columns::quantity::Quantity;
+use crate::columns::time_column::within;
+use crate::columns::unit::{Dimension, JointUnits, Unit};
 use crate::options::Angles;
 use crate::spelling::listed;
-use crate::time_column::within;
-use crate::unit::{Dimension, JointUnits, Unit};
 use crate::{LogError, Options};
 
 /// Lists that are read: their places, and what their numbers are multiplied by.

@@ -3,11 +3,12 @@
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
-use crate::column_name::{Meaning, Named, Quantity, meaning};
+use crate::columns::name::{Meaning, Named, meaning};
+use crate::columns::quantity::Quantity;
+use crate::columns::time_column::{TimeColumn, unread, within};
+use crate::columns::unit::{Dimension, FileUnits, JointUnits, Unit};
 use crate::limits::work;
 use crate::spelling::listed;
-use crate::time_column::{TimeColumn, unread, within};
-use crate::unit::{Dimension, FileUnits, JointUnits, Unit};
 use crate::{LogError, Options, TimeUnit};
 
 /// A column of numbers.

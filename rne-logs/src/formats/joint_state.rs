@@ -3,8 +3,8 @@
 use byteorder::{BigEndian, LittleEndian};
 use serde::Deserialize;
 
+use crate::formats::sample::Sample;
 use crate::limits::{MOST_JOINTS, check_names};
-use crate::sample::Sample;
 
 /// The type of the messages that are read, as bags name it.
 pub(crate) const TYPE: &str = "sensor_msgs/msg/JointState";

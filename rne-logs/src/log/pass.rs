@@ -1,11 +1,17 @@
 //! One reading of a log: its states, and where a run begins.
 
-use crate::joints::{Joints, Presence};
+use crate::formats::sample::Sample;
 use crate::log::Chain;
-use crate::sample::Sample;
-use crate::spikes::Spike;
-use crate::survey::{Counts, Interruption};
+use crate::log::joints::{Joints, Presence};
+use crate::log::survey::{Counts, Interruption};
+use crate::signal::spikes::Spike;
 use crate::{Log, LogError};
+
+impl Log {
+    pub(crate) fn pass(&self) -> Result<Pass<'_>, LogError> {
+        Pass::of(self)
+    }
+}
 
 /// A position that moves faster than this, rad/s or m/s, was set and not reached.
 const FASTEST: f64 = 30.0;

@@ -1,0 +1,9 @@
+//! Columns of tables: which joint, quantity and unit a column has, by its name.
+
+pub(crate) mod checks;
+pub(crate) mod name;
+pub(crate) mod quantity;
+pub(crate) mod table;
+pub(crate) mod time_column;
+pub(crate) mod time_unit;
+pub(crate) mod unit;
