@@ -59,9 +59,9 @@ fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
         "controller" => format!("```c\n{}```\n", read(&root().join("capi/examples/controller.c"))),
-        "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/firmware/main.rs"))),
+        "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/commands/firmware/main.rs"))),
         "config" => {
-            let config = read(&root().join("rne-cli/src/firmware/config.toml"));
+            let config = read(&root().join("rne-cli/src/commands/firmware/config.toml"));
             let lines = config.lines().filter(|line| !line.trim_start().starts_with('#'));
             lines.fold("```toml\n".to_owned(), |text, line| text + line + "\n") + "```\n"
         }

@@ -3,10 +3,10 @@
 
 use clap::{Arg, ArgAction, Command, CommandFactory as _};
 
-use crate::arguments::Arguments;
-use crate::numbers::List;
+use crate::commands::Arguments;
 use crate::outcome::Failure;
-use crate::terminal::TYPED;
+use crate::palette::TYPED;
+use crate::values::numbers::List;
 
 /// The command, as its help is asked for, and what is wrong with its words; `None` where the message of the parser says
 /// it well. `words` are those behind the name of the program.

@@ -4,7 +4,7 @@ use rne_codegen::CompileError;
 use rne_model::Report;
 use serde::Serialize;
 
-use crate::terminal::{ERROR, coloured};
+use crate::palette::{ERROR, coloured};
 
 /// Exit status when the input is at fault.
 pub(crate) const INPUT: u8 = 1;

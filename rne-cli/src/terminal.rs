@@ -1,77 +1,15 @@
-//! The terminal: a small palette, and writing to a reader that may have gone away.
-//!
-//! Commands return text with colours in it; the streams here take them out where there is no terminal, or where
-//! `NO_COLOR` asks for it.
+//! The terminal: its width, and writing to a reader that may have gone away.
 
-use std::collections::hash_map::RandomState;
 use std::env;
-use std::fmt::{self, Display, Write as _};
-use std::hash::BuildHasher as _;
+use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::process::ExitCode;
-use std::sync::LazyLock;
 
 use anstream::AutoStream;
-use anstyle::AnsiColor;
-use clap::builder::Styles;
 use rne_model::{is_control, one_line};
 
 use crate::outcome::{Failure, INPUT, Outcome, USAGE};
-
-/// Titles.
-pub(crate) const TITLE: Style = Style(anstyle::Style::new().bold());
-/// What is not the matter itself: units, tallies, hints.
-pub(crate) const QUIET: Style = Style(anstyle::Style::new().dimmed());
-/// Formulas of the lecture.
-pub(crate) const FORMULA: Style = Style(AnsiColor::Cyan.on_default());
-/// What the compiler found out.
-pub(crate) const FOUND: Style = Style(AnsiColor::Green.on_default());
-/// What can be typed.
-pub(crate) const TYPED: Style = Style(AnsiColor::Yellow.on_default());
-/// All is well.
-pub(crate) const GOOD: Style = Style(AnsiColor::Green.on_default().bold());
-/// Something is probably not what was meant.
-pub(crate) const WARNING: Style = Style(AnsiColor::Yellow.on_default().bold());
-/// Something is wrong.
-pub(crate) const ERROR: Style = Style(AnsiColor::Red.on_default().bold());
-
-/// The same palette for `--help`.
-pub(crate) const HELP_STYLES: Styles = Styles::plain()
-    .header(TITLE.0)
-    .usage(TITLE.0)
-    .literal(TYPED.0)
-    .placeholder(anstyle::Style::new())
-    .error(ERROR.0)
-    .invalid(TYPED.0)
-    .valid(FOUND.0);
-
-/// A style of the palette: `{STYLE}` begins it and `{STYLE:#}` ends it. Its sequences carry the mark of this process,
-/// which no file and no name can know, so the terminal gets these and no others: see [`inert`].
-#[derive(Clone, Copy)]
-pub(crate) struct Style(pub(crate) anstyle::Style);
-
-impl Display for Style {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sequences = if f.alternate() { format!("{:#}", self.0) } else { self.0.to_string() };
-        f.write_str(&marked(&sequences))
-    }
-}
-
-/// How a sequence begins that colours.
-const BEGIN: &str = "\u{1B}[";
-
-/// The first parameter of every sequence of ours: a random number, of the same length in every process.
-static MARK: LazyLock<String> = LazyLock::new(|| format!("{:020};", RandomState::new().hash_one(())));
-
-fn marked(sequences: &str) -> String {
-    sequences.replace(BEGIN, &format!("{BEGIN}{}", *MARK))
-}
-
-/// A text in the colours of a library. Where the text without them has a sequence too, that is of a file or of a name,
-/// and nobody knows which is which: it stays without colours.
-pub(crate) fn coloured(plain: &str, coloured: &str) -> String {
-    if plain.contains('\u{1B}') { plain.to_owned() } else { marked(coloured) }
-}
+use crate::palette::{BEGIN, ERROR, MARK, TYPED, marked};
 
 /// Columns of prose: those of the terminal, and no more than `most`, which a pipe or a file has.
 pub(crate) fn width(most: usize) -> usize {
@@ -133,7 +71,8 @@ fn write(mut stream: impl Write, text: &str) -> io::Result<()> {
     stream.flush()
 }
 
-/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences of our own [`Style`]s.
+/// Text for a terminal: of all control characters it keeps the ends of lines, and the sequences of our own
+/// [`Style`](crate::palette::Style)s.
 /// Whatever a file or its name holds, a terminal shows it and does nothing else.
 fn inert(text: &str) -> String {
     let mut inert = String::with_capacity(text.len());
@@ -163,6 +102,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::palette::{QUIET, coloured};
 
     #[test]
     fn commands_to_a_terminal_are_shown_and_colours_kept() {

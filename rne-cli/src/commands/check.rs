@@ -1,0 +1,150 @@
+//! `rne check`: is a robot file in order?
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_codegen::{Form, Function, emit};
+use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
+
+use crate::files::plan_file;
+use crate::files::plan_file::Compiler;
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome, rendered};
+use crate::palette::{GOOD, QUIET, WARNING};
+use crate::render::heading::about;
+use crate::render::layout::{left, width};
+use crate::render::physics;
+use crate::values::choice;
+
+/// Check robot files and plans: `ok` and lints, or every error
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne check robots/*.yaml
+  rne check --physics robots/planar2.yaml
+  rne check robots/puma560.plan.yaml   a plan is compiled and proved
+
+A plan beside a robot file is checked too. A note names each function with a
+reduced form that is refused, and why, where the arm has 8 joints at most. Exit
+status 1 when a file has errors, or when an arm misses a law of physics by more
+than rounding; lints, which are warnings and notes, leave it at 0.
+docs/robot-file.md explains every key.")]
+pub(crate) struct Arguments {
+    /// Robot files, or plans; - is standard input
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// Compute laws that every arm obeys, and print by how much they are missed
+    #[arg(long)]
+    physics: bool,
+}
+
+#[expect(clippy::unnecessary_wraps, reason = "what every command returns")]
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let mut text = String::new();
+    let mut bad = 0;
+    let widest = arguments.files.iter().map(|path| width(&path.display().to_string())).max().unwrap_or(0);
+    for path in &arguments.files {
+        let checked = match robot_of(path) {
+            Some(robot_file) => plan(&robot_file),
+            None => robot(path, arguments),
+        };
+        match checked {
+            Ok(Good { about, lints, laws }) => {
+                let file = left(&path.display().to_string(), widest);
+                let _ = writeln!(text, "{GOOD}ok{GOOD:#} {file}  {QUIET}{about}{QUIET:#}");
+                if let Some((laws, hold)) = laws {
+                    text.push_str(&laws);
+                    bad += usize::from(!hold);
+                }
+                if let Some(lints) = lints {
+                    let _ = writeln!(text, "\n{lints}\n");
+                }
+            }
+            Err(failure) => {
+                bad += 1;
+                let _ = writeln!(text, "\n{}\n", failure.text);
+            }
+        }
+    }
+    if arguments.files.len() > 1 && bad > 0 {
+        let _ = writeln!(text, "{bad} of {} files have errors", arguments.files.len());
+    }
+    Ok(Outcome { text: text.trim_start_matches('\n').to_owned(), at_fault: bad > 0, ..Outcome::default() })
+}
+
+/// A file in order.
+struct Good {
+    /// It in a few words.
+    about: String,
+    lints: Option<String>,
+    /// The laws of physics, and whether all hold; where they are asked for.
+    laws: Option<(String, bool)>,
+}
+
+/// A robot file, and its plan with it, unless that is among the files to be checked itself.
+fn robot(path: &Path, arguments: &Arguments) -> Result<Good, Failure> {
+    let Checked { robot, lints, .. } = robot_file::read(path)?;
+    if !arguments.files.contains(&plan_of(path))
+        && let Some(read) = plan_file::read(path, &robot)?
+    {
+        plan_file::verify(&robot, &read)?;
+    }
+    let refusals = refusals(path, &robot)?;
+    let laws = arguments.physics.then(|| physics::check(&robot)).transpose().map_err(Failure::input)?;
+    let lints = (!lints.is_empty()).then(|| rendered(&lints));
+    let lints: Vec<String> = lints.into_iter().chain(misnamed_golden(path)).chain(refusals).collect();
+    Ok(Good { about: about(&robot), lints: (!lints.is_empty()).then(|| lints.join("\n\n")), laws })
+}
+
+/// The reduced forms that a build would refuse, with the reasons: a note for each function that has such a form.
+fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
+    /// An arm of more joints would keep people waiting; `rne show` tells of one function.
+    const MOST_JOINTS: usize = 8;
+    if robot.dof() > MOST_JOINTS {
+        return Ok(Vec::new());
+    }
+    let compiler = Compiler::new(path, robot);
+    let mut notes = Vec::new();
+    for function in choice::functions_of(robot) {
+        // what does not compile is an error of the commands that write code
+        let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
+        let lines = emit::refusals(&program);
+        if !lines.is_empty() {
+            notes.push(format!("{QUIET}note{QUIET:#}: {}", lines.join("\n")));
+        }
+    }
+    Ok(notes)
+}
+
+/// A golden file that the tests of a derive would not find.
+fn misnamed_golden(path: &Path) -> Option<String> {
+    let found = if path.is_file() { misnamed_golden_of(path) } else { None }?;
+    Some(format!(
+        "{WARNING}warning{WARNING:#}: {} is not the golden file of {}; did you mean to name it {}?",
+        found.display(),
+        path.display(),
+        golden_of(path).display()
+    ))
+}
+
+/// Whether a plan belongs to its robot and gives what the seven steps give; what it costs.
+fn plan(robot_file: &Path) -> Result<Good, Failure> {
+    let robot = robot_file::robot(robot_file)?;
+    let Some(read) = plan_file::read(robot_file, &robot)? else {
+        return Err(Failure::input(format_args!("there is no plan {}", plan_of(robot_file).display())));
+    };
+    let counts = plan_file::verify(&robot, &read)?;
+    let planned = counts.first().map_or(0, |(.., total)| *total);
+    let torques =
+        counts.iter().find(|(function, is_rewritten, _)| *is_rewritten && *function == Function::InverseDynamics);
+    let rewritten = torques.map_or_else(String::new, |(.., total)| format!(", rewritten {total}"));
+    let others = counts.len() - 1 - usize::from(torques.is_some());
+    let others = match others {
+        0 => String::new(),
+        1 => "; 1 other function rewritten".to_owned(),
+        others => format!("; {others} other functions rewritten"),
+    };
+    let about = format!("plan of {}: inverse_dynamics {planned} operations{rewritten}{others}; proved", robot.name);
+    Ok(Good { about, lints: None, laws: None })
+}

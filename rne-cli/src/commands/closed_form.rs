@@ -1,0 +1,73 @@
+//! `rne show --symbolic` and `--latex`: the dynamics in closed form.
+
+use std::path::Path;
+
+use clap::Args;
+use rne_codegen::emit;
+use rne_model::Robot;
+use rne_symbolic::ClosedForm;
+
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::TITLE;
+use crate::render::letters::Letters;
+
+/// The dynamics in closed form, instead of code.
+#[derive(Args)]
+pub(crate) struct Wanted {
+    /// Instead of code: τ = M θ̈ + h + γ in closed form
+    #[arg(long, conflicts_with_all = OTHERS)]
+    symbolic: bool,
+    /// The closed form as LaTeX, with or without --symbolic
+    #[arg(long, conflicts_with_all = OTHERS)]
+    latex: bool,
+    /// Its arm up to joint N alone
+    #[arg(long, value_name = "N", value_parser = crate::values::choice::joint, conflicts_with_all = OTHERS)]
+    first: Option<usize>,
+}
+
+/// Options of the listing, which a closed form has no use for.
+const OTHERS: [&str; 9] =
+    ["joint", "step", "form", "function", "keep", "without", "base_parameters", "equations", "json"];
+
+impl Wanted {
+    /// Whether a closed form is asked for.
+    pub(crate) fn is_asked_for(&self) -> bool {
+        self.symbolic || self.latex || self.first.is_some()
+    }
+
+    /// The closed form of a file's arm.
+    pub(crate) fn run(
+        &self,
+        file: &Path,
+        letters: Letters,
+        of: impl FnOnce(Robot) -> Robot,
+    ) -> Result<Outcome, Failure> {
+        let (checked, bytes) = robot_file::read_with_run_time(file, &[])?;
+        let joints = match self.first {
+            Some(joint) if joint == 0 || joint > checked.robot.dof() => {
+                let (name, dof) = (&checked.robot.name, checked.robot.dof());
+                return Err(Failure::usage(format_args!("{name} has {dof} joints; --first takes 1 to {dof}")));
+            }
+            first => first.unwrap_or(checked.robot.dof()),
+        };
+        // the file has been read: what is wrong with it is said
+        let name = file.display().to_string();
+        let robot = of(rne_symbolic::read(&name, &bytes).map_err(|report| Failure::from(&report))?);
+        let form = ClosedForm::of(&robot, joints);
+        let title = emit::title(&robot);
+        if self.latex {
+            return Ok(Outcome::text(form.latex(&emit::ascii(&title))));
+        }
+        let text = form.text_spelt(|text| letters.of(text));
+        let mut before = "";
+        let styled = |line| {
+            // a heading stands over lines that are indented
+            let is_heading = std::mem::replace(&mut before, line).is_empty() && !line.ends_with('.');
+            if is_heading && !line.is_empty() { format!("{TITLE}{line}{TITLE:#}\n") } else { format!("{line}\n") }
+        };
+        let text: String = text.lines().map(styled).collect();
+        let title = letters.of(&title);
+        Ok(Outcome::text(format!("{TITLE}{title}{TITLE:#}\n\n{text}")))
+    }
+}

@@ -1,0 +1,244 @@
+//! `rne diagnose`: why another tool's torques are others.
+
+use std::fmt::Write as _;
+
+use clap::Args;
+use rne::{DynArm, Wrench};
+use rne_codegen::Function;
+use rne_diagnose::{Diagnosis, Explanation, Observation};
+use rne_model::Robot;
+use serde::Serialize;
+
+use crate::files::chosen_arm::ChosenArm;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{ERROR, FOUND, GOOD, QUIET, TITLE};
+use crate::render::answer::not_finite;
+use crate::render::layout::{Align, columns, wrap};
+use crate::terminal;
+use crate::values::numbers::resolution;
+use crate::values::numbers::{List, rounded};
+use crate::values::state::{Given, State};
+
+/// Name the slips that explain another tool's torques
+#[derive(Args)]
+#[command(override_usage = "rne diagnose [OPTIONS] --q <Q> --qd <QD> --qdd <QDD> --tau <TAU> <FILE>")]
+#[command(after_help = "\
+Exit status: 1 when the torques differ and no slip explains them.
+
+Examples:
+  rne diagnose robots/planar1.yaml --q 0.3 --qd 0.5 --qdd -1 --tau -4.853
+  rne diagnose puma560 --q 0,0.3,-0.5,0.1,0.2,0 --qd 1,1,1,1,1,1 \\
+    --qdd 1,0,0,0,0,0 --tau=-0.28771,-37.706,-1.35305,0.0035967,0.003694,5.56e-5
+
+The usual slips are made one by one, then in pairs: convention, gravity,
+inertia and centre of mass from another point, units, offsets, signs, motors,
+wrench, and the misprints of the lecture; alone also the sign of one alpha, one
+theta, one component of a centre of mass. A state with speeds and accelerations
+of all joints tells the most apart.")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    arm: ChosenArm,
+    /// Joint positions, rad or m
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    q: List,
+    /// Joint velocities, rad/s or m/s
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    qd: List,
+    /// Joint accelerations, rad/s² or m/s²
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    qdd: List,
+    /// The torques that the other tool printed, with all of its digits
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    tau: Printed,
+    /// fx,fy,fz,nx,ny,nz on the environment, at the tip, in tip axes: N, N m
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    wrench: Option<List>,
+    /// How far a torque may be off, in parts of the largest; as its last digit tells, unless given
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: Option<f64>,
+    /// {"agrees": …, "error": …, "explanations": […]}
+    #[arg(long)]
+    json: bool,
+}
+
+/// Numbers and half of the last digit of each.
+#[derive(Clone, Debug, PartialEq)]
+struct Printed {
+    values: List,
+    resolution: Vec<f64>,
+}
+
+impl std::str::FromStr for Printed {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let values: List = text.parse()?;
+        Ok(Self { values, resolution: text.split(',').map(resolution).collect() })
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|tolerance| (0.0..1.0).contains(tolerance)).ok_or_else(|| {
+        "a tolerance is a part of the largest torque, from 0 to below 1, such as --tolerance 1e-4".to_owned()
+    })
+}
+
+/// An answer as JSON has it.
+#[derive(Serialize)]
+struct Reply {
+    agrees: bool,
+    error: f64,
+    explanations: Vec<Reason>,
+}
+
+#[derive(Serialize)]
+struct Reason {
+    error: f64,
+    slips: Vec<Named>,
+}
+
+#[derive(Serialize)]
+struct Named {
+    name: &'static str,
+    says: String,
+    right: String,
+}
+
+/// How far a torque may be off at most, where its digits tell, in parts of the largest.
+const COARSEST: f64 = 1e-3;
+
+/// Explanations that are shown; the others are counted.
+const SHOWN: usize = 5;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = arguments.arm.robot()?;
+    let (seen, right) = observation(arguments, &robot)?;
+    let diagnosis = rne_diagnose::diagnose(&robot, std::slice::from_ref(&seen)).map_err(Failure::usage)?;
+    let at_fault = matches!(diagnosis, Diagnosis::Unexplained(_));
+    if arguments.json {
+        return Ok(Outcome { at_fault, ..Outcome::json(&reply(&robot, &diagnosis))? });
+    }
+    let text = match diagnosis {
+        Diagnosis::Agrees(error) => {
+            format!("{GOOD}ok{GOOD:#} the torques are those of {TITLE}{}{TITLE:#}, to {error:.0e}\n", robot.name)
+        }
+        Diagnosis::Explained(all) => table(&robot, &seen, &right) + "\n" + &explained(&robot, &all),
+        Diagnosis::Unexplained(_) => {
+            table(&robot, &seen, &right)
+                + &format!(
+                    "\n{ERROR}none of the usual slips{ERROR:#} gives these torques, nor does a pair of them\n\
+                     {QUIET}compare link by link: rne eval … --trace; fewer digits: --tolerance 1e-3{QUIET:#}\n"
+                )
+        }
+    };
+    Ok(Outcome { text, at_fault, ..Outcome::default() })
+}
+
+/// What the other tool says, and what is right.
+fn observation(arguments: &Arguments, robot: &Robot) -> Result<(Observation, Vec<f64>), Failure> {
+    let Printed { values: List(tau), resolution } = &arguments.tau;
+    if tau.len() != robot.dof() {
+        let (found, joints) = (tau.len(), robot.dof());
+        let numbers = if joints == 1 { "number" } else { "numbers" };
+        return Err(Failure::usage(format_args!("--tau needs {joints} {numbers}, one for each joint, not {found}")));
+    }
+    let function = match arguments.wrench {
+        Some(_) => Function::InverseDynamicsWithWrench,
+        None => Function::InverseDynamics,
+    };
+    let given = Given {
+        q: Some(&arguments.q),
+        qd: Some(&arguments.qd),
+        qdd: Some(&arguments.qdd),
+        wrench: arguments.wrench.as_ref(),
+        ..Given::default()
+    };
+    let state = State::new(function, given, robot)?;
+    let right = state.numbers(&DynArm::from_robot(robot)).map_err(Failure::usage)?;
+    if let Some(index) = right.iter().position(|number| !number.is_finite()) {
+        return Err(Failure::input(not_finite(robot, function, index)));
+    }
+    let largest = tau.iter().chain(&right).fold(0.0, |largest: f64, tau| largest.max(tau.abs()));
+    let resolution = match arguments.tolerance {
+        Some(tolerance) => vec![tolerance * largest; tau.len()],
+        // one digit alone would explain anything
+        None => resolution.iter().map(|half| half.min(COARSEST * largest)).collect(),
+    };
+    let State { q, qd, qdd, wrench, .. } = state;
+    let wrench: Option<Wrench<f64>> = wrench;
+    Ok((Observation { q, qd, qdd, wrench, tau: tau.clone(), resolution }, right))
+}
+
+fn reply(robot: &Robot, diagnosis: &Diagnosis) -> Reply {
+    let named =
+        |&slip: &rne_diagnose::Slip| Named { name: slip.name(), says: slip.says(robot), right: slip.right(robot) };
+    let reason =
+        |Explanation { slips, error }: &Explanation| Reason { error: *error, slips: slips.iter().map(named).collect() };
+    let (agrees, error, explanations) = match diagnosis {
+        Diagnosis::Agrees(error) => (true, *error, Vec::new()),
+        Diagnosis::Explained(all) => {
+            (false, all.first().map_or(0.0, |first| first.error), all.iter().map(reason).collect())
+        }
+        Diagnosis::Unexplained(error) => (false, *error, Vec::new()),
+    };
+    Reply { agrees, error, explanations }
+}
+
+/// How well slips explain torques.
+fn closeness(error: f64) -> String {
+    if error < 1e-15 { "exactly".to_owned() } else { format!("to {error:.0e} of the largest") }
+}
+
+/// Torques beside the right ones.
+fn table(robot: &Robot, seen: &Observation, right: &[f64]) -> String {
+    let mut cells = vec![["  joint", "yours", "of the file", "difference"].map(str::to_owned)];
+    for ((joint, yours), right) in robot.joints.iter().zip(&seen.tau).zip(right) {
+        let numbers = [*yours, *right, yours - right].map(|number| rounded(number, 6));
+        let [yours, right, difference] = numbers;
+        cells.push([format!("  {}", joint.name), yours, right, difference]);
+    }
+    let lines = columns(&[Align::Left, Align::Right, Align::Right, Align::Right], &cells);
+    let (head, rest) = lines.split_first().map_or(("", &[][..]), |(head, rest)| (head.as_str(), rest));
+    format!("{QUIET}{head}{QUIET:#}\n{}\n", rest.join("\n"))
+}
+
+/// The slips that give the torques, with what is right.
+fn explained(robot: &Robot, all: &[Explanation]) -> String {
+    let width = terminal::width(80);
+    let mut text = String::new();
+    for (index, Explanation { slips, error }) in all.iter().take(SHOWN).enumerate() {
+        let together = if slips.len() > 1 { " together" } else { "" };
+        let _ = match index {
+            0 => writeln!(text, "{TITLE}your torques{TITLE:#} are those of this{together}, {}:", closeness(*error)),
+            _ => writeln!(text, "{QUIET}or, the same at this state:{QUIET:#}"),
+        };
+        for slip in slips {
+            let _ = writeln!(text, "{}", wrap(&format!("  - {}", slip.says(robot)), width, "    "));
+            let right = wrap(&format!("    right: {}", slip.right(robot)), width, "           ");
+            let _ = writeln!(text, "{FOUND}{right}{FOUND:#}");
+        }
+    }
+    if all.len() > SHOWN {
+        let more = all.len() - SHOWN;
+        let _ = writeln!(text, "{QUIET}and {more} more, which --json lists{QUIET:#}");
+    }
+    if all.len() > 1 {
+        let hint = "a state in which every joint has a position, a speed and an acceleration tells them apart";
+        let _ = writeln!(text, "{QUIET}{}{QUIET:#}", wrap(hint, width, ""));
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_tell_how_far_a_torque_may_be_off() {
+        for (text, half) in
+            [("1.25", 0.005), ("-3", 0.5), ("1.5e-3", 5e-5), ("2e2", 50.0), ("pi/2", 0.0), (" 0.10 ", 0.005)]
+        {
+            assert!((resolution(text) - half).abs() <= 1e-12 * half, "{text}");
+        }
+    }
+}

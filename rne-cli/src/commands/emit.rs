@@ -1,0 +1,437 @@
+//! `rne emit`: code that compiles by itself.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use rne_codegen::emit::{CCode, Origin, Precision, Prefix};
+use rne_codegen::{Form, Function, Program, emit};
+use rne_model::Robot;
+
+use crate::commands::golden;
+use crate::files::chosen_arm::Rotors;
+use crate::files::file_name::{self, Format};
+use crate::files::input_file::is_stream;
+use crate::files::output_file::{self, Existing, is_standard_output};
+use crate::files::plan_file::Compiler;
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, TYPED};
+use crate::values::choice;
+use crate::values::choice::FunctionOrAll;
+
+/// Write the generated code as a file that compiles by itself
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne emit robots/puma560.yaml                               to the terminal
+  rne emit robots/puma560.yaml --function all -o puma.rs     all that it has
+  rne emit robots/puma560.yaml --function all --check puma.rs   up to date?
+  rne emit robots/puma560.yaml --lang c -o puma560.c         and puma560.h
+  rne emit robots/puma560.yaml --lang c --real double --prefix arm
+  rne emit docs/desk_arm.yaml --lang c --run-time upper,fore --tests
+
+The functions of the trait InverseDynamics are written unless --function names
+others; all is every function of the robot. --check exits with 1 when the file
+is stale, and says how to refresh it. C needs no library; on standard output
+header and source are one file; -DRNE_TEST makes its tests a program.")]
+#[allow(clippy::struct_excessive_bools)] // options of a command
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
+    /// Language of the code
+    #[arg(long, value_enum, default_value_t = Language::Rust)]
+    lang: Language,
+    /// Number type of C code: float, the default, or double
+    #[arg(long, value_enum, value_name = "TYPE", hide_possible_values = true)]
+    real: Option<Real>,
+    /// Names in C code begin with it, not with the robot's name
+    #[arg(long, value_name = "P")]
+    prefix: Option<Prefix>,
+    /// These functions only, F,F,…: `rne explain functions`
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
+        hide_possible_values = true)]
+    functions: Vec<FunctionOrAll>,
+    /// seven_steps, where every intermediate is the lecture's, or reduced, with the fewest operations
+    #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true)]
+    form: Form,
+    /// Parameters of the file that become arguments, N,N,…; the others are folded
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    run_time: Vec<String>,
+    /// Bring sine and cosine along in Rust, as C code does
+    #[arg(long)]
+    with_sin_cos: bool,
+    /// Tests beside the code: values of the runtime, laws of mechanics
+    #[arg(long)]
+    tests: bool,
+    /// Comments in ASCII alone: dw for ω̇, ^T for ᵀ
+    #[arg(long)]
+    ascii: bool,
+    /// Write into this file, the header of C code beside it; - is standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Overwrite OUT even if rne did not generate it
+    #[arg(long, requires = "output")]
+    force: bool,
+    /// Compare with this file instead of writing
+    #[arg(long, value_name = "OUT", conflicts_with = "output")]
+    check: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Language {
+    Rust,
+    C,
+}
+
+impl Language {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Rust => "rust",
+            Self::C => "c",
+        }
+    }
+
+    const fn title(self) -> &'static str {
+        match self {
+            Self::Rust => "Rust",
+            Self::C => "C",
+        }
+    }
+
+    const fn extension(self) -> &'static str {
+        match self {
+            Self::Rust => "rs",
+            Self::C => "c",
+        }
+    }
+
+    const fn format(self) -> Format {
+        match self {
+            Self::Rust => Format::Rust,
+            Self::C => Format::C,
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Real {
+    /// 32 bits (default)
+    Float,
+    /// 64 bits
+    Double,
+}
+
+impl Real {
+    const fn precision(self) -> Precision {
+        match self {
+            Self::Float => Precision::Single,
+            Self::Double => Precision::Double,
+        }
+    }
+}
+
+/// A file as it is to be.
+struct Generated {
+    path: PathBuf,
+    text: String,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    only_of_one_language(arguments)?;
+    is_named_once(&arguments.run_time)?;
+    let out = arguments.output.as_deref().filter(|out| !is_standard_output(out)).or(arguments.check.as_deref());
+    if arguments.check.as_deref().is_some_and(is_standard_output) {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--check{TYPED:#} compares with a file, and standard output is none; name the file"
+        )));
+    }
+    out.map_or(Ok(()), |out| is_named_for(arguments.lang, out))?;
+    let header = out.filter(|_| arguments.lang == Language::C).map(header_beside).transpose()?;
+    let names: Vec<&str> = arguments.run_time.iter().map(String::as_str).collect();
+    let (checked, bytes) = robot_file::read_with_run_time(&arguments.file, &names)?;
+    let robot = arguments.rotors.of(checked.robot);
+    let programs = programs(arguments, &robot)?;
+    let c_code = || c_code(arguments, &robot, &programs, &bytes);
+    let rust_file = if arguments.with_sin_cos { emit::rust_file_with_sin_cos } else { emit::rust_file };
+    let rust = || Ok::<_, Failure>(rust_file(&robot, &programs) + &rust_tests(arguments, &robot, &programs)?);
+    let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
+    let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
+    let files = match (arguments.lang, out, header) {
+        (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
+        (Language::Rust, Some(out), _) => vec![generated(out, rust()?)],
+        (Language::C, Some(out), Some(header)) => {
+            let code = c_code()?;
+            let source = code.source(&header.name);
+            vec![generated(&header.path, code.header().to_owned()), generated(out, source)]
+        }
+        (Language::C, ..) => return Ok(Outcome::text(shown(c_code()?.one_file()))),
+    };
+    match &arguments.check {
+        Some(out) => check(arguments, out, &files),
+        None => write(arguments, &files),
+    }
+}
+
+/// A file whose name says that it is in another language.
+fn is_named_for(lang: Language, out: &Path) -> Result<(), Failure> {
+    let extension = out.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let (is_other, other) = match lang {
+        Language::Rust => (matches!(extension.as_str(), "c" | "h" | "cc" | "cpp" | "cxx" | "hpp"), Language::C),
+        Language::C => (matches!(extension.as_str(), "rs" | "cc" | "cpp" | "cxx" | "hpp"), Language::Rust),
+    };
+    if !is_other {
+        return Ok(());
+    }
+    let right = out.with_extension(lang.extension());
+    let instead = if extension == other.extension() {
+        format!(", or ask for {TYPED}--lang {}{TYPED:#}", other.name())
+    } else {
+        String::new()
+    };
+    Err(Failure::usage(format_args!(
+        "{} is no name for a file in {}; name it {TYPED}{}{TYPED:#}{instead}",
+        out.display(),
+        lang.title(),
+        right.display()
+    )))
+}
+
+fn is_named_once(run_time: &[String]) -> Result<(), Failure> {
+    if run_time.iter().any(String::is_empty) {
+        return Err(Failure::usage("--run-time names no parameter; write --run-time NAME,NAME"));
+    }
+    let twice = run_time.iter().enumerate().find(|(index, name)| run_time[..*index].contains(name));
+    twice.map_or(Ok(()), |(_, name)| Err(Failure::usage(format_args!("--run-time names {name} twice"))))
+}
+
+fn only_of_one_language(arguments: &Arguments) -> Result<(), Failure> {
+    if arguments.with_sin_cos && arguments.lang == Language::C {
+        return Err(Failure::usage(format_args!(
+            "{TYPED}--with-sin-cos{TYPED:#} is for Rust: code in C always brings its sine and cosine. Leave it out"
+        )));
+    }
+    let options = [("--real", arguments.real.is_some()), ("--prefix", arguments.prefix.is_some())];
+    match options.into_iter().find(|(_, is_given)| *is_given && arguments.lang != Language::C) {
+        None => Ok(()),
+        Some(("--real", _)) => Err(Failure::usage(format_args!(
+            "{TYPED}--real{TYPED:#} is for C: code in Rust is generic over the number type. Leave it out, or add \
+             {TYPED}--lang c{TYPED:#}"
+        ))),
+        Some((option, _)) => Err(Failure::usage(format_args!(
+            "{TYPED}{option}{TYPED:#} is for C: a file of Rust is a module with a name of its own. Leave it out, or \
+            add \
+             {TYPED}--lang c{TYPED:#}"
+        ))),
+    }
+}
+
+/// A header's file.
+struct Header {
+    path: PathBuf,
+    /// Without the folder, as the source includes it.
+    name: String,
+}
+
+/// The header beside a source of C.
+fn header_beside(source: &Path) -> Result<Header, Failure> {
+    let extension = source.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let path = source.with_extension("h");
+    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
+    // what ends an `#include "…"`
+    let name = name.filter(|name| !name.contains(['"', '\\', '\n', '\r', char::REPLACEMENT_CHARACTER]));
+    match name {
+        _ if extension == "h" => Err(Failure::usage(format_args!(
+            "{} is the name of a header, which is written beside the source; name the source: {TYPED}{}{TYPED:#}",
+            source.display(),
+            source.with_extension("c").display()
+        ))),
+        Some(name) => Ok(Header { path, name }),
+        None => Err(Failure::usage(format_args!(
+            "{} is no name of a source whose header could be included; name a file, such as {TYPED}robot.c{TYPED:#}",
+            source.display()
+        ))),
+    }
+}
+
+fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u8]) -> Result<CCode, Failure> {
+    let precision = arguments.real.map_or_else(Precision::default, Real::precision);
+    let prefix = arguments.prefix.clone().unwrap_or_else(|| Prefix::of(robot));
+    // without its folder: the same file gives the same bytes wherever it is
+    let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
+    let origin = Origin::of(if is_stream(&arguments.file) { "on standard input" } else { &name }, bytes);
+    let code = emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
+        let file = arguments.file.display();
+        Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
+    })?;
+    if !arguments.tests {
+        return Ok(code);
+    }
+    let golden = golden::of_programs(robot, programs, precision)?;
+    Ok(code.with_tests(&emit::c_tests(robot, programs, precision, &prefix, &golden)))
+}
+
+/// The tests of code in Rust, where they are asked for.
+fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Result<String, Failure> {
+    if !arguments.tests {
+        return Ok(String::new());
+    }
+    let golden = golden::of_programs(robot, programs, Precision::Double)?;
+    Ok(emit::rust_tests(robot, programs, &golden))
+}
+
+/// The functions asked for, each once, in the order of the traits.
+fn functions(arguments: &Arguments, robot: &Robot) -> Vec<Function> {
+    let asked = &arguments.functions;
+    if asked.contains(&FunctionOrAll::All) {
+        return choice::functions_of(robot).collect();
+    }
+    let is_asked = |function: &Function| match asked.as_slice() {
+        [] => Function::TORQUES.contains(function),
+        asked => asked.contains(&FunctionOrAll::One(*function)),
+    };
+    Function::ALL.into_iter().filter(is_asked).collect()
+}
+
+fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failure> {
+    let compiler = Compiler::new(&arguments.file, robot);
+    let functions = functions(arguments, robot);
+    functions.into_iter().map(|function| compiler.compile(function, arguments.form)).collect()
+}
+
+/// The title before the mark may take several lines.
+fn is_ours(text: &str) -> bool {
+    let mut heading = text.lines().take_while(|line| line.starts_with("//"));
+    let is_mark = |line: &str| line.starts_with(emit::GENERATED);
+    heading.any(|line| ["//! ", "// "].iter().any(|mark| line.strip_prefix(mark).is_some_and(is_mark)))
+}
+
+/// Writes all files, or none if one of them is another's.
+fn write(arguments: &Arguments, files: &[Generated]) -> Result<Outcome, Failure> {
+    files.iter().try_for_each(|file| may_be_written(arguments, &file.path))?;
+    let files: Vec<(&Path, &str)> = files.iter().map(|file| (file.path.as_path(), file.text.as_str())).collect();
+    output_file::write_all(&files).map(Outcome::remark)
+}
+
+fn may_be_written(arguments: &Arguments, out: &Path) -> Result<(), Failure> {
+    if output_file::is_same(out, &arguments.file) {
+        let message = format!("{} is the robot file itself; the code needs a file of its own", out.display());
+        return Err(Failure::usage(message));
+    }
+    file_name::check(out, arguments.lang.format())?;
+    match output_file::existing(out) {
+        Existing::Nothing => {
+            let folder = out.parent().filter(|folder| !folder.as_os_str().is_empty());
+            match folder.filter(|folder| !folder.exists()) {
+                Some(folder) => Err(Failure::input(format_args!(
+                    "{} cannot be written: there is no folder {}",
+                    out.display(),
+                    folder.display()
+                ))),
+                None => Ok(()),
+            }
+        }
+        Existing::Text(text) if is_ours(&text) || arguments.force => Ok(()),
+        Existing::Other if arguments.force => Ok(()),
+        Existing::Text(_) | Existing::Other => Err(Failure::usage(format_args!(
+            "{} was not generated by rne and stays as it is; {TYPED}--force{TYPED:#} overwrites it",
+            out.display()
+        ))),
+        Existing::Folder => Err(Failure::usage(format_args!(
+            "{0} is a folder; name a file, such as {0}/robot.{1}",
+            out.display(),
+            arguments.lang.extension()
+        ))),
+        Existing::Special => Err(Failure::usage(format_args!("{} is not a regular file; name another", out.display()))),
+        Existing::Unreadable(error) => Err(output_file::unreadable(out, &error)),
+    }
+}
+
+/// Compares all files; of what is wrong the first is told, with the command that writes them all.
+fn check(arguments: &Arguments, out: &Path, files: &[Generated]) -> Result<Outcome, Failure> {
+    let mut stale: Option<String> = None;
+    let mut force = "";
+    let mut remark = String::new();
+    for Generated { path, text } in files {
+        let shown = path.display();
+        let why = match output_file::existing(path) {
+            Existing::Text(found) if found == *text => {
+                let _ = writeln!(remark, "{GOOD}up to date:{GOOD:#} {shown}");
+                continue;
+            }
+            Existing::Text(found) if is_ours(&found) => {
+                format!("{shown} is stale: {}", first_difference(&found, text))
+            }
+            Existing::Text(_) | Existing::Other => {
+                force = " --force";
+                format!("{shown} was not generated by rne")
+            }
+            Existing::Nothing => format!("there is no file {shown}"),
+            Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder"))),
+            Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file"))),
+            Existing::Unreadable(error) => format!("{shown} cannot be read: {error}"),
+        };
+        stale.get_or_insert(why);
+    }
+    match stale {
+        None => Ok(Outcome::remark(remark)),
+        Some(why) => Err(Failure::input(format_args!(
+            "{why}\n\nto write it: {TYPED}{}{force}{TYPED:#}",
+            command(arguments, out)
+        ))),
+    }
+}
+
+fn first_difference(found: &str, expected: &str) -> String {
+    let (mut found, mut expected) = (found.lines(), expected.lines());
+    let mut number = 1;
+    loop {
+        match (found.next(), expected.next()) {
+            (Some(a), Some(b)) if a == b => number += 1,
+            (None, None) => return "its line ends differ".to_owned(),
+            (a, b) => {
+                let quote =
+                    |line: Option<&str>| line.map_or("the end of the file".to_owned(), |line| format!("`{line}`"));
+                return format!("line {number} is {}, but would be {}", quote(a), quote(b));
+            }
+        }
+    }
+}
+
+/// The command that writes `out`.
+fn command(arguments: &Arguments, out: &Path) -> String {
+    let mut command = format!("rne emit {} --lang {}", robot_file::shell(&arguments.file), arguments.lang.name());
+    if let Some(real) = arguments.real {
+        let _ = write!(command, " --real {}", real.precision().c_type());
+    }
+    if let Some(prefix) = &arguments.prefix {
+        let _ = write!(command, " --prefix {prefix}");
+    }
+    for function in &arguments.functions {
+        let _ = write!(command, " --function {function}");
+    }
+    if arguments.rotors.rotors {
+        command.push_str(" --rotors");
+    }
+    if arguments.form != Form::default() {
+        let _ = write!(command, " --form {}", arguments.form);
+    }
+    if !arguments.run_time.is_empty() {
+        let _ = write!(command, " --run-time {}", arguments.run_time.join(","));
+    }
+    if arguments.with_sin_cos {
+        command.push_str(" --with-sin-cos");
+    }
+    if arguments.tests {
+        command.push_str(" --tests");
+    }
+    if arguments.ascii {
+        command.push_str(" --ascii");
+    }
+    let _ = write!(command, " -o {}", robot_file::shell(out));
+    command
+}

@@ -1,0 +1,235 @@
+//! `rne eval`: numbers from the runtime, which loops over the links and knows nothing of generated code.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use rne::DynArm;
+use rne_codegen::{Function, Layout, Record, Step};
+use rne_diagnose::worksheet::Worksheet;
+use serde_json::{Value, json};
+
+use crate::commands::compare::{self, Manner};
+use crate::commands::golden;
+use crate::files::chosen_arm::{ChosenArm, Setting};
+use crate::files::input_file::is_standard_input;
+use crate::files::plan_file;
+use crate::files::states;
+use crate::files::worksheet_file;
+use crate::outcome::{Failure, Outcome};
+use crate::render::answer;
+use crate::render::answer::not_finite;
+use crate::render::layout::PAGE;
+use crate::render::letters::Letters;
+use crate::render::worksheet::{self, Axes, Narrowed};
+use crate::values::choice;
+use crate::values::limits;
+use crate::values::numbers::List;
+use crate::values::state::{Given, State};
+
+/// Compute a function at one state; --trace shows every vector
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --csv > mine.csv
+  rne eval planar1 --q 0.3 --qd 0.5 --qdd 1 --trace --compare mine.csv
+  rne eval robots/planar2.yaml --states docs/states.csv -o torques.csv")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    arm: ChosenArm,
+    /// Which function: `rne explain functions`
+    #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true)]
+    function: Option<Function>,
+    /// Joint positions, base to tip, rad or m
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    q: Option<List>,
+    /// Joint velocities, rad/s or m/s
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    qd: Option<List>,
+    /// Joint accelerations, rad/s² or m/s²
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    qdd: Option<List>,
+    /// Joint torques, N m or N, of forward_dynamics
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    tau: Option<List>,
+    /// fx,fy,fz,nx,ny,nz on the environment, tip axes
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    wrench: Option<List>,
+    /// m,cx,cy,cz[,xx,yy,zz,xy,xz,yz] fixed to the tip
+    #[arg(long, value_name = "LIST", allow_hyphen_values = true)]
+    payload: Option<List>,
+    /// Angular velocity x,y,z of a moving base, rad/s
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    base_omega: Option<List>,
+    /// Its angular acceleration, rad/s²
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    base_omega_dot: Option<List>,
+    /// Acceleration of its origin, without gravity, m/s²
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    base_acceleration: Option<List>,
+    /// Gravity in the moving frame 0; else the file's
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    gravity: Option<List>,
+    /// Instead: torques at N states, as a golden file
+    #[arg(long, value_name = "N", value_parser = golden::states, allow_negative_numbers = true, conflicts_with_all = [
+        "function", "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration",
+        "gravity", "trace", "json", "csv", "compare",
+    ])]
+    golden: Option<u16>,
+    /// At each state of a CSV or npy file; - is a pipe
+    #[arg(long, value_name = "TABLE", conflicts_with_all = [
+        "q", "qd", "qdd", "tau", "wrench", "payload", "base_omega", "base_omega_dot", "base_acceleration", "gravity",
+        "golden", "trace", "axes", "joint", "step", "json", "csv", "compare", "digits",
+    ])]
+    states: Option<PathBuf>,
+    /// Where their results go: CSV, or npy by its name
+    #[arg(short, long = "output", value_name = "TABLE", requires = "states")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out", hide = true)]
+    force: bool,
+    /// The worksheet of the seven steps
+    #[arg(long)]
+    trace: bool,
+    /// Its axes: link, joint (the lecture's) or base
+    #[arg(long, value_enum, hide_possible_values = true, requires = "trace")]
+    axes: Option<Axes>,
+    /// Its lines of one joint, from 1
+    #[arg(long, value_name = "I", value_parser = choice::joint, requires = "trace", conflicts_with = "compare")]
+    joint: Option<usize>,
+    /// Its lines of one step, 1 to 7
+    #[arg(long, value_name = "S", value_parser = choice::step, requires = "trace", conflicts_with = "compare")]
+    step: Option<Step>,
+    /// It as CSV, a row for each component
+    #[arg(long, requires = "trace", conflicts_with_all = ["json", "compare"])]
+    csv: bool,
+    /// Where your rows of it first differ, and why
+    #[arg(long, value_name = "MINE", requires = "trace")]
+    compare: Option<PathBuf>,
+    /// Significant digits that agree; 4, unless given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=15), requires = "compare")]
+    digits: Option<u8>,
+    /// {"result": …}, with --trace also "trace"
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    letters: Letters,
+}
+
+/// Digits to which a hand computes.
+const DIGITS_BY_HAND: u8 = 4;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let outcome = computed(arguments)?;
+    let letters = arguments.letters;
+    let text = match &outcome.text {
+        json if arguments.json => letters.json(json),
+        // its lines do not break
+        csv if arguments.csv || arguments.golden.is_some() => letters.of(csv),
+        text => letters.page(text, PAGE),
+    };
+    Ok(Outcome { text, remark: letters.page(&outcome.remark, PAGE), ..outcome })
+}
+
+fn computed(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if arguments.out.is_some() && arguments.states.is_none() {
+        return Err(Failure::usage("-o is where the results of --states go; those of one state are printed"));
+    }
+    let is_read_twice = |states: &PathBuf| is_standard_input(states) && is_standard_input(arguments.arm.file());
+    if arguments.states.as_ref().is_some_and(is_read_twice) {
+        return Err(Failure::usage("FILE and --states are both standard input; give one of them as a file"));
+    }
+    let robot = arguments.arm.robot()?;
+    if let Some(states) = &arguments.states {
+        let file = arguments.arm.file();
+        return states::Job {
+            robot_file: file,
+            arm: &plan_file::compiled_arm(file, &robot)?,
+            function: arguments.function.unwrap_or(Function::InverseDynamics),
+            states,
+            out: arguments.out.as_deref(),
+            force: arguments.force,
+        }
+        .run();
+    }
+    if let Some(states) = arguments.golden {
+        let settings: Vec<String> =
+            arguments.arm.set.iter().map(|Setting { name, value }| format!("{name} = {value}")).collect();
+        return golden::file(&robot, states, &settings).map(Outcome::text);
+    }
+    let function = arguments.function.unwrap_or(match (&arguments.wrench, &arguments.payload) {
+        (Some(_), _) => Function::InverseDynamicsWithWrench,
+        (None, Some(_)) => Function::InverseDynamicsWithPayload,
+        (None, None) => Function::InverseDynamics,
+    });
+    if arguments.trace && !function.returns_torques() {
+        let with: Vec<&str> = Function::ALL.iter().filter(|f| f.returns_torques()).map(|f| f.name()).collect();
+        return Err(Failure::usage(format_args!(
+            "--trace is the worksheet of torques, and {function} has none; these have one: {}",
+            with.join(", ")
+        )));
+    }
+    let state = State::new(function, arguments.given(), &robot)?;
+    let arm = DynArm::from_robot(&robot);
+    // The lengths are checked, so this error does not occur; if it does, it says what is wrong.
+    let numbers = state.numbers(&arm).map_err(Failure::usage)?;
+    if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
+        return Err(Failure::input(not_finite(&robot, function, index)));
+    }
+    let remark = limits::remark(&robot, &state.q);
+    let result = || grouped(&function.layout(robot.dof()), &numbers);
+    if !arguments.trace {
+        if arguments.json {
+            return Ok(Outcome { remark, ..Outcome::json(&json!({ "result": result() }))? });
+        }
+        return Ok(Outcome { remark, ..Outcome::text(answer::text(&robot, &state, &numbers)) });
+    }
+    let situation = worksheet::situation(&state, robot.dof());
+    if let Some(path) = &arguments.compare {
+        let manner = Manner { digits: arguments.digits.unwrap_or(DIGITS_BY_HAND), json: arguments.json };
+        return compare::run(path, &robot, &situation, arguments.axes, manner);
+    }
+    let narrowed = Narrowed { joint: arguments.joint, step: arguments.step };
+    choice::check_joint(&robot, arguments.joint)?;
+    let axes = arguments.axes.unwrap_or(Axes::Link).into();
+    let sheet = Worksheet::new(&robot, &situation, axes).map_err(Failure::usage)?;
+    if arguments.csv {
+        return Ok(Outcome { remark, ..Outcome::text(worksheet_file::csv(&robot, &sheet, narrowed)) });
+    }
+    if arguments.json {
+        let text = worksheet_file::json(&robot, &sheet, narrowed, &result())?;
+        return Ok(Outcome { remark, ..Outcome::text(text) });
+    }
+    let mut text = worksheet::text(&robot, &sheet, narrowed, &state, arguments.letters);
+    if narrowed.is_all() {
+        text.push('\n');
+        text.push_str(&answer::text(&robot, &state, &numbers));
+    }
+    Ok(Outcome { remark, ..Outcome::text(text) })
+}
+
+impl Arguments {
+    fn given(&self) -> Given<'_> {
+        Given {
+            q: self.q.as_ref(),
+            qd: self.qd.as_ref(),
+            qdd: self.qdd.as_ref(),
+            tau: self.tau.as_ref(),
+            wrench: self.wrench.as_ref(),
+            payload: self.payload.as_ref(),
+            base_omega: self.base_omega.as_ref(),
+            base_omega_dot: self.base_omega_dot.as_ref(),
+            base_acceleration: self.base_acceleration.as_ref(),
+            gravity: self.gravity.as_ref(),
+        }
+    }
+}
+
+/// Numbers in the shape in which a function returns them.
+fn grouped(layout: &Layout, numbers: &[f64]) -> Value {
+    let record = |record: Record, parts| {
+        let fields = record.fields().into_iter().map(str::to_owned);
+        Value::Object(fields.zip::<Vec<Value>>(parts).collect())
+    };
+    layout.fold(&mut numbers.iter().map(|&number| Value::from(number)), &Value::Array, &record).unwrap_or_default()
+}

@@ -1,0 +1,33 @@
+//! `rne example`: the file of a shipped robot.
+
+use clap::Args;
+
+use crate::files::robot_file::shipped;
+use crate::outcome::{Failure, Outcome};
+
+/// Print the robot file of a shipped robot, to start from
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne example puma560 > my_puma.yaml
+  rne example puma560 --plan > my_puma.plan.yaml    its reduced form
+
+`rne list` has the names.")]
+pub(crate) struct Arguments {
+    /// The robot's name
+    #[arg(value_name = "NAME")]
+    name: String,
+    /// Print the plan of its reduced form instead
+    #[arg(long)]
+    plan: bool,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = shipped(&arguments.name)?;
+    let text = if arguments.plan {
+        robot.plan.ok_or_else(|| Failure::input(format_args!("{} is shipped without a plan", robot.name)))?
+    } else {
+        robot.yaml
+    };
+    Ok(Outcome::text(text.to_owned()))
+}

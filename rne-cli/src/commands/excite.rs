@@ -1,0 +1,421 @@
+//! `rne excite`: a motion by which an identification learns the most.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rne_identify::{
+    AskedLimits, Excitation, ExcitationError, ExcitationOptions, ExcitationProgress, Fourier, JointUse, MotionLimits,
+    excite,
+};
+use rne_machine::{CompiledArm, Form};
+use rne_model::{Joint, Robot, one_line};
+use rne_plot::{Panel, PanelCurve, panels};
+
+use crate::files::file_name::{self, Format};
+use crate::files::interruption;
+use crate::files::output_file::{
+    self, Replacement, check_new, check_picture, is_standard_output, unwritable, will_be_same,
+};
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, TITLE, WARNING};
+use crate::render::layout::{Align, PAGE, push_table, shortened, wrap};
+use crate::values::numbers::{List, exact, rounded};
+
+/// Samples of a trajectory, at most: some hundred megabytes of an arm of six joints.
+const MOST: f64 = 500_000.0;
+
+/// Motions that are tried, at most: a day.
+const MOTIONS: u64 = 100_000_000;
+
+/// Samples of a picture.
+const DRAWN: u32 = 1000;
+
+/// Find a motion that excites an arm, for a log to identify it
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne excite docs/desk_arm.yaml --evaluations 200 -o trajectory.csv
+  rne excite planar2 --evaluations 200 --velocity 1.5,2 --plot motion.svg
+
+A Fourier series from rest to rest within the limits, of least condition number.
+Collisions are not known: the trajectory is checked against limits alone, so
+look at it in a simulator or at low speed first. Ctrl-C ends the search and
+keeps the best. Columns: t, q1, …, qd1, …, qdd1, …: s, rad or m.")]
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// How long the motion lasts
+    #[arg(long, value_name = "S", default_value_t = 20.0, value_parser = seconds, allow_negative_numbers = true)]
+    seconds: f64,
+    /// How often it repeats in that time
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    periods: u32,
+    /// Harmonics of each joint's series, 2 or more
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = harmonics)]
+    harmonics: usize,
+    /// How far to go from the middle of the limits, or from 0 where there are none; rad or m, a number for all joints
+    /// or a list
+    #[arg(long, value_name = "LIST")]
+    range: Option<List>,
+    /// Largest speed, or a list; the file's holds too
+    #[arg(long, value_name = "LIST")]
+    velocity: Option<List>,
+    /// Largest acceleration, or a list; unless given, what reaches the speed in 0.5 s
+    #[arg(long, value_name = "LIST")]
+    acceleration: Option<List>,
+    /// No friction
+    #[arg(long)]
+    no_friction: bool,
+    /// Inertia of the motors' rotors, too
+    #[arg(long)]
+    rotors: bool,
+    /// How many motions are tried
+    #[arg(long, value_name = "N", default_value_t = 5000, value_parser = clap::value_parser!(u64).range(1..=MOTIONS))]
+    evaluations: u64,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Samples per second in OUT
+    #[arg(long, value_name = "HZ", default_value_t = 100.0, value_parser = rate, allow_negative_numbers = true)]
+    rate: f64,
+    /// Draw the positions, as SVG
+    #[arg(long, value_name = "SVG")]
+    plot: Option<PathBuf>,
+    /// The trajectory, as CSV; `-`: standard output
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Overwrite files that are there
+    #[arg(long)]
+    force: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| (1e-3..=86_400.0).contains(seconds));
+    seconds.ok_or_else(|| "a motion takes a number of seconds, 0.001 to 86400".to_owned())
+}
+
+fn harmonics(text: &str) -> Result<usize, String> {
+    let harmonics = text.parse().ok().filter(|harmonics| (2..=50).contains(harmonics));
+    harmonics.ok_or_else(|| "2 to 50 harmonics; fewer than two cannot start and end at rest".to_owned())
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| (1e-3..=1e6).contains(rate));
+    rate.ok_or_else(|| "a rate is a number of samples per second, 0.001 to 1000000".to_owned())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = robot_file::robot(&arguments.file)?;
+    if arguments.seconds * arguments.rate > MOST {
+        return Err(Failure::usage(format_args!(
+            "{} s at {} Hz are more than {MOST} samples; a lower --rate makes fewer",
+            exact(arguments.seconds),
+            exact(arguments.rate)
+        )));
+    }
+    let sources = [arguments.file.as_path()];
+    let out = arguments.output.as_deref();
+    let is_shown = out.is_some_and(is_standard_output);
+    if let (Some(out), Some(plot)) = (out, arguments.plot.as_deref())
+        && will_be_same(out, plot)
+    {
+        return Err(Failure::usage("the trajectory and its picture are two files: -o and --plot name the same"));
+    }
+    check_picture(arguments.plot.as_deref())?;
+    let trajectory = out.filter(|_| !is_shown);
+    let plot = arguments.plot.as_deref();
+    for path in trajectory.into_iter().chain(plot) {
+        check_new(path, None, &sources, arguments.force)?;
+        // before the search, not after it
+        drop(Replacement::begin(path).map_err(|error| unwritable(path, &error))?);
+    }
+    trajectory.map(|path| file_name::format(path, &[Format::Csv])).transpose()?;
+    plot.map(|path| file_name::check(path, Format::Svg)).transpose()?;
+    let limits = MotionLimits::of(&robot, &asked(arguments)).map_err(|error| failure(&error))?;
+    interruption::expect();
+    let found = watched(&robot, &limits, &options(arguments)).map_err(|error| match &error {
+        ExcitationError::Effort { .. } => beyond_effort(&robot, &limits, &error),
+        _ => failure(&error),
+    })?;
+    let account = account(arguments, &robot, &found);
+    let trajectory = || csv(&found.motion, robot.dof(), arguments);
+    // both files or none
+    let mut files = Vec::new();
+    if let Some(path) = &arguments.plot {
+        files.push((path.as_path(), picture(arguments, &robot, &found)));
+    }
+    if let Some(path) = out.filter(|_| !is_shown) {
+        files.push((path, trajectory()));
+    }
+    for (path, text) in &files {
+        check_new(path, Some(text), &sources, arguments.force)?;
+    }
+    let remark = output_file::write_all(&files)?;
+    Ok(if is_shown {
+        Outcome { text: trajectory(), remark: account + &remark, ..Outcome::default() }
+    } else {
+        Outcome { text: account, remark, ..Outcome::default() }
+    })
+}
+
+fn failure(error: &ExcitationError) -> Failure {
+    if error.is_of_request() { Failure::usage(error) } else { Failure::input(error) }
+}
+
+/// No motion is within the effort limits: where gravity alone is beyond them, a slower one is no way out.
+fn beyond_effort(robot: &Robot, limits: &[MotionLimits], error: &ExcitationError) -> Failure {
+    let none = "no motion was found within the effort limits";
+    let Some(loads) = Load::all(robot, limits) else { return failure(error) };
+    let [Some(middle), Some(least), Some(most)] = [
+        loads.first(),
+        loads.iter().reduce(|least, load| if load.part < least.part * (1.0 - SAME) { load } else { least }),
+        loads.iter().reduce(|most, load| if load.part > most.part * (1.0 + SAME) { load } else { most }),
+    ] else {
+        return failure(error);
+    };
+    let helps = "neither a slower motion nor a smaller --range helps";
+    Failure::input(if least.part > 1.0 {
+        let name = one_line(&robot.joints[least.joint].name);
+        format!(
+            "{none}: {}, and at none of {POSITIONS} positions within the limits less than that, so {helps}: is the \
+             effort limit of {name} right, and are the masses that it carries?",
+            least.words(robot, limits)
+        )
+    } else if middle.part > 1.0 {
+        format!(
+            "{none}: {}, the middle of the limits, so {helps}; position limits in the robot file, about where the arm \
+             is held with less, do",
+            middle.words(robot, limits)
+        )
+    } else if most.part > 1.0 {
+        format!("{error}; {}, which a smaller --range keeps away from", most.words(robot, limits))
+    } else {
+        return failure(error);
+    })
+}
+
+/// Positions at which gravity is looked at.
+const POSITIONS: u32 = 2000;
+
+/// Torques that differ by no more are rounding.
+const SAME: f64 = 1e-9;
+
+/// What gravity asks of the joint that has the least to spare, at rest.
+struct Load {
+    q: Vec<f64>,
+    joint: usize,
+    /// N m or N
+    needed: f64,
+    /// Of the joint's effort limit.
+    part: f64,
+}
+
+impl Load {
+    /// At positions that fill what the limits allow, the first of them in its middle: multiples of powers of the root
+    /// of x^(n + 1) = x + 1 for n joints, without their whole parts (Roberts, The Unreasonable Effectiveness of
+    /// Quasirandom Sequences, 2018). None where there are no effort limits.
+    fn all(robot: &Robot, limits: &[MotionLimits]) -> Option<Vec<Self>> {
+        let arm = CompiledArm::from_robot(robot).in_form(Form::SevenSteps);
+        let power = f64::from(u32::try_from(robot.dof() + 1).ok()?);
+        let root = (0..60).fold(2.0_f64, |root, _| (1.0 + root).powf(1.0 / power));
+        let at = |number: u32| {
+            let mut step = 1.0;
+            let of_joint = limits.iter().map(|limits| {
+                step /= root;
+                let (lower, upper) = limits.position;
+                lower + (upper - lower) * (0.5 + f64::from(number) * step).fract()
+            });
+            of_joint.collect::<Vec<f64>>()
+        };
+        (0..POSITIONS).map(|number| Self::of(&arm, limits, at(number))).collect()
+    }
+
+    fn of(arm: &CompiledArm, limits: &[MotionLimits], q: Vec<f64>) -> Option<Self> {
+        let torques = arm.gravity_torques(&q).ok()?;
+        let parts = torques.iter().zip(limits).map(|(torque, limits)| Some((torque.abs(), limits.effort?)));
+        let parts = parts.enumerate().filter_map(|(joint, part)| Some((joint, part?)));
+        let (joint, (needed, limit)) = parts.max_by(|(_, a), (_, b)| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+        Some(Self { q, joint, needed, part: needed / limit })
+    }
+
+    fn words(&self, robot: &Robot, limits: &[MotionLimits]) -> String {
+        let position = |(joint, q): (&Joint, &f64)| {
+            format!("{} {} {}", one_line(&joint.name), rounded(*q, 3), joint.row.kind.position_unit())
+        };
+        let positions: Vec<String> = robot.joints.iter().zip(&self.q).map(position).collect();
+        let joint = &robot.joints[self.joint];
+        format!(
+            "gravity alone needs {} of {} {} of {} at {}",
+            rounded(self.needed, 3),
+            limits[self.joint].effort.map_or_else(String::new, |limit| rounded(limit, 3)),
+            joint.row.kind.effort_unit(),
+            one_line(&joint.name),
+            positions.join(", ")
+        )
+    }
+}
+
+fn asked(arguments: &Arguments) -> AskedLimits {
+    let list = |list: &Option<List>| list.as_ref().map(|List(numbers)| numbers.clone());
+    let mut asked = AskedLimits::default();
+    asked.range = list(&arguments.range);
+    asked.velocity = list(&arguments.velocity);
+    asked.acceleration = list(&arguments.acceleration);
+    asked
+}
+
+fn options(arguments: &Arguments) -> ExcitationOptions {
+    let mut options = ExcitationOptions::default();
+    options.period = arguments.seconds / f64::from(arguments.periods);
+    options.harmonics = arguments.harmonics;
+    options.evaluations = arguments.evaluations;
+    options.seed = arguments.seed;
+    options.friction = !arguments.no_friction;
+    options.rotors = arguments.rotors;
+    options
+}
+
+/// Searches with a progress bar on a terminal.
+fn watched(robot: &Robot, limits: &[MotionLimits], options: &ExcitationOptions) -> Result<Excitation, ExcitationError> {
+    let bar = ProgressBar::new(options.evaluations);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {percent} % searched, {eta} to go, {msg}") {
+        bar.set_style(style.progress_chars("=> "));
+    }
+    let mut shown = Instant::now();
+    let found = excite(robot, limits, options, &mut |progress: &ExcitationProgress| {
+        if shown.elapsed() > Duration::from_millis(100) {
+            shown = Instant::now();
+            bar.set_position(progress.evaluations);
+            bar.set_message(format!("condition {}, {} excited", condition(progress.condition), progress.excited));
+        }
+        !interruption::is_wished()
+    });
+    bar.finish_and_clear();
+    found
+}
+
+fn condition(condition: f64) -> String {
+    if condition < 100.0 {
+        format!("{condition:.1}")
+    } else if condition < 1e6 {
+        format!("{condition:.0}")
+    } else {
+        format!("{condition:.1e}")
+    }
+}
+
+/// What was found, in tables.
+fn account(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
+    let friction = if arguments.no_friction { "without friction" } else { "with friction" };
+    let period = found.motion.period();
+    let times = if arguments.periods == 1 { String::new() } else { format!("{} times ", arguments.periods) };
+    let about = format!(
+        "{}: {times}{} s of {} harmonics, from rest to rest",
+        one_line(&robot.name),
+        exact(period),
+        arguments.harmonics
+    );
+    let mut text = format!("{TITLE}{}{TITLE:#}\n", wrap(&about, PAGE, "  "));
+    let excited = found.bases.iter().filter(|base| base.is_excited()).count();
+    let mark = if excited < found.bases.len() { WARNING } else { GOOD };
+    let all = found.bases.len();
+    let _ = writeln!(text, "{all} base parameters, {mark}{excited}{mark:#} of them would be excited");
+    let _ = writeln!(
+        text,
+        "condition {GOOD}{}{GOOD:#}, the best of {} motions; {} of the first one, {friction}",
+        condition(found.condition),
+        found.evaluations,
+        condition(found.first_condition)
+    );
+    joints(&mut text, robot, found);
+    if excited < found.bases.len() {
+        not_excited(&mut text, found);
+    }
+    let note = "the arm must stand at `start` first. Collisions are not known: the trajectory is checked against \
+                these limits alone, so look at it in a simulator or at low speed first";
+    let _ = writeln!(text, "\n{TITLE}note{TITLE:#}: {}", wrap(note, PAGE - 6, "      "));
+    text
+}
+
+fn joints(text: &mut String, robot: &Robot, found: &Excitation) {
+    let heading = ["  joint", "start", "from", "to", "", "range", "speed", "acceleration", "effort"];
+    let mut cells = vec![heading.map(str::to_owned)];
+    let percent = |used: f64, limit: f64| format!("{:.0} %", 100.0 * used / limit);
+    for (joint, used) in robot.joints.iter().zip(&found.joints) {
+        let JointUse { limits, start, extent, effort, .. } = used;
+        let unit = joint.row.kind.position_unit();
+        let (lower, upper) = limits.position;
+        cells.push([
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
+            rounded(*start, 3),
+            rounded(extent.lower, 3),
+            rounded(extent.upper, 3),
+            unit.to_owned(),
+            percent(extent.upper - extent.lower, upper - lower),
+            percent(extent.velocity, limits.velocity),
+            percent(extent.acceleration, limits.acceleration),
+            effort.zip(limits.effort).map_or_else(|| "-".to_owned(), |(used, limit)| percent(used, limit)),
+        ]);
+    }
+    let mut align = [Align::Right; 9];
+    (align[0], align[4]) = (Align::Left, Align::Left);
+    push_table(text, "where joints start and go, and how much of their limits they use", &align, &cells);
+}
+
+fn not_excited(text: &mut String, found: &Excitation) {
+    let mut cells = vec![["  parameter", "deviation", "plausible", "unit"].map(str::to_owned)];
+    for base in found.bases.iter().filter(|base| !base.is_excited()) {
+        let name = format!("  {}", base.name);
+        cells.push([name, rounded(base.deviation, 4), rounded(base.plausible, 4), base.unit.to_owned()]);
+    }
+    let align = [Align::Left, Align::Right, Align::Right, Align::Left];
+    push_table(text, "not excited: a deviation of more than half of what is plausible", &align, &cells);
+}
+
+/// The states of the whole motion, its ends included.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "1 to half a million")]
+fn csv(motion: &Fourier, dof: usize, arguments: &Arguments) -> String {
+    let names = ["q", "qd", "qdd"].into_iter().flat_map(|name| (1..=dof).map(move |joint| format!("{name}{joint}")));
+    let mut text = names.fold("t".to_owned(), |header, name| header + "," + &name);
+    text.push('\n');
+    // whole steps, none of them longer than those of the rate
+    let steps = (arguments.seconds * arguments.rate * (1.0 - 1e-12)).ceil().max(1.0) as u32;
+    for step in 0..=steps {
+        let part = f64::from(step) / f64::from(steps);
+        text.push_str(&exact(arguments.seconds * part));
+        for number in motion.after(part * f64::from(arguments.periods)).into_iter().flatten() {
+            let _ = write!(text, ",{}", exact(number));
+        }
+        text.push('\n');
+    }
+    text
+}
+
+/// The positions of every joint between their limits.
+fn picture(arguments: &Arguments, robot: &Robot, found: &Excitation) -> String {
+    let parts: Vec<f64> = (0..=DRAWN).map(|sample| f64::from(sample) / f64::from(DRAWN)).collect();
+    let time: Vec<f64> = parts.iter().map(|part| arguments.seconds * part).collect();
+    let states: Vec<Vec<f64>> = parts
+        .iter()
+        .map(|part| {
+            let [q, ..] = found.motion.after(part * f64::from(arguments.periods));
+            q
+        })
+        .collect();
+    let positions: Vec<Vec<f64>> = (0..robot.dof()).map(|joint| states.iter().map(|q| q[joint]).collect()).collect();
+    let of_joint = robot.joints.iter().zip(&found.joints).zip(&positions).map(|((joint, used), values)| Panel {
+        title: format!("{}, {}", joint.name, joint.row.kind.position_unit()),
+        note: format!("starts at {}", rounded(used.start, 3)),
+        curves: vec![PanelCurve { name: "position", values }],
+        limits: vec![used.limits.position.0, used.limits.position.1],
+        bands: Vec::new(),
+    });
+    let title = robot.title.as_deref().unwrap_or(&robot.name);
+    let about = format!("a motion that excites it; condition {}", condition(found.condition));
+    panels(&format!("A motion of {}", robot.name), title, &about, &time, &of_joint.collect::<Vec<_>>())
+}

@@ -1,0 +1,201 @@
+//! `rne explain`: what is too long for a `--help`: functions, tricks, quantities, exit statuses, and what a name in the
+//! code of a robot is.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use rne_codegen::plan::Trick;
+use rne_codegen::{Argument, Compiler, Form, Function};
+use rne_inspection::Inspection;
+use rne_model::did_you_mean;
+
+use crate::files::plan_file;
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::TYPED;
+use crate::render::equations;
+use crate::render::equations::View;
+use crate::render::layout::{PAGE, wrap};
+use crate::render::letters::Letters;
+use crate::terminal;
+use crate::values::choice;
+use crate::values::choice::Kept;
+
+/// Explain words of options, exit statuses, names in the code
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne explain functions     what an arm can compute: --function
+  rne explain arguments     which function takes which options of `rne eval`
+  rne explain tricks        the tricks of the reduced form: --without
+  rne explain quantities    what `rne show --keep` keeps
+  rne explain exit-status   what a script can rely on
+  rne explain w2_z puma560  what that name in the code of a robot is")]
+pub(crate) struct Arguments {
+    /// What to explain: functions, arguments, tricks, quantities, exit-status, or a name in the code of FILE
+    #[arg(value_name = "TOPIC")]
+    topic: String,
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: Option<PathBuf>,
+    /// With FILE: in which function
+    #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
+        default_value = Function::InverseDynamics.name(), requires = "file")]
+    function: Function,
+    /// With FILE: in which form, seven_steps or reduced
+    #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true, requires = "file")]
+    form: Form,
+    #[command(flatten)]
+    letters: Letters,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Topic {
+    Functions,
+    Arguments,
+    Tricks,
+    Quantities,
+    ExitStatus,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if let Some(file) = &arguments.file {
+        return name_in_code(arguments, file);
+    }
+    let topic = Topic::from_str(&arguments.topic, false).map_err(|_| {
+        let topics: Vec<_> = Topic::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
+        let topics: Vec<&str> = topics.iter().map(clap::builder::PossibleValue::get_name).collect();
+        let word = &arguments.topic;
+        let meant = did_you_mean(word, topics.iter().copied())
+            .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
+        Failure::usage(format_args!(
+            "there is no topic `{word}`{meant}; expected {}, or a name in the code of a robot and its file, as in \
+             {TYPED}rne explain w2_z puma560{TYPED:#}",
+            topics.join(", ")
+        ))
+    })?;
+    let text = match topic {
+        Topic::Functions => entries(Function::ALL.map(|function| (function.name(), function.summary().to_owned()))),
+        Topic::Arguments => of_eval(),
+        Topic::Tricks => entries(Trick::ALL.map(|trick| (trick.name(), trick.formula().to_owned()))),
+        Topic::Quantities => quantities(),
+        Topic::ExitStatus => EXIT_STATUS.to_owned(),
+    };
+    Ok(Outcome::text(arguments.letters.page(&text, PAGE)))
+}
+
+/// What a name in the code of a robot is.
+fn name_in_code(arguments: &Arguments, path: &Path) -> Result<Outcome, Failure> {
+    let (name, function, form) = (&arguments.topic, arguments.function, arguments.form);
+    let robot = robot_file::robot(path).map_err(|failure| swapped(name, path).unwrap_or(failure))?;
+    let program = match form {
+        Form::SevenSteps => Compiler::new(&robot)
+            .with_equations()
+            .compile(function, form)
+            .map_err(|error| Failure::compile(&path.display().to_string(), &error))?,
+        Form::Reduced => plan_file::Compiler::new(path, &robot).compile(function, form)?,
+    };
+    let inspection = Inspection::new(&robot, &program);
+    if let Some(text) = equations::of_name(View { inspection: &inspection, letters: arguments.letters }, name) {
+        return Ok(Outcome::text(text));
+    }
+    let meant = did_you_mean(name, inspection.names.keys().map(String::as_str))
+        .map_or_else(String::new, |meant| format!(" (did you mean {TYPED}{meant}{TYPED:#}?)"));
+    Err(Failure::usage(format_args!(
+        "nothing is called `{name}` in {function}, form {form}, of {}{meant}; {TYPED}rne show{TYPED:#} prints the \
+         code, {TYPED}--form{TYPED:#} and {TYPED}--function{TYPED:#} choose another",
+        robot.name
+    )))
+}
+
+const EXIT_STATUS: &str = "\
+0    fine. `rne check`: no file has an error, lints or not; `rne emit --check`:
+     the file is what rne would write
+1    the input is at fault: a robot file or a plan has an error, cannot be read
+     or changes during a search, the result of one state is not finite, a file
+     that is checked is stale, torques differ and `rne diagnose` cannot say why,
+     a value differs from that of `rne eval --trace --compare`, `rne watch` has
+     events, `rne log` cannot tell the units or the noise of a log, a log has
+     nothing that `rne identify` could find, or the output cannot be written
+2    the command line is at fault: an option, a joint, parameter or link that
+     the robot does not have, a list of another length, or a file or folder that
+     rne does not overwrite
+130  Ctrl-C ended the command; of `rne search` and `rne excite` the second one
+129, 143  SIGHUP or SIGTERM ended the command
+
+Where a signal ended the command, files are as they were, and no temporary file
+is left.
+
+Errors go to standard error, and nothing to standard output then; but what an
+answer of status 1 has to say, such as events, is on standard output, and what
+`rne eval --states` has printed of states before a mistake stays, while a file
+of -o appears whole or not at all. There a result that is not finite is NaN or
+inf in its row, with a note and status 0. A reader that goes away
+(`rne show … | head`) is no error.
+";
+
+/// Names, each with words below it.
+fn entries(entries: impl IntoIterator<Item = (&'static str, String)>) -> String {
+    let mut text = String::new();
+    for (name, words) in entries {
+        let words = wrap(&words, terminal::width(PAGE) - 4, "").replace('\n', "\n    ");
+        let _ = writeln!(text, "{TYPED}{name}{TYPED:#}\n    {words}");
+    }
+    text
+}
+
+fn quantities() -> String {
+    let values: Vec<_> = Kept::value_variants().iter().filter_map(ValueEnum::to_possible_value).collect();
+    let lines = values.iter().map(|value| {
+        let words = value.get_help().map(ToString::to_string).unwrap_or_default();
+        format!("{TYPED}{:<16}{TYPED:#}{words}\n", value.get_name())
+    });
+    lines.collect()
+}
+
+/// What is said where a robot stands before the name: `rne explain puma560 w2_z`.
+fn swapped(name: &str, path: &Path) -> Option<Failure> {
+    let is_robot = robot_file::of_a_name(Path::new(name)).is_some() || Path::new(name).is_file();
+    (is_robot && !path.exists()).then(|| {
+        let asked = path.display();
+        Failure::usage(format_args!("the name comes first, then the robot: {TYPED}rne explain {asked} {name}{TYPED:#}"))
+    })
+}
+
+/// How arguments are given.
+const OF_EVAL: &str = "\
+Every function takes exactly its arguments, and nothing is assumed to be zero. A LIST has one number per joint, \
+base to tip: rad for a revolute joint, m for a prismatic one; pi/2 and 'deg(30)' are numbers. A wrench is in N \
+and N m, what the last link exerts at the tip, a payload in kg, m and kg m², both in the axes of the tip; what a \
+moving base does is in frame 0. Tables are rounded for reading; --json has every digit, in the shape that the \
+Rust function returns. Without --function it is inverse_dynamics, with --wrench or --payload that with it.";
+
+/// Which options of `rne eval` a function takes, exactly.
+fn of_eval() -> String {
+    use Argument::{Positions, Rates, Torques};
+    let mut text = String::new();
+    let mut row = |options: &str, functions: &str| {
+        let indent = " ".repeat(18);
+        let words = wrap(functions, terminal::width(PAGE) - indent.len(), "").replace('\n', &format!("\n{indent}"));
+        let _ = writeln!(text, "{TYPED}{options:<18}{TYPED:#}{words}");
+    };
+    row("--q", &functions_of(&[Positions]));
+    row("--q --qd", &functions_of(&[Positions, Rates]));
+    row(
+        "--q --qd --qdd",
+        "inverse_dynamics, inverse_dynamics_from_sin_cos (sines and cosines of --q), regressor, \
+         inverse_dynamics_derivatives, joint_wrenches; with --wrench inverse_dynamics_with_wrench, with --payload \
+         inverse_dynamics_with_payload, with the --base-… options inverse_dynamics_on_moving_base",
+    );
+    row("--q --qd --tau", &functions_of(&[Positions, Rates, Torques]));
+    row("--qd --qdd", "actuator_torques; zero where no joint has a motor");
+    text + "\n" + &wrap(OF_EVAL, terminal::width(PAGE), "") + "\n"
+}
+
+/// The functions with exactly these arguments.
+fn functions_of(arguments: &[Argument]) -> String {
+    let functions = Function::ALL.iter().filter(|function| function.arguments() == arguments);
+    functions.map(|function| function.name()).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,198 @@
+//! `rne firmware`: a folder with a firmware that computes a robot's torques.
+//!
+//! The folder `firmware/` has its files. They are those of `examples/firmware`, for the PUMA 560, and valid as they
+//! stand; only the lines named in [`files`] change with the robot.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_codegen::{Form, Function, emit};
+use rne_model::{Robot, plan_of};
+
+use crate::files::output_file::{is_standard_output, unreadable, unwritable};
+use crate::files::output_folder;
+use crate::files::plan_file::{self, Compiler};
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, TYPED};
+
+/// Write a folder with a firmware for Cortex-M that computes torques
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne firmware torque                      the folder torque, for the PUMA 560
+  rne firmware ur5                         for the shipped robot of this name
+  rne firmware desk --robot my_arm.yaml -o desk_firmware
+
+Until rne is published, add --rne-path with the folder of its repository.
+
+Then, in the folder:
+  rustup target add thumbv7em-none-eabihf
+  sudo apt-get install --yes qemu-system-arm
+  cargo run --release
+
+The folder must be empty or not there yet: nothing is overwritten.")]
+pub(crate) struct Arguments {
+    /// The firmware's name, as cargo takes it: letters, digits, - and _
+    #[arg(value_name = "NAME", value_parser = name)]
+    name: String,
+    /// Robot file, or a shipped robot [default: the shipped robot NAME, else puma560]
+    #[arg(long, value_name = "FILE")]
+    robot: Option<PathBuf>,
+    /// The folder to write, instead of NAME
+    #[arg(short, long, value_name = "FOLDER")]
+    output: Option<PathBuf>,
+    /// Take rne from this folder, a clone of its repository, and not from the registry
+    #[arg(long, value_name = "PATH")]
+    rne_path: Option<PathBuf>,
+}
+
+/// Names that the crate cannot have: of what it depends on, of what every crate knows, of folders that cargo makes.
+const TAKEN: [&str; 15] = [
+    "rne",
+    "cortex-m",
+    "cortex-m-rt",
+    "cortex-m-semihosting",
+    "panic-semihosting",
+    "core",
+    "std",
+    "alloc",
+    "test",
+    "proc-macro",
+    "build",
+    "deps",
+    "examples",
+    "incremental",
+    "self",
+];
+
+fn name(text: &str) -> Result<String, String> {
+    let starts_well = text.starts_with(|c: char| c.is_ascii_alphabetic());
+    if !starts_well || !text.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-') || text.len() > 64 {
+        return Err("a crate's name has letters, digits, - and _, 64 at most, and starts with a letter".to_owned());
+    }
+    if TAKEN.contains(&text.replace('_', "-").as_str()) {
+        return Err("this name is taken; another will do, such as torque".to_owned());
+    }
+    Ok(text.to_owned())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let folder = arguments.output.clone().unwrap_or_else(|| PathBuf::from(&arguments.name));
+    is_free(&folder)?;
+    let dependency = dependency(arguments.rne_path.as_deref())?;
+    let robot_file = robot_of(arguments);
+    let (checked, bytes) = robot_file::read_with_run_time(&robot_file, &[])?;
+    let robot = checked.robot;
+    let yaml = String::from_utf8(bytes).map_err(|error| Failure::input(error.utf8_error()))?;
+    let plan = plan_file::read(&robot_file, &robot)?.map(|read| read.text);
+    // What the firmware's build would refuse, for that is late.
+    Compiler::new(&robot_file, &robot).compile(Function::InverseDynamics, Form::Reduced)?;
+
+    let mut files = files(&arguments.name, &robot, &dependency);
+    files.push((ROBOT.into(), yaml));
+    files.extend(plan.map(|plan| (plan_of(Path::new(ROBOT)), plan)));
+    output_folder::write(&folder, &files).map_err(|(path, error)| unwritable(&path, &error))?;
+    Ok(Outcome::remark(next(&folder, &files)))
+}
+
+/// The file or name that was given; else a shipped robot, that of the firmware's name if there is one.
+fn robot_of(arguments: &Arguments) -> PathBuf {
+    let shipped = rne_robots::find(&arguments.name).map_or("puma560", |robot| robot.name);
+    arguments.robot.clone().unwrap_or_else(|| shipped.into())
+}
+
+/// Whether nothing stands where the folder is to be.
+fn is_free(folder: &Path) -> Result<(), Failure> {
+    let shown = folder.display();
+    if is_standard_output(folder) {
+        return Err(Failure::usage(format_args!(
+            "a firmware is a folder of files, so it cannot go to standard output; name the folder with {TYPED}-o \
+             FOLDER{TYPED:#}"
+        )));
+    }
+    match fs::read_dir(folder).map(|mut entries| entries.next().is_none()) {
+        Ok(true) => Ok(()),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
+        Ok(false) => Err(Failure::usage(format_args!(
+            "{shown} is not empty and stays as it is; name another folder with {TYPED}-o FOLDER{TYPED:#}"
+        ))),
+        Err(error) if error.kind() == ErrorKind::NotADirectory => Err(Failure::usage(format_args!(
+            "{shown} is no folder and stays as it is; name another with {TYPED}-o FOLDER{TYPED:#}"
+        ))),
+        Err(error) => Err(unreadable(folder, &error)),
+    }
+}
+
+/// The line of `rne` in the manifest of the template.
+const PUBLISHED: &str = "rne = { version = \"0.1\", default-features = false }";
+
+/// The line of `rne` in the manifest, for a clone of its repository or for the registry.
+fn dependency(clone: Option<&Path>) -> Result<String, Failure> {
+    let Some(clone) = clone else { return Ok(PUBLISHED.to_owned()) };
+    let is_rne = fs::read_to_string(clone.join("Cargo.toml")).is_ok_and(|text| text.contains("\nname = \"rne\"\n"));
+    let path = std::path::absolute(clone).ok().filter(|_| is_rne);
+    let path = path.as_deref().and_then(Path::to_str).ok_or_else(|| {
+        Failure::usage(format_args!(
+            "{} is no clone of rne's repository, whose Cargo.toml has the package rne; name the folder of one",
+            clone.display()
+        ))
+    })?;
+    // a string of JSON is one of TOML
+    let path = serde_json::Value::from(path);
+    Ok(format!("rne = {{ path = {path}, default-features = false }}"))
+}
+
+/// The robot's file in the folder.
+const ROBOT: &str = "robot.yaml";
+
+/// The files that are made from the template, with what differs from firmware to firmware: the crate's name, where
+/// `rne` is, the number of joints, the robot's title.
+fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> {
+    let manifest = include_str!("firmware/manifest.toml")
+        .replacen("name = \"firmware\"", &format!("name = \"{name}\""), 1)
+        .replacen(PUBLISHED, dependency, 1);
+    let main = include_str!("firmware/main.rs").replacen(
+        "const JOINTS: usize = 6;",
+        &format!("const JOINTS: usize = {};", robot.dof()),
+        1,
+    );
+    let readme = include_str!("firmware/README.md").replacen("# firmware", &format!("# {name}"), 1).replacen(
+        "TITLE",
+        &emit::markdown(&emit::title(robot)),
+        1,
+    );
+    let files = [
+        ("README.md", readme),
+        ("Cargo.toml", manifest),
+        (".cargo/config.toml", include_str!("firmware/config.toml").to_owned()),
+        ("memory.x", include_str!("firmware/memory.x").to_owned()),
+        ("build.rs", include_str!("firmware/build.rs").to_owned()),
+        ("src/main.rs", main),
+    ];
+    files.map(|(file, text)| (file.into(), text)).into()
+}
+
+/// What was written, and what is typed next.
+fn next(folder: &Path, files: &[(PathBuf, String)]) -> String {
+    let mut text = String::new();
+    for (file, _) in files {
+        let _ = writeln!(text, "{GOOD}wrote{GOOD:#} {}", folder.join(file).display());
+    }
+    text.push_str("\nnext:\n\n");
+    let _ = writeln!(text, "  {TYPED}cd {}{TYPED:#}", robot_file::shell(folder));
+    for command in commands() {
+        let _ = writeln!(text, "  {TYPED}{command}{TYPED:#}");
+    }
+    text
+}
+
+/// The commands that the README gives to its reader.
+fn commands() -> impl Iterator<Item = &'static str> {
+    let (_, below) = include_str!("firmware/README.md").split_once("```sh\n").unwrap_or_default();
+    let lines = below.lines().take_while(|line| *line != "```");
+    lines.filter_map(|line| line.split(" #").next()).map(str::trim)
+}

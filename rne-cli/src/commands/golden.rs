@@ -1,0 +1,183 @@
+//! Golden values: what the runtime, which knows nothing of generated code, computes at states that are the same in each
+//! run.
+
+use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
+use rne_codegen::emit::{Golden, Precision};
+use rne_codegen::{Function, Program};
+use rne_model::{GoldenFile, Robot};
+
+use crate::outcome::Failure;
+use crate::render::physics;
+use crate::values::numbers::exact;
+use crate::values::state::State;
+
+/// So many states hold emitted code.
+const STATES: usize = 4;
+
+/// The states at which emitted code is tested, with what its functions return there. The parameters that are known at
+/// run time have other values than in the file.
+pub(crate) fn of_programs(robot: &Robot, programs: &[Program], precision: Precision) -> Result<Vec<Golden>, Failure> {
+    let mut random = Random::new(precision);
+    let in_file = robot.run_time.values(robot);
+    (0..STATES)
+        .map(|_| {
+            let state = random.state(robot.dof());
+            let parameters: Vec<f64> =
+                in_file.iter().map(|value| random.rounded(value * (1.25 + random.number(0.5)))).collect();
+            let arm = robot.with_parameters(&parameters).unwrap_or_else(|| robot.clone());
+            let arm = DynArm::from_robot(&arm);
+            let results = programs.iter().map(|program| {
+                let numbers = state.of(program.function).numbers(&arm).map_err(Failure::usage)?;
+                let is_finite = numbers.iter().all(|number| number.is_finite());
+                let is_left_out = program.function == Function::ForwardDynamics
+                    && precision == Precision::Single
+                    && !is_well_conditioned(&state, &arm);
+                Ok(if is_finite && !is_left_out { numbers } else { Vec::new() })
+            });
+            let results = results.collect::<Result<_, Failure>>()?;
+            let sizes =
+                programs.iter().map(|program| size(program.function, &state, &arm)).collect::<Result<_, _>>()?;
+            Ok(Golden { arguments: arguments(&state, parameters), results, sizes })
+        })
+        .collect()
+}
+
+/// How large the terms of a function are: lengths and directions are about one, dynamics has the torques on a base that
+/// moves in all directions under a gravity that no axis is parallel to.
+fn size(function: Function, state: &State, arm: &DynArm) -> Result<f64, Failure> {
+    let is_kinematic = matches!(
+        function,
+        Function::ForwardKinematics
+            | Function::LinkPoses
+            | Function::Jacobian
+            | Function::JacobianRateTimesVelocity
+            | Function::CentreOfMass
+            | Function::CentreOfMassJacobian
+    );
+    if is_kinematic {
+        return Ok(1.0);
+    }
+    let torques = state.of(Function::InverseDynamicsOnMovingBase).numbers(arm).map_err(Failure::usage)?;
+    Ok(torques.iter().filter(|torque| torque.is_finite()).fold(0.0, |largest, torque| torque.abs().max(largest)))
+}
+
+/// Whether accelerations keep digits in single precision: a joint that hardly resists while those behind it move freely
+/// takes them all.
+fn is_well_conditioned(state: &State, arm: &DynArm) -> bool {
+    const LEAST: f64 = 1e-3;
+    arm.mass_matrix(&state.q).is_ok_and(|matrix| physics::smallest_pivot(matrix) > LEAST)
+}
+
+/// Every argument by its name in emitted code.
+fn arguments(state: &State, parameters: Vec<f64>) -> Vec<(&'static str, Vec<f64>)> {
+    let (sin, cos) = state.q.iter().map(|&q| Scalar::sin_cos(q)).unzip();
+    let wrench = state.wrench.unwrap_or_else(Wrench::zero);
+    let BaseMotion { omega, omega_dot, acceleration, gravity, .. } = state.base;
+    vec![
+        ("sin", sin),
+        ("cos", cos),
+        ("q", state.q.clone()),
+        ("qd", state.qd.clone()),
+        ("qdd", state.qdd.clone()),
+        ("tau", state.tau.clone()),
+        ("force", wrench.force.to_vec()),
+        ("moment", wrench.moment.to_vec()),
+        ("payload", state.payload.unwrap_or_default().to_array().to_vec()),
+        ("base_omega", omega.to_vec()),
+        ("base_omega_dot", omega_dot.to_vec()),
+        ("base_acceleration", acceleration.to_vec()),
+        ("base_gravity", gravity.to_vec()),
+        ("parameters", parameters),
+    ]
+}
+
+/// Reads how many states a golden file is to have.
+pub(crate) fn states(text: &str) -> Result<u16, String> {
+    let states = text.parse().ok().filter(|&states| states > 0);
+    states.ok_or_else(|| format!("a golden file has 1 to {} states, such as --golden 100", u16::MAX))
+}
+
+/// A golden file: torques of a robot at so many states; its heading says which settings are not the file's.
+pub(crate) fn file(robot: &Robot, states: u16, settings: &[String]) -> Result<String, Failure> {
+    let (mut random, arm) = (Random::new(Precision::Double), DynArm::from_robot(robot));
+    let rotors = if robot.has_rotors() { ", with its rotors" } else { "" };
+    let with = if settings.is_empty() { String::new() } else { format!(" with {}", settings.join(", ")) };
+    let mut text = format!(
+        "# Torques of {}{rotors}{with}, by the runtime of rne {}: rad, rad/s, rad/s^2, N m; m, m/s, m/s^2, N where a \
+         joint slides\n{}\n",
+        robot.name,
+        env!("CARGO_PKG_VERSION"),
+        GoldenFile::header(robot.dof()).join(",")
+    );
+    for _ in 0..states {
+        let state = random.state(robot.dof());
+        let torques = state.numbers(&arm).map_err(Failure::usage)?;
+        let numbers = [&state.q, &state.qd, &state.qdd, &torques].into_iter().flatten();
+        let numbers: Vec<String> = numbers.copied().map(exact).collect();
+        if torques.iter().any(|torque| !torque.is_finite()) {
+            return Err(Failure::input(format_args!("a torque of {} overflows", robot.name)));
+        }
+        text.push_str(&numbers.join(","));
+        text.push('\n');
+    }
+    Ok(text)
+}
+
+/// Numbers that are the same in each run and on each machine: a linear congruential generator, with Knuth's constants.
+pub(crate) struct Random {
+    state: std::cell::Cell<u64>,
+    precision: Precision,
+}
+
+impl Random {
+    /// Numbers that this number type holds.
+    pub(crate) const fn new(precision: Precision) -> Self {
+        Self { state: std::cell::Cell::new(0x5EED), precision }
+    }
+
+    /// Between `-limit` and `limit`.
+    fn number(&self, limit: f64) -> f64 {
+        let next = self.state.get().wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.state.set(next);
+        // the upper bits are the random ones
+        let [a, b, c, d, ..] = next.to_be_bytes();
+        self.rounded(limit * (2.0 * f64::from(u32::from_be_bytes([a, b, c, d])) / f64::from(u32::MAX) - 1.0))
+    }
+
+    #[allow(clippy::cast_possible_truncation)] // rounded
+    fn rounded(&self, number: f64) -> f64 {
+        match self.precision {
+            Precision::Single => f64::from(number as f32),
+            Precision::Double => number,
+        }
+    }
+
+    fn vector(&self, limit: f64) -> [f64; 3] {
+        [0; 3].map(|_| self.number(limit))
+    }
+
+    /// A state of an arm, and what acts on it: rad, m, kg, N.
+    pub(crate) fn state(&mut self, dof: usize) -> State {
+        let joints = |limit| (0..dof).map(|_| self.number(limit)).collect();
+        State {
+            function: Function::InverseDynamics,
+            q: joints(3.0),
+            qd: joints(2.0),
+            qdd: joints(5.0),
+            tau: joints(20.0),
+            wrench: Some(Wrench { force: self.vector(10.0), moment: self.vector(10.0) }),
+            payload: Some(Payload {
+                mass: self.rounded(1.5 + self.number(1.0)),
+                com: self.vector(0.1),
+                ..Payload::default()
+            }),
+            base: BaseMotion {
+                omega: self.vector(1.0),
+                omega_dot: self.vector(2.0),
+                velocity: [0.0; 3],
+                acceleration: self.vector(5.0),
+                gravity: self.vector(10.0),
+            },
+        }
+    }
+}

@@ -1,0 +1,175 @@
+//! `rne import`: a robot file of an arm in a URDF, and an account of what was done.
+
+use std::fmt::Write as _;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_convert::{Account, Difference, Imported, Options, Selection, Urdf};
+use rne_model::Convention;
+
+use crate::files::file_name::Format;
+use crate::files::input_file::{self, is_standard_input};
+use crate::files::output_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{QUIET, TITLE, TYPED};
+use crate::render::heading::rounding;
+use crate::values::choice::{convention, robot_name};
+
+/// Make a robot file of an arm in a URDF
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne export puma560 --urdf -o puma.urdf         a URDF to try it on
+  rne import puma.urdf --convention modified     to the terminal
+  rne import puma.urdf --name puma -o puma.yaml
+
+An arm with more than one end: --base torso_lift_link --tip arm_tool_link; with
+joints beside the chain: --lock torso_lift_joint=0.1 --lock-others.
+
+What is fixed to a link is lumped into it. Angles within 2e-4 rad of a multiple
+of pi/12 are taken for it, and what that changes is told. The robot file goes to
+standard output, the account to standard error, unless -o names a file.")]
+#[allow(clippy::struct_excessive_bools)] // each is a flag of its own
+pub(crate) struct Arguments {
+    /// The URDF; - is standard input
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// The link that stands still; the root, unless given
+    #[arg(long, value_name = "LINK")]
+    base: Option<String>,
+    /// The link at the end of the arm; needed where there are several
+    #[arg(long, value_name = "LINK")]
+    tip: Option<String>,
+    /// The rows of the table, standard or modified
+    #[arg(long, value_name = "C", value_parser = convention(), default_value = "standard", hide_possible_values = true)]
+    convention: Convention,
+    /// Hold a movable joint still, at rad or m, such as finger=0.04
+    #[arg(long, value_name = "JOINT=VALUE", value_parser = lock)]
+    lock: Vec<(String, f64)>,
+    /// Hold every other movable joint off the chain at zero
+    #[arg(long)]
+    lock_others: bool,
+    /// Take angles as they are, 1.5708 as 1.5708
+    #[arg(long)]
+    no_snap: bool,
+    /// Take inertias that no body has
+    #[arg(long)]
+    keep_unphysical: bool,
+    /// The name of the robot; that of the URDF, unless given
+    #[arg(long, value_parser = robot_name)]
+    name: Option<String>,
+    /// Where to write the robot file; standard output, unless given
+    #[arg(short, long = "output", value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out")]
+    force: bool,
+}
+
+/// Reads `JOINT=VALUE`.
+fn lock(text: &str) -> Result<(String, f64), String> {
+    let (joint, value) = text.rsplit_once('=').ok_or("write JOINT=VALUE, such as finger=0.04")?;
+    let value = rne_model::number(value.trim())
+        .map_err(|mistake| format!("`{value}` is no number: {}; write such as {joint}=0.04", mistake.message))?;
+    Ok((joint.to_owned(), value))
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let (file, text) = read(&arguments.file)?;
+    let urdf = Urdf::read(&file, &text).map_err(|report| Failure::from(&report))?;
+    let selection = Selection {
+        base: arguments.base.clone(),
+        tip: arguments.tip.clone(),
+        lock: arguments.lock.clone(),
+        lock_others: arguments.lock_others,
+    };
+    urdf.check_names(&selection).map_err(|report| Failure::unknown_name(&report))?;
+    let options = Options {
+        selection,
+        convention: arguments.convention,
+        snap: !arguments.no_snap,
+        keep_unphysical: arguments.keep_unphysical,
+        name: arguments.name.clone(),
+        ..Options::default()
+    };
+    let Imported { robot, text, account, .. } = urdf.import(&options).map_err(|report| Failure::from(&report))?;
+    let remark = format!("{TITLE}{}{TITLE:#}: {} joints\n{}", robot.name, robot.dof(), told(&account));
+    output_file::deliver(arguments.out.as_deref(), Format::RobotFile, text, remark, &[&arguments.file], arguments.force)
+}
+
+/// The text, and what messages call its file.
+fn read(path: &Path) -> Result<(String, String), Failure> {
+    const LONGEST: usize = 16 << 20;
+    let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
+    let bytes = match input_file::read(path, LONGEST) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => {
+            return Err(Failure::input(format_args!("there is no URDF {}", path.display())));
+        }
+        Err(error) => return Err(Failure::input(format_args!("{} cannot be read: {error}", path.display()))),
+    };
+    let text = String::from_utf8(bytes).map_err(|error| {
+        let at = error.utf8_error().valid_up_to();
+        Failure::input(format_args!("{}: byte {at} is not UTF-8; save the file as UTF-8", path.display()))
+    })?;
+    Ok((name, text))
+}
+
+/// So many lines of a list are shown.
+const SHOWN: usize = 40;
+
+/// What was done, line by line.
+fn told(account: &Account) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "from {} to {}", account.base, account.tip);
+    for (joint, links) in &account.lumped {
+        let _ = writeln!(text, "  {joint} moves {} as one body", links.join(", "));
+    }
+    for (joint, value) in account.held.iter().take(SHOWN) {
+        let _ = writeln!(text, "  {joint} is held at {value}");
+    }
+    if account.held.len() > SHOWN {
+        let _ = writeln!(text, "  and {} more", account.held.len() - SHOWN);
+    }
+    if !account.aside.is_empty() {
+        let _ = writeln!(text, "  on the base, left out: {}", account.aside.join(", "));
+    }
+    if let Some(change) = &account.change {
+        let _ = writeln!(text, "{TITLE}snapped{TITLE:#} to multiples of pi/12, {TYPED}--no-snap{TYPED:#} leaves them:");
+        for snapped in account.snapped.iter().take(SHOWN) {
+            let _ = writeln!(
+                text,
+                "  {}: {} is {} {QUIET}(by {:.1e} rad){QUIET:#}",
+                snapped.place, snapped.from, snapped.to, snapped.by
+            );
+        }
+        if account.snapped.len() > SHOWN {
+            let _ = writeln!(text, "  and {} more", account.snapped.len() - SHOWN);
+        }
+        text += &changed(change);
+    }
+    for remark in &account.remarks {
+        let _ = writeln!(text, "{TITLE}note{TITLE:#}: {remark}");
+    }
+    let _ = writeln!(text, "{QUIET}{}{QUIET:#}", rounding(&account.rounding));
+    let lints = account.lints.warnings().count();
+    if lints > 0 {
+        let lints = if lints == 1 { "1 lint".to_owned() } else { format!("{lints} lints") };
+        let _ = writeln!(text, "{lints} in the robot file; {TYPED}rne check{TYPED:#} shows where");
+    }
+    text
+}
+
+/// What snapping changes.
+fn changed(change: &Difference) -> String {
+    let accelerations = change.acceleration.map_or_else(
+        || "the mass matrix is singular".to_owned(),
+        |acceleration| format!("accelerations by {acceleration:.1e}"),
+    );
+    format!(
+        "  over 1,000 states that moves the tip by {:.1e} m and {:.1e} rad, torques by {:.1e} N m or {:.1e} of the \
+         largest, {accelerations}\n",
+        change.position, change.rotation, change.absolute_torque, change.torque
+    )
+}

@@ -1,0 +1,173 @@
+//! `rne log`: what a log of an arm has, and its motion, filtered.
+
+use std::fmt::Write as _;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use indicatif::ProgressBar;
+use rne_logs::{Cutoff, Log, LogError, Motion, Survey};
+
+use crate::files::file_name::{self, Format};
+use crate::files::input_file::is_standard_input;
+use crate::files::motion_log::{check_units, open_by_names};
+use crate::files::output_file::{Replacement, check_new, is_standard_output, unwritable};
+use crate::files::reading;
+use crate::files::robot_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::GOOD;
+use crate::render::log_report::{self, Reply};
+use crate::values::log_arguments::{LogArguments, failure};
+
+/// Say what a log of an arm has; filter it, with accelerations
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne log docs/desk_arm_log.csv
+  rne log docs/desk_arm_log.csv --cutoff 4 -o motion.csv
+  rne log docs/desk_arm_log.csv --robot docs/desk_arm.yaml --json
+
+CSV, npy; with their features bags of ROS 2 (*.db3, *.mcap) and Parquet. Their
+columns: docs/logs.md.")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
+pub(crate) struct Arguments {
+    /// Files, one behind another; of a folder the bags inside
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    /// The joints of this robot file, by name
+    #[arg(long, value_name = "FILE", conflicts_with = "joints")]
+    robot: Option<PathBuf>,
+    /// Write the filtered motion as CSV; `-`: standard output
+    #[arg(short, long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Overwrite a file that is there
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// What the log has, as JSON
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    reading: LogArguments,
+}
+
+impl Arguments {
+    /// The log, by the joints of the robot where there is one.
+    fn open(&self) -> Result<Log, Failure> {
+        let options = self.reading.options();
+        let Some(file) = &self.robot else {
+            return Log::open(&self.files, options).map_err(|error| failure(&error));
+        };
+        let robot = robot_file::robot(file)?;
+        let log = open_by_names(&self.files, &robot, options)?;
+        check_units(&robot, log.layout())?;
+        Ok(log)
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if let Some(stream) = arguments.files.iter().find(|file| is_standard_input(file)) {
+        let what = format!("{} is standard input; a log is read twice, so name a file", stream.display());
+        return Err(Failure::usage(what));
+    }
+    let out = arguments.out.as_deref();
+    let is_result_shown = out.is_some_and(is_standard_output);
+    if let Some(path) = out.filter(|path| !is_standard_output(path)) {
+        let sources: Vec<&Path> = arguments.files.iter().chain(&arguments.robot).map(PathBuf::as_path).collect();
+        check_new(path, None, &sources, arguments.force)?;
+        file_name::format(path, &[Format::Csv])?;
+    }
+    let log = arguments.open()?;
+    let survey = reading::survey(&log, is_result_shown).map_err(|error| failure(&error))?;
+    let is_unsaid = survey.may_be_degrees(&log).is_some() || !log.unsaid_currents().is_empty();
+    let at_fault = is_unsaid || survey.cutoff == Cutoff::Unknown;
+    let text = if is_result_shown {
+        String::new()
+    } else if arguments.json {
+        Outcome::json(&Reply::of(&log, &survey))?.text
+    } else {
+        log_report::text(&log, &survey)
+    };
+    let Some(path) = out else { return Ok(Outcome { text, at_fault, ..Outcome::default() }) };
+    let states = if is_result_shown {
+        let mut out = BufWriter::new(io::stdout().lock());
+        let written = write(&log, &survey, &ProgressBar::hidden(), &mut out);
+        match written.and_then(|states| out.flush().map(|()| states).map_err(Stopped::Unwritable)) {
+            // `rne log … -o - | head` has read enough
+            Err(Stopped::Unwritable(error)) if error.kind() == io::ErrorKind::BrokenPipe => 1,
+            Err(Stopped::Unwritable(error)) => {
+                return Err(Failure::input(format_args!("the output cannot be written: {error}")));
+            }
+            Err(Stopped::Unreadable(error)) => return Err(failure(&error)),
+            Ok(states) => states,
+        }
+    } else {
+        write_file(&log, &survey, path)?
+    };
+    if states == 0 {
+        let what = format!("{}: nothing is left behind the filter", arguments.files[0].display());
+        return Err(Failure::input(what));
+    }
+    let remark = if is_result_shown {
+        String::new()
+    } else {
+        format!("{GOOD}wrote{GOOD:#} {}, {states} states\n", path.display())
+    };
+    Ok(Outcome { text, remark, at_fault: false })
+}
+
+/// What stops the writing.
+enum Stopped {
+    Unreadable(LogError),
+    Unwritable(io::Error),
+}
+
+fn write_file(log: &Log, survey: &Survey, path: &Path) -> Result<u64, Failure> {
+    let unwritable = |error: io::Error| unwritable(path, &error);
+    let replacement = Replacement::begin(path).map_err(unwritable)?;
+    let mut out = BufWriter::new(replacement.file().map_err(unwritable)?);
+    let bar = reading::bar("filtered", false);
+    let written = write(log, survey, &bar, &mut out);
+    bar.finish_and_clear();
+    let states = written.map_err(|stopped| match stopped {
+        Stopped::Unreadable(error) => failure(&error),
+        Stopped::Unwritable(error) => unwritable(error),
+    })?;
+    out.flush().map_err(unwritable)?;
+    drop(out);
+    if states > 0 {
+        replacement.keep().map_err(unwritable)?;
+    }
+    Ok(states)
+}
+
+/// Writes the filtered motion; how many states it has.
+fn write(log: &Log, survey: &Survey, bar: &ProgressBar, out: &mut impl Write) -> Result<u64, Stopped> {
+    let mut motions = log.motions(survey).map_err(Stopped::Unreadable)?;
+    let joints = log.layout().joints.len();
+    let mut header = "t".to_owned();
+    for (quantity, is_there) in [("q", true), ("qd", true), ("qdd", true), ("tau", log.layout().has_efforts)] {
+        for joint in (1..=joints).filter(|_| is_there) {
+            let _ = write!(header, ",{quantity}{joint}");
+        }
+    }
+    let mut states = 0;
+    let mut line = String::new();
+    while let Some(piece) = motions.next() {
+        let piece = piece.map_err(Stopped::Unreadable)?;
+        reading::show(bar, motions.progress());
+        if states == 0 {
+            writeln!(out, "{header},run").map_err(Stopped::Unwritable)?;
+        }
+        let Motion { time, q, qd, qdd, tau, .. } = &piece.motion;
+        for (i, time) in time.iter().enumerate() {
+            line.clear();
+            let _ = write!(line, "{time}");
+            for list in [q, qd, qdd, tau].into_iter().flatten() {
+                let _ = write!(line, ",{}", list[i]);
+            }
+            writeln!(out, "{line},{}", piece.run + 1).map_err(Stopped::Unwritable)?;
+        }
+        states += time.len() as u64;
+    }
+    Ok(states)
+}

@@ -1,0 +1,73 @@
+//! `rne man`: the manual pages.
+
+use std::io;
+use std::path::PathBuf;
+
+use clap::{Args, Command, CommandFactory as _};
+
+use crate::commands;
+use crate::files::output_file::{self, Existing, is_standard_output};
+use crate::outcome::{Failure, Outcome};
+use crate::palette::TYPED;
+
+/// Print the manual page, or write the pages of all commands
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne man | man -l -                     read it
+  rne man eval | man -l -                that of a command
+  rne man -o ~/.local/share/man/man1     all pages, for `man rne-eval`")]
+pub(crate) struct Arguments {
+    /// The command whose page it is, instead of rne itself
+    #[arg(value_name = "COMMAND", conflicts_with = "output")]
+    command: Option<String>,
+    /// Write the pages of rne and of every command into this folder
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let pages = pages().map_err(Failure::input)?;
+    let Some(folder) = &arguments.output else {
+        let wanted = arguments.command.as_ref().map_or("rne".to_owned(), |command| format!("rne-{command}"));
+        let page = pages.iter().find(|(name, _)| *name == wanted).map(|(_, page)| page.clone());
+        return page.map(Outcome::text).ok_or_else(|| {
+            let names: Vec<&str> = pages.iter().filter_map(|(name, _)| name.strip_prefix("rne-")).collect();
+            Failure::usage(format_args!("{wanted} has no page; the commands are {}", names.join(", ")))
+        });
+    };
+    let shown = folder.display();
+    match output_file::existing(folder) {
+        Existing::Folder => {}
+        _ if is_standard_output(folder) => {
+            return Err(Failure::usage(format_args!(
+                "the pages are files in a folder; {TYPED}rne man{TYPED:#} and {TYPED}rne man COMMAND{TYPED:#} print one"
+            )));
+        }
+        Existing::Nothing => return Err(Failure::input(format_args!("there is no folder {shown}; make it first"))),
+        Existing::Unreadable(error) => return Err(output_file::unreadable(folder, &error)),
+        Existing::Text(_) | Existing::Other | Existing::Special => {
+            return Err(Failure::usage(format_args!("{shown} is not a folder; name the folder of the pages")));
+        }
+    }
+    let files: Vec<_> = pages.iter().map(|(name, page)| (folder.join(format!("{name}.1")), page)).collect();
+    output_file::write_all(&files).map(Outcome::remark)
+}
+
+/// The manual pages, rne's own first: names, and what stands in them.
+fn pages() -> io::Result<Vec<(String, String)>> {
+    let mut root = commands::Arguments::command().disable_help_subcommand(true);
+    root.build();
+    let mut pages = vec![("rne".to_owned(), page(root.clone(), "rne")?)];
+    for command in root.get_subcommands() {
+        let name = format!("rne-{}", command.get_name());
+        pages.push((name.clone(), page(command.clone(), &name)?));
+    }
+    Ok(pages)
+}
+
+fn page(command: Command, title: &str) -> io::Result<String> {
+    let mut page = Vec::new();
+    clap_mangen::Man::new(command).title(title).render(&mut page)?;
+    Ok(String::from_utf8_lossy(&page).into_owned())
+}

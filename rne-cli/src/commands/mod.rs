@@ -1,0 +1,118 @@
+//! The grammar of the command line: a module for each command, with its `Arguments` and the `run` that answers them.
+//!
+//! `tour` is what `rne` does without a command. `compare`, `closed_form` and `golden` are parts of commands, and
+//! `prediction_errors` is what `identify` and `watch` share.
+
+mod check;
+mod closed_form;
+mod compare;
+mod completions;
+mod convert;
+mod diagnose;
+mod emit;
+mod eval;
+mod example;
+mod excite;
+mod explain;
+mod export;
+mod firmware;
+mod golden;
+mod identify;
+mod import;
+mod list;
+mod log;
+mod man;
+mod new;
+mod ops;
+mod plot;
+mod prediction_errors;
+mod report;
+mod search;
+mod show;
+mod tour;
+mod watch;
+
+use clap::{Parser, Subcommand};
+
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{HELP_STYLES, TITLE, TYPED};
+
+/// The dynamics compiler for robot arms.
+#[derive(Parser)]
+#[command(name = "rne", version, styles = HELP_STYLES)]
+#[command(about = "The dynamics compiler for robot arms: a DH table in, straight-line code out")]
+#[command(max_term_width = 80, help_template = page())]
+#[command(after_help = "\
+Examples:
+  rne check robots/*.yaml                   are the files in order?
+  rne show robots/puma560.yaml --joint 2    the code of joint 2, step by step
+  rne emit robots/puma560.yaml --lang c     C99 without a library; or Rust
+
+FILE: a robot file or a name of `rne list`. Exits: `rne explain exit-status`.
+Without a command, a tour: the PUMA 560 from its table to its torques.")]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+}
+
+/// The help of rne itself: the usual one, but that its two options share a line. A page has 40.
+fn page() -> String {
+    // the parser's own text, as its styles are
+    let (title, typed) = (TITLE.0, TYPED.0);
+    format!(
+        "{{about}}\n\n{{usage-heading}} {{usage}}\n\n{title}Commands:{title:#}\n{{subcommands}}\n\n\
+         {title}Options:{title:#} {typed}-h{typed:#}, {typed}--help{typed:#}  Print help   \
+         {typed}-V{typed:#}, {typed}--version{typed:#}  Print version{{after-help}}"
+    )
+}
+
+impl Arguments {
+    /// The command's name, as its help is asked for, and what it returned.
+    pub(crate) fn run(&self) -> (&'static str, Result<Outcome, Failure>) {
+        self.command.as_ref().map_or_else(|| ("rne", tour::run()), Command::run)
+    }
+}
+
+/// Each command by its module, in the order of the help; clap makes its name of that of the variant.
+macro_rules! commands {
+    ($($name:ident $module:ident,)*) => {
+        #[derive(Subcommand)]
+        pub(crate) enum Command {
+            $($name($module::Arguments),)*
+        }
+
+        impl Command {
+            fn run(&self) -> (&'static str, Result<Outcome, Failure>) {
+                match self {
+                    $(Self::$name(arguments) => (concat!("rne ", stringify!($module)), $module::run(arguments)),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Check check,
+    Show show,
+    Emit emit,
+    Ops ops,
+    Report report,
+    Eval eval,
+    Diagnose diagnose,
+    Plot plot,
+    Log log,
+    Identify identify,
+    Watch watch,
+    Excite excite,
+    Search search,
+    New new,
+    List list,
+    Example example,
+    Import import,
+    Convert convert,
+    Export export,
+    Firmware firmware,
+    Explain explain,
+    Completions completions,
+    Man man,
+}

@@ -1,0 +1,176 @@
+//! `rne plot`: torques along a trajectory, and what they are made of.
+
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use rne_model::Robot;
+use rne_plot::{TorqueHistory, Trajectory, svg};
+
+use crate::files::chosen_arm::{ChosenArm, Setting};
+use crate::files::input_file::is_standard_input;
+use crate::files::output_file;
+use crate::files::trajectory_file;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{QUIET, TYPED};
+use crate::render::layout::{Align, columns};
+use crate::values::numbers::{exact, rounded};
+
+/// Draw torques along a trajectory, with their parts
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne plot robots/puma560.yaml -o puma560.svg
+  rne plot planar2 --duration 0.8 > planar2.svg
+  rne plot planar2 --csv > torques.csv
+
+A trajectory is CSV with columns t, q1, …, qd1, …, qdd1, …: s; rad or m, and
+per second. Without qd and qdd each joint moves on the parabola through a
+sample and its neighbours. Without a trajectory all joints go from a quarter to
+three quarters of the way between their limits, from rest to rest, by a
+polynomial of fifth degree; in 2 s, or longer where speed limits ask for it.
+The tip is free; friction is no part of the torques, rotors are with --rotors.")]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    arm: ChosenArm,
+    /// The motion, as CSV; between two postures, unless given
+    #[arg(long, value_name = "CSV", conflicts_with = "duration")]
+    trajectory: Option<PathBuf>,
+    /// Seconds from one posture to the other
+    #[arg(long, value_name = "S", value_parser = duration)]
+    duration: Option<f64>,
+    /// The numbers as CSV instead of a picture
+    #[arg(long)]
+    csv: bool,
+    /// The file that is written; standard output, unless given, or where it is -
+    #[arg(short, long, value_name = "OUT")]
+    output: Option<PathBuf>,
+    /// Overwrites a file that is there
+    #[arg(long, requires = "output")]
+    force: bool,
+}
+
+/// Seconds, unless speed limits ask for more.
+const DURATION: f64 = 2.0;
+
+/// Samples of a motion between postures.
+const SAMPLES: usize = 241;
+
+fn duration(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds: &f64| seconds.is_finite() && *seconds > 0.0);
+    seconds.ok_or_else(|| "a duration is a number of seconds above 0, such as 1.5".to_owned())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let robot = arguments.arm.robot()?;
+    let (trajectory, mut about) = motion(arguments, &robot)?;
+    for Setting { name, value } in &arguments.arm.set {
+        let _ = write!(about, ", {name} = {value}");
+    }
+    if robot.has_rotors() {
+        about.push_str(", with rotors");
+    }
+    let history = TorqueHistory::new(&robot, &trajectory).map_err(Failure::usage)?;
+    if let Some(sample) = history.overflows() {
+        let time = exact(trajectory.time[sample]);
+        return Err(Failure::input(format_args!("a torque overflows at {time} s: the motion is too fast")));
+    }
+    let text =
+        if arguments.csv { csv(&robot, &trajectory, &history) } else { svg(&robot, &trajectory, &history, &about) };
+    match arguments.output.as_deref().filter(|path| !output_file::is_standard_output(path)) {
+        None => Ok(Outcome::text(text)),
+        Some(path) => {
+            let sources: Vec<&Path> =
+                arguments.trajectory.as_deref().into_iter().chain([arguments.arm.file()]).collect();
+            if !sources.iter().any(|source| output_file::is_same(path, source)) {
+                is_named_for(path, arguments.csv)?;
+            }
+            let written = output_file::write_new(path, &text, &sources, arguments.force)?;
+            Ok(Outcome::text(written + &peaks(&robot, &history)))
+        }
+    }
+}
+
+/// Whether the name of a file says what is written into it.
+fn is_named_for(path: &Path, csv: bool) -> Result<(), Failure> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+    let shown = path.display();
+    match (extension.as_str(), csv) {
+        ("", _) | ("svg", false) | ("csv" | "txt", true) => Ok(()),
+        ("csv", false) => {
+            Err(Failure::usage(format_args!("{shown} is named for numbers; {TYPED}--csv{TYPED:#} asks for them")))
+        }
+        (_, false) => Err(Failure::usage(format_args!(
+            "{shown} is not named for an SVG, the one kind of picture that is written; name it {TYPED}{}{TYPED:#}, and \
+             let a browser, Inkscape or LibreOffice make another of it",
+            path.with_extension("svg").display()
+        ))),
+        (_, true) => Err(Failure::usage(format_args!(
+            "{shown} is not named for numbers, which --csv asks for; name it {TYPED}{}{TYPED:#}",
+            path.with_extension("csv").display()
+        ))),
+    }
+}
+
+/// The motion, and what it is in words.
+fn motion(arguments: &Arguments, robot: &Robot) -> Result<(Trajectory, String), Failure> {
+    if let Some(path) = &arguments.trajectory {
+        let trajectory_file::Given { trajectory, derived } = trajectory_file::read(path, robot)?;
+        let name = match path.file_name() {
+            Some(name) if !is_standard_input(path) => name.to_string_lossy().into_owned(),
+            _ => "trajectory".to_owned(),
+        };
+        let samples = trajectory.time.len();
+        let derived = if derived.is_empty() { String::new() } else { format!("; {derived}") };
+        return Ok((trajectory, format!("{name}, {samples} samples{derived}")));
+    }
+    let [from, to] = Trajectory::postures(robot);
+    let least = Trajectory::least_duration(robot, &from, &to);
+    // tenths of a second, not less than the limits ask for
+    let seconds = arguments.duration.unwrap_or_else(|| DURATION.max((least * 10.0).ceil() / 10.0));
+    let too_fast = |_| Failure::input(format_args!("in {seconds:e} s a speed overflows: the motion is too fast"));
+    let trajectory = Trajectory::quintic(&from, &to, seconds, SAMPLES).map_err(too_fast)?;
+    let fast = if seconds < least {
+        format!(", faster than speed limits allow ({} s)", rounded(least, 2))
+    } else {
+        String::new()
+    };
+    let about = format!(
+        "all joints between two postures inside their limits in {} s, from rest to rest, quintic{fast}",
+        exact(seconds)
+    );
+    Ok((trajectory, about))
+}
+
+/// The largest torque of each joint.
+fn peaks(robot: &Robot, history: &TorqueHistory) -> String {
+    let mut cells = vec![["  joint", "peak", "", "at", "velocity terms"].map(str::to_owned)];
+    for (joint, peak) in robot.joints.iter().zip(&history.peaks) {
+        let unit = joint.row.kind.effort_unit();
+        cells.push([
+            format!("  {}", joint.name),
+            rounded(peak.tau, 3),
+            unit.to_owned(),
+            format!("{} s", rounded(peak.time, 3)),
+            format!("{:.0} %", 100.0 * peak.velocity_share),
+        ]);
+    }
+    let lines = columns(&[Align::Left, Align::Right, Align::Left, Align::Right, Align::Right], &cells);
+    format!("{QUIET}{}{QUIET:#}\n{}\n", lines[0], lines[1..].join("\n"))
+}
+
+/// Everything that the picture shows, as numbers.
+fn csv(robot: &Robot, trajectory: &Trajectory, history: &TorqueHistory) -> String {
+    let names = ["tau", "inertia", "velocity", "gravity", "power"];
+    let of = |name: &&str| (1..=robot.dof()).map(|joint| format!("{name}{joint}")).collect::<Vec<_>>();
+    let mut text = format!("t,{}\n", names.iter().flat_map(of).collect::<Vec<_>>().join(","));
+    for ((time, parts), powers) in trajectory.time.iter().zip(&history.parts).zip(&history.powers) {
+        text.push_str(&exact(*time));
+        let numbers = [&parts.total, &parts.inertia, &parts.velocity, &parts.gravity, powers].into_iter().flatten();
+        for number in numbers {
+            let _ = write!(text, ",{}", exact(*number));
+        }
+        text.push('\n');
+    }
+    text
+}

@@ -1,0 +1,81 @@
+//! How far the torques of a robot are from those of a log, by joint and by speed.
+
+use std::fmt::Write as _;
+
+use rne_identify::{JointError, Prediction, SPEEDS};
+use rne_logs::median;
+use rne_model::{Robot, one_line};
+
+use crate::files::motion_log::{MotionLog, Part};
+use crate::outcome::Failure;
+use crate::palette::{GOOD, QUIET, TITLE, WARNING};
+use crate::render::layout::{Align, PAGE, columns, shortened, wrap};
+use crate::values::numbers::rounded;
+
+/// How far the torques of a robot are from those of a part of a log, by joint.
+pub(crate) fn prediction(robot: &Robot, log: &MotionLog, part: Part) -> Result<Vec<JointError>, Failure> {
+    let mut prediction = Prediction::new(robot, Some(log.cutoff));
+    log.pass(part, &mut |motion| prediction.absorb(motion))?;
+    Ok(prediction.errors())
+}
+
+/// Errors by joint and by speed.
+pub(crate) fn errors_table(
+    robot: &Robot,
+    log: &MotionLog,
+    errors: &[JointError],
+    unknown: &[bool],
+    title: &str,
+) -> String {
+    let mut heading = ["  joint", "error", "unfiltered", "left", ""].map(str::to_owned).to_vec();
+    heading.extend(SPEEDS.map(|speed| format!("≤ {speed}")));
+    heading.push("faster".to_owned());
+    let mut cells = vec![heading];
+    // of an effort that does not change there is no part
+    let percent = |part: f64| match 100.0 * part {
+        percent if percent.is_nan() => "-".to_owned(),
+        percent if percent < 1000.0 => format!("{percent:.1} %"),
+        _ => "> 999 %".to_owned(),
+    };
+    let (mut filtered, mut unfiltered) = (Vec::new(), Vec::new());
+    for (at, (joint, error)) in robot.joints.iter().zip(errors).enumerate() {
+        let unit = joint.row.kind.effort_unit();
+        let mut line = vec![
+            format!("  {}", shortened(&one_line(&joint.name), 14)),
+            percent(error.error),
+            percent(error.unfiltered),
+            rounded(error.residual, 3),
+            unit.to_owned(),
+        ];
+        line.extend(error.by_speed.map(|left| if left.is_nan() { "-".to_owned() } else { rounded(left, 3) }));
+        if unknown.get(at).is_some_and(|unknown| *unknown) {
+            line.push("not excited".to_owned());
+        }
+        filtered.push(error.error);
+        unfiltered.push(error.unfiltered);
+        cells.push(line);
+    }
+    cells.push(vec!["  median".to_owned(), percent(median(filtered)), percent(median(unfiltered))]);
+    let mut align = vec![Align::Left, Align::Right, Align::Right, Align::Right, Align::Left];
+    align.extend([Align::Right; 4]);
+    align.push(Align::Left);
+    let lines = columns(&align, &cells);
+    let about = format!(
+        "root mean square of measured - predicted over the effort's deviation; error: both behind {:.1} Hz; \
+         unfiltered: efforts as the log has them, {} of {} states; left: by speed, too",
+        log.cutoff,
+        errors.iter().map(|error| error.states).max().unwrap_or_default(),
+        log.states()
+    );
+    let about = wrap(&about, PAGE, "");
+    let mut text = format!("\n{TITLE}{title}{TITLE:#}\n{QUIET}{about}\n{}{QUIET:#}\n", lines[0]);
+    for line in &lines[1..] {
+        let marked = line.replace("not excited", &format!("{WARNING}not excited{WARNING:#}"));
+        let marked = match marked.strip_prefix("  median ") {
+            Some(rest) => format!("  {GOOD}median{GOOD:#} {rest}"),
+            None => marked,
+        };
+        let _ = writeln!(text, "{marked}");
+    }
+    text
+}

@@ -1,0 +1,425 @@
+//! `rne search`: a reduced form with fewer operations.
+
+use std::fmt::Write as _;
+use std::fs::{File, OpenOptions};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime};
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rne_codegen::Function;
+use rne_codegen::plan::{self, Accuracy, Cost, PlanFile, Progress, SearchOptions};
+use rne_model::{Robot, plan_of};
+
+use crate::files::input_file::is_stream;
+use crate::files::interruption;
+use crate::files::output_file::{self, Written};
+use crate::files::plan_file;
+use crate::files::plan_file::{Known, Read};
+use crate::files::robot_file;
+use crate::outcome::{Failure, INPUT, Outcome};
+use crate::palette::{FOUND, GOOD, QUIET, TYPED};
+use crate::values::choice;
+use crate::values::choice::FunctionOrAll;
+
+/// Look for a reduced form with fewer operations; keep its plan
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne search robots/puma560.yaml --seconds 60              choices only
+  rne search robots/puma560.yaml --seconds 300 --rewrite   and rewrite the graph
+  rne search robots/puma560.yaml --seconds 600 --rewrite --function all
+
+Writes NAME.plan.yaml beside NAME.yaml; every later build replays it and needs
+no search. A search goes on from the plan that is there, and what it writes is
+never worse, but that a plan that has lost much precision in f32 may give way to
+a dearer one. Ctrl-C ends it and keeps the best; a second one ends it at once,
+with status 130. Every form that is found is proved identical to the seven steps
+before it is written.")]
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    /// How long to search
+    #[arg(long, value_name = "N", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
+    seconds: f64,
+    /// Rewrite the graphs of the best plans too; a graph is kept where that saves operations
+    #[arg(long)]
+    rewrite: bool,
+    /// Rewrite these functions instead of inverse_dynamics, or `all` that have a reduced form; may be repeated:
+    /// `rne explain functions`
+    #[arg(long = "function", value_name = "F", value_delimiter = ',', value_parser = choice::function_or_all(),
+        hide_possible_values = true,
+        requires = "rewrite")]
+    functions: Vec<FunctionOrAll>,
+    /// Seed of the random numbers
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Replace a plan that does not belong to the robot any more, or cannot be read; one that does is kept where it is
+    /// better
+    #[arg(long)]
+    fresh: bool,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(seconds) if (0.0..=1e6).contains(&seconds) => Ok(seconds),
+        _ => Err("a search takes a number of seconds, 0 to 1000000".to_owned()),
+    }
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    if is_stream(&arguments.file) {
+        return Err(Failure::usage("a search writes its plan beside the robot file, so it needs a file"));
+    }
+    if let Some(shipped) = robot_file::of_a_name(&arguments.file) {
+        let name = shipped.name;
+        return Err(Failure::usage(format_args!(
+            "a search writes its plan beside the robot file, so it needs a file: {TYPED}rne example {name} > \
+             {name}.yaml{TYPED:#}"
+        )));
+    }
+    let robot = robot_file::robot(&arguments.file)?;
+    let options = SearchOptions { rewrite: rewritten(arguments)?, seed: arguments.seed };
+    let known = plan_file::known(&arguments.file, &robot, arguments.fresh)?;
+    let path = plan_of(&arguments.file);
+    interruption::expect();
+    plan_file::is_writable(&path)?;
+    let found = watched(&robot, known.plan.as_ref(), &options, arguments.seconds)
+        .map_err(|error| Failure::compile(&arguments.file.display().to_string(), &error))?;
+    let searched = Searched { file: &arguments.file, robot: &robot, known, fresh: arguments.fresh };
+    let Kept { plan, left_out, written } = searched.keep(found, || ())?;
+    Ok(Outcome::text(summary(&plan, searched.known.plan.as_ref(), &left_out, &path, written)))
+}
+
+/// What a search was of.
+struct Searched<'a> {
+    file: &'a Path,
+    /// As it was read at the start.
+    robot: &'a Robot,
+    /// What the search went on from.
+    known: Known,
+    fresh: bool,
+}
+
+/// What stands in the plan file after a search.
+struct Kept {
+    plan: PlanFile,
+    /// Functions of the plan that was there whose graphs are not proved.
+    left_out: Vec<Function>,
+    written: Written,
+}
+
+impl Searched<'_> {
+    /// Writes what a search has found into the plan file, with what another search has written there meanwhile. The
+    /// robot file is locked from the reading to the writing, so of searches that end together each sees what those
+    /// before it have written; `between` is called then, for tests. Nothing is written where the robot has changed, or
+    /// where something stands in the place of the plan that no search may begin from.
+    fn keep(&self, mut found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+        let path = plan_of(self.file);
+        let _locked = locked(self.file);
+        self.is_unchanged(&found)?;
+        let now = plan_file::known(self.file, self.robot, self.fresh).map_err(|failure| meanwhile(&path, &failure))?;
+        if now.text != self.known.text
+            && let Some(plan) = now.plan
+        {
+            found.merge(plan);
+            plan_file::is_proved(self.robot, &Read::of(&path, &found))?;
+        }
+        between();
+        let written = output_file::replace(&path, &found.to_yaml())?;
+        if written == Written::Anew {
+            touch(self.file);
+        }
+        Ok(Kept { plan: found, left_out: now.left_out, written })
+    }
+
+    /// Whether what was found is of the robot as its file has it now; comments and names may have changed.
+    fn is_unchanged(&self, found: &PlanFile) -> Result<(), Failure> {
+        let is_same = |now: Robot| now.name == found.robot && plan::fingerprint(&now) == found.fingerprint;
+        if robot_file::robot(self.file).is_ok_and(is_same) {
+            return Ok(());
+        }
+        Err(Failure::input(format_args!(
+            "{} has changed during the search: what was found is of the arm as it was, so {} is not written. Search \
+             again",
+            self.file.display(),
+            plan_of(self.file).display()
+        )))
+    }
+}
+
+/// Why nothing is written in the place of a plan that has appeared or changed during the search.
+fn meanwhile(path: &Path, failure: &Failure) -> Failure {
+    let text = format!(
+        "{}\n\n{} has changed during the search, and stays as it is; what was found is not written",
+        failure.text.trim_end(),
+        path.display()
+    );
+    Failure { text, status: INPUT }
+}
+
+/// The robot file, locked for other searches until it is dropped. Where the system cannot lock it, the search is still
+/// worth its result. On Windows a lock would keep every reader out.
+fn locked(robot_file: &Path) -> Option<File> {
+    if cfg!(windows) {
+        return None;
+    }
+    let file = File::open(robot_file).ok()?;
+    file.lock().ok()?;
+    Some(file)
+}
+
+/// The functions whose graphs are to be rewritten.
+fn rewritten(arguments: &Arguments) -> Result<Vec<Function>, Failure> {
+    let asked = &arguments.functions;
+    let is_asked = |function: Function| match asked.as_slice() {
+        [] => function == Function::InverseDynamics,
+        _ => asked.contains(&FunctionOrAll::One(function)),
+    };
+    if !arguments.rewrite {
+        return Ok(Vec::new());
+    }
+    let functions: Vec<Function> = Function::ALL.into_iter().filter(|&function| is_asked(function)).collect();
+    if let Some(function) = functions.iter().find(|function| !function.can_be_rewritten()) {
+        return Err(Failure::usage(format_args!("`{function}` has the seven steps only: there is nothing to rewrite")));
+    }
+    if asked.contains(&FunctionOrAll::All) {
+        return Ok(Function::ALL.into_iter().filter(|function| function.can_be_rewritten()).collect());
+    }
+    Ok(functions)
+}
+
+/// Searches with a progress bar on a terminal.
+fn watched(
+    robot: &Robot,
+    known: Option<&PlanFile>,
+    options: &SearchOptions,
+    seconds: f64,
+) -> Result<PlanFile, rne_codegen::CompileError> {
+    const STEPS: u64 = 1000;
+    let bar = ProgressBar::new(STEPS);
+    let style = ProgressStyle::with_template("{prefix:>10} [{bar:30}] {msg}").map(|style| style.progress_chars("=> "));
+    if let Ok(style) = style {
+        bar.set_style(style);
+    }
+    let start = Instant::now();
+    let mut shown = start;
+    let found = plan::search(robot, known, options, &mut |progress: &Progress| {
+        if interruption::is_wished() {
+            return None;
+        }
+        let elapsed = start.elapsed();
+        let over = if seconds > 0.0 { elapsed.as_secs_f64() / seconds } else { 1.0 };
+        if shown.elapsed() > Duration::from_millis(100) {
+            shown = Instant::now();
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss)]
+            // 0 to 1000
+            bar.set_position((over.min(1.0) * STEPS as f64) as u64);
+            bar.set_prefix(progress.phase);
+            bar.set_message(format!("{} operations, {} plans", progress.best.total(), progress.plans));
+        }
+        (over < 1.0).then_some(over)
+    });
+    bar.finish_and_clear();
+    found
+}
+
+fn summary(found: &PlanFile, known: Option<&PlanFile>, left_out: &[Function], path: &Path, written: Written) -> String {
+    let mut text = String::new();
+    let count = |cost: &Cost| format!("{} products + {} sums = {}", cost.mul, cost.add, cost.total());
+    let names = found.rewritten.keys().map(|function| function.name().len());
+    let width = names.max().map_or("reduced".len(), |longest| longest.max("inverse_dynamics, planned".len()));
+    let mut line = |name: &str, operations: &Cost, accuracy: &Accuracy| {
+        let _ = writeln!(
+            text,
+            "{name:<width$}  {FOUND}{}{FOUND:#}, {} angles  {QUIET}double {:.0e}, single {:.0e} (seven steps {:.0e}) \
+             of the largest number{QUIET:#}",
+            count(operations),
+            operations.sincos,
+            accuracy.double,
+            accuracy.single,
+            accuracy.single_of_seven_steps,
+        );
+    };
+    let planned = if found.rewritten.is_empty() { "reduced" } else { "inverse_dynamics, planned" };
+    line(planned, &found.reduced.operations, &found.reduced.accuracy);
+    for (function, rewritten) in &found.rewritten {
+        line(function.name(), &rewritten.operations, &rewritten.accuracy);
+    }
+    let lost: Vec<&str> =
+        left_out.iter().filter(|function| !found.rewritten.contains_key(function)).map(|it| it.name()).collect();
+    if !lost.is_empty() {
+        let lost = lost.join(",");
+        let _ = writeln!(
+            text,
+            "{QUIET}left out, for it was not proved; `--rewrite --function {lost}` rewrites it anew{QUIET:#}"
+        );
+    }
+    let state = match (written, known) {
+        (Written::Unchanged, _) => "is as good as it was",
+        (Written::Anew, Some(_)) => "is written anew",
+        (Written::Anew, None) => "is written",
+    };
+    let _ = writeln!(text, "{GOOD}ok{GOOD:#} {TYPED}{}{TYPED:#} {state}", path.display());
+    text
+}
+
+/// Builds watch the robot file; a new plan beside it is news to them.
+fn touch(robot_file: &Path) {
+    let touched =
+        |path: &Path| -> io::Result<()> { OpenOptions::new().append(true).open(path)?.set_modified(SystemTime::now()) };
+    // a robot file that cannot be touched is built anew when it changes
+    let _ = touched(robot_file);
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use rne_codegen::plan::Rewritten;
+
+    use super::*;
+
+    /// The robot and the plan of the box, in a folder of their own.
+    struct Arm {
+        folder: tempfile::TempDir,
+        robot: Robot,
+        plan: PlanFile,
+    }
+
+    impl Arm {
+        fn new() -> Self {
+            let folder = tempfile::tempdir().expect("a folder");
+            let shipped = rne_robots::find("scara_cobra600").expect("shipped");
+            let file = folder.path().join("arm.yaml");
+            fs::write(&file, shipped.yaml).expect("written");
+            let robot = robot_file::robot(&file).unwrap_or_else(|failure| panic!("{}", failure.text));
+            let plan = PlanFile::read("plan", shipped.plan.expect("a plan"), &robot).expect("of the robot");
+            Self { folder, robot, plan }
+        }
+
+        fn file(&self) -> PathBuf {
+            self.folder.path().join("arm.yaml")
+        }
+
+        /// What stands in the place of the plan.
+        fn written(&self) -> Option<String> {
+            fs::read_to_string(plan_of(&self.file())).ok()
+        }
+
+        fn write(&self, plan: &str) {
+            fs::write(plan_of(&self.file()), plan).expect("written");
+        }
+
+        /// A plan that rewrites one function alone.
+        fn found(&self, function: Function) -> PlanFile {
+            let mut found = self.plan.clone();
+            found.rewritten.retain(|&one, _: &mut Rewritten| one == function);
+            assert_eq!(found.rewritten.len(), 1, "{function} is rewritten");
+            found
+        }
+
+        /// The end of a search that began without a plan.
+        fn keep(&self, found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+            self.keep_as(false, found, between)
+        }
+
+        fn keep_as(&self, fresh: bool, found: PlanFile, between: impl FnOnce()) -> Result<Kept, Failure> {
+            let known = Known { text: None, plan: None, left_out: Vec::new() };
+            Searched { file: &self.file(), robot: &self.robot, known, fresh }.keep(found, between)
+        }
+    }
+
+    /// The message of a search that must not write.
+    fn refused(kept: Result<Kept, Failure>) -> (u8, String) {
+        let failure = kept.map(|_| ()).expect_err("nothing is written");
+        let text = anstream::adapter::strip_str(&failure.text).to_string();
+        (failure.status, text.split_whitespace().collect::<Vec<_>>().join(" "))
+    }
+
+    #[test]
+    fn a_robot_that_changed_during_the_search_has_no_plan() {
+        let arm = Arm::new();
+        let text = fs::read_to_string(arm.file()).expect("a robot");
+        for (from, to) in [("mass: ", "mass: 1+"), ("name: scara_cobra600", "name: another"), ("format: 1", "format")] {
+            fs::write(arm.file(), text.replacen(from, to, 1)).expect("written");
+            let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
+            assert_eq!(status, INPUT);
+            assert!(
+                said.contains("arm.yaml has changed during the search") && said.contains("is not written"),
+                "{said}"
+            );
+            assert_eq!(arm.written(), None);
+        }
+        fs::remove_file(arm.file()).expect("removed");
+        refused(arm.keep(arm.plan.clone(), || ()));
+        // a comment is no number
+        fs::write(arm.file(), format!("# a comment\n{text}")).expect("written");
+        assert!(arm.keep(arm.plan.clone(), || ()).is_ok_and(|kept| kept.written == Written::Anew));
+        assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
+    }
+
+    #[test]
+    fn what_is_no_plan_stays() {
+        let arm = Arm::new();
+        for notes in ["my notes\n", "format: 2\nrobot: scara_cobra600\n", "\u{0}"] {
+            arm.write(notes);
+            let (status, said) = refused(arm.keep(arm.plan.clone(), || ()));
+            assert_eq!(status, INPUT);
+            assert!(said.contains("arm.plan.yaml has changed during the search, and stays as it is"), "{said}");
+            assert_eq!(arm.written().as_deref(), Some(notes));
+        }
+        // a fresh search replaces a plan that cannot be read, and nothing else
+        arm.write("my notes\n");
+        refused(arm.keep_as(true, arm.plan.clone(), || ()));
+        assert_eq!(arm.written().as_deref(), Some("my notes\n"));
+        arm.write("format: 2\nfingerprint: 0\n");
+        assert!(arm.keep_as(true, arm.plan.clone(), || ()).is_ok());
+        assert_eq!(arm.written(), Some(arm.plan.to_yaml()));
+    }
+
+    /// A graph with a wrong sign, which looks as good as any, and claims to be better than all.
+    #[test]
+    fn a_plan_that_is_not_proved_is_not_merged() {
+        let arm = Arm::new();
+        let function = Function::MassMatrix;
+        let right = arm.found(function).to_yaml();
+        let wrong = right.replacen("out1 = ", "out1 = -", 1).replacen("= --", "= ", 1);
+        assert_ne!(right, wrong);
+        arm.write(&wrong);
+        let (_, said) = refused(arm.keep(arm.found(Function::ForwardDynamics), || ()));
+        assert!(said.contains("is not the seven steps") && said.contains("stays as it is"), "{said}");
+        assert_eq!(arm.written().as_deref(), Some(wrong.as_str()));
+        let kept = arm.keep_as(true, arm.found(Function::ForwardDynamics), || ());
+        let kept = kept.unwrap_or_else(|failure| panic!("{}", failure.text));
+        assert_eq!(kept.left_out, [function]);
+        assert_eq!(arm.written(), Some(arm.found(Function::ForwardDynamics).to_yaml()));
+    }
+
+    #[test]
+    fn searches_that_end_together_lose_nothing() {
+        let arm = Arm::new();
+        let functions = [Function::MassMatrix, Function::ForwardDynamics, Function::InverseDynamics];
+        let keep = |function: Function, between: &mut dyn FnMut()| {
+            let kept = arm.keep(arm.found(function), between);
+            kept.map_or_else(|failure| panic!("{}", failure.text), drop);
+        };
+        std::thread::scope(|scope| {
+            // the others begin while the first one has read and not yet written; they wait for it
+            keep(functions[0], &mut || {
+                let other = File::open(arm.file()).expect("a robot");
+                assert!(cfg!(windows) || matches!(other.try_lock(), Err(std::fs::TryLockError::WouldBlock)));
+                for &function in &functions[1..] {
+                    scope.spawn(move || keep(function, &mut || ()));
+                }
+            });
+        });
+        let written = arm.written().expect("a plan");
+        let plan = PlanFile::read("plan", &written, &arm.robot).expect("a plan");
+        assert!(functions.iter().all(|function| plan.rewritten.contains_key(function)), "{written}");
+        let names = fs::read_dir(arm.folder.path()).expect("a folder").count();
+        assert_eq!(names, 2, "neither a lock nor a temporary file is left");
+    }
+}

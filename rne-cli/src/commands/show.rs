@@ -1,0 +1,197 @@
+//! `rne show`: the generated code, annotated for reading.
+
+use std::fmt::Write as _;
+use std::path::PathBuf;
+
+use clap::Args;
+use rne_codegen::emit::{self, Selection};
+use rne_codegen::plan::Trick;
+use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
+use rne_inspection::Inspection;
+use rne_model::Robot;
+
+use crate::commands::closed_form::Wanted;
+use crate::files::chosen_arm::Rotors;
+use crate::files::plan_file::Compiler;
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{QUIET, TYPED, WARNING};
+use crate::render::base_parameters;
+use crate::render::equations;
+use crate::render::equations::View;
+use crate::render::heading;
+use crate::render::highlight;
+use crate::render::layout::PAGE;
+use crate::render::letters::Letters;
+use crate::values::choice::{self, Kept};
+
+/// Show the generated code step by step, what was folded, and why
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  rne show robots/puma560.yaml --joint 2 --step 4
+  rne show robots/planar2.yaml --step 3            what no torque needs
+  rne show robots/puma560.yaml --joint 1 --keep joint_force,joint_moment
+  rne show robots/puma560.yaml --function mass_matrix --form reduced
+  rne show robots/puma560.yaml --base-parameters   what the torques can see
+  rne show puma560 --joint 2 --step 1 --equations  of what the code is left
+  rne show puma560 --json                          all of it, for programs
+  rne show robots/planar2.yaml --symbolic          τ = M θ̈ + h + γ in letters
+  rne show robots/stanford.yaml --first 3 --latex > stanford.tex
+
+`rne explain w2_z puma560` tells what a name in the code is.")]
+pub(crate) struct Arguments {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
+    /// One joint only, counted from 1 at the base
+    #[arg(long, value_name = "I", value_parser = choice::joint)]
+    joint: Option<usize>,
+    /// One of the seven steps only
+    #[arg(long, value_name = "S", value_parser = choice::step)]
+    step: Option<Step>,
+    /// seven_steps, unless given, or reduced, the shortest
+    #[arg(long, value_name = "F", value_parser = choice::form(), default_value = Form::SevenSteps.name(),
+        hide_possible_values = true, hide_default_value = true)]
+    form: Form,
+    /// Torques, unless given; others: `rne explain functions`
+    #[arg(long, value_name = "F", value_parser = choice::function(), hide_possible_values = true,
+        default_value = Function::InverseDynamics.name(), hide_default_value = true)]
+    function: Function,
+    /// Compute these, needed or not: `rne explain quantities`
+    #[arg(long, value_name = "QUANTITY", value_delimiter = ',', hide_possible_values = true)]
+    keep: Vec<Kept>,
+    /// Leave tricks out of reduced: `rne explain tricks`
+    #[arg(long, value_name = "NAME", value_delimiter = ',', value_parser = choice::trick(),
+        hide_possible_values = true)]
+    without: Vec<Trick>,
+    /// By component: equation, what is gone and why, code
+    #[arg(long, conflicts_with_all = ["keep", "without"])]
+    equations: bool,
+    /// The same as JSON: docs/inspection.md
+    #[arg(long, conflicts_with_all = ["joint", "step", "keep", "without", "equations"])]
+    json: bool,
+    /// Instead of code: what of the links the torques can see
+    #[arg(long, conflicts_with_all = ["joint", "step", "form", "function", "keep", "without", "equations",
+        "json"])]
+    base_parameters: bool,
+    #[command(flatten)]
+    closed_form: Wanted,
+    #[command(flatten)]
+    letters: Letters,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
+    let letters = arguments.letters;
+    if arguments.closed_form.is_asked_for() {
+        return arguments.closed_form.run(&arguments.file, letters, |robot| arguments.rotors.of(robot));
+    }
+    let file = arguments.file.display().to_string();
+    let robot = arguments.rotors.robot(&arguments.file)?;
+    if arguments.base_parameters {
+        let text = heading::robot(&robot) + "\n" + &base_parameters::text(&robot);
+        return Ok(Outcome::text(letters.page(&text, PAGE)));
+    }
+    choice::check_joint(&robot, arguments.joint)?;
+    if arguments.json || arguments.equations {
+        return inspected(arguments, &robot);
+    }
+
+    let mut keep = arguments.keep.clone();
+    if arguments.step == Some(Step::Velocity) && !keep.contains(&Kept::Velocity) {
+        keep.push(Kept::Velocity);
+    }
+    let quantities: Vec<Quantity> = keep.iter().map(|kept| kept.quantity()).collect();
+    if arguments.form == Form::SevenSteps && !arguments.without.is_empty() {
+        return Err(Failure::usage(format_args!(
+            "the seven steps use no tricks; `--without` goes with {TYPED}--form reduced{TYPED:#}"
+        )));
+    }
+    let program = match arguments.form {
+        Form::SevenSteps => codegen::Compiler::new(&robot)
+            .with_intermediates(&quantities)
+            .compile(arguments.function, arguments.form)
+            .map_err(|error| Failure::compile(&file, &error))?,
+        form @ Form::Reduced if keep.is_empty() => {
+            Compiler::new(&arguments.file, &robot).without(&arguments.without).compile(arguments.function, form)?
+        }
+        form @ Form::Reduced => {
+            return Err(Failure::usage(format_args!(
+                "only the seven steps have {}; the form {form} keeps torques alone",
+                keep[0].words()
+            )));
+        }
+    };
+
+    let mut text = letters.page(&heading::robot(&robot), PAGE);
+    let _ = writeln!(text, "\n{}", heading::counts(&program));
+    if program.outputs.len() > arguments.function.layout(robot.dof()).len() {
+        let words: Vec<&str> = keep.iter().map(|kept| kept.words()).collect();
+        let line = format!("{QUIET}kept for reading, and counted: {}{QUIET:#}\n", words.join(", "));
+        text.push_str(&letters.page(&line, PAGE));
+    }
+    let refusals = emit::refusals(&program);
+    if program.form != arguments.form && refusals.is_empty() {
+        let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
+    }
+    if program.is_rewritten && (arguments.joint.is_some() || arguments.step.is_some()) {
+        let _ = writeln!(
+            text,
+            "{QUIET}a rewritten graph has no steps; {QUIET:#}{TYPED}--without rewriting{TYPED:#}{QUIET} shows the \
+             recursion behind it{QUIET:#}"
+        );
+    }
+    if let Some(proof) = &program.proof {
+        text.push('\n');
+        for line in emit::evidence(&program, proof) {
+            let _ = writeln!(text, "{QUIET}{}{QUIET:#}", letters.of(&line));
+        }
+    }
+    if !refusals.is_empty() {
+        text.push('\n');
+        for line in refusals {
+            let _ = writeln!(text, "{WARNING}{}{WARNING:#}", letters.of(&line));
+        }
+    }
+    let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };
+    text.push('\n');
+    let listing = emit::listing(&robot, &program, what);
+    if listing.is_empty() {
+        let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
+    }
+    text.push_str(&highlight::listing(&listing, letters));
+    Ok(Outcome::text(text))
+}
+
+/// The inspection, as JSON or as lines.
+fn inspected(arguments: &Arguments, robot: &Robot) -> Result<Outcome, Failure> {
+    let file = arguments.file.display().to_string();
+    let (function, form) = (arguments.function, arguments.form);
+    let program = match form {
+        Form::SevenSteps => codegen::Compiler::new(robot)
+            .with_equations()
+            .compile(function, form)
+            .map_err(|error| Failure::compile(&file, &error))?,
+        Form::Reduced if arguments.json => Compiler::new(&arguments.file, robot).compile(function, form)?,
+        Form::Reduced => {
+            return Err(Failure::usage(format_args!(
+                "only the seven steps have equations to fold; `rne explain tricks` tells what the form {form} does"
+            )));
+        }
+    };
+    let inspection = Inspection::new(robot, &program);
+    if arguments.json {
+        let outcome = Outcome::json_line(&inspection)?;
+        return Ok(Outcome { text: arguments.letters.json(&outcome.text), ..outcome });
+    }
+    let letters = arguments.letters;
+    let mut text = letters.page(&heading::robot(robot), PAGE);
+    let _ = writeln!(text, "\n{}\n", heading::counts(&program));
+    text.push_str(&equations::text(
+        View { inspection: &inspection, letters },
+        arguments.joint,
+        arguments.step.map(Step::number),
+    ));
+    Ok(Outcome::text(text))
+}

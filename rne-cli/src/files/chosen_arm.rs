@@ -1,0 +1,101 @@
+//! Which arm a command is about: that of the file, or with its rotors, or with other values of its parameters.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use clap::Args;
+use rne_model::Robot;
+
+use crate::files::robot_file;
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+use crate::values::numbers::List;
+
+/// Rotors belong to the arm.
+#[derive(Args, Clone, Copy, Default)]
+pub(crate) struct Rotors {
+    /// The arm with its motors' rotors: G² Jm q̈
+    #[arg(long)]
+    pub(crate) rotors: bool,
+}
+
+impl Rotors {
+    /// The robot of a file.
+    pub(crate) fn robot(self, path: &Path) -> Result<Robot, Failure> {
+        Ok(self.of(robot_file::robot(path)?))
+    }
+
+    /// A robot that has been read.
+    pub(crate) fn of(self, robot: Robot) -> Robot {
+        Robot { rotors: self.rotors, ..robot }
+    }
+}
+
+/// A parameter of the file and its value here: `payload=2`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Setting {
+    pub(crate) name: String,
+    pub(crate) value: f64,
+}
+
+impl FromStr for Setting {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, such as payload=2")?;
+        let (name, value) = (name.trim(), value.trim());
+        if name.is_empty() {
+            return Err("the name is missing; write NAME=VALUE, such as payload=2".to_owned());
+        }
+        if value.is_empty() {
+            return Err(format!("the value is missing; write {name}=VALUE, such as {name}=2"));
+        }
+        let value = rne_model::number(value).map_err(|mistake| {
+            let hint = mistake.help.as_deref().unwrap_or("write a number or an expression, such as 0.5 or pi/2");
+            format!("`{value}` is no number: {}; {hint}", mistake.message)
+        })?;
+        Ok(Self { name: name.to_owned(), value })
+    }
+}
+
+/// The arm whose numbers a command computes.
+#[derive(Args)]
+pub(crate) struct ChosenArm {
+    /// Robot file
+    #[arg(value_name = "FILE")]
+    file: PathBuf,
+    #[command(flatten)]
+    rotors: Rotors,
+    /// Another value of a parameter; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub(crate) set: Vec<Setting>,
+}
+
+impl ChosenArm {
+    /// The file as it is named on the command line.
+    pub(crate) fn file(&self) -> &Path {
+        &self.file
+    }
+
+    pub(crate) fn robot(&self) -> Result<Robot, Failure> {
+        let shown = self.file.display();
+        if !self.file.exists() && shown.to_string().parse::<List>().is_ok() {
+            return Err(Failure::usage(format_args!(
+                "`{shown}` stands where FILE, the robot, is meant; a list has commas and no blanks between its \
+                 numbers, as in {TYPED}rne eval planar2 --q 0.5,0.3{TYPED:#}"
+            )));
+        }
+        Ok(self.rotors.of(with_settings(&self.file, &self.set)?))
+    }
+}
+
+/// The robot of a file with other values of its parameters.
+fn with_settings(path: &Path, settings: &[Setting]) -> Result<Robot, Failure> {
+    for (index, Setting { name, .. }) in settings.iter().enumerate() {
+        if settings[..index].iter().any(|other| other.name == *name) {
+            return Err(Failure::usage(format_args!("--set gives {name} twice")));
+        }
+    }
+    let settings: Vec<(&str, f64)> = settings.iter().map(|Setting { name, value }| (name.as_str(), *value)).collect();
+    Ok(robot_file::read_with(path, &settings)?.robot)
+}

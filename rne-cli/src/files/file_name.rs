@@ -1,0 +1,81 @@
+//! Names of files that are written: the end of a name says the format, and no other is written into it.
+
+use std::path::Path;
+
+use crate::outcome::Failure;
+use crate::palette::TYPED;
+
+/// A format that is written.
+#[derive(Clone, Copy, PartialEq)]
+pub(crate) enum Format {
+    Csv,
+    Npy,
+    RobotFile,
+    Urdf,
+    Svg,
+    Html,
+    Rust,
+    C,
+}
+
+/// Ends of names that say something, though nothing of it is written here.
+const OTHERS: [&str; 16] = [
+    "bag", "cc", "cpp", "cxx", "db3", "hpp", "jpg", "json", "mcap", "npz", "parquet", "pdf", "png", "py", "toml",
+    "xacro",
+];
+
+impl Format {
+    const ALL: [Self; 8] =
+        [Self::Csv, Self::Npy, Self::RobotFile, Self::Urdf, Self::Svg, Self::Html, Self::Rust, Self::C];
+
+    /// Ends of names, the usual one first.
+    const fn ends(self) -> &'static [&'static str] {
+        match self {
+            Self::Csv => &["csv"],
+            Self::Npy => &["npy"],
+            Self::RobotFile => &["yaml", "yml"],
+            Self::Urdf => &["urdf", "xml"],
+            Self::Svg => &["svg"],
+            Self::Html => &["html", "htm"],
+            Self::Rust => &["rs"],
+            // its header stands beside it
+            Self::C => &["c", "h"],
+        }
+    }
+}
+
+/// The format of a table that a name says, of those that can be written.
+pub(crate) fn format(path: &Path, written: &[Format]) -> Result<Format, Failure> {
+    let end = end(path);
+    if let Some(format) = written.iter().find(|format| format.ends().contains(&end.as_str())) {
+        return Ok(*format);
+    }
+    let ends: Vec<String> = written.iter().map(|format| format!("{TYPED}.{}{TYPED:#}", format.ends()[0])).collect();
+    let shown = path.display();
+    let has = match end.as_str() {
+        "" => format!("the name {shown} does not say its format"),
+        end => format!("{shown} ends with .{end}, which is not written"),
+    };
+    Err(Failure::usage(format_args!("{has}; name a file that ends with {}", ends.join(" or "))))
+}
+
+/// Whether a name does not say another format than what is written. A name may say nothing.
+pub(crate) fn check(path: &Path, written: Format) -> Result<(), Failure> {
+    let end = end(path);
+    let is_known = || OTHERS.into_iter().chain(Format::ALL.iter().flat_map(|format| format.ends().iter().copied()));
+    if written.ends().contains(&end.as_str()) || !is_known().any(|known| known == end) {
+        return Ok(());
+    }
+    let right = path.with_extension(written.ends()[0]);
+    Err(Failure::usage(format_args!(
+        "{} ends with .{end}, and what is written is .{}; name it {TYPED}{}{TYPED:#}",
+        path.display(),
+        written.ends()[0],
+        right.display()
+    )))
+}
+
+/// The end of a name, in small letters; empty where there is none.
+fn end(path: &Path) -> String {
+    path.extension().map_or_else(String::new, |end| end.to_string_lossy().to_lowercase())
+}

@@ -1,0 +1,319 @@
+//! Files that are written: whole or not at all, and of several that belong together all or none.
+
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Read as _, Write as _};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+
+use crate::files::file_name::{self, Format};
+use crate::files::interruption::{self, Registered};
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, TYPED};
+use crate::render::layout::shortened;
+
+/// What stands where a file is to be written.
+pub(crate) enum Existing {
+    Nothing,
+    Text(String),
+    /// A file that is no text, or longer than any that is generated.
+    Other,
+    Folder,
+    /// A device, a pipe, a socket.
+    Special,
+    Unreadable(io::Error),
+}
+
+/// Far more than the code of the largest robot.
+const LONGEST: u64 = 64 << 20;
+
+/// Whether writing changed anything.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Written {
+    Anew,
+    Unchanged,
+}
+
+pub(crate) fn existing(path: &Path) -> Existing {
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_dir() => Existing::Folder,
+        Ok(metadata) if !metadata.is_file() => Existing::Special,
+        Ok(metadata) if metadata.len() > LONGEST => Existing::Other,
+        Ok(_) => match File::open(path).and_then(text) {
+            Ok(text) => Existing::Text(text),
+            Err(error) if error.kind() == ErrorKind::InvalidData => Existing::Other,
+            Err(error) => Existing::Unreadable(error),
+        },
+        Err(error) if error.kind() == ErrorKind::NotFound => Existing::Nothing,
+        Err(error) => Existing::Unreadable(error),
+    }
+}
+
+/// The text of a file, which may grow while it is read.
+fn text(file: File) -> io::Result<String> {
+    let mut text = String::new();
+    file.take(LONGEST).read_to_string(&mut text)?;
+    Ok(text)
+}
+
+/// Whether two paths lead to one existing file.
+pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
+    match (fs::canonicalize(a), fs::canonicalize(b)) {
+        (Ok(a), Ok(b)) => a == b,
+        _ => false,
+    }
+}
+
+/// Whether two paths lead to one file, which may not be there yet.
+pub(crate) fn will_be_same(a: &Path, b: &Path) -> bool {
+    let folder = |path: &Path| {
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        fs::canonicalize(folder).ok()
+    };
+    let is_one_name = || a.file_name() == b.file_name() && folder(a).is_some_and(|of_a| Some(of_a) == folder(b));
+    a == b || is_same(a, b) || is_one_name()
+}
+
+/// Writes a file through a temporary one beside it, so that a reader finds the old text or the new one. A file that has
+/// the text already keeps its date, so nothing is built again.
+pub(crate) fn replace(path: &Path, text: &str) -> Result<Written, Failure> {
+    Ok(replace_all(&[(path, text)])?[0])
+}
+
+/// The same for files that belong together: none of them changes before all are written beside their places.
+pub(crate) fn replace_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<Vec<Written>, Failure> {
+    let mut written = Vec::with_capacity(files.len());
+    let mut replacements = Vec::new();
+    for (path, text) in files {
+        let (path, text) = (path.as_ref(), text.as_ref());
+        let is_old = matches!(existing(path), Existing::Text(old) if old == text);
+        if !is_old {
+            let replacement = Replacement::with(path, text).map_err(|error| unwritable(path, &error))?;
+            replacements.push(replacement);
+        }
+        written.push(if is_old { Written::Unchanged } else { Written::Anew });
+    }
+    Replacement::keep_all(replacements).map_err(|(path, error)| unwritable(&path, &error))?;
+    Ok(written)
+}
+
+/// Writes files that belong together; what was done, for the reader.
+pub(crate) fn write_all<P: AsRef<Path>, T: AsRef<str>>(files: &[(P, T)]) -> Result<String, Failure> {
+    let written = replace_all(files)?;
+    let mut remark = String::new();
+    for ((path, _), written) in files.iter().zip(written) {
+        let word = match written {
+            Written::Anew => "wrote",
+            Written::Unchanged => "up to date:",
+        };
+        let _ = writeln!(remark, "{GOOD}{word}{GOOD:#} {}", path.as_ref().display());
+    }
+    Ok(remark)
+}
+
+/// A file beside the one whose place it takes when it is whole; it is gone when it is not kept.
+pub(crate) struct Replacement {
+    file: NamedTempFile,
+    /// A signal removes the file too.
+    registered: Registered,
+    path: PathBuf,
+    /// Those of the file that is there; without one there is no file.
+    permissions: Option<fs::Permissions>,
+}
+
+impl Replacement {
+    /// An empty one.
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
+        // The file behind a symbolic link, not the link.
+        let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+        let permissions = fs::metadata(&path).ok().map(|metadata| metadata.permissions());
+        if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
+            return Err(io::Error::new(ErrorKind::PermissionDenied, "it is write-protected"));
+        }
+        let (registered, file) = Registered::new(|| beside(&path))?;
+        Ok(Self { file, registered, path, permissions })
+    }
+
+    /// One that has a text already.
+    fn with(path: &Path, text: &str) -> io::Result<Self> {
+        let replacement = Self::begin(path)?;
+        replacement.file.as_file().write_all(text.as_bytes())?;
+        replacement.file.as_file().sync_all()?;
+        Ok(replacement)
+    }
+
+    /// The file, to be written and read, from its beginning.
+    pub(crate) fn file(&self) -> io::Result<File> {
+        self.file.reopen()
+    }
+
+    /// Takes the place of the file.
+    pub(crate) fn keep(self) -> io::Result<()> {
+        Self::keep_all(vec![self]).map_err(|(_, error)| error)
+    }
+
+    /// All take their places. Where one cannot, the files that were not there before are removed again.
+    fn keep_all(replacements: Vec<Self>) -> Result<(), (PathBuf, io::Error)> {
+        for Self { file, path, permissions, .. } in &replacements {
+            let ready = match permissions {
+                Some(permissions) => file.as_file().set_permissions(permissions.clone()),
+                None => Ok(()),
+            };
+            ready.and_then(|()| file.as_file().sync_all()).map_err(|error| (path.clone(), error))?;
+        }
+        let mut new: Vec<PathBuf> = Vec::new();
+        // forgotten when no signal waits any more
+        let mut forgotten = Vec::new();
+        let held = interruption::hold();
+        let mut kept = Ok(());
+        for Self { file, registered, path, permissions } in replacements {
+            forgotten.push(registered);
+            if kept.is_err() {
+                continue;
+            }
+            match file.persist(&path) {
+                Ok(_) if permissions.is_none() => new.push(path),
+                Ok(_) => {}
+                Err(error) => kept = Err((path, error.error)),
+            }
+        }
+        if kept.is_err() {
+            for path in new {
+                let _ = fs::remove_file(path);
+            }
+        }
+        drop(held);
+        kept
+    }
+}
+
+/// Writes a file that people may edit afterwards: one that is there stays, unless `force` says otherwise, and
+/// `sources`, which were read for it, stay in any case. Returns what was done, for the reader.
+pub(crate) fn write_new(path: &Path, text: &str, sources: &[&Path], force: bool) -> Result<String, Failure> {
+    check_new(path, Some(text), sources, force)?;
+    write_all(&[(path, text)])
+}
+
+/// What a command returns whose result goes into the file that `-o` names, or else to standard output. A file that is
+/// there stays, as [`write_new`] has it.
+pub(crate) fn deliver(
+    out: Option<&Path>,
+    format: Format,
+    text: String,
+    mut remark: String,
+    sources: &[&Path],
+    force: bool,
+) -> Result<Outcome, Failure> {
+    let Some(out) = out.filter(|out| !is_standard_output(out)) else {
+        return Ok(Outcome { text, remark, ..Outcome::default() });
+    };
+    check_new(out, Some(&text), sources, force)?;
+    file_name::check(out, format)?;
+    remark += &write_all(&[(out, &text)])?;
+    Ok(Outcome::remark(remark))
+}
+
+/// Whether a path names standard output.
+pub(crate) fn is_standard_output(path: &Path) -> bool {
+    path == Path::new("-") || path == Path::new("/dev/stdout")
+}
+
+/// Whether the file of a picture is a file: standard output has the account.
+pub(crate) fn check_picture(path: Option<&Path>) -> Result<(), Failure> {
+    if path.is_some_and(is_standard_output) {
+        return Err(Failure::usage(format_args!(
+            "a picture goes into a file; name one after {TYPED}--plot{TYPED:#}, such as picture.svg"
+        )));
+    }
+    Ok(())
+}
+
+/// Whether a file may be written: none stands there, or one with this text, or `force` says so, and none of `sources`.
+pub(crate) fn check_new(path: &Path, text: Option<&str>, sources: &[&Path], force: bool) -> Result<(), Failure> {
+    // before the work starts its threads
+    interruption::catch();
+    let shown = path.display();
+    if sources.iter().any(|source| is_same(path, source)) {
+        return Err(Failure::usage(format_args!("{shown} is the file that is read; name another")));
+    }
+    match existing(path) {
+        Existing::Folder => return Err(Failure::usage(format_args!("{shown} is a folder; name a file in it"))),
+        Existing::Special => return Err(Failure::usage(format_args!("{shown} is not a regular file; name another"))),
+        Existing::Unreadable(error) => return Err(unreadable(path, &error)),
+        Existing::Text(old) if Some(old.as_str()) == text => {}
+        Existing::Text(_) | Existing::Other if !force => {
+            return Err(Failure::usage(format_args!(
+                "{shown} is there already and stays as it is; {TYPED}--force{TYPED:#} overwrites it"
+            )));
+        }
+        Existing::Nothing | Existing::Text(_) | Existing::Other => {}
+    }
+    Ok(())
+}
+
+/// Whether a file can be written, before there is anything to write: where it cannot, nobody should wait for the work
+/// that makes it. A text of the same kind, that `begins` as the new one will, may be the same: [`write_new`] knows.
+pub(crate) fn check_place(
+    path: &Path,
+    (format, begins): (Format, &str),
+    sources: &[&Path],
+    force: bool,
+) -> Result<(), Failure> {
+    let alike = match existing(path) {
+        Existing::Text(text) if text.starts_with(begins) => Some(text),
+        _ => None,
+    };
+    check_new(path, alike.as_deref(), sources, force)?;
+    file_name::check(path, format)?;
+    // a file beside it, which is gone at once
+    Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
+}
+
+/// Why what is at the place of a file cannot be read.
+pub(crate) fn unreadable(path: &Path, error: &io::Error) -> Failure {
+    if error.kind() == ErrorKind::InvalidFilename {
+        return unwritable(path, error);
+    }
+    Failure::input(format_args!("{} cannot be read: {error}", path.display()))
+}
+
+/// Why a file cannot be written: its name is none that the system takes, its folder is missing, or what the system
+/// says; not of the temporary file beside it.
+pub(crate) fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    let shown = path.display();
+    if error.kind() == ErrorKind::InvalidFilename {
+        return Failure::usage(format_args!(
+            "{} cannot be written: its name is too long for this system, or has letters that it does not take; name \
+             another file",
+            shortened(&shown.to_string(), 80)
+        ));
+    }
+    let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+    match path.parent().filter(|_| error.kind() == ErrorKind::NotFound).filter(is_missing) {
+        Some(folder) => Failure::input(format_args!(
+            "{shown} cannot be written: there is no folder {}; make it first",
+            folder.display()
+        )),
+        // the message of a temporary file has its name
+        None if error.get_ref().is_some_and(|inner| inner.to_string().contains(" at path ")) => {
+            Failure::input(format_args!("{shown} cannot be written: {}", error.kind()))
+        }
+        None => Failure::input(format_args!("{shown} cannot be written: {error}")),
+    }
+}
+
+/// A temporary file in the same folder, so that renaming it is one step. With the permissions that any new file has.
+fn beside(path: &Path) -> io::Result<NamedTempFile> {
+    // of a long name the beginning, for the name of the temporary file is longer
+    const LONGEST_NAME: usize = 40;
+    let name = path.file_name().ok_or_else(|| io::Error::new(ErrorKind::InvalidInput, "this is no name of a file"))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let name: String = name.to_string_lossy().chars().take(LONGEST_NAME).collect();
+    let mut builder = tempfile::Builder::new();
+    let hidden = format!(".{name}.");
+    builder.prefix(&hidden).suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}

@@ -1,0 +1,103 @@
+//! A folder of files that is written whole or not at all.
+
+use std::fs;
+use std::io::{self, ErrorKind};
+use std::path::{Component, Path, PathBuf};
+
+use crate::files::interruption::{self, Registered};
+
+/// What could not be written, and why.
+type Unwritable = (PathBuf, io::Error);
+
+/// Writes files, by their paths in a folder that is empty or not there yet. They are written into a temporary folder
+/// on the same disk, and moved when all are whole.
+pub(crate) fn write(folder: &Path, files: &[(PathBuf, String)]) -> Result<(), Unwritable> {
+    let (root, rest) = first_missing(folder);
+    let of_folder = |error| (folder.to_owned(), error);
+    if !rest.components().all(|part| matches!(part, Component::Normal(_))) {
+        return Err(of_folder(io::Error::new(ErrorKind::NotFound, "it leads through a folder that is not there")));
+    }
+    let make = || tempfile::Builder::new().prefix(".rne.").suffix(".tmp").tempdir_in(&root);
+    let (_registered, temporary) = Registered::new(make).map_err(of_folder)?;
+    for (file, text) in files {
+        let path = temporary.path().join(&rest).join(file);
+        let written = path.parent().map_or(Ok(()), fs::create_dir_all).and_then(|()| fs::write(&path, text));
+        written.map_err(|error| (folder.join(file), error))?;
+    }
+    let entries = fs::read_dir(temporary.path()).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let _held = interruption::hold();
+    let mut moved: Vec<PathBuf> = Vec::new();
+    for entry in entries.map_err(of_folder)? {
+        let place = root.join(entry.file_name());
+        // what somebody else has put there meanwhile stays
+        let is_moved = match fs::symlink_metadata(&place) {
+            Ok(_) => Err(io::Error::from(ErrorKind::AlreadyExists)),
+            Err(_) => fs::rename(entry.path(), &place),
+        };
+        if let Err(error) = is_moved {
+            for place in &moved {
+                remove(place);
+            }
+            return Err((place, error));
+        }
+        moved.push(place);
+    }
+    Ok(())
+}
+
+/// Of a folder the part that is there, and the rest.
+fn first_missing(folder: &Path) -> (PathBuf, PathBuf) {
+    let root = folder.ancestors().find(|part| part.is_dir()).unwrap_or(Path::new(""));
+    let rest = folder.strip_prefix(root).unwrap_or(folder);
+    let root = if root.as_os_str().is_empty() { Path::new(".") } else { root };
+    (root.to_owned(), rest.to_owned())
+}
+
+fn remove(path: &Path) {
+    let _ = if path.is_dir() { fs::remove_dir_all(path) } else { fs::remove_file(path) };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let names = fs::read_dir(folder).expect("a folder").map(|entry| entry.expect("an entry").file_name());
+        let mut names: Vec<String> = names.map(|name| name.into_string().expect("UTF-8")).collect();
+        names.sort();
+        names
+    }
+
+    fn files(names: &[&str]) -> Vec<(PathBuf, String)> {
+        names.iter().map(|name| (PathBuf::from(name), (*name).to_owned())).collect()
+    }
+
+    #[test]
+    fn a_folder_appears_with_all_its_files() {
+        let empty = tempfile::tempdir().expect("a folder");
+        let folder = empty.path().join("deep/er");
+        write(&folder, &files(&["a", ".b/c"])).expect("written");
+        assert_eq!((names(empty.path()), names(&folder)), (vec!["deep".to_owned()], vec![".b".into(), "a".into()]));
+        assert_eq!(fs::read_to_string(folder.join(".b/c")).expect("a file"), ".b/c");
+
+        // into one that is there and empty
+        let there = empty.path().join("there");
+        fs::create_dir(&there).expect("a folder");
+        write(&there, &files(&["a", ".b/c"])).expect("written");
+        assert_eq!(names(&there), [".b", "a"]);
+    }
+
+    #[test]
+    fn what_cannot_be_whole_leaves_nothing() {
+        let empty = tempfile::tempdir().expect("a folder");
+        // a file of that name is a folder too: the second one cannot be written
+        let (path, _) = write(&empty.path().join("deep/er"), &files(&["a", "a/b"])).expect_err("no place");
+        assert_eq!(path, empty.path().join("deep/er/a/b"));
+        assert_eq!(names(empty.path()), Vec::<String>::new());
+
+        // what is there already is no place for a file
+        fs::create_dir(empty.path().join("b")).expect("a folder");
+        write(empty.path(), &files(&["a", "b", "c"])).expect_err("no place");
+        assert_eq!(names(empty.path()), ["b"]);
+    }
+}

@@ -1,0 +1,242 @@
+//! Plan files beside robot files.
+
+use std::cell::OnceCell;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use indicatif::ProgressBar;
+use rne_codegen::plan::{PlanFile, PlanSet, Trick};
+use rne_codegen::{self as codegen, CompileError, Form, Function, Program};
+use rne_machine::CompiledArm;
+use rne_model::{Robot, plan_of, read_file, robot_of};
+
+use crate::files::input_file::is_stream;
+use crate::files::output_file::{self, Existing, Replacement, unwritable};
+use crate::files::robot_file::of_a_name;
+use crate::outcome::Failure;
+
+/// The robot files among paths: a plan goes with its robot, and a pattern such as `robots/*.yaml` means both.
+pub(crate) fn robots(paths: &[PathBuf]) -> impl Iterator<Item = &PathBuf> {
+    let all_are_plans = paths.iter().all(|path| robot_of(path).is_some());
+    paths.iter().filter(move |path| all_are_plans || robot_of(path).is_none())
+}
+
+/// A plan file with what messages need of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Read {
+    /// What messages call it.
+    pub(crate) name: String,
+    pub(crate) text: String,
+    pub(crate) plan: PlanFile,
+}
+
+impl Read {
+    /// A plan as it would be read after it was written.
+    pub(crate) fn of(path: &Path, plan: &PlanFile) -> Self {
+        Self { name: path.display().to_string(), text: plan.to_yaml(), plan: plan.clone() }
+    }
+}
+
+/// The plan file of a robot file, if there is one.
+pub(crate) fn read(robot_file: &Path, robot: &Robot) -> Result<Option<Read>, Failure> {
+    if is_stream(robot_file) {
+        return Ok(None);
+    }
+    if let Some(shipped) = of_a_name(robot_file) {
+        let Some(text) = shipped.plan else { return Ok(None) };
+        let name = format!("the plan of {} (shipped)", shipped.name);
+        let plan = PlanFile::read(&name, text, robot).map_err(|report| Failure::from(&report))?;
+        return Ok(Some(Read { name, text: text.to_owned(), plan }));
+    }
+    let path = plan_of(robot_file);
+    let name = path.display().to_string();
+    let bytes = match read_file(&path) {
+        Ok(bytes) => bytes,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Failure::input(format_args!("{name} cannot be read: {error}"))),
+    };
+    let text = String::from_utf8(bytes).map_err(|_| Failure::input(format_args!("{name} is no text in UTF-8")))?;
+    let plan = PlanFile::read(&name, &text, robot).map_err(|report| Failure::from(&report))?;
+    Ok(Some(Read { name, text, plan }))
+}
+
+/// What a search goes on from.
+#[derive(Debug)]
+pub(crate) struct Known {
+    /// The text of the plan file, where there is one.
+    pub(crate) text: Option<String>,
+    /// What is proved of it.
+    pub(crate) plan: Option<PlanFile>,
+    /// Functions whose graphs are not proved, where that is no error.
+    pub(crate) left_out: Vec<Function>,
+}
+
+/// The plan that a search goes on from, proved. Of a `fresh` one what cannot be proved is left out.
+pub(crate) fn known(robot_file: &Path, robot: &Robot, fresh: bool) -> Result<Known, Failure> {
+    if fresh {
+        let text = match output_file::existing(&plan_of(robot_file)) {
+            Existing::Text(text) => Some(text),
+            _ => None,
+        };
+        let (plan, left_out) = to_replace(robot_file, robot)?;
+        return Ok(Known { text, plan, left_out });
+    }
+    let Some(read) = read(robot_file, robot)? else {
+        return Ok(Known { text: None, plan: None, left_out: Vec::new() });
+    };
+    is_proved(robot, &read)?;
+    Ok(Known { text: Some(read.text), plan: Some(read.plan), left_out: Vec::new() })
+}
+
+/// The plan that a fresh search starts from: what can be proved of one that fits, and the functions whose graphs
+/// cannot. Nothing of one that is stale or broken. What is no plan at all stays.
+fn to_replace(robot_file: &Path, robot: &Robot) -> Result<(Option<PlanFile>, Vec<Function>), Failure> {
+    let path = plan_of(robot_file);
+    match output_file::existing(&path) {
+        Existing::Nothing => Ok((None, Vec::new())),
+        Existing::Text(text) if text.contains("\nfingerprint: ") || text.trim().is_empty() => {
+            let Ok(mut plan) = PlanFile::read(&path.display().to_string(), &text, robot) else {
+                return Ok((None, Vec::new()));
+            };
+            let compiles = |(function, plans): &(Function, PlanSet)| compiled(robot, *function, plans.clone()).is_ok();
+            let mut described = plan.described().into_iter();
+            // a plan that cannot be proved is as good as none
+            if !described.next().is_some_and(|torques| compiles(&torques)) {
+                return Ok((None, plan.rewritten.into_keys().collect()));
+            }
+            let wrong: Vec<Function> = described.filter(|one| !compiles(one)).map(|(function, _)| function).collect();
+            plan.rewritten.retain(|function, _| !wrong.contains(function));
+            Ok((Some(plan), wrong))
+        }
+        _ => Err(Failure::usage(format_args!(
+            "{} is no plan that rne has written, and stays as it is; move it out of the way",
+            path.display()
+        ))),
+    }
+}
+
+/// Whether a plan can be written there: better known before a search than after it.
+pub(crate) fn is_writable(path: &Path) -> Result<(), Failure> {
+    if path.is_dir() {
+        return Err(Failure::input(format_args!("{} is a folder; the plan cannot be written", path.display())));
+    }
+    Replacement::begin(path).map(drop).map_err(|error| unwritable(path, &error))
+}
+
+fn compiled(robot: &Robot, function: Function, plans: PlanSet) -> Result<Program, CompileError> {
+    codegen::Compiler::new(robot).with_plans(plans).compile(function, Form::Reduced)
+}
+
+/// Whether all programs that a plan file describes can be proved; an error is at its place in the plan file.
+pub(crate) fn is_proved(robot: &Robot, Read { name, text, plan }: &Read) -> Result<(), Failure> {
+    plan.described().into_iter().try_for_each(|(function, plans)| {
+        let program = compiled(robot, function, plans.clone());
+        program.map(drop).map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))
+    })
+}
+
+/// Compiles the programs that a plan file describes, and proves them; each function, whether it was
+/// rewritten, and its operations. What a build would refuse is an error at its place in the plan file.
+pub(crate) fn verify(robot: &Robot, Read { name, text, plan }: &Read) -> Result<Vec<(Function, bool, usize)>, Failure> {
+    let count = |(function, plans): (Function, PlanSet)| {
+        let program = compiled(robot, function, plans.clone())
+            .map_err(|error| Failure::from(&PlanFile::located(name, text, (function, &plans), &error)))?;
+        plan.counts(name, text, &program).map_err(|report| Failure::from(&report))?;
+        Ok((function, program.is_rewritten, program.operations().total()))
+    };
+    plan.described().into_iter().map(count).collect()
+}
+
+/// An arm whose functions run over many states, by its plan file if it has one.
+pub(crate) fn compiled_arm(file: &Path, robot: &Robot) -> Result<CompiledArm, Failure> {
+    let arm = CompiledArm::from_robot(robot);
+    Ok(match read(file, robot)? {
+        Some(read) if robot.run_time.is_empty() => arm.by_plan(read.plan),
+        _ => arm,
+    })
+}
+
+/// Compiles the functions of one robot, by its plan file if it has one, which is read when it is needed.
+pub(crate) struct Compiler<'a> {
+    robot: &'a Robot,
+    file: &'a Path,
+    without: &'a [Trick],
+    planned: OnceCell<codegen::Compiler<'a>>,
+    /// The plan file, for errors in it.
+    read: OnceCell<Read>,
+}
+
+impl<'a> Compiler<'a> {
+    pub(crate) fn new(file: &'a Path, robot: &'a Robot) -> Self {
+        Self { robot, file, without: &[], planned: OnceCell::new(), read: OnceCell::new() }
+    }
+
+    /// For a robot that is part of this program, with the text of its plan.
+    pub(crate) fn built_in(file: &'a Path, robot: &'a Robot, plan: &str) -> Result<Self, Failure> {
+        let name = plan_of(file).display().to_string();
+        let plan = PlanFile::read(&name, plan, robot).map_err(|report| Failure::from(&report))?;
+        Ok(Self { planned: OnceCell::from(codegen::Compiler::new(robot).with_plans(plan)), ..Self::new(file, robot) })
+    }
+
+    /// Without some tricks of the reduced form; the other choices of its plan stay.
+    pub(crate) fn without(self, tricks: &'a [Trick]) -> Self {
+        Self { without: tricks, ..self }
+    }
+
+    /// The choices of the plan file, or those that a build makes by itself.
+    pub(crate) fn plans(&self) -> Result<&PlanSet, Failure> {
+        Ok(self.planned()?.plans())
+    }
+
+    fn planned(&self) -> Result<&codegen::Compiler<'a>, Failure> {
+        if let Some(compiler) = self.planned.get() {
+            return Ok(compiler);
+        }
+        let compiler = codegen::Compiler::new(self.robot);
+        let compiler = match read(self.file, self.robot)? {
+            Some(read) => compiler.with_plans(self.read.get_or_init(|| read).plan.clone()),
+            None => compiler,
+        };
+        let plans = (!self.without.is_empty()).then(|| compiler.plans().without(self.robot, self.without));
+        let compiler = plans.map_or(compiler, |plans| codegen::Compiler::new(self.robot).with_plans(plans));
+        Ok(self.planned.get_or_init(|| compiler))
+    }
+
+    pub(crate) fn compile(&self, function: Function, form: Form) -> Result<Program, Failure> {
+        self.compiled(function, form)?.map_err(|error| self.failure(function, form, &error))
+    }
+
+    /// An error of the compiler, at its place in the plan file where that is the cause.
+    pub(crate) fn failure(&self, function: Function, form: Form, error: &CompileError) -> Failure {
+        match (form, self.read.get(), self.planned.get()) {
+            (Form::Reduced, Some(read), Some(compiler)) if !matches!(error, CompileError::TooLarge { .. }) => {
+                let described = (function, compiler.plans());
+                Failure::from(&PlanFile::located(&read.name, &read.text, described, error))
+            }
+            _ => Failure::compile(&self.file.display().to_string(), error),
+        }
+    }
+
+    /// The program, or why there is none.
+    pub(crate) fn compiled(&self, function: Function, form: Form) -> Result<Result<Program, CompileError>, Failure> {
+        let bar = self.sign_of_life(format!("{}: {function}, {form}", self.robot.name));
+        let compiled = match form {
+            Form::SevenSteps => codegen::Compiler::new(self.robot).compile(function, form),
+            Form::Reduced => self.planned()?.compile(function, form),
+        };
+        bar.finish_and_clear();
+        Ok(compiled)
+    }
+
+    /// On a terminal, what an arm that is not done at once is at.
+    fn sign_of_life(&self, what: String) -> ProgressBar {
+        const SOON_DONE: usize = 8;
+        if self.robot.dof() <= SOON_DONE {
+            return ProgressBar::hidden();
+        }
+        let bar = ProgressBar::new_spinner().with_message(what);
+        bar.enable_steady_tick(Duration::from_millis(100));
+        bar
+    }
+}

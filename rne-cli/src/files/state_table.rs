@@ -1,0 +1,275 @@
+//! Tables of states in files, CSV or arrays of numpy, that are read in parts.
+
+use std::cell::Cell;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::path::Path;
+use std::rc::Rc;
+
+use rne_logs::Npy;
+use rne_model::{did_you_mean, open_file};
+
+use crate::files::csv_table::quoted;
+use crate::files::input_file::{is_standard_input, is_stream};
+use crate::outcome::Failure;
+
+/// States of a part: some megabytes, whatever the file's size.
+pub(crate) const PART: usize = 16_384;
+
+/// The longest line of a CSV file, with its line ends where a quote holds them.
+const LONGEST_LINE: u64 = 1 << 20;
+
+/// A table of numbers that is read in parts.
+pub(crate) struct Table {
+    /// How many states there are, where the file says so.
+    pub(crate) states: Option<u64>,
+    name: String,
+    rows: Rows,
+    /// The column of a mass, which is not negative.
+    mass: Option<usize>,
+}
+
+enum Rows {
+    Csv {
+        reader: Box<csv::Reader<Bounded>>,
+        end: Rc<Cell<u64>>,
+        columns: Vec<(usize, String)>,
+        record: csv::ByteRecord,
+    },
+    Npy {
+        numbers: Box<dyn Iterator<Item = io::Result<f64>>>,
+        width: usize,
+        /// How many states were read.
+        read: usize,
+    },
+}
+
+/// A reader that gives no more than what a line may have: a quote that is not closed would hold the whole file.
+struct Bounded {
+    file: Box<dyn BufRead>,
+    given: u64,
+    end: Rc<Cell<u64>>,
+    /// Whether what was given ends with a line: the last one may have no end, and is given one.
+    is_line: bool,
+}
+
+impl Read for Bounded {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        if self.given >= self.end.get() {
+            let message = "the line has more than a million characters, or a quote in it is not closed";
+            return Err(io::Error::new(ErrorKind::InvalidData, message));
+        }
+        let mut count = self.file.read(buffer)?;
+        if let (0, false, [first, ..]) = (count, self.is_line, &mut *buffer) {
+            (*first, count) = (b'\n', 1);
+        }
+        self.is_line = buffer[..count].last().map_or(self.is_line, |last| *last == b'\n');
+        self.given += count as u64;
+        Ok(count)
+    }
+}
+
+impl Table {
+    /// Opens a file that has these columns: by name in CSV, in this order in an array. One of them may be a mass.
+    pub(crate) fn open(path: &Path, columns: &[String], mass: Option<usize>) -> Result<Self, Failure> {
+        let name = if is_standard_input(path) { "<standard input>".to_owned() } else { path.display().to_string() };
+        let unreadable = |error: io::Error| Failure::input(format_args!("the states {name} cannot be read: {error}"));
+        let file: Box<dyn Read> = if is_standard_input(path) {
+            Box::new(io::stdin())
+        } else if is_stream(path) {
+            Box::new(File::open(path).map_err(unreadable)?)
+        } else {
+            Box::new(open_file(path).map_err(unreadable)?)
+        };
+        let mut file: Box<dyn BufRead> = Box::new(BufReader::with_capacity(1 << 18, file));
+        // a pipe may give a few bytes at first
+        let first = file.fill_buf().map_err(unreadable)?;
+        if first.starts_with(&[0xFF, 0xFE]) || first.starts_with(&[0xFE, 0xFF]) {
+            return Err(Failure::input(format_args!("{name} looks like UTF-16; save the file as UTF-8")));
+        }
+        if first.starts_with(&Npy::MAGIC[..Npy::MAGIC.len().min(first.len())]) && !first.is_empty() {
+            return Ok(Self { mass, ..Self::npy(name, file, columns)? });
+        }
+        Ok(Self { mass, ..Self::csv(name, file, columns)? })
+    }
+
+    fn csv(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
+        let end = Rc::new(Cell::new(LONGEST_LINE));
+        let mut reader = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .trim(csv::Trim::All)
+            .has_headers(true)
+            .from_reader(Bounded { file, given: 0, end: Rc::clone(&end), is_line: true });
+        let header =
+            reader.byte_headers().map_err(|error| Failure::input(format_args!("{name}: {}", reason(error))))?;
+        let header: Vec<String> = header
+            .iter()
+            .map(|cell| String::from_utf8_lossy(inner(cell)).trim_start_matches('\u{feff}').trim().to_owned())
+            .collect();
+        if header.is_empty() {
+            let needed = wanted.join(",");
+            return Err(Failure::input(format_args!("{name} is empty; its header is {needed}, in any order")));
+        }
+        let mut columns = Vec::new();
+        for column in wanted {
+            let places: Vec<usize> = (0..header.len()).filter(|&place| header[place] == *column).collect();
+            match places[..] {
+                [place] => columns.push((place, column.clone())),
+                [] => {
+                    let near = instead(column, &header);
+                    let needed = wanted.join(", ");
+                    return Err(Failure::input(format_args!(
+                        "{name}: the header has no column `{column}`{near}; needed are {needed}, others are \
+                         passed over"
+                    )));
+                }
+                _ => {
+                    return Err(Failure::input(format_args!("{name}: the column `{column}` is there twice")));
+                }
+            }
+        }
+        let rows = Rows::Csv { reader: Box::new(reader), end, columns, record: csv::ByteRecord::new() };
+        Ok(Self { states: None, name, rows, mass: None })
+    }
+
+    fn npy(name: String, file: Box<dyn BufRead>, wanted: &[String]) -> Result<Self, Failure> {
+        let wrong = |what: &dyn std::fmt::Display| Failure::input(format_args!("{name}: {what}"));
+        let npy = Npy::open(file).map_err(|error| wrong(&error))?;
+        let [states, width] = npy.shape[..] else {
+            let axes = npy.shape.len();
+            let axes = if axes == 1 { "1 axis".to_owned() } else { format!("{axes} axes") };
+            return Err(wrong(&format_args!("the array has {axes}; its shape is (states, {})", wanted.len())));
+        };
+        if width != wanted.len() as u64 {
+            let (numbers, needed) = (wanted.len(), wanted.join(", "));
+            return Err(wrong(&format_args!("the array has {width} columns where there are {numbers}: {needed}")));
+        }
+        let rows = Rows::Npy { numbers: npy.numbers, width: wanted.len(), read: 0 };
+        Ok(Self { states: Some(states), name, rows, mass: None })
+    }
+
+    /// Appends the rows of the next part; how many there are.
+    pub(crate) fn read(&mut self, rows: &mut Vec<f64>) -> Result<usize, Failure> {
+        let (name, mass) = (&self.name, self.mass);
+        // of the row that was read last
+        let negative = |row: &[f64]| mass.and_then(|mass| row.get(mass)).copied().filter(|mass| *mass < 0.0);
+        match &mut self.rows {
+            Rows::Csv { reader, end, columns, record } => {
+                let mut count = 0;
+                while count < PART {
+                    let first = reader.position().line();
+                    // what is read ahead was given before
+                    end.set(reader.position().byte().saturating_add(LONGEST_LINE));
+                    let is_there = reader.read_byte_record(record).map_err(|error| {
+                        let is_open = record.iter().any(|cell| cell.contains(&b'\n'));
+                        let line = match (error.kind(), error.position()) {
+                            (csv::ErrorKind::UnequalLengths { .. }, _) if !is_open => last_line(reader, record),
+                            (_, Some(begin)) => begin.line(),
+                            (_, None) => first,
+                        };
+                        let hint = if is_open { "; a quote in it is not closed on its line" } else { "" };
+                        Failure::input(format_args!("{name}:{line}: {}{hint}", reason(error)))
+                    })?;
+                    if !is_there {
+                        break;
+                    }
+                    let begin = rows.len();
+                    for (place, column) in &*columns {
+                        let cell = inner(record.get(*place).unwrap_or_default());
+                        let number = std::str::from_utf8(cell).ok().and_then(|cell| cell.parse::<f64>().ok());
+                        let misfit = number.and_then(|number| misfit(number, cell));
+                        rows.push(number.filter(|_| misfit.is_none()).ok_or_else(|| {
+                            let line = last_line(reader, record);
+                            let shown = quoted(&String::from_utf8_lossy(cell));
+                            let what = match (cell, misfit) {
+                                ([], _) => "empty".to_owned(),
+                                (_, Some(misfit)) => format!("{shown}, which is too {misfit} for a 64-bit float"),
+                                _ => format!("{shown}, which is no number"),
+                            };
+                            Failure::input(format_args!("{name}:{line}: `{column}` is {what}"))
+                        })?);
+                    }
+                    if let Some(negative) = negative(&rows[begin..]) {
+                        let (line, column) = (last_line(reader, record), &columns[mass.unwrap_or_default()].1);
+                        return Err(Failure::input(format_args!(
+                            "{name}:{line}: `{column}` is a mass, {negative} kg: no body has less than 0"
+                        )));
+                    }
+                    count += 1;
+                }
+                Ok(count)
+            }
+            Rows::Npy { numbers, width, read } => {
+                for number in numbers.by_ref().take(PART * *width) {
+                    let number = number.map_err(|error| {
+                        let all = self.states.unwrap_or_default();
+                        Failure::input(match error.kind() {
+                            ErrorKind::UnexpectedEof => {
+                                format!("{name}: the file ends before the last of {all} states")
+                            }
+                            _ => format!("{name} cannot be read: {error}"),
+                        })
+                    })?;
+                    rows.push(number);
+                }
+                for row in rows.chunks_exact((*width).max(1)) {
+                    *read += 1;
+                    if let Some(negative) = negative(row) {
+                        let column = mass.unwrap_or_default() + 1;
+                        return Err(Failure::input(format_args!(
+                            "{name}: state {read}: column {column} is a mass, {negative} kg: no body has less than 0"
+                        )));
+                    }
+                }
+                Ok(rows.len() / (*width).max(1))
+            }
+        }
+    }
+}
+
+/// What a header has that may be meant by a column.
+fn instead(column: &str, header: &[String]) -> String {
+    let only = match header {
+        [only] => only.as_str(),
+        _ => "",
+    };
+    match [(';', "semicolons"), ('\t', "tabs")].into_iter().find(|(separator, _)| only.contains(*separator)) {
+        Some((_, separators)) => format!(" (it has {separators}; columns are separated by commas)"),
+        None => did_you_mean(column, header.iter().map(String::as_str))
+            .map_or(String::new(), |near| format!(" (there is {})", quoted(near))),
+    }
+}
+
+/// What is wrong with digits whose number is infinite or zero only because it is rounded. The word `inf` is a number,
+/// for a log may have it where nothing was measured.
+fn misfit(number: f64, cell: &[u8]) -> Option<&'static str> {
+    let mut mantissa = cell.split(|byte| matches!(byte, b'e' | b'E')).next().unwrap_or_default().iter();
+    if number.is_infinite() && mantissa.clone().any(u8::is_ascii_digit) {
+        return Some("large");
+    }
+    (number == 0.0 && mantissa.any(|byte| matches!(byte, b'1'..=b'9'))).then_some("small")
+}
+
+/// A cell without blanks and without the quotes behind them.
+fn inner(cell: &[u8]) -> &[u8] {
+    let cell = cell.trim_ascii();
+    cell.strip_prefix(b"\"").and_then(|cell| cell.strip_suffix(b"\"")).unwrap_or(cell).trim_ascii()
+}
+
+/// The line on which a record that was just read begins. Its own position is that of empty lines before it.
+fn last_line<R: Read>(reader: &csv::Reader<R>, record: &csv::ByteRecord) -> u64 {
+    let inner: usize = record.iter().map(|cell| cell.split(|byte| *byte == b'\n').count() - 1).sum();
+    reader.position().line().saturating_sub(1 + inner as u64).max(1)
+}
+
+/// Why a record cannot be read.
+fn reason(error: csv::Error) -> String {
+    match error.into_kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            let cells = if len == 1 { "cell" } else { "cells" };
+            format!("{len} {cells} where the header has {expected_len}")
+        }
+        csv::ErrorKind::Io(error) => error.to_string(),
+        kind => csv::Error::from(io::Error::other(format!("{kind:?}"))).to_string(),
+    }
+}

@@ -1,0 +1,179 @@
+//! A function over a file of states: read in parts, computed by the machine, written as it is computed.
+
+use std::io::{self, ErrorKind, IsTerminal as _};
+use std::path::Path;
+use std::time::Instant;
+
+use indicatif::{ProgressBar, ProgressStyle};
+use rne_codegen::{Answer, Function, Layout};
+use rne_machine::{Arguments, Array, CompiledArm, CompiledFunction, Destination};
+
+use crate::files::input_file::is_standard_input;
+use crate::files::output_file::is_standard_output;
+use crate::files::state_results::{self, Results};
+use crate::files::state_table::{PART, Table};
+use crate::outcome::{Failure, Outcome};
+use crate::palette::{GOOD, QUIET};
+
+/// A file of states, and where its results go.
+pub(crate) struct Job<'a> {
+    pub(crate) robot_file: &'a Path,
+    pub(crate) arm: &'a CompiledArm,
+    pub(crate) function: Function,
+    pub(crate) states: &'a Path,
+    /// Standard output, unless given.
+    pub(crate) out: Option<&'a Path>,
+    pub(crate) force: bool,
+}
+
+/// The columns of a table of states: the elements of the function's arguments.
+fn columns(compiled: &CompiledFunction, arm: &CompiledArm) -> Vec<String> {
+    let axes = ["x", "y", "z"];
+    let payload = ["m", "cx", "cy", "cz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"];
+    let of = |&(name, elements): &(&str, usize)| -> Vec<String> {
+        match name {
+            "payload" => payload.map(str::to_owned).into(),
+            "parameters" => arm.robot().run_time.names.clone(),
+            "q" | "qd" | "qdd" | "tau" | "sin" | "cos" => {
+                (1..=elements).map(|joint| format!("{name}{joint}")).collect()
+            }
+            _ => axes.map(|axis| format!("{name}_{axis}")).into(),
+        }
+    };
+    compiled.arguments().iter().flat_map(of).collect()
+}
+
+/// The column of a payload's mass.
+fn mass(compiled: &CompiledFunction) -> Option<usize> {
+    let payload = compiled.arguments().iter().position(|(name, _)| *name == "payload")?;
+    Some(compiled.arguments()[..payload].iter().map(|(_, elements)| elements).sum())
+}
+
+/// The columns of its results: torques and accelerations by their symbols, others by the function's name and their
+/// places in it, from 1, as those of a matrix by row and column.
+fn results(function: Function, dof: usize) -> Vec<String> {
+    let symbol = match function {
+        Function::ForwardDynamics => Some("qdd"),
+        _ if *function.answer() == Answer::Torques => Some("tau"),
+        _ => None,
+    };
+    if let Some(symbol) = symbol {
+        return (1..=dof).map(|joint| format!("{symbol}{joint}")).collect();
+    }
+    let mut names = Vec::new();
+    places(&function.layout(dof), function.name().to_owned(), &mut names);
+    names
+}
+
+fn places(layout: &Layout, name: String, names: &mut Vec<String>) {
+    match layout {
+        Layout::Number => names.push(name),
+        Layout::Array(length, of) => (1..=*length).for_each(|index| places(of, format!("{name}_{index}"), names)),
+        Layout::Record(record, parts) => {
+            record.fields().into_iter().zip(parts).for_each(|(field, of)| places(of, format!("{name}_{field}"), names));
+        }
+    }
+}
+
+impl Job<'_> {
+    pub(crate) fn run(&self) -> Result<Outcome, Failure> {
+        let compiled = self.arm.function(self.function).map_err(Failure::input)?;
+        let columns = columns(compiled, self.arm);
+        let mut table = Table::open(self.states, &columns, mass(compiled))?;
+        let outputs = results(self.function, self.arm.dof());
+        let read = [self.robot_file, self.states];
+        let mut results = Results::open(self.out.filter(|out| !is_standard_output(out)), &read, self.force, &outputs)?;
+        let progress = progress(self.states, table.states, results.is_terminal());
+        let start = Instant::now();
+        let (mut states, mut not_finite) = (0_usize, NotFinite::default());
+        let (mut rows, mut numbers) = (Vec::with_capacity(PART * columns.len()), vec![0.0; PART * outputs.len()]);
+        loop {
+            rows.clear();
+            let count = table.read(&mut rows)?;
+            if count == 0 {
+                break;
+            }
+            let mut at = 0;
+            let mut arguments = Arguments::new();
+            for &(name, elements) in compiled.arguments() {
+                let argument = Array::Strided { numbers: &rows[at..], state: columns.len(), element: 1 };
+                arguments = arguments.with(name, argument).unwrap_or(arguments);
+                at += elements;
+            }
+            let room = &mut numbers[..count * outputs.len()];
+            self.arm.run(self.function, count, &arguments, Destination::Rows(room)).map_err(Failure::input)?;
+            not_finite.see(states, room.chunks(outputs.len().max(1)));
+            match results.write(room) {
+                // the reader has read enough
+                Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
+                written => written.map_err(|error| state_results::stopped(&error))?,
+            }
+            states += count;
+            progress.inc(count as u64);
+        }
+        progress.finish_and_clear();
+        match results.finish() {
+            Err(error) if error.kind() == ErrorKind::BrokenPipe => return Ok(Outcome::default()),
+            written => written.map_err(|error| state_results::stopped(&error))?,
+        }
+        #[allow(clippy::cast_precision_loss)] // of a rate, three digits are told
+        let rate = states as f64 / start.elapsed().as_secs_f64().max(1e-9);
+        let rate = match states {
+            0 => String::new(),
+            _ => format!(" {QUIET}({rate:.2e} a second, reading and writing included){QUIET:#}"),
+        };
+        let of = if states == 1 { "state" } else { "states" };
+        let place = self
+            .out
+            .filter(|out| !is_standard_output(out))
+            .map_or(String::new(), |out| format!("{GOOD}wrote{GOOD:#} {}: ", out.display()));
+        let remark = format!("{place}{} of {states} {of}{rate}\n{}", self.function, not_finite.remark());
+        Ok(Outcome::remark(remark))
+    }
+}
+
+/// The states whose results are no finite numbers: what is given may be none, or overflow.
+#[derive(Default)]
+struct NotFinite {
+    count: usize,
+    /// From 1.
+    first: usize,
+}
+
+impl NotFinite {
+    /// Results of the states that follow `before` others.
+    fn see<'a>(&mut self, before: usize, results: impl Iterator<Item = &'a [f64]>) {
+        for (index, numbers) in results.enumerate() {
+            if numbers.iter().all(|number| number.is_finite()) {
+                continue;
+            }
+            if self.count == 0 {
+                self.first = before + index + 1;
+            }
+            self.count += 1;
+        }
+    }
+
+    fn remark(&self) -> String {
+        match self.count {
+            0 => String::new(),
+            1 => format!("note: the result of state {} is not finite\n", self.first),
+            count => format!("note: the results of {count} states are not finite; the first is state {}\n", self.first),
+        }
+    }
+}
+
+/// A bar on a terminal that shows nothing else.
+fn progress(states: &Path, count: Option<u64>, is_result_shown: bool) -> ProgressBar {
+    if is_result_shown || is_standard_input(states) && io::stdin().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let (bar, template) = match count {
+        Some(count) => (ProgressBar::new(count), "{bar:30} {human_pos} of {human_len} states, {per_sec}"),
+        None => (ProgressBar::no_length(), "{spinner} {human_pos} states, {per_sec}"),
+    };
+    match ProgressStyle::with_template(template) {
+        Ok(style) => bar.with_style(style.progress_chars("=> ")),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,197 @@
+//! Trajectories in files: columns t, q1, …, qd1, …, qdd1, … of CSV.
+
+use std::path::Path;
+
+use rne_model::{Robot, did_you_mean};
+use rne_plot::{Trajectory, TrajectoryError};
+
+use crate::files::csv_table::{Cell, Line, Mistakes, OPEN_QUOTE, Row, lines, other_separator, quoted, text_of};
+use crate::files::input_file;
+use crate::outcome::Failure;
+
+/// Ten minutes of a six-joint arm at a hundred hertz, with all digits, are as long.
+const LONGEST: usize = 24 << 20;
+
+/// A picture has a thousand pixels.
+const MOST: usize = 200_000;
+
+/// A trajectory, and in words what of it was derived.
+pub(crate) struct Given {
+    pub(crate) trajectory: Trajectory,
+    pub(crate) derived: &'static str,
+}
+
+/// Where the columns of a trajectory stand in the file; of each joint, base to tip.
+struct Columns {
+    time: usize,
+    q: Vec<usize>,
+    qd: Option<Vec<usize>>,
+    qdd: Option<Vec<usize>>,
+}
+
+/// Reads the trajectory of a robot.
+pub(crate) fn read(path: &Path, robot: &Robot) -> Result<Given, Failure> {
+    let name = if input_file::is_standard_input(path) { "<standard input>".into() } else { path.display().to_string() };
+    let bytes = input_file::read(path, LONGEST)
+        .map_err(|error| Failure::input(format_args!("the trajectory {name} cannot be read: {error}")))?;
+    if bytes.len() > LONGEST {
+        return Err(Failure::input(format_args!("{name} has more than {LONGEST} bytes; plot a part of it")));
+    }
+    let text = text_of(&name, &bytes)?;
+    let mut mistakes = Mistakes::new(&name, text);
+    let dof = robot.dof();
+    let help = format!(
+        "the header is t,{}; columns qd and qdd may be left out, others are passed over",
+        names("q", dof).join(",")
+    );
+    let mut rows = Vec::new();
+    let mut table = lines(text).filter_map(|line| match line {
+        Line::Row(row) => Some(Ok(row)),
+        Line::OpenQuote(span) => Some(Err(span)),
+        Line::Comment(..) => None,
+    });
+    let header = table.next().and_then(|line| line.map_err(|span| mistakes.push(span, OPEN_QUOTE, None)).ok());
+    let Some(header) = header else {
+        if !mistakes.are_there() {
+            mistakes.push(0..0, "the file is empty: there is no header", Some(&help));
+        }
+        return mistakes.finish(()).and(Err(Failure::input("the file is empty")));
+    };
+    let Some(columns) = columns(&header, dof, &help, &mut mistakes) else {
+        return mistakes.finish(()).and(Err(Failure::input("the header is not one of a trajectory")));
+    };
+    let asked = columns.asked(header.cells.len());
+    let mut samples = Vec::new();
+    for line in table {
+        match line {
+            Ok(row) if samples.len() == MOST => {
+                let message = format!("there are more than {MOST} samples");
+                mistakes.push(row.span, message, Some("plot a part of them, or every tenth"));
+                break;
+            }
+            _ if mistakes.are_enough() => break,
+            Ok(row) => {
+                rows.push(row.span.start);
+                samples.push(numbers(&header, &row, &asked, &mut mistakes));
+            }
+            Err(span) => mistakes.push(span, OPEN_QUOTE, None),
+        }
+    }
+    mistakes.finish(())?;
+    let mut mistakes = Mistakes::new(&name, text);
+    let of = |columns: &[usize]| -> Vec<Vec<f64>> {
+        samples.iter().map(|sample| columns.iter().map(|&column| sample[column]).collect()).collect()
+    };
+    let time = samples.iter().map(|sample| sample[columns.time]).collect();
+    let (qd, qdd) = (columns.qd.as_deref().map(of), columns.qdd.as_deref().map(of));
+    let derived = match (&qd, &qdd) {
+        (Some(_), Some(_)) => "",
+        (Some(_), None) => "accelerations derived from the velocities",
+        (None, Some(_)) => "velocities derived from the positions",
+        (None, None) => "velocities and accelerations derived from the positions",
+    };
+    match Trajectory::new(time, of(&columns.q), qd, qdd) {
+        Ok(trajectory) => Ok(Given { trajectory, derived }),
+        Err(error) => {
+            let (span, help) = match &error {
+                TrajectoryError::Time(sample) => {
+                    let start = rows.get(*sample).copied().unwrap_or_default();
+                    (start..start + 1, None)
+                }
+                TrajectoryError::TooFew { .. } => {
+                    (text.len()..text.len(), Some("a derivative needs three samples, a trajectory two"))
+                }
+                _ => (header.span.clone(), None),
+            };
+            mistakes.push(span, error.to_string(), help);
+            mistakes.finish(()).and(Err(Failure::input(error)))
+        }
+    }
+}
+
+fn names(quantity: &str, dof: usize) -> Vec<String> {
+    (1..=dof).map(|joint| format!("{quantity}{joint}")).collect()
+}
+
+/// The columns, all of a quantity or none.
+fn columns(header: &Row<'_>, dof: usize, help: &str, mistakes: &mut Mistakes<'_>) -> Option<Columns> {
+    let known: Vec<String> =
+        std::iter::once("t".to_owned()).chain(["q", "qd", "qdd"].into_iter().flat_map(|q| names(q, dof))).collect();
+    for (index, cell) in header.cells.iter().enumerate() {
+        if header.cells[..index].iter().any(|other| other.text == cell.text && !cell.text.is_empty()) {
+            mistakes.push(cell.span.clone(), format!("the column {} is there twice", quoted(&cell.text)), None);
+        }
+        let is_of_another_joint = ["qdd", "qd", "q"].iter().find_map(|start| cell.text.strip_prefix(start));
+        let joint = is_of_another_joint.and_then(|digits| digits.parse::<usize>().ok());
+        if joint.is_some_and(|joint| joint == 0 || joint > dof) {
+            let joints = if dof == 1 { "is 1 joint".to_owned() } else { format!("are joints 1 to {dof}") };
+            mistakes.push(
+                cell.span.clone(),
+                format!("{} is of no joint: there {joints}", quoted(&cell.text)),
+                Some(help),
+            );
+        }
+    }
+    let find = |name: &str| header.cells.iter().position(|cell| cell.text == name);
+    let mut missing = |name: &str| {
+        let near = header.cells.iter().filter(|cell| !known.iter().any(|name| *name == cell.text));
+        let near = did_you_mean(name, near.map(|cell| cell.text.as_ref()));
+        let meant = near.map_or_else(String::new, |near| format!("; is it {}?", quoted(near)));
+        let help = other_separator(header).unwrap_or(help);
+        mistakes.push(header.span.clone(), format!("there is no column `{name}`{meant}"), Some(help));
+    };
+    let Some(time) = find("t") else {
+        missing("t");
+        return None;
+    };
+    let mut all = |quantity: &str, needed: bool| -> Result<Option<Vec<usize>>, ()> {
+        let names = names(quantity, dof);
+        if !needed && names.iter().all(|name| find(name).is_none()) {
+            return Ok(None);
+        }
+        let found: Vec<usize> = names.iter().filter_map(|name| find(name)).collect();
+        if let Some(name) = names.iter().find(|name| find(name).is_none()) {
+            missing(name);
+            return Err(());
+        }
+        Ok(Some(found))
+    };
+    let (q, qd, qdd) = (all("q", true), all("qd", false), all("qdd", false));
+    let columns = Columns { time, q: q.ok()??, qd: qd.ok()?, qdd: qdd.ok()? };
+    (!mistakes.are_there()).then_some(columns)
+}
+
+impl Columns {
+    /// Whether a column is one of them.
+    fn asked(&self, columns: usize) -> Vec<bool> {
+        let all = [Some(&self.q), self.qd.as_ref(), self.qdd.as_ref()];
+        let mut asked = vec![false; columns];
+        for &column in all.into_iter().flatten().flatten().chain([&self.time]) {
+            asked[column] = true;
+        }
+        asked
+    }
+}
+
+/// The numbers of a line, column by column; 0 in columns that nobody asks for, and where there is none.
+fn numbers(header: &Row<'_>, row: &Row<'_>, asked: &[bool], mistakes: &mut Mistakes<'_>) -> Vec<f64> {
+    if row.cells.len() != header.cells.len() {
+        let message = format!("{} cells, and {} columns in the header", row.cells.len(), header.cells.len());
+        mistakes.push(row.span.clone(), message, Some("numbers have a decimal point, no comma"));
+        return Vec::new();
+    }
+    let mut number = |(cell, name): (&Cell<'_>, &Cell<'_>)| {
+        let number = cell.text.parse::<f64>().ok().filter(|number| number.is_finite());
+        number.unwrap_or_else(|| {
+            let message = if cell.text.is_empty() {
+                format!("a number of column `{}` is missing", name.text)
+            } else {
+                format!("{} of column `{}` is no finite number", quoted(&cell.text), name.text)
+            };
+            mistakes.push(cell.span.clone(), message, None);
+            0.0
+        })
+    };
+    let pairs = row.cells.iter().zip(&header.cells).zip(asked);
+    pairs.map(|(pair, asked)| if *asked { number(pair) } else { 0.0 }).collect()
+}

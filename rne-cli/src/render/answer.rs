@@ -1,0 +1,249 @@
+//! What a function returned, for people: a line per joint, matrices with the names of their joints, poses, wrenches.
+
+use std::fmt::Write as _;
+
+use rne::{Payload, Wrench};
+use rne_codegen::{Answer, Argument, Function, Labels, MatrixUnit, Shape};
+use rne_model::{Inertia, InertiaElement, JointKind, Robot};
+
+use crate::palette::{QUIET, TITLE};
+use crate::render::layout::{Align, columns, left, width};
+use crate::values::numbers::{at_the_point, exact, rounded};
+use crate::values::state::State;
+
+/// Digits behind the point in a matrix.
+const DIGITS: usize = 6;
+
+/// Digits behind the point where ten parameters stand side by side.
+const FEW_DIGITS: usize = 4;
+
+/// The parameters of a link, as the regressor counts them.
+const PARAMETERS: [&str; 10] = ["m", "m cx", "m cy", "m cz", "Jxx", "Jxy", "Jxz", "Jyy", "Jyz", "Jzz"];
+
+/// The numbers of a function as text.
+pub(crate) fn text(robot: &Robot, state: &State, numbers: &[f64]) -> String {
+    let mut text = format!("{TITLE}{}{TITLE:#} of {}\n", state.function, robot.name);
+    let joints: Vec<String> = robot.joints.iter().map(|joint| joint.name.clone()).collect();
+    match state.function.answer() {
+        Answer::Torques | Answer::Accelerations => per_joint(&mut text, robot, state, numbers),
+        Answer::Number(unit) => {
+            let number = numbers.iter().copied().map(exact).collect::<String>();
+            let _ = writeln!(text, "  {number} {unit}");
+        }
+        Answer::Tables(tables) => {
+            let mut numbers = numbers;
+            for (index, table) in tables.iter().enumerate() {
+                if index > 0 {
+                    text.push('\n');
+                }
+                let labels = |labels: &Labels| match labels {
+                    Labels::Joints => joints.clone(),
+                    Labels::Names(names) => names.iter().map(|&name| name.to_owned()).collect(),
+                };
+                let (rows, columns) = (labels(&table.rows), labels(&table.columns));
+                let (of_table, rest) = numbers.split_at((rows.len() * columns.len()).min(numbers.len()));
+                numbers = rest;
+                let units = table.unit.map(|unit| Kinds::of(robot).units(unit));
+                let about = [Some(table.about).filter(|about| !about.is_empty()), units];
+                let about = about.into_iter().flatten().collect::<Vec<_>>().join(", ");
+                Table { about: &about, rows: &rows, columns: &columns, numbers: of_table, digits: DIGITS }
+                    .write(&mut text);
+            }
+        }
+        Answer::Poses => match state.function.shape() {
+            Shape::Array(..) => poses(&mut text, &joints, numbers),
+            _ => poses(&mut text, &["tip".to_owned()], numbers),
+        },
+        Answer::PerParameter => regressor(&mut text, &joints, numbers),
+    }
+    text
+}
+
+/// State and result, a line per joint, with all digits.
+fn per_joint(text: &mut String, robot: &Robot, state: &State, result: &[f64]) {
+    let forward = state.function.returns_accelerations();
+    let takes = |argument| state.function.takes(argument);
+    let all = [
+        ("q", &state.q[..], takes(Argument::Positions)),
+        ("qd", &state.qd, takes(Argument::Rates)),
+        ("qdd", &state.qdd, takes(Argument::Accelerations)),
+        ("tau", &state.tau, takes(Argument::Torques)),
+        (if forward { "qdd" } else { "tau" }, result, true),
+    ];
+    let mut cells = vec![vec![String::new()]];
+    cells.extend(robot.joints.iter().map(|joint| vec![format!("  {}", joint.name)]));
+    for (title, values, _) in all.into_iter().filter(|(.., taken)| *taken) {
+        let numbers: Vec<String> = values.iter().copied().map(exact).collect();
+        let column = std::iter::once(title.to_owned()).chain(at_the_point(&numbers));
+        cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
+    }
+    for (line, joint) in cells.iter_mut().skip(1).zip(&robot.joints) {
+        line.push(unit(joint.row.kind, forward).to_owned());
+    }
+    write_lines(text, &cells);
+    if let Some(Wrench { force, moment }) = &state.wrench {
+        let _ = writeln!(text, "{QUIET}the last link exerts ({}) N, ({}) N m{QUIET:#}", list(force), list(moment));
+    }
+    if let Some(Payload { mass, com, inertia }) = &state.payload {
+        let mass = exact(*mass);
+        let _ = writeln!(text, "{QUIET}the tip carries {mass} kg with its centre at ({}) m{QUIET:#}", list(com));
+        if *inertia != Inertia::default() {
+            let elements = InertiaElement::ALL.map(|element| exact(*element.of(inertia))).join(", ");
+            let _ = writeln!(text, "{QUIET}and the inertia xx, yy, zz, xy, xz, yz = {elements} kg m²{QUIET:#}");
+        }
+    }
+    if takes(Argument::Base) {
+        let base = &state.base;
+        let [omega, omega_dot, acceleration, gravity] =
+            [base.omega, base.omega_dot, base.acceleration, base.gravity].map(|vector| list(&vector));
+        let _ = writeln!(text, "{QUIET}the base turns with ({omega}) rad/s, ({omega_dot}) rad/s² and accelerates with");
+        let _ = writeln!(text, "({acceleration}) m/s², gravity is ({gravity}) m/s², all in frame 0{QUIET:#}");
+    }
+}
+
+/// Numbers with commas between them.
+pub(crate) fn list(values: &[f64; 3]) -> String {
+    values.map(exact).join(", ")
+}
+
+const fn unit(kind: JointKind, acceleration: bool) -> &'static str {
+    match (kind, acceleration) {
+        (kind, false) => kind.effort_unit(),
+        (JointKind::Revolute, true) => "rad/s²",
+        (JointKind::Prismatic, true) => "m/s²",
+    }
+}
+
+fn axes() -> [String; 3] {
+    ["x", "y", "z"].map(str::to_owned)
+}
+
+/// Columns of the rotation are the axes of the frame; beside them its origin.
+fn poses(text: &mut String, frames: &[String], numbers: &[f64]) {
+    let about = "axes of the frame and its origin (m), in the world";
+    let widest = frames.iter().map(|frame| width(frame)).max().unwrap_or(0);
+    let mut rows = Vec::new();
+    let mut elements = Vec::new();
+    for (frame, pose) in frames.iter().zip(numbers.chunks_exact(12)) {
+        let (rotation, origin) = pose.split_at(9);
+        let names = [frame, "", ""];
+        for (((axis, name), row), origin) in axes().iter().zip(names).zip(rotation.chunks_exact(3)).zip(origin) {
+            rows.push(format!("{}  {axis}", left(name, widest)));
+            elements.extend(row.iter().chain([origin]));
+        }
+    }
+    let columns = ["x axis", "y axis", "z axis", "origin"].map(str::to_owned);
+    Table { about, rows: &rows, columns: &columns, numbers: &elements, digits: DIGITS }.write(text);
+}
+
+/// A table per torque, a line per link that enters it.
+fn regressor(text: &mut String, joints: &[String], numbers: &[f64]) {
+    let columns = PARAMETERS.map(str::to_owned);
+    let per_torque = joints.len() * PARAMETERS.len();
+    for (joint, torque) in joints.iter().zip(numbers.chunks_exact(per_torque.max(1))) {
+        let links: Vec<(String, &[f64])> = torque
+            .chunks_exact(PARAMETERS.len())
+            .enumerate()
+            .filter(|(_, link)| link.iter().any(|number| *number != 0.0))
+            .map(|(index, link)| (format!("link {}", index + 1), link))
+            .collect();
+        let about = format!("torque of {joint} per parameter");
+        if links.is_empty() {
+            let _ = writeln!(text, "{QUIET}{about}: none{QUIET:#}");
+            continue;
+        }
+        let (rows, numbers): (Vec<String>, Vec<&[f64]>) = links.into_iter().unzip();
+        Table { about: &about, rows: &rows, columns: &columns, numbers: &numbers.concat(), digits: FEW_DIGITS }
+            .write(text);
+    }
+    let _ = writeln!(
+        text,
+        "{QUIET}links that are not listed do not enter; c and J from the link frame's origin, in its axes{QUIET:#}"
+    );
+}
+
+/// Numbers in rows and columns that have names.
+struct Table<'a> {
+    /// What they are, and their units.
+    about: &'a str,
+    rows: &'a [String],
+    columns: &'a [String],
+    /// Row by row.
+    numbers: &'a [f64],
+    digits: usize,
+}
+
+impl Table<'_> {
+    fn write(&self, text: &mut String) {
+        let _ = writeln!(text, "{QUIET}{}{QUIET:#}", self.about);
+        let mut cells = vec![vec![String::new()]];
+        cells.extend(self.rows.iter().map(|row| vec![format!("  {row}")]));
+        for (index, title) in self.columns.iter().enumerate() {
+            let numbers = self.numbers.iter().skip(index).step_by(self.columns.len());
+            let numbers: Vec<String> = numbers.map(|&number| rounded(number, self.digits)).collect();
+            let column = std::iter::once(title.clone()).chain(at_the_point(&numbers));
+            cells.iter_mut().zip(column).for_each(|(line, cell)| line.push(cell));
+        }
+        write_lines(text, &cells);
+    }
+}
+
+/// Lines of cells; the first has the titles.
+fn write_lines(text: &mut String, cells: &[Vec<String>]) {
+    let most = cells.iter().map(Vec::len).max().unwrap_or(0);
+    for (index, line) in columns(&vec![Align::Left; most], cells).iter().enumerate() {
+        let _ = match index {
+            0 => writeln!(text, "{QUIET}{line}{QUIET:#}"),
+            _ => writeln!(text, "{line}"),
+        };
+    }
+}
+
+/// Which kinds of joints a robot has: they decide the units of its matrices.
+enum Kinds {
+    Revolute,
+    Prismatic,
+    Both,
+}
+
+impl Kinds {
+    fn of(robot: &Robot) -> Self {
+        let revolute = robot.rows().filter(|row| row.kind == JointKind::Revolute).count();
+        match revolute {
+            0 => Self::Prismatic,
+            all if all == robot.dof() => Self::Revolute,
+            _ => Self::Both,
+        }
+    }
+
+    const fn units(&self, of: MatrixUnit) -> &'static str {
+        match (of, self) {
+            (MatrixUnit::Mass, Self::Revolute) => "kg m²",
+            (MatrixUnit::Mass, Self::Prismatic) => "kg",
+            (MatrixUnit::Mass, Self::Both) => {
+                "kg m² between revolute joints, kg between prismatic ones, kg m between the kinds"
+            }
+            (MatrixUnit::PerPosition, Self::Revolute) => "N m/rad",
+            (MatrixUnit::PerPosition, Self::Prismatic) => "N/m",
+            (MatrixUnit::PerPosition, Self::Both) => "N m or N of the row per rad or m of the column",
+            (MatrixUnit::PerRate, Self::Revolute) => "N m s/rad",
+            (MatrixUnit::PerRate, Self::Prismatic) => "N s/m",
+            (MatrixUnit::PerRate, Self::Both) => "N m or N of the row per rad/s or m/s of the column",
+        }
+    }
+}
+
+/// Why a number is none.
+pub(crate) fn not_finite(robot: &Robot, function: Function, index: usize) -> String {
+    let joint = |index: usize| {
+        let name = robot.joints.get(index).map_or("", |joint| &joint.name);
+        format!("joint {} ({name})", index + 1)
+    };
+    if let Some(meaning) = function.divides() {
+        return meaning.to_owned();
+    }
+    if *function.answer() == Answer::Torques {
+        return format!("the torque of {} overflows: the state is too large", joint(index));
+    }
+    format!("{function} overflows: the state is too large")
+}

@@ -1,0 +1,67 @@
+//! A robot in a few words: the opening of a listing, its table, what was counted, what a conversion loses.
+
+use std::fmt::Write as _;
+
+use rne_codegen::{Program, emit};
+use rne_convert::Difference;
+use rne_model::{Convention, JointKind, Robot};
+
+use crate::palette::{QUIET, TITLE};
+
+/// Title, convention, gravity, and the Denavit-Hartenberg table.
+pub(crate) fn robot(robot: &Robot) -> String {
+    let emit::Heading { title, frames, ends, table, .. } = emit::Heading::of(robot);
+    let mut text = format!("{TITLE}{title}{TITLE:#}\n{frames}\n");
+    for end in ends {
+        let _ = writeln!(text, "{end}");
+    }
+    text.push('\n');
+    for (index, line) in table.lines().enumerate() {
+        let _ = match index {
+            0 => writeln!(text, "  {QUIET}{line}   (rad, m, kg){QUIET:#}"),
+            _ => writeln!(text, "  {line}"),
+        };
+    }
+    text
+}
+
+/// The operations of a program, before and after, in one line.
+pub(crate) fn counts(program: &Program) -> String {
+    let (products, sums) = program.before();
+    let after = program.operations();
+    let angles = match after.sincos {
+        0 => "no sine or cosine".to_owned(),
+        1 => "sine and cosine of 1 angle".to_owned(),
+        angles => format!("sine and cosine of {angles} angles"),
+    };
+    format!(
+        "{TITLE}{}{TITLE:#}, form {}\n\
+         {products} products -> {TITLE}{}{TITLE:#}, {sums} sums -> {TITLE}{}{TITLE:#}; \
+         {angles}; {} statements",
+        program.function, program.form, after.mul, after.add, after.statements,
+    )
+}
+
+/// The robot in a few words: `puma560, RRRRRR, standard`.
+pub(crate) fn about(robot: &Robot) -> String {
+    let joints: String = robot
+        .rows()
+        .map(|row| match row.kind {
+            JointKind::Revolute => 'R',
+            JointKind::Prismatic => 'P',
+        })
+        .collect();
+    let convention = match robot.convention {
+        Convention::Standard => "standard",
+        Convention::Modified => "modified",
+    };
+    format!("{}, {joints}, {convention}", robot.name)
+}
+
+/// What a conversion loses.
+pub(crate) fn rounding(difference: &Difference) -> String {
+    format!(
+        "the table gives the same arm over 1,000 states: tip to {:.1e} m and {:.1e} rad, torques to {:.1e}",
+        difference.position, difference.rotation, difference.torque
+    )
+}

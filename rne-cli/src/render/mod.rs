@@ -1,0 +1,12 @@
+//! Text for people: columns, equations, worksheets, reports.
+
+pub(crate) mod answer;
+pub(crate) mod base_parameters;
+pub(crate) mod equations;
+pub(crate) mod heading;
+pub(crate) mod highlight;
+pub(crate) mod layout;
+pub(crate) mod letters;
+pub(crate) mod log_report;
+pub(crate) mod physics;
+pub(crate) mod worksheet;

@@ -1,0 +1,167 @@
+//! What several commands let choose: a function, a form, a convention, a joint, a step, quantities to keep.
+
+use std::fmt;
+
+use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use rne_codegen::plan::Trick;
+use rne_codegen::{Form, Function, Quantity, Step};
+use rne_model::{Convention, Robot};
+
+use crate::outcome::Failure;
+
+/// Reads the name of a function; help and messages list them all.
+pub(crate) fn function() -> impl TypedValueParser<Value = Function> {
+    let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
+    PossibleValuesParser::new(Function::ALL.map(value)).try_map(|name| name.parse::<Function>())
+}
+
+/// One function, or all that a robot has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FunctionOrAll {
+    All,
+    One(Function),
+}
+
+impl fmt::Display for FunctionOrAll {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::All => f.write_str("all"),
+            Self::One(function) => function.fmt(f),
+        }
+    }
+}
+
+/// Reads the name of a function, or `all`.
+pub(crate) fn function_or_all() -> impl TypedValueParser<Value = FunctionOrAll> {
+    let value = |function: Function| PossibleValue::new(function.name()).help(function.summary());
+    let all = PossibleValue::new("all").help("Every function that there is");
+    PossibleValuesParser::new(Function::ALL.map(value).into_iter().chain([all])).try_map(|name| match name.as_str() {
+        "all" => Ok(FunctionOrAll::All),
+        name => name.parse::<Function>().map(FunctionOrAll::One),
+    })
+}
+
+/// Reads the name of a form.
+pub(crate) fn form() -> impl TypedValueParser<Value = Form> {
+    let value = |form: Form| match form {
+        Form::SevenSteps => PossibleValue::new(form.name()).help("Every intermediate is the lecture's"),
+        Form::Reduced => PossibleValue::new(form.name()).help("Fewest operations; only the torques keep a meaning"),
+    };
+    PossibleValuesParser::new(Form::ALL.map(value)).try_map(|name| name.parse::<Form>())
+}
+
+/// Reads the name of a trick of the reduced form.
+pub(crate) fn trick() -> impl TypedValueParser<Value = Trick> {
+    let value = |trick: Trick| PossibleValue::new(trick.name()).help(trick.formula());
+    PossibleValuesParser::new(Trick::ALL.map(value)).try_map(|name| name.parse::<Trick>())
+}
+
+/// Reads a convention.
+pub(crate) fn convention() -> impl TypedValueParser<Value = Convention> {
+    // docs/robot-file.md says what they are
+    PossibleValuesParser::new(["standard", "modified"])
+        .map(|word| if word == "modified" { Convention::Modified } else { Convention::Standard })
+}
+
+/// Reads the name of a robot.
+pub(crate) fn robot_name(text: &str) -> Result<String, String> {
+    let starts_well = text.starts_with(|c: char| c.is_ascii_lowercase());
+    if starts_well && text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_') {
+        return Ok(text.to_owned());
+    }
+    Err("a robot's name has small letters, digits and underscores, and starts with a letter: my_arm".to_owned())
+}
+
+/// Reads the number of a joint; which numbers there are, the robot says.
+pub(crate) fn joint(text: &str) -> Result<usize, String> {
+    text.parse().map_err(|_| "a joint is given by its number, counted from 1 at the base".to_owned())
+}
+
+/// Reads the number of a step.
+pub(crate) fn step(text: &str) -> Result<Step, String> {
+    let step = Step::ALL.into_iter().find(|step| step.number().to_string() == text);
+    step.ok_or_else(|| {
+        let steps: Vec<String> = Step::ALL.iter().map(|step| format!("{} {}", step.number(), step.title())).collect();
+        format!("the steps are {}", steps.join(", "))
+    })
+}
+
+/// A quantity of the lecture that may be folded away.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[value(rename_all = "snake_case")]
+pub(crate) enum Kept {
+    /// Angular velocity ω
+    Omega,
+    /// Angular acceleration ω̇
+    OmegaDot,
+    /// Velocity of the centre of mass ċ, step 3
+    Velocity,
+    /// Acceleration of the centre of mass c̈
+    Acceleration,
+    /// Acceleration of gravity g
+    Gravity,
+    /// f_i = m c̈ by itself
+    InertiaForce,
+    /// n_i, about the centre of mass
+    InertiaMoment,
+    /// f_{i-1,i}
+    JointForce,
+    /// n_{i-1,i}
+    JointMoment,
+}
+
+impl Kept {
+    pub(crate) const fn quantity(self) -> Quantity {
+        match self {
+            Self::Omega => Quantity::Omega,
+            Self::OmegaDot => Quantity::OmegaDot,
+            Self::Velocity => Quantity::Velocity,
+            Self::Acceleration => Quantity::Acceleration,
+            Self::Gravity => Quantity::Gravity,
+            Self::InertiaForce => Quantity::InertiaForce,
+            Self::InertiaMoment => Quantity::InertiaMoment,
+            Self::JointForce => Quantity::JointForce,
+            Self::JointMoment => Quantity::JointMoment,
+        }
+    }
+
+    /// The quantity in words and with its letter.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Omega => "angular velocities ω",
+            Self::OmegaDot => "angular accelerations ω̇",
+            Self::Velocity => "velocities ċ of step 3",
+            Self::Acceleration => "accelerations c̈",
+            Self::Gravity => "gravity g of every link",
+            Self::InertiaForce => "inertia forces f",
+            Self::InertiaMoment => "inertia moments n",
+            Self::JointForce => "joint forces",
+            Self::JointMoment => "joint moments",
+        }
+    }
+}
+
+/// Whether a robot has this joint.
+pub(crate) fn check_joint(robot: &Robot, joint: Option<usize>) -> Result<(), Failure> {
+    match joint {
+        Some(joint) if joint == 0 || joint > robot.dof() => {
+            let joints: Vec<String> = robot
+                .joints
+                .iter()
+                .enumerate()
+                .map(|(index, joint)| format!("{} ({})", index + 1, joint.name))
+                .collect();
+            let message = format!("{} has no joint {joint}; its joints are {}", robot.name, joints.join(", "));
+            Err(Failure::usage(message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The functions that a robot has something to compute for, in the order of the traits: without motors,
+/// `actuator_torques` is zero, and there for who asks for it by name.
+pub(crate) fn functions_of(robot: &Robot) -> impl Iterator<Item = Function> {
+    let has_motors = robot.joints.iter().any(|joint| joint.motor.is_some());
+    Function::ALL.into_iter().filter(move |&function| function != Function::ActuatorTorques || has_motors)
+}

@@ -1,0 +1,63 @@
+//! What a file says that a joint can do, beside what is asked of it.
+
+use std::fmt::Write as _;
+
+use rne_model::Robot;
+
+use crate::values::numbers::exact;
+
+/// A line for each joint whose position, rad or m, lies outside of its limits in the file. The numbers are right all
+/// the same: limits are no part of the dynamics.
+pub(crate) fn remark(robot: &Robot, q: &[f64]) -> String {
+    let mut text = String::new();
+    for (index, (joint, &q)) in robot.joints.iter().zip(q).enumerate() {
+        let Some((lower, upper)) = joint.limits.position else { continue };
+        // a limit that is given as an expression and a position that is given as its digits
+        let rounding = 1e-12 * lower.abs().max(upper.abs());
+        if lower - rounding <= q && q <= upper + rounding {
+            continue;
+        }
+        let unit = joint.row.kind.position_unit();
+        let [q, lower, upper] = [q, lower, upper].map(shown);
+        let _ = writeln!(
+            text,
+            "note: q{} = {q} {unit} is outside of the limits of {}: {lower} to {upper} {unit}",
+            index + 1,
+            joint.name
+        );
+    }
+    text
+}
+
+/// With six digits, as a person reads it.
+fn shown(value: f64) -> String {
+    exact(format!("{value:.5e}").parse().unwrap_or(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ARM: &str = "
+        {format: 1, name: arm, source: own, convention: standard, gravity: [0, 0, -9.81], joints: [
+        {name: turn, type: revolute, limits: {position: [-deg(160), pi/2]},
+         dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1}},
+        {name: free, type: revolute, dh: {theta: 0, d: 0, a: 1, alpha: 0}, link: {mass: 1}},
+        {name: slide, type: prismatic, limits: {position: [0, 0.5]},
+         dh: {theta: 0, d: 0, a: 0, alpha: 0}, link: {mass: 1}}]}";
+
+    #[test]
+    fn joints_beyond_their_limits() {
+        let robot = Robot::from_yaml(ARM).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(remark(&robot, &[0.0, 1e9, 0.25]), "");
+        // at a limit, as an expression and as digits, and of a function that takes no positions
+        assert_eq!(remark(&robot, &[std::f64::consts::FRAC_PI_2, 0.0, 0.5]), "");
+        assert_eq!(remark(&robot, &[-2.792_526_803_190_927, 0.0, 0.0]), "");
+        assert_eq!(remark(&robot, &[]), "");
+        assert_eq!(
+            remark(&robot, &[-3.0, 0.0, 0.6]),
+            "note: q1 = -3 rad is outside of the limits of turn: -2.79253 to 1.5708 rad\n\
+             note: q3 = 0.6 m is outside of the limits of slide: 0 to 0.5 m\n"
+        );
+    }
+}

@@ -1,0 +1,100 @@
+//! How a log is read: what every command that reads logs is told of them.
+
+use clap::Args;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use rne_logs::{Angles, LogError, Options, TimeUnit};
+use rne_model::one_line;
+
+use crate::outcome::Failure;
+use crate::values::numbers::List;
+
+/// How a log is read.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "How the log is read")]
+#[allow(clippy::struct_excessive_bools)] // each is an option
+pub(crate) struct LogArguments {
+    /// The log's names of the joints, base to tip
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) joints: Option<Vec<String>>,
+    /// A bag's topic, or how names of columns begin
+    #[arg(long, value_name = "T")]
+    topic: Option<String>,
+    /// Efforts are currents: N m/A, of all or of each
+    #[arg(long, alias = "torque-constants", value_name = "LIST", allow_hyphen_values = true)]
+    torque_constant: Option<List>,
+    /// In degrees: all but joints that slide in FILE
+    #[arg(long, conflicts_with = "radians")]
+    degrees: bool,
+    /// They are not, however far they range
+    #[arg(long)]
+    radians: bool,
+    /// The low-pass; by the spectrum, unless given
+    #[arg(long, value_name = "HZ", value_parser = hertz)]
+    pub(crate) cutoff: Option<f64>,
+    /// A longer interval splits a run
+    #[arg(long, value_name = "STEPS", default_value_t = 3.5)]
+    gap: f64,
+    /// Velocities from positions, measured or not
+    #[arg(long)]
+    derive_velocities: bool,
+    /// Take times of recording, not those of messages
+    #[arg(long)]
+    recorded: bool,
+    /// Of a table's times: s, ms, us, ns
+    #[arg(long, value_name = "UNIT", value_parser = time_unit(), hide_possible_values = true)]
+    time_unit: Option<TimeUnit>,
+    /// Rows per second of a table without times
+    #[arg(long, value_name = "HZ", value_parser = hertz)]
+    rate: Option<f64>,
+    /// Of an array, in order [default: time,q,qd,tau]
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    columns: Vec<String>,
+}
+
+fn time_unit() -> impl TypedValueParser<Value = TimeUnit> {
+    let units = [TimeUnit::Seconds, TimeUnit::Milliseconds, TimeUnit::Microseconds, TimeUnit::Nanoseconds];
+    PossibleValuesParser::new(units.map(TimeUnit::name))
+        .map(move |name| units.into_iter().find(|unit| unit.name() == name).unwrap_or_default())
+}
+
+fn hertz(text: &str) -> Result<f64, String> {
+    let hertz = text.parse().ok().filter(|hertz: &f64| hertz.is_finite() && *hertz > 0.0);
+    hertz.ok_or_else(|| "it is a number of Hz above 0, such as 2".to_owned())
+}
+
+impl LogArguments {
+    /// The same with this low-pass, Hz.
+    pub(crate) fn with_cutoff(&self, cutoff: f64) -> Self {
+        Self { cutoff: Some(cutoff), ..self.clone() }
+    }
+
+    /// What the reader of logs is told.
+    pub(crate) fn options(&self) -> Options {
+        let angles = match (self.degrees, self.radians) {
+            (true, _) => Angles::Degrees,
+            (_, true) => Angles::Radians,
+            _ => Angles::Unsaid,
+        };
+        Options {
+            joints: self.joints.clone(),
+            topic: self.topic.clone(),
+            torque_constants: self.torque_constant.as_ref().map(|List(list)| list.clone()).unwrap_or_default(),
+            angles,
+            gap: self.gap,
+            cutoff: self.cutoff,
+            derive_velocities: self.derive_velocities,
+            recorded: self.recorded,
+            time_unit: self.time_unit,
+            rate: self.rate,
+            columns: self.columns.clone(),
+            ..Options::default()
+        }
+    }
+}
+
+/// A log that cannot be read, or a request that it cannot serve.
+pub(crate) fn failure(error: &LogError) -> Failure {
+    // names of a log may have any letters
+    let text = one_line(&error.to_string());
+    if error.is_of_request() { Failure::usage(text) } else { Failure::input(text) }
+}

@@ -1,0 +1,115 @@
+//! Numbers on the command line and in tables.
+
+use std::str::FromStr;
+
+/// A comma-separated list of finite numbers, as `--q` takes it. Each is written as in a robot file: `pi/2`, `deg(30)`.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct List(pub(crate) Vec<f64>);
+
+impl FromStr for List {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim().is_empty() {
+            return Err("the list is empty; write numbers with commas between them, such as 0.1,-0.2".to_owned());
+        }
+        let number = |(index, element): (usize, &str)| {
+            let (element, place) = (element.trim(), index + 1);
+            if element.is_empty() {
+                return Err(format!("number {place} is missing; write numbers with commas between them"));
+            }
+            rne_model::number(element).map_err(|mistake| {
+                let hint = "write numbers or expressions with commas between them, such as 0.1,-pi/2";
+                let hint = mistake.help.as_deref().unwrap_or(hint);
+                format!("number {place}, `{element}`, is none: {}; {hint}", mistake.message)
+            })
+        };
+        text.split(',').enumerate().map(number).collect::<Result<_, _>>().map(List)
+    }
+}
+
+/// All digits that a number needs to be read back; zero has no sign.
+pub(crate) fn exact(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-5 || value.abs() >= 1e16 {
+        format!("{value:e}")
+    } else {
+        format!("{value}")
+    }
+}
+
+/// Texts of numbers, their decimal points in one column.
+pub(crate) fn at_the_point(texts: &[String]) -> Vec<String> {
+    let places = |text: &String| text.find('.').unwrap_or_else(|| text.find('e').unwrap_or(text.len()));
+    let most = texts.iter().map(places).max().unwrap_or(0);
+    texts.iter().map(|text| format!("{}{text}", " ".repeat(most - places(text)))).collect()
+}
+
+/// Digits behind the point in a worksheet.
+const DIGITS: usize = 6;
+
+/// Width of a number of a worksheet.
+pub(crate) const WIDTH: usize = 12;
+
+/// A number for a worksheet: fixed digits, an exact zero alone, the point always in the same column.
+pub(crate) fn fixed(value: f64) -> String {
+    if value == 0.0 {
+        // the column of the point is one left of the digits
+        return format!("{:>1$}{2}", "0", WIDTH - DIGITS - 1, " ".repeat(DIGITS + 1));
+    }
+    // four digits at least, for a hand computes with so many
+    if value.abs() < 1e-3 || value.abs() >= 1e5 {
+        return format!("{value:>WIDTH$.4e}");
+    }
+    format!("{value:>WIDTH$.DIGITS$}")
+}
+
+/// A number for a table: so many digits behind the point, an exact zero alone, what is tiny or huge with its power of
+/// ten.
+pub(crate) fn rounded(value: f64, digits: usize) -> String {
+    if value == 0.0 {
+        "0".to_owned()
+    } else if value.abs() < 1e-4 || value.abs() >= 1e6 {
+        format!("{value:.2e}")
+    } else {
+        format!("{value:.digits$}")
+    }
+}
+
+/// Half of the last digit of a decimal number; zero for an expression, which has all of its digits.
+pub(crate) fn resolution(number: &str) -> f64 {
+    let (mantissa, exponent) = number.trim().split_once(['e', 'E']).unwrap_or((number.trim(), "0"));
+    let plain = mantissa.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c));
+    let (true, Ok(exponent)) = (plain, exponent.parse::<i32>()) else { return 0.0 };
+    // a whole number may be exact, and may be rounded
+    let behind = mantissa.split_once('.').map_or(0, |(_, digits)| i32::try_from(digits.len()).unwrap_or(i32::MAX));
+    0.5 * 10_f64.powi(exponent.saturating_sub(behind))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::FRAC_PI_2;
+
+    use super::*;
+
+    #[test]
+    fn lists() {
+        assert_eq!("-0.1, 2e-3,3".parse(), Ok(List(vec![-0.1, 2e-3, 3.0])));
+        assert_eq!("pi/2,-deg(90),2*(1+1)".parse(), Ok(List(vec![FRAC_PI_2, -FRAC_PI_2, 4.0])));
+        for bad in ["", "1,,2", "1,", "m", "nan", "inf", "1e999", "--qd", "1/0"] {
+            assert!(bad.parse::<List>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn numbers_stand_at_the_point() {
+        assert_eq!(fixed(-1.5), "   -1.500000");
+        assert_eq!(fixed(0.0), "    0       ");
+        assert_eq!(fixed(-0.0), fixed(0.0));
+        assert_eq!(fixed(1.25e-17), "  1.2500e-17");
+        assert_eq!((fixed(0.001_234_56), fixed(-0.000_987_65)), ("    0.001235".into(), "  -9.8765e-4".into()));
+        assert_eq!([0.0, -0.0, 1.25, 1e-9].map(|x| rounded(x, 3)), ["0", "0", "1.250", "1.00e-9"]);
+        assert_eq!(at_the_point(&["1.5".to_owned(), "-10".to_owned()]), ["  1.5", "-10"]);
+    }
+}

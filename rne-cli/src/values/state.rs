@@ -1,0 +1,174 @@
+//! What a function is evaluated at: its arguments, complete and of the right lengths.
+
+use rne::{BaseMotion, DynArm, Payload, Pose, Wrench, WrongLength};
+use rne_codegen::{Argument, Function};
+use rne_model::Robot;
+
+use crate::outcome::Failure;
+use crate::values::numbers::List;
+
+/// The lists of the command line, where they are given.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Given<'a> {
+    pub(crate) q: Option<&'a List>,
+    pub(crate) qd: Option<&'a List>,
+    pub(crate) qdd: Option<&'a List>,
+    pub(crate) tau: Option<&'a List>,
+    pub(crate) wrench: Option<&'a List>,
+    pub(crate) payload: Option<&'a List>,
+    pub(crate) base_omega: Option<&'a List>,
+    pub(crate) base_omega_dot: Option<&'a List>,
+    pub(crate) base_acceleration: Option<&'a List>,
+    pub(crate) gravity: Option<&'a List>,
+}
+
+/// The arguments of a function. What it does not take is empty, zero, or at rest, or is not asked for.
+#[derive(Clone)]
+pub(crate) struct State {
+    pub(crate) function: Function,
+    pub(crate) q: Vec<f64>,
+    pub(crate) qd: Vec<f64>,
+    pub(crate) qdd: Vec<f64>,
+    pub(crate) tau: Vec<f64>,
+    pub(crate) wrench: Option<Wrench<f64>>,
+    pub(crate) payload: Option<Payload<f64>>,
+    pub(crate) base: BaseMotion<f64>,
+}
+
+impl State {
+    /// Checks that the function's arguments, all of them and no others, are there.
+    pub(crate) fn new(function: Function, given: Given<'_>, robot: &Robot) -> Result<Self, Failure> {
+        use Argument::{Accelerations, Base, Positions, Rates, Torques};
+        let joints: Vec<&str> = robot.joints.iter().map(|joint| joint.name.as_str()).collect();
+        let per_joint = format!("one number for each joint of {}: {}", robot.name, joints.join(", "));
+        let of_joints = |name, list, kind| argument(function, name, list, kind, robot.dof(), &per_joint);
+        let q = of_joints("--q", given.q, Positions)?;
+        let qd = of_joints("--qd", given.qd, Rates)?;
+        let qdd = of_joints("--qdd", given.qdd, Accelerations)?;
+        let tau = of_joints("--tau", given.tau, Torques)?;
+        let wrench = "three forces and three moments: fx,fy,fz,nx,ny,nz";
+        let wrench = argument(function, "--wrench", given.wrench, Argument::Wrench, 6, wrench)?;
+        let wrench = wrench.map(|w| Wrench { force: triple(&w, 0), moment: triple(&w, 3) });
+        let payload = payload(function, given.payload)?;
+        let axes = "three numbers x,y,z, in the axes of frame 0";
+        let of_base = |name, list| {
+            let list = argument(function, name, list, Base, 3, axes)?;
+            Ok::<_, Failure>(list.map_or([0.0; 3], |list| triple(&list, 0)))
+        };
+        let base = BaseMotion {
+            omega: of_base("--base-omega", given.base_omega)?,
+            omega_dot: of_base("--base-omega-dot", given.base_omega_dot)?,
+            velocity: [0.0; 3],
+            acceleration: of_base("--base-acceleration", given.base_acceleration)?,
+            // a base that only moves stays under the gravity of the file
+            gravity: if given.gravity.is_some() { of_base("--gravity", given.gravity)? } else { robot.gravity },
+        };
+        let [q, qd, qdd, tau] = [q, qd, qdd, tau].map(Option::unwrap_or_default);
+        Ok(Self { function, q, qd, qdd, tau, wrench, payload, base })
+    }
+
+    /// The same for another function.
+    pub(crate) fn of(&self, function: Function) -> Self {
+        Self { function, ..self.clone() }
+    }
+
+    /// What the function returns, in the order of its layout.
+    pub(crate) fn numbers(&self, arm: &DynArm) -> Result<Vec<f64>, WrongLength> {
+        let Self { q, qd, qdd, tau, base, .. } = self;
+        let wrench = || self.wrench.unwrap_or_else(Wrench::zero);
+        Ok(match self.function {
+            Function::InverseDynamics => arm.inverse_dynamics(q, qd, qdd)?,
+            Function::InverseDynamicsWithWrench => arm.inverse_dynamics_with_wrench(q, qd, qdd, &wrench())?,
+            Function::InverseDynamicsWithPayload => {
+                arm.inverse_dynamics_with_payload(q, qd, qdd, &self.payload.unwrap_or_default())?
+            }
+            Function::InverseDynamicsFromSinCos => {
+                let (sin, cos): (Vec<f64>, Vec<f64>) = q.iter().map(|&q| rne::Scalar::sin_cos(q)).unzip();
+                arm.inverse_dynamics_from_sin_cos(&sin, &cos, q, qd, qdd)?
+            }
+            Function::GravityTorques => arm.gravity_torques(q)?,
+            Function::BiasTorques => arm.bias_torques(q, qd)?,
+            Function::MassMatrix => arm.mass_matrix(q)?.concat(),
+            Function::CoriolisMatrix => arm.coriolis_matrix(q, qd)?.concat(),
+            Function::ForwardDynamics => arm.forward_dynamics(q, qd, tau)?,
+            Function::ForwardKinematics => pose(&arm.forward_kinematics(q)?).collect(),
+            Function::LinkPoses => arm.link_poses(q)?.iter().flat_map(pose).collect(),
+            Function::Jacobian => arm.jacobian(q)?.concat(),
+            Function::JacobianRateTimesVelocity => arm.jacobian_rate_times_velocity(q, qd)?.to_vec(),
+            Function::KineticEnergy => vec![arm.kinetic_energy(q, qd)?],
+            Function::PotentialEnergy => vec![arm.potential_energy(q)?],
+            Function::CentreOfMass => arm.centre_of_mass(q)?.to_vec(),
+            Function::CentreOfMassJacobian => arm.centre_of_mass_jacobian(q)?.concat(),
+            Function::Regressor => arm.regressor(q, qd, qdd)?.into_iter().flatten().flatten().collect(),
+            Function::InverseDynamicsDerivatives => {
+                let derivatives = arm.inverse_dynamics_derivatives(q, qd, qdd)?;
+                [derivatives.dq.concat(), derivatives.dqd.concat()].concat()
+            }
+            Function::JointWrenches => {
+                let wrenches = arm.joint_wrenches(q, qd, qdd)?;
+                wrenches.iter().flat_map(|Wrench { force, moment }| [*force, *moment]).flatten().collect()
+            }
+            Function::MomentumAndRate => arm.momentum_and_rate(q, qd, tau)?.concat(),
+            Function::InverseDynamicsOnMovingBase => arm.inverse_dynamics_on_moving_base(q, qd, qdd, base)?,
+            Function::ActuatorTorques => arm.actuator_torques(qd, qdd)?,
+        })
+    }
+}
+
+fn pose(pose: &Pose<f64>) -> impl Iterator<Item = f64> + use<> {
+    let Pose { rotation, translation } = *pose;
+    rotation.into_iter().chain([translation]).flatten()
+}
+
+/// Mass and centre of mass, and inertia where it is given.
+fn payload(function: Function, given: Option<&List>) -> Result<Option<Payload<f64>>, Failure> {
+    let of_a_point = given.filter(|List(values)| values.len() == 4);
+    let (numbers, what) = match of_a_point {
+        Some(_) => (4, ""),
+        None => {
+            (10, "mass, centre of mass and inertia about it: m,cx,cy,cz,xx,yy,zz,xy,xz,yz; or m,cx,cy,cz of a point")
+        }
+    };
+    let list = argument(function, "--payload", given, Argument::Payload, numbers, what)?;
+    let payload = list.map(|list| {
+        let mut all = [0.0; 10];
+        all.iter_mut().zip(list).for_each(|(number, value)| *number = value);
+        Payload::from_array(all)
+    });
+    let check = payload.map_or(Ok(()), |payload| payload.check());
+    check.map_err(|error| Failure::usage(format_args!("--payload begins with the mass: {error}")))?;
+    Ok(payload)
+}
+
+fn triple(list: &[f64], from: usize) -> [f64; 3] {
+    [0, 1, 2].map(|index| list.get(from + index).copied().unwrap_or_default())
+}
+
+/// One argument of a function; `expected` numbers, in words `what`.
+fn argument(
+    function: Function,
+    name: &str,
+    list: Option<&List>,
+    kind: Argument,
+    expected: usize,
+    what: &str,
+) -> Result<Option<Vec<f64>>, Failure> {
+    match list {
+        None if !function.takes(kind) => Ok(None),
+        None => Err(Failure::usage(format_args!("{function} needs {name}, {what}"))),
+        Some(_) if !function.takes(kind) => {
+            let others: Vec<Function> = Function::ALL.into_iter().filter(|other| other.takes(kind)).collect();
+            let hint = match others.as_slice() {
+                [only] => format!("; {only} does"),
+                [one, other] => format!("; {one} and {other} do"),
+                _ => String::new(),
+            };
+            Err(Failure::usage(format_args!("{function} takes no {name}{hint}")))
+        }
+        Some(List(values)) if values.len() != expected => {
+            let (found, numbers) = (values.len(), if expected == 1 { "number" } else { "numbers" });
+            Err(Failure::usage(format_args!("{name} needs {expected} {numbers}, not {found}: {what}")))
+        }
+        Some(List(values)) => Ok(Some(values.clone())),
+    }
+}
