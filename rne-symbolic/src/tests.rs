@@ -127,8 +127,8 @@ fn robots() -> Vec<Robot> {
         .into_iter()
         .chain(first)
         .chain(whole.map(shipped))
-        .chain(random_robots(30))
-        .chain(random_robots(15).into_iter().map(without_mass))
+        .chain(random_robots(60))
+        .chain(random_robots(30).into_iter().map(without_mass))
         .collect()
 }
 
