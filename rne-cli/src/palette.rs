@@ -1,7 +1,7 @@
 //! The palette: a few styles, by which the text of a command has its colours.
 //!
-//! Commands return text with colours in it; the streams of `terminal` take them out where there is no terminal, or where
-//! `NO_COLOR` asks for it.
+//! Commands return text with colours in it; the streams of `terminal` take them out where there is no terminal, or
+//! where `NO_COLOR` asks for it.
 
 use std::collections::hash_map::RandomState;
 use std::fmt::{self, Display};
