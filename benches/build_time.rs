@@ -6,7 +6,7 @@
 use std::path::Path;
 
 use divan::Bencher;
-use rne_codegen::{Compiler, Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function};
 use rne_model::{Reader, Robot};
 
 fn main() {
@@ -41,6 +41,6 @@ fn expand_panda(bencher: Bencher, form: Form) {
         let compiler = Compiler::new(&robot);
         let programs = Function::TORQUES
             .map(|function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}")));
-        emit::rust_file(&robot, &programs).len()
+        rne_emit::rust_file(&robot, &programs).len()
     });
 }

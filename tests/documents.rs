@@ -8,9 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use rne_codegen::emit::{self, Selection, listing};
 use rne_codegen::plan::{self, PlanFile, PlanSet, Trick};
 use rne_codegen::{Capability, Compiler, Form, Function, Operations, Program, Step};
+use rne_emit::{Selection, listing};
 use rne_model::{Convention, JointKind, Robot};
 
 /// The documents with blocks, and which blocks these are; what is measured or printed by a command does not count.
@@ -89,7 +89,7 @@ fn code(steps: usize) -> String {
     let steps = Step::ALL[..steps].iter().map(|step| listing(&robot, &program, what(step)));
     let code: Vec<String> = steps.filter(|listing| !listing.is_empty()).map(|listing| listing.to_string()).collect();
     let code = code.join("\n");
-    let emitted = emit::rust_file(&robot, &[program]);
+    let emitted = rne_emit::rust_file(&robot, &[program]);
     assert!(emitted.contains(&code), "the heading of the block says where it is from");
     format!("```rust\n{code}```\n")
 }

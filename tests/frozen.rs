@@ -11,9 +11,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
-use rne_codegen::emit::{Precision, Prefix};
 use rne_codegen::plan::PlanFile;
-use rne_codegen::{Compiler, Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function};
+use rne_emit::{Precision, Prefix};
 use rne_model::Robot;
 use rne_robots::{ROBOTS, RobotFile};
 use sha2::{Digest, Sha256};
@@ -30,11 +30,11 @@ fn hash(compiler: &Compiler<'_>, robot: &Robot, function: Function, form: Form) 
     let program = compiler.compile(function, form).unwrap_or_else(|error| panic!("{} {function}: {error}", robot.name));
     let programs = [program];
     let c = |precision| {
-        let code = emit::c_code(robot, &programs, precision, &Prefix::of(robot));
+        let code = rne_emit::c_code(robot, &programs, precision, &Prefix::of(robot));
         code.unwrap_or_else(|error| panic!("{} {function}: {error}", robot.name)).one_file()
     };
     let mut hash = Sha256::new();
-    for file in [emit::rust_file(robot, &programs), c(Precision::Single), c(Precision::Double)] {
+    for file in [rne_emit::rust_file(robot, &programs), c(Precision::Single), c(Precision::Double)] {
         // the length keeps two files apart
         hash.update((file.len() as u64).to_le_bytes());
         hash.update(file);

@@ -26,7 +26,7 @@ mod user;
 use std::fmt::Write;
 use std::time::Instant;
 
-use rne_codegen::{Compiler, Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
 
 const JOINTS: [usize; 8] = [1, 2, 5, 10, 20, 30, 40, 50];
@@ -88,7 +88,7 @@ fn operations(yaml: &str, form: Form) -> usize {
     let compiler = Compiler::new(&robot);
     let programs =
         Function::TORQUES.map(|function| compiler.compile(function, form).unwrap_or_else(|error| panic!("{error}")));
-    std::hint::black_box(emit::rust_file(&robot, &programs));
+    std::hint::black_box(rne_emit::rust_file(&robot, &programs));
     programs[0].operations().total()
 }
 

@@ -13,9 +13,9 @@ mod time;
 
 use std::time::Instant;
 
-use rne_codegen::emit::{self, Precision, Prefix, Selection};
 use rne_codegen::plan::PlanSet;
 use rne_codegen::{CompileError, Compiler, Form, Function, Program};
+use rne_emit::{Precision, Prefix, Selection};
 use rne_model::Robot;
 
 /// No function of an arm may take longer, in seconds.
@@ -100,10 +100,10 @@ fn texts<'a>(robot: &'a Robot, program: &'a Program) -> [Text<'a>; 3] {
     let programs = std::slice::from_ref(program);
     let what = Selection { explain: true, ..Selection::default() };
     [
-        Box::new(move || drop(std::hint::black_box(emit::rust_file(robot, programs)))),
+        Box::new(move || drop(std::hint::black_box(rne_emit::rust_file(robot, programs)))),
         Box::new(move || {
-            drop(std::hint::black_box(emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))));
+            drop(std::hint::black_box(rne_emit::c_code(robot, programs, Precision::Double, &Prefix::of(robot))));
         }),
-        Box::new(move || drop(std::hint::black_box(emit::listing(robot, program, what).to_string()))),
+        Box::new(move || drop(std::hint::black_box(rne_emit::listing(robot, program, what).to_string()))),
     ]
 }

@@ -6,8 +6,8 @@ use std::fmt::Write as _;
 
 use arbitrary::{Result, Unstructured};
 use libfuzzer_sys::fuzz_target;
-use rne_codegen::emit::{self, Precision};
 use rne_codegen::{Arguments, Compiler, Form, Function, Interpreter, Program};
+use rne_emit::Precision;
 use rne_model::Robot;
 use rne_runtime::{BaseMotion, DynArm, Payload, Pose, Scalar, Wrench, WrongLength};
 
@@ -158,7 +158,7 @@ fn accelerate(arm: &DynArm, State { q, qd, tau, .. }: &State, qdd: &[f64]) -> st
 /// The C text has the operators that the program counts: between blanks, behind the head of the last function.
 fn operators_of_c(robot: &Robot, program: &Program) {
     let prefix = "arm".parse().expect("a prefix");
-    let code = emit::c_code(robot, std::slice::from_ref(program), Precision::Double, &prefix).expect("C");
+    let code = rne_emit::c_code(robot, std::slice::from_ref(program), Precision::Double, &prefix).expect("C");
     let code = code.one_file();
     let (_, body) = code.rsplit_once(&format!(" arm_{}(", program.function)).expect("the function");
     let (_, body) = body.split_once("\n{").expect("its body");

@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rne::DynArm;
 use rne::compiled::SearchOptions;
-use rne_codegen::emit::{self, Precision, Prefix, Selection};
 use rne_diagnose::{Diagnosis, Observation};
+use rne_emit::{Precision, Prefix, Selection};
 
 use crate::arm::{Arm, Origin, name};
 use crate::arrays::refuse_masked;
@@ -76,7 +76,7 @@ impl Arm {
         }
         let program = self.program(function, Some(form))?;
         let what = Selection { joint, explain: true, ..Selection::default() };
-        Ok(emit::listing(self.robot(), &program, what).to_string())
+        Ok(rne_emit::listing(self.robot(), &program, what).to_string())
     }
 
     /// A function as code that needs nothing: `language` is `c` (a header and a source in one text) or `rust`.
@@ -93,8 +93,8 @@ impl Arm {
             }
         };
         match language {
-            "rust" => Ok(emit::rust_file_with_sin_cos(self.robot(), &programs)),
-            "c" => emit::c_code(self.robot(), &programs, precision, &Prefix::of(self.robot()))
+            "rust" => Ok(rne_emit::rust_file_with_sin_cos(self.robot(), &programs)),
+            "c" => rne_emit::c_code(self.robot(), &programs, precision, &Prefix::of(self.robot()))
                 .map(|code| code.one_file())
                 .map_err(|error| of_evaluation(&error)),
             other => Err(PyValueError::new_err(format!("`{other}` is no language; write c or rust"))),

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use pyo3::PyResult;
 use rne::compiled::{Form, Function};
 use rne_codegen::Program;
-use rne_codegen::emit::{self, Selection};
+use rne_emit::Selection;
 use rne_model::{JointKind, Robot};
 
 /// Of whose counts a notebook has a row.
@@ -70,7 +70,7 @@ pub(crate) fn cell(robot: &Robot, rows: &str, program: impl Fn(&str, &str) -> Py
     let torques = program(Function::InverseDynamics.name(), Form::SevenSteps.name())?;
     for (index, joint) in robot.joints.iter().enumerate() {
         let what = Selection { joint: Some(index + 1), explain: true, ..Selection::default() };
-        let listing = emit::listing(robot, &torques, what).to_string();
+        let listing = rne_emit::listing(robot, &torques, what).to_string();
         // the table and the counts stand above
         let code = listing.find("    //").map_or("", |start| &listing[start..]);
         let code: Vec<&str> = code.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();

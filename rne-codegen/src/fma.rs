@@ -63,23 +63,29 @@ pub fn instructions(program: &Program) -> usize {
 }
 
 /// A sum or difference as x y + z, which may be one instruction.
-pub(crate) struct Contraction<'a> {
-    pub(crate) factors: [&'a Expression; 2],
-    pub(crate) addend: &'a Expression,
+#[derive(Clone, Copy, Debug)]
+pub struct Contraction<'a> {
+    /// x and y.
+    pub factors: [&'a Expression; 2],
+    /// z.
+    pub addend: &'a Expression,
     /// What a difference negates.
-    pub(crate) negated: Option<Negated>,
+    pub negated: Option<Negated>,
 }
 
 /// The part of a contraction that is negated.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Negated {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Negated {
+    /// x.
     Factor,
+    /// z.
     Addend,
 }
 
 impl<'a> Contraction<'a> {
     /// Of a product and what it is added to; of two products the right one is fused.
-    pub(crate) fn of(expression: &'a Expression) -> Option<Self> {
+    #[must_use]
+    pub fn of(expression: &'a Expression) -> Option<Self> {
         let Expression::Binary(operator @ (Operator::Sum | Operator::Difference), a, b) = expression else {
             return None;
         };

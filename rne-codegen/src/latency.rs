@@ -12,7 +12,7 @@ use crate::program::{Expression, Operator, Program};
 
 /// Cycles of a multiplication and of a fused multiply-add: a model, near to the processors of servers and desktops of
 /// these years.
-pub(crate) const PRODUCT: usize = 4;
+pub const PRODUCT: usize = 4;
 
 /// Cycles of an addition.
 pub(crate) const SUM: usize = 3;
@@ -21,7 +21,8 @@ pub(crate) const SUM: usize = 3;
 const QUOTIENT: usize = 14;
 
 /// Cycles of an operation.
-pub(crate) const fn cycles(operator: Operator) -> usize {
+#[must_use]
+pub const fn cycles(operator: Operator) -> usize {
     match operator {
         Operator::Sum | Operator::Difference => SUM,
         Operator::Product => PRODUCT,
@@ -37,7 +38,7 @@ const SPARE: usize = 4;
 
 /// When the values of a program are there, in cycles from the call on, and how long what follows takes.
 #[derive(Debug)]
-pub(crate) struct Latency {
+pub struct Latency {
     known: BTreeMap<Name, usize>,
     rest: BTreeMap<Name, usize>,
     total: usize,
@@ -50,7 +51,9 @@ struct Ways {
 }
 
 impl Latency {
-    pub(crate) fn new(program: &Program) -> Self {
+    /// Of a program as it is written.
+    #[must_use]
+    pub fn new(program: &Program) -> Self {
         let mut latency = Self { known: BTreeMap::new(), rest: BTreeMap::new(), total: 0 };
         for name in program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten() {
             latency.known.insert(name, TURN);
@@ -71,12 +74,14 @@ impl Latency {
     }
 
     /// What follows a statement.
-    pub(crate) fn rest(&self, name: Name) -> usize {
+    #[must_use]
+    pub fn rest(&self, name: Name) -> usize {
         self.rest.get(&name).copied().unwrap_or(0)
     }
 
     /// Whether the product of a contraction is better fused with what it is added to; `rest` follows the sum.
-    pub(crate) fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
+    #[must_use]
+    pub fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
         let Ways { fused, apart } = self.algorithms(contraction);
         fused <= apart || apart + rest + SPARE < self.total
     }

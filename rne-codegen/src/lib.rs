@@ -2,12 +2,11 @@
 //!
 //! [`Compiler`] is the one door. It writes a function of the robot as a graph of sums and products (the seven steps
 //! stand once, in `formulate/seven_steps.rs`), folds what is exactly zero or one, drops what is not needed, and returns
-//! a [`Program`] of named statements. Everything else renders that program: [`emit::Body`] as tokens for the macro,
-//! [`emit::rust_file`] as text for people, [`emit::c_code`] as C, an [`Interpreter`] for tests, [`Program::operations`]
-//! as counts.
+//! a [`Program`] of named statements. Everything else renders that program: `rne-emit` as tokens for the macro and as
+//! text for people, an [`Interpreter`] for tests, [`Program::operations`] as counts.
 //!
 //! ```text
-//! Robot → formulate → ir::Graph → value numbering, rewriting → lower → Program → fma, latency → prove → emit
+//! Robot → formulate → ir::Graph → value numbering, rewriting → lower → Program → fma, latency → prove
 //! ```
 //!
 //! Data in, data out: nothing here opens a file or prints.
@@ -16,7 +15,7 @@
 // Symbolic matrices are values, as in the formulas.
 #![allow(clippy::large_types_passed_by_value)]
 
-pub mod emit;
+mod argument_array;
 mod equation;
 mod error;
 pub mod fma;
@@ -25,7 +24,7 @@ mod function;
 mod identifiability;
 mod interpret;
 mod ir;
-mod latency;
+pub mod latency;
 mod lower;
 mod named;
 mod pipeline;
@@ -39,10 +38,12 @@ use std::sync::OnceLock;
 
 use rne_model::Robot;
 
+pub use argument_array::ArgumentArray;
 pub use equation::{Equation, Operation as TermOperation, Term};
 pub use error::{CompileError, Extreme, Suspect};
 pub use function::{
-    Answer, AnswerTable, Argument, Capability, Form, Function, Labels, Layout, Length, MatrixUnit, Record, Shape,
+    Answer, AnswerTable, Argument, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit, Own, Record,
+    Shape,
 };
 pub use identifiability::{Identifiability, Parameter, Visibility};
 pub use interpret::{Arguments, Interpreter, Real};

@@ -5,7 +5,6 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::CompileError;
-use crate::emit;
 use crate::equation::Equation;
 use crate::function::{Form, Function};
 use crate::ir::fold_report::{Causes, FoldReport, Place};
@@ -207,12 +206,12 @@ impl Operations {
 
 impl Program {
     /// Refuses two variables of one name. Names are compared as the text that a language sees, with the variables that
-    /// the emitters add: the second of two would shadow the first.
+    /// renderers add: the second of two would shadow the first.
     ///
     /// # Errors
     /// [`CompileError::TwoOfOneName`], with the first such name.
     pub fn check_names(&self) -> Result<(), CompileError> {
-        let mut taken: HashSet<String> = emit::locals(self).map(str::to_owned).collect();
+        let mut taken: HashSet<String> = self.reserved_names().map(str::to_owned).collect();
         let turns = self.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         let constants = self.constants.iter().map(|constant| constant.name);
         let statements = self.angles.iter().chain(&self.statements).map(|statement| statement.name);
@@ -235,13 +234,13 @@ impl Program {
     }
 
     /// The values of the statements, then those returned.
-    pub(crate) fn values(&self) -> impl Iterator<Item = &Expression> {
+    pub fn values(&self) -> impl Iterator<Item = &Expression> {
         let statements = self.statements.iter().map(|statement| &statement.value);
         statements.chain(self.outputs.iter().map(|output| &output.value))
     }
 
     /// The values of sums of angles, then the angles whose sines and cosines are evaluated.
-    pub(crate) fn angle_values(&self) -> impl Iterator<Item = &Expression> {
+    pub fn angle_values(&self) -> impl Iterator<Item = &Expression> {
         let angles = self.angles.iter().map(|statement| &statement.value);
         angles.chain(self.sines_and_cosines.iter().map(|turn| &turn.angle))
     }
@@ -253,12 +252,12 @@ impl Program {
     }
 
     /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
-    pub(crate) fn returns_zero(&self) -> bool {
+    pub fn returns_zero(&self) -> bool {
         self.values().any(|value| value.parts().any(|part| *part == Expression::Zero))
     }
 
     /// Whether it is written by composite or articulated bodies.
-    pub(crate) const fn is_of_bodies(&self) -> bool {
+    pub const fn is_of_bodies(&self) -> bool {
         matches!(self.algorithm, Algorithm::Crba(_) | Algorithm::Aba(_))
     }
 

@@ -1,6 +1,5 @@
 //! The table of functions is complete and in order, and what names parse to.
 
-use rne_codegen::emit::{BadPrefix, Prefix};
 use rne_codegen::{Capability, Form, Function, Length, Shape};
 
 #[test]
@@ -36,15 +35,5 @@ fn what_returns_torques_has_one_number_per_joint() {
         if function.returns_torques() || function.returns_accelerations() {
             assert_eq!(*function.shape(), Shape::Array(Length::Joints, &Shape::Number), "{function}");
         }
-    }
-}
-
-#[test]
-fn a_prefix_begins_an_identifier() {
-    for good in ["a", "puma560", "MyArm", "my_arm_2"] {
-        assert_eq!(good.parse::<Prefix>().map(|prefix| prefix.to_string()), Ok(good.to_owned()));
-    }
-    for bad in ["", "_arm", "my__arm", "arm_", "2arm", "my-arm", "my arm", "bras_é", "a;", "a\n"] {
-        assert_eq!(bad.parse::<Prefix>(), Err(BadPrefix), "{bad:?}");
     }
 }

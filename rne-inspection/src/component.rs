@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use rne_codegen::{self as codegen, Equation, Program, ResolvedAs, emit};
+use rne_codegen::{self as codegen, Equation, Program, ResolvedAs};
 use rne_model::Robot;
 
 use crate::record::{Became, Component, Folded};
@@ -30,7 +30,8 @@ impl<'p> Equations<'p> {
                 ResolvedAs::Computed => Became::Computed,
                 ResolvedAs::Same(name, sign) => Became::Same { name: signed(name.to_string(), *sign) },
                 ResolvedAs::Constant(value, causes) => {
-                    let why = if *value == 0.0 { emit::reason(robot, causes, 0) } else { "of the table".to_owned() };
+                    let why =
+                        if *value == 0.0 { rne_emit::reason(robot, causes, 0) } else { "of the table".to_owned() };
                     Became::Constant { value: *value, why }
                 }
                 ResolvedAs::Inside => Became::Inside,
@@ -100,7 +101,7 @@ impl<'p> Equations<'p> {
         let name = equation.name.to_string();
         let (robot, reasons) = (self.robot, &mut self.reasons);
         let general = Tree::of_term(&equation.term, &mut |causes, magnitude| {
-            let reason = emit::reason(robot, causes, magnitude);
+            let reason = rne_emit::reason(robot, causes, magnitude);
             reasons.iter().position(|known| *known == reason).unwrap_or_else(|| {
                 reasons.push(reason);
                 reasons.len() - 1

@@ -24,8 +24,8 @@ mod tree;
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-use rne_codegen::emit::{self, Line, Selection};
 use rne_codegen::{self as codegen, CompileError, Compiler, Form, Function, Program};
+use rne_emit::{Line, Selection};
 use rne_model::{Angle, Convention, JointKind};
 
 use crate::component::{Equations, owner};
@@ -152,7 +152,7 @@ fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<
         return Vec::new();
     }
     let what = Selection { explain: true, ..Selection::default() };
-    let listing = emit::listing(robot, program, what);
+    let listing = rne_emit::listing(robot, program, what);
     let mut cells = Vec::new();
     for section in &listing.sections {
         let Some((joint, step, None)) = section.of else { continue };
@@ -190,7 +190,7 @@ fn cells(robot: &rne_model::Robot, program: &Program, equations: &mut Equations<
 
 /// The statements as they stand in Rust, by name.
 fn rust(robot: &rne_model::Robot, program: &Program) -> BTreeMap<String, String> {
-    let listing = emit::listing(robot, program, Selection::default());
+    let listing = rne_emit::listing(robot, program, Selection::default());
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
     let statement = |line: &Line<'_>| match line {
         Line::Statement(statement) => Some((statement.name.to_string(), line.annotated().to_string())),

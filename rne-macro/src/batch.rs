@@ -2,7 +2,7 @@
 
 use proc_macro2::{Literal, Span, TokenStream};
 use quote::{ToTokens, quote};
-use rne_codegen::{Capability, Form, Function, Target as Machine, emit};
+use rne_codegen::{Capability, Form, Function, Target as Machine};
 use syn::DeriveInput;
 
 use crate::attribute::Attribute;
@@ -81,7 +81,7 @@ pub(crate) fn batch_inverse_dynamics(input: TokenStream) -> TokenStream {
     let [dof, angle_count] = [program.dof, program.sines_and_cosines.len()].map(Literal::usize_unsuffixed);
     let tests = own_tests::module(&item, &attribute, "BatchInverseDynamics", OF_BATCHES, program.dof, &loaded.text);
     let scalar = quote!(#krate::Scalar);
-    let body = emit::Body::new(&program, &scalar);
+    let body = rne_emit::Body::new(&program, &scalar);
     let body = if program.form == Form::SevenSteps { body } else { body.all_fused() };
     let (angles, torques) = (body.angles(), body.beyond_angles());
     let method = method(

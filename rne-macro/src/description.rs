@@ -2,38 +2,38 @@
 
 use std::fmt::Debug;
 
-use rne_codegen::{Program, emit};
+use rne_codegen::Program;
 use rne_model::Robot;
 
 /// Which arm this is, and its Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
-    let emit::Heading { title, source, frames, table, .. } = emit::Heading::of(robot);
+    let rne_emit::Heading { title, source, frames, table, .. } = rne_emit::Heading::of(robot);
     let text = format!("{title}\n{source}\n\n{frames}\n\n{table}");
-    format!("The robot that this type stands for, at compile time.\n\n{}", emit::verbatim(&text))
+    format!("The robot that this type stands for, at compile time.\n\n{}", rne_emit::verbatim(&text))
 }
 
 /// What folding made of each program.
 pub(crate) fn operations(programs: &[Program]) -> String {
-    let table = emit::operations_table(programs);
+    let table = rne_emit::operations_table(programs);
     format!("Straight-line code. Operations of one call, of the unfolded recursion -> of this code:\n\n{table}")
 }
 
 /// Why a form that is not the seven steps can be trusted, and which ones could not.
 pub(crate) fn evidence(programs: &[Program]) -> Vec<String> {
-    let proved = programs.iter().find_map(|program| Some(emit::evidence(program, program.proof.as_ref()?)));
-    let refusals = programs.iter().map(emit::refusals).filter(|refusals| !refusals.is_empty());
-    proved.into_iter().chain(refusals).map(|lines| emit::verbatim(&lines.join("\n"))).collect()
+    let proved = programs.iter().find_map(|program| Some(rne_emit::evidence(program, program.proof.as_ref()?)));
+    let refusals = programs.iter().map(rne_emit::refusals).filter(|refusals| !refusals.is_empty());
+    proved.into_iter().chain(refusals).map(|lines| rne_emit::verbatim(&lines.join("\n"))).collect()
 }
 
 /// The documentation of one method: what it costs, its steps, and where more is told. `of_trait` is the trait's path.
 pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String {
     let (products, sums) = program.before();
     let after = program.operations();
-    let steps = emit::steps(robot, program);
+    let steps = rne_emit::steps(robot, program);
     let steps = if steps.is_empty() {
         String::new()
     } else {
-        format!("Its steps, for joint i, h = i - 1, j = i + 1:\n\n{}\n\n", emit::verbatim(&steps.join("\n")))
+        format!("Its steps, for joint i, h = i - 1, j = i + 1:\n\n{}\n\n", rne_emit::verbatim(&steps.join("\n")))
     };
     format!(
         "{}\n\n{} products, {} sums, {} angles; the unfolded recursion has {products} products and {sums} sums.\n\n\
@@ -47,5 +47,5 @@ pub(crate) fn method(robot: &Robot, program: &Program, of_trait: &str) -> String
 
 /// The values of a constant, which rustdoc does not show of an array.
 pub(crate) fn values(values: &[impl Debug]) -> String {
-    format!("\n\n{}", emit::verbatim(&format!("{values:?}")))
+    format!("\n\n{}", rne_emit::verbatim(&format!("{values:?}")))
 }

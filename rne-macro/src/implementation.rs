@@ -2,7 +2,7 @@
 
 use proc_macro2::{Group, Ident, Literal, Span, TokenStream, TokenTree};
 use quote::{format_ident, quote};
-use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape, emit};
+use rne_codegen::{Argument, Capability, Form, Function, Length, Operations, Program, Record, Shape};
 use rne_model::Robot;
 use syn::{DeriveInput, GenericParam, Path, Visibility};
 
@@ -101,7 +101,7 @@ impl Target<'_> {
         let krate = self.krate;
         let (scalar, library, arithmetic) = (quote!(#krate::Scalar), quote!(#krate), quote!(A));
         let is_asked = self.asks_processor(program);
-        let body = emit::Body::new(program, &scalar).with_records_of(&library);
+        let body = rne_emit::Body::new(program, &scalar).with_records_of(&library);
         let body = if is_asked { body.with_arithmetic(&arithmetic) } else { body };
         // The seven steps compute the bits of the runtime, so that nothing is fused there.
         let body = match program.form {

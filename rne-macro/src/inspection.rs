@@ -6,7 +6,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use rne_codegen::{Capability, Form, Program, emit};
+use rne_codegen::{Capability, Form, Program};
 use rne_model::Robot;
 
 /// Writes the annotated code of a capability to `rne/NAME.CAPABILITY.rs`, beside what the compiler writes. Where no
@@ -19,7 +19,7 @@ pub(crate) fn write(robot: &Robot, capability: Capability, form: Form, programs:
         "// What `#[derive({})]` makes of this robot, for reading: the compiler wrote it for `#[robot(inspect)]`.\n\
          // `rne explain NAME FILE` tells of one name what it is computed from; FILE is the robot file.\n\n{}",
         capability.name(),
-        emit::rust_file(robot, programs)
+        rne_emit::rust_file(robot, programs)
     );
     if fs::read_to_string(&file).is_ok_and(|known| known == text) {
         return Ok(());

@@ -19,7 +19,7 @@ mod template;
 
 use std::fmt::Write as _;
 
-use rne_codegen::{CompileError, Compiler, Form, Function, Program, emit};
+use rne_codegen::{CompileError, Compiler, Form, Function, Program};
 use rne_model::Robot;
 
 pub use crate::data::data;
@@ -70,7 +70,7 @@ pub fn page(robot: &Robot, reduced: Option<&Program>) -> Result<String, CompileE
         let _ = write!(script, "\n// ---- {name}\n\n{}", template::code(text));
     }
     let parts = [
-        ("title", template::text(&emit::title(robot))),
+        ("title", template::text(&rne_emit::title(robot))),
         ("style", STYLE.to_owned()),
         ("data", template::json(&data)),
         ("script", script),

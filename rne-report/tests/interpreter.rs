@@ -3,7 +3,7 @@
 
 use std::process::Command;
 
-use rne_codegen::{Compiler, Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function};
 use rne_inspection::{Inspection, Tree};
 use rne_model::Robot;
 use rne_runtime::{DynArm, DynTrace, LinkTrace, Scalar};
@@ -212,6 +212,7 @@ fn c_in_the_page_is_the_c_that_is_emitted() {
 
 fn c_code(robot: &Robot, program: &rne_codegen::Program) -> String {
     let programs = std::slice::from_ref(program);
-    let code = emit::c_code(robot, programs, emit::Precision::Double, &emit::Prefix::of(robot)).expect("it is emitted");
+    let code = rne_emit::c_code(robot, programs, rne_emit::Precision::Double, &rne_emit::Prefix::of(robot))
+        .expect("it is emitted");
     code.one_file()
 }

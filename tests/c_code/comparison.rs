@@ -3,9 +3,9 @@
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use rne_codegen::emit::Precision;
 use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Form, Function, Program};
+use rne_emit::Precision;
 use rne_model::Robot;
 
 use crate::compiler::Compiler;

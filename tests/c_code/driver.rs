@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use rne_codegen::emit::{self, Precision};
 use rne_codegen::{Function, Program};
+use rne_emit::Precision;
 use rne_model::Robot;
 
 use crate::compiler::Compiler;
@@ -21,7 +21,7 @@ impl Unit {
     /// Files that go into one program have prefixes that differ.
     pub(crate) fn new(robot: &Robot, programs: &[Program], precision: Precision, prefix: String) -> Self {
         let name = prefix.parse().expect("an identifier");
-        let code = emit::c_code(robot, programs, precision, &name).unwrap_or_else(|error| panic!("{error}"));
+        let code = rne_emit::c_code(robot, programs, precision, &name).unwrap_or_else(|error| panic!("{error}"));
         let functions = programs.iter().map(|program| program.function).collect();
         Self { prefix, precision, functions, code: code.one_file() }
     }

@@ -5,8 +5,8 @@ use std::slice::from_ref;
 
 use fastrand::Rng;
 use rne::Scalar;
-use rne_codegen::emit::{self, Precision};
 use rne_codegen::{Form, Function};
+use rne_emit::Precision;
 use rne_model::Robot;
 
 use crate::comparison::{ROOT, read};
@@ -45,7 +45,7 @@ fn sine_and_cosine_have_the_bits_of_the_runtime() {
     for precision in Precision::ALL {
         let real = precision.c_type();
         let prefix = "arm".parse().expect("an identifier");
-        let code = emit::c_code(&robot, from_ref(&program), precision, &prefix).expect("small constants");
+        let code = rne_emit::c_code(&robot, from_ref(&program), precision, &prefix).expect("small constants");
         let source = format!(
             "{INCLUDES}{}{}int main(void)\n{{\n    {real} x[3];\n    \
              while (read_{real}(x, 1u)) {{ arm_sin_cos(x[0], &x[1], &x[2]); print_{real}(&x[1], 2u); }}\n    \
@@ -98,7 +98,7 @@ fn the_constants_are_those_of_the_runtime() {
     {
         let rust = if real == "double" { "f64" } else { "f32" };
         for file in [format!("c/sin_cos_{real}.c"), format!("sin_cos_{rust}.rs")] {
-            let emitted = constants(&read(&format!("rne-codegen/src/emit/{file}")));
+            let emitted = constants(&read(&format!("rne-emit/src/{file}")));
             assert_eq!(emitted, constants(&format!("{parts} {sums} 0.5 1.0 {inverse}")), "{file}");
         }
     }

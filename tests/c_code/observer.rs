@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use rne::{Arm, ObserverState};
-use rne_codegen::emit::Precision;
 use rne_codegen::{Form, Function};
+use rne_emit::Precision;
 use rne_model::Robot;
 
 use crate::comparison::{ROOT, read};

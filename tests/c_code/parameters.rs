@@ -5,8 +5,8 @@ use std::fmt::Write;
 
 use fastrand::Rng;
 use rne::{DynArm, Energy, ForwardDynamics, InverseDynamics, Kinematics, MassMatrix, Scalar};
-use rne_codegen::emit::Precision;
 use rne_codegen::{Form, Function, Program, Quantity};
+use rne_emit::Precision;
 use rne_model::{Reader, Robot};
 
 use crate::comparison::{ROOT, is_same, read};

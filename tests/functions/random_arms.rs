@@ -10,8 +10,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 use fastrand::Rng;
 use rne::{BaseMotion, ForwardDynamics, MassMatrix, Wrench};
-use rne_codegen::emit::Precision;
 use rne_codegen::{Form, Function, Program};
+use rne_emit::Precision;
 use rne_model::Robot;
 
 use crate::arm::{Arm, Given, Maker};

@@ -1,7 +1,7 @@
 //! The arm with its rotors: G² Jm in torques, mass matrix, forward dynamics and kinetic energy, in the runtime and in
 //! generated code.
 
-use rne_codegen::{Compiler, Form, Function, emit};
+use rne_codegen::{Compiler, Form, Function};
 use rne_model::Robot;
 
 use crate::arm::{Arm, Maker, of_runtime};
@@ -161,7 +161,7 @@ fn an_arm_without_motors_stays_the_same_code() {
     for form in Form::ALL {
         for function in Function::ALL {
             let compiled = |robot: &Robot| Compiler::new(robot).compile(function, form).expect("a program");
-            let [with, without] = [&robot, &bare].map(|robot| emit::rust_file(robot, &[compiled(robot)]));
+            let [with, without] = [&robot, &bare].map(|robot| rne_emit::rust_file(robot, &[compiled(robot)]));
             assert_eq!(with, without, "{function}, {form}");
         }
     }

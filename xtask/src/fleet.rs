@@ -9,11 +9,12 @@ use crate::Verdict;
 use crate::machine::{self, Missing};
 
 /// What the fleet is made of: itself, and the crates of this repository that it compiles.
-const INPUTS: [&str; 12] = [
+const INPUTS: [&str; 13] = [
     "fleet",
     "robots",
     "src",
     "rne-codegen",
+    "rne-emit",
     "rne-convert",
     "rne-identify",
     "rne-logs",

@@ -28,11 +28,12 @@ pub(crate) struct Package {
 }
 
 /// The crates that are published, by the order in which they depend on each other.
-const CRATES: [&str; 17] = [
+const CRATES: [&str; 18] = [
     "rne-model",
     "rne-robots",
     "rne-runtime",
     "rne-codegen",
+    "rne-emit",
     "rne-macro",
     "rne-machine",
     "rne-diagnose",

@@ -6,9 +6,9 @@ use std::io::ErrorKind;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, ensure};
-use rne_codegen::emit::{Precision, Prefix, c_code};
 use rne_codegen::plan::{PlanFile, PlanSet};
 use rne_codegen::{Argument, Compiler, Form, Function, Layout, Record};
+use rne_emit::{Precision, Prefix, c_code};
 use rne_model::Robot;
 use robots::puma560::Arguments;
 use robots::{STATES, State};
@@ -264,9 +264,9 @@ mod tests {
     use std::fs;
     use std::path::Path;
 
-    use rne_codegen::emit::{Precision, c_code};
     use rne_codegen::plan::PlanSet;
     use rne_codegen::{Compiler, Form, Function};
+    use rne_emit::{Precision, c_code};
     use rne_model::Robot;
 
     use super::choice_of;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::{Form, Function, emit};
+use rne_codegen::{Form, Function};
 use rne_model::{Checked, Robot, golden_of, misnamed_golden_of, plan_of, robot_of};
 
 use crate::files::plan_file;
@@ -109,7 +109,7 @@ fn refusals(path: &Path, robot: &Robot) -> Result<Vec<String>, Failure> {
     for function in choice::functions_of(robot) {
         // what does not compile is an error of the commands that write code
         let Ok(program) = compiler.compiled(function, Form::Reduced)? else { continue };
-        let lines = emit::refusals(&program);
+        let lines = rne_emit::refusals(&program);
         if !lines.is_empty() {
             notes.push(format!("{QUIET}note{QUIET:#}: {}", lines.join("\n")));
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::Args;
-use rne_codegen::emit;
+
 use rne_model::Robot;
 use rne_symbolic::ClosedForm;
 
@@ -55,9 +55,9 @@ impl Wanted {
         let name = file.display().to_string();
         let robot = of(rne_symbolic::read(&name, &bytes).map_err(|report| Failure::from(&report))?);
         let form = ClosedForm::of(&robot, joints);
-        let title = emit::title(&robot);
+        let title = rne_emit::title(&robot);
         if self.latex {
-            return Ok(Outcome::text(form.latex(&emit::ascii(&title))));
+            return Ok(Outcome::text(form.latex(&rne_emit::ascii(&title))));
         }
         let text = form.text_spelt(|text| letters.of(text));
         let mut before = "";

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use rne_codegen::emit::{CCode, Origin, Precision, Prefix};
-use rne_codegen::{Form, Function, Program, emit};
+use rne_codegen::{Form, Function, Program};
+use rne_emit::{CCode, Origin, Precision, Prefix};
 use rne_model::Robot;
 
 use crate::commands::golden;
@@ -157,9 +157,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     let robot = arguments.rotors.of(checked.robot);
     let programs = programs(arguments, &robot)?;
     let c_code = || c_code(arguments, &robot, &programs, &bytes);
-    let rust_file = if arguments.with_sin_cos { emit::rust_file_with_sin_cos } else { emit::rust_file };
+    let rust_file = if arguments.with_sin_cos { rne_emit::rust_file_with_sin_cos } else { rne_emit::rust_file };
     let rust = || Ok::<_, Failure>(rust_file(&robot, &programs) + &rust_tests(arguments, &robot, &programs)?);
-    let shown = |text: String| if arguments.ascii { emit::ascii(&text) } else { text };
+    let shown = |text: String| if arguments.ascii { rne_emit::ascii(&text) } else { text };
     let generated = |path: &Path, text| Generated { path: path.to_owned(), text: shown(text) };
     let files = match (arguments.lang, out, header) {
         (Language::Rust, None, _) => return Ok(Outcome::text(shown(rust()?))),
@@ -264,7 +264,7 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
     // without its folder: the same file gives the same bytes wherever it is
     let name = arguments.file.file_name().unwrap_or_default().to_string_lossy();
     let origin = Origin::of(if is_stream(&arguments.file) { "on standard input" } else { &name }, bytes);
-    let code = emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
+    let code = rne_emit::c_code_of_file(robot, programs, precision, &prefix, Some(&origin)).map_err(|error| {
         let file = arguments.file.display();
         Failure::input(format_args!("{file}: {error}. {TYPED}--real double{TYPED:#} holds it"))
     })?;
@@ -272,7 +272,7 @@ fn c_code(arguments: &Arguments, robot: &Robot, programs: &[Program], bytes: &[u
         return Ok(code);
     }
     let golden = golden::of_programs(robot, programs, precision)?;
-    Ok(code.with_tests(&emit::c_tests(robot, programs, precision, &prefix, &golden)))
+    Ok(code.with_tests(&rne_emit::c_tests(robot, programs, precision, &prefix, &golden)))
 }
 
 /// The tests of code in Rust, where they are asked for.
@@ -281,7 +281,7 @@ fn rust_tests(arguments: &Arguments, robot: &Robot, programs: &[Program]) -> Res
         return Ok(String::new());
     }
     let golden = golden::of_programs(robot, programs, Precision::Double)?;
-    Ok(emit::rust_tests(robot, programs, &golden))
+    Ok(rne_emit::rust_tests(robot, programs, &golden))
 }
 
 /// The functions asked for, each once, in the order of the traits.
@@ -306,7 +306,7 @@ fn programs(arguments: &Arguments, robot: &Robot) -> Result<Vec<Program>, Failur
 /// The title before the mark may take several lines.
 fn is_ours(text: &str) -> bool {
     let mut heading = text.lines().take_while(|line| line.starts_with("//"));
-    let is_mark = |line: &str| line.starts_with(emit::GENERATED);
+    let is_mark = |line: &str| line.starts_with(rne_emit::GENERATED);
     heading.any(|line| ["//! ", "// "].iter().any(|mark| line.strip_prefix(mark).is_some_and(is_mark)))
 }
 

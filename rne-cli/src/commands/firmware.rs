@@ -9,7 +9,7 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use rne_codegen::{Form, Function, emit};
+use rne_codegen::{Form, Function};
 use rne_model::{Robot, plan_of};
 
 use crate::files::output_file::{is_standard_output, unreadable, unwritable};
@@ -162,7 +162,7 @@ fn files(name: &str, robot: &Robot, dependency: &str) -> Vec<(PathBuf, String)> 
     );
     let readme = include_str!("firmware/README.md").replacen("# firmware", &format!("# {name}"), 1).replacen(
         "TITLE",
-        &emit::markdown(&emit::title(robot)),
+        &rne_emit::markdown(&rne_emit::title(robot)),
         1,
     );
     let files = [

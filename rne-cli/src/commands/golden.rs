@@ -2,8 +2,8 @@
 //! run.
 
 use rne::{BaseMotion, DynArm, Payload, Scalar, Wrench};
-use rne_codegen::emit::{Golden, Precision};
 use rne_codegen::{Function, Program};
+use rne_emit::{Golden, Precision};
 use rne_model::{GoldenFile, Robot};
 
 use crate::outcome::Failure;

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use clap::Args;
-use rne_codegen::emit::{self, Selection};
 use rne_codegen::plan::Trick;
 use rne_codegen::{self as codegen, Form, Function, Quantity, Step};
+use rne_emit::Selection;
 use rne_inspection::Inspection;
 use rne_model::Robot;
 
@@ -131,7 +131,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
         let line = format!("{QUIET}kept for reading, and counted: {}{QUIET:#}\n", words.join(", "));
         text.push_str(&letters.page(&line, PAGE));
     }
-    let refusals = emit::refusals(&program);
+    let refusals = rne_emit::refusals(&program);
     if program.form != arguments.form && refusals.is_empty() {
         let _ = writeln!(text, "{QUIET}{} has one form, the seven steps{QUIET:#}", program.function);
     }
@@ -144,7 +144,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     if let Some(proof) = &program.proof {
         text.push('\n');
-        for line in emit::evidence(&program, proof) {
+        for line in rne_emit::evidence(&program, proof) {
             let _ = writeln!(text, "{QUIET}{}{QUIET:#}", letters.of(&line));
         }
     }
@@ -156,7 +156,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Outcome, Failure> {
     }
     let what = Selection { joint: arguments.joint, step: arguments.step, explain: true, ..Selection::default() };
     text.push('\n');
-    let listing = emit::listing(&robot, &program, what);
+    let listing = rne_emit::listing(&robot, &program, what);
     if listing.is_empty() {
         let _ = writeln!(text, "{QUIET}nothing of {} stands there{QUIET:#}", program.function);
     }

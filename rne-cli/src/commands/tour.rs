@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 use rne::{DynArm, InverseDynamics as _};
-use rne_codegen::emit::{self, Selection};
 use rne_codegen::{self as codegen, Form, Function, Program, Step};
+use rne_emit::Selection;
 use rne_model::{Reader, Robot};
 
 use crate::commands::ops;
@@ -119,7 +119,7 @@ fn code(text: &mut String, robot: &Robot, program: &Program, joint: usize, steps
     let listings: Vec<String> = steps
         .iter()
         .map(|&step| Selection { joint: Some(joint), step: Some(step), explain: true, reasons: Some(2) })
-        .map(|what| highlight::listing(&emit::listing(robot, program, what), Letters::default()))
+        .map(|what| highlight::listing(&rne_emit::listing(robot, program, what), Letters::default()))
         .collect();
     text.push_str(&listings.join("\n"));
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_codegen::{Program, emit};
+use rne_codegen::Program;
 use rne_convert::Difference;
 use rne_model::{Convention, JointKind, Robot};
 
@@ -10,7 +10,7 @@ use crate::palette::{QUIET, TITLE};
 
 /// Title, convention, gravity, and the Denavit-Hartenberg table.
 pub(crate) fn robot(robot: &Robot) -> String {
-    let emit::Heading { title, frames, ends, table, .. } = emit::Heading::of(robot);
+    let rne_emit::Heading { title, frames, ends, table, .. } = rne_emit::Heading::of(robot);
     let mut text = format!("{TITLE}{title}{TITLE:#}\n{frames}\n");
     for end in ends {
         let _ = writeln!(text, "{end}");

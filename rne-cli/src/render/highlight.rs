@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_codegen::emit::{Line, Listing};
+use rne_emit::{Line, Listing};
 
 use crate::palette::{FORMULA, FOUND, QUIET, TITLE};
 use crate::render::layout::wrap;

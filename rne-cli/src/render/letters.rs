@@ -3,7 +3,6 @@
 use std::fmt::Write as _;
 
 use clap::Args;
-use rne_codegen::emit;
 
 use crate::render::layout::{width, wrap};
 
@@ -24,7 +23,7 @@ impl Letters {
         if !self.ascii {
             return text.to_owned();
         }
-        text.split(TIED).map(emit::ascii).collect::<Vec<_>>().join(TIED.encode_utf8(&mut [0; 2]))
+        text.split(TIED).map(rne_emit::ascii).collect::<Vec<_>>().join(TIED.encode_utf8(&mut [0; 2]))
     }
 
     /// A text that is laid out already: blanks between columns make room for longer letters, and a line that becomes
@@ -75,7 +74,7 @@ fn in_columns(line: &str) -> String {
     while !rest.is_empty() {
         let blanks = rest.find("  ").unwrap_or(rest.len());
         let (cell, after) = rest.split_at(blanks);
-        let spelt = emit::ascii(cell);
+        let spelt = rne_emit::ascii(cell);
         owed += plain_width(&spelt).saturating_sub(plain_width(cell));
         written.push_str(&spelt);
         let gap = after.len() - after.trim_start_matches(' ').len();

@@ -5,42 +5,48 @@ use super::{Answer, Argument, Shape};
 use crate::ir::quantity::Quantity;
 
 /// What there is to know of a function.
-pub(crate) struct Entry {
+#[derive(Debug)]
+pub struct Entry {
     /// The variant, which is at this place.
-    pub(crate) function: Function,
+    pub function: Function,
     /// The trait.
-    pub(crate) capability: Capability,
+    pub capability: Capability,
     /// What it computes, for the first line of its documentation.
-    pub(crate) summary: &'static str,
+    pub summary: &'static str,
     /// What else a caller of C must know: shapes, units, frames and signs that the names do not tell.
-    pub(crate) details: &'static str,
-    pub(crate) arguments: &'static [Argument],
-    pub(crate) shape: Shape,
+    pub details: &'static str,
+    /// What it takes, in order.
+    pub arguments: &'static [Argument],
+    /// What it returns.
+    pub shape: Shape,
     /// The argument of C behind which the result is written. A single number is returned.
-    pub(crate) output: &'static str,
+    pub output: &'static str,
     /// What a listing says above the returned numbers.
-    pub(crate) listed: &'static str,
+    pub listed: &'static str,
     /// The quantities that its listing shows under headings of its own.
-    pub(crate) own: &'static [Own],
-    pub(crate) answer: Answer,
+    pub own: &'static [Own],
+    /// How its results are shown to people.
+    pub answer: Answer,
     /// Whether it returns the torques of the joints, by the seven steps.
-    pub(crate) returns_torques: bool,
+    pub returns_torques: bool,
     /// Whether what it returns is a part of the torques of motion, or how they change: it may vanish but for rounding.
-    pub(crate) is_of_motion: bool,
+    pub is_of_motion: bool,
     /// Whether it has the seven steps as its only form: bearings feel what regrouping moves from link to link, and
     /// motors have nothing to reduce.
-    pub(crate) is_irreducible: bool,
+    pub is_irreducible: bool,
     /// What it means that its numbers are not finite, for a function that divides.
-    pub(crate) divides: Option<&'static str>,
+    pub divides: Option<&'static str>,
 }
 
 /// A quantity in the listing of a function.
-pub(crate) struct Own {
-    pub(crate) quantity: Quantity,
+#[derive(Debug)]
+pub struct Own {
+    /// Which.
+    pub quantity: Quantity,
     /// What stands above its statements at a joint.
-    pub(crate) heading: fn(usize) -> String,
+    pub heading: fn(usize) -> String,
     /// What its names stand for, where that is not what they stand for elsewhere.
-    pub(crate) meaning: Option<&'static str>,
+    pub meaning: Option<&'static str>,
 }
 
 impl Entry {

@@ -9,7 +9,7 @@ use crate::ir::quantity::Quantity;
 use crate::named::named;
 
 pub use answer::{Answer, AnswerTable, Labels, MatrixUnit};
-use entry::{Entry, Own};
+pub use entry::{Entry, Own};
 pub use layout::{Layout, Length, Record, Shape};
 use table::TABLE;
 pub use table::{Capability, Function};
@@ -59,7 +59,7 @@ impl Function {
     ];
 
     /// Its entry in the table, which stands at its place.
-    pub(crate) const fn entry(self) -> &'static Entry {
+    pub const fn entry(self) -> &'static Entry {
         &TABLE[self as usize]
     }
 
@@ -131,7 +131,7 @@ impl Function {
     }
 
     /// What is told of a quantity in its listing alone.
-    pub(crate) fn own(self, quantity: Quantity) -> Option<&'static Own> {
+    pub fn own(self, quantity: Quantity) -> Option<&'static Own> {
         self.entry().own.iter().find(|own| own.quantity == quantity)
     }
 

@@ -96,7 +96,8 @@ impl Name {
     }
 
     /// The name under which the table has an element of an inertia: that of the upper half.
-    pub(crate) fn of_upper_half(self) -> Self {
+    #[must_use]
+    pub fn of_upper_half(self) -> Self {
         match (self.quantity, self.component) {
             (Quantity::Inertia, Component::Matrix(row, column)) if row > column => {
                 Self { component: Component::Matrix(column, row), ..self }

@@ -1,0 +1,98 @@
+//! Text whose parts say what they are, for renderers that colour, link or typeset them.
+
+use std::fmt;
+use std::ops::{Add, Range};
+
+use rne_codegen::Name;
+
+/// What a part of a text is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// What opens a declaration.
+    Keyword,
+    /// A number's name: its quantity, joint and axis.
+    Name(Name),
+    /// A number's value.
+    Number,
+}
+
+/// A text, and what some of its parts are; the others are words, operators and brackets.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Annotated {
+    text: String,
+    spans: Vec<(Range<usize>, Part)>,
+}
+
+impl Annotated {
+    pub(super) fn part(part: Part, text: impl Into<String>) -> Self {
+        let text = text.into();
+        Self { spans: vec![(0..text.len(), part)], text }
+    }
+
+    /// Several with the same between them.
+    pub(super) fn join(parts: impl IntoIterator<Item = Self>, between: &str) -> Self {
+        parts.into_iter().reduce(|all, part| all + between + part).unwrap_or_default()
+    }
+
+    /// Writes another one behind it.
+    pub(super) fn push(&mut self, other: &Self) {
+        let before = self.text.len();
+        self.text.push_str(&other.text);
+        let behind = |(range, part): &(Range<usize>, Part)| (range.start + before..range.end + before, *part);
+        self.spans.extend(other.spans.iter().map(behind));
+    }
+
+    /// Writes words, operators or brackets behind it.
+    pub(super) fn push_str(&mut self, text: &str) {
+        self.text.push_str(text);
+    }
+
+    /// The text alone.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        &self.text
+    }
+
+    /// The text piece by piece; `None` for words, operators and brackets.
+    pub fn pieces(&self) -> impl Iterator<Item = (Option<Part>, &str)> {
+        let ends = self.spans.iter().map(|(range, _)| range.end);
+        let between = std::iter::once(0).chain(ends).zip(&self.spans).flat_map(|(from, (range, part))| {
+            [(None, &self.text[from..range.start]), (Some(*part), &self.text[range.clone()])]
+        });
+        let end = self.spans.last().map_or(0, |(range, _)| range.end);
+        between.chain([(None, &self.text[end..])]).filter(|(_, text)| !text.is_empty())
+    }
+}
+
+impl From<Name> for Annotated {
+    fn from(name: Name) -> Self {
+        Self::part(Part::Name(name), name.to_string())
+    }
+}
+
+impl From<String> for Annotated {
+    fn from(text: String) -> Self {
+        Self { text, spans: Vec::new() }
+    }
+}
+
+impl From<&str> for Annotated {
+    fn from(text: &str) -> Self {
+        text.to_owned().into()
+    }
+}
+
+impl<T: Into<Self>> Add<T> for Annotated {
+    type Output = Self;
+
+    fn add(mut self, other: T) -> Self {
+        self.push(&other.into());
+        self
+    }
+}
+
+impl fmt::Display for Annotated {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}

@@ -1,0 +1,221 @@
+//! The header: the robot, what holds for all functions, and what each of them does.
+
+use std::fmt::Write;
+
+use super::signature::{fields, head, parameters_type, record_type, records};
+use super::{ConstantTooLarge, File, comment, observer};
+use crate::evidence::{evidence, refusals};
+use crate::heading::Heading;
+use crate::parameters::{self, Parameter};
+use crate::syntax::Precision;
+use crate::wrap::{TIED, WIDTH, fill};
+use crate::{inert, table};
+use rne_codegen::Name;
+use rne_codegen::Program;
+use rne_codegen::Quantity;
+use rne_codegen::Record;
+
+/// How both files begin.
+pub(super) fn title(file: &File) -> String {
+    let title = comment("//", &Heading::opening(&inert::title(file.robot)));
+    let by = concat!("rne ", env!("CARGO_PKG_VERSION"));
+    let by = file.origin.map_or(by.to_owned(), |origin| format!("{by}, of the robot file {origin}"));
+    format!("{title}//\n// {}\n{}", Heading::mark(file.robot), comment("//", &by))
+}
+
+pub(super) fn header(file: &File) -> Result<String, ConstantTooLarge> {
+    let upper = file.prefix.to_ascii_uppercase();
+    let mut text = title(file);
+    text.push_str(&robot(file));
+    text.push_str(&contract(file));
+    text.push_str(&counts(file.programs));
+    let _ = writeln!(text, "\n#ifndef {upper}_H\n#define {upper}_H\n");
+    text.push_str("#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n");
+    let _ = writeln!(text, "/// Number of joints.\n#define {upper}_DOF {}u", file.robot.dof());
+    text.push_str(&limits(file, &upper));
+    text.push_str(&parameters(file, &upper)?);
+    for (record, parts) in records(file) {
+        let (about, name) = (comment("///", about(record)), record_type(file, record));
+        let _ = writeln!(text, "\n{about}typedef struct {{");
+        for field in fields(file, record, &parts) {
+            let _ = writeln!(text, "    {field};");
+        }
+        let _ = writeln!(text, "}} {name};");
+    }
+    for program in file.programs {
+        text.push('\n');
+        text.push_str(&comment("///", program.function.summary()));
+        let details = program.function.entry().details;
+        if !details.is_empty() {
+            text.push_str(&comment("///", details));
+        }
+        let _ = writeln!(text, "{};", head(file, program));
+    }
+    text.push_str(&observer::declarations(file));
+    text.push_str("\n#ifdef __cplusplus\n}\n#endif\n\n#endif\n");
+    Ok(text)
+}
+
+/// The struct of the run-time parameters, and an initialiser with the values of the file.
+fn parameters(file: &File, upper: &str) -> Result<String, ConstantTooLarge> {
+    let Some(program) = file.programs.iter().find(|program| parameters::are_used(program)) else {
+        return Ok(String::new());
+    };
+    let (real, name) = (file.precision.c_type(), parameters_type(file));
+    let parameters = Parameter::of(file.robot, parameters::OF_C);
+    let mut text = "\n/// Parameters of the robot file that are given at run time.\ntypedef struct {\n".to_owned();
+    let mut values = Vec::new();
+    for (index, parameter) in parameters.iter().enumerate() {
+        for line in comment("///", &parameter.about()).lines() {
+            let _ = writeln!(text, "    {line}");
+        }
+        let _ = writeln!(text, "    {real} {};", parameter.member);
+        let value = file.precision.literal(parameter.value);
+        values.push(value.ok_or(ConstantTooLarge {
+            name: Name::scalar(Quantity::Parameter, index + 1),
+            value: parameter.value,
+            function: program.function,
+        })?);
+    }
+    let _ = writeln!(text, "}} {name};\n");
+    text.push_str(&comment("///", &format!("Their values in the file: `const {name} x = {upper}_PARAMETERS;`")));
+    text.push_str(&initialiser(&format!("{upper}_PARAMETERS"), &values));
+    Ok(text)
+}
+
+/// Numbers that an array or a struct is initialised with.
+fn initialiser(name: &str, numbers: &[String]) -> String {
+    let start = format!("#define {name} {{");
+    let numbers = numbers.join(", ");
+    if start.len() + numbers.len() < WIDTH {
+        return format!("{start}{numbers}}}\n");
+    }
+    // a definition goes on behind a backslash
+    let lines = fill(&numbers, WIDTH - 2, "    ", "    ").replace('\n', " \\\n");
+    format!("{start} \\\n{lines}}}\n")
+}
+
+/// The limits of the joints as initialisers of arrays; of what no joint has there is none.
+fn limits(file: &File, upper: &str) -> String {
+    let precision = file.precision;
+    let largest = match precision {
+        Precision::Single => f64::from(f32::MAX),
+        Precision::Double => f64::MAX,
+    };
+    let limits = || file.robot.joints.iter().map(|joint| joint.limits);
+    let kinds: [(&str, &str, f64, Vec<Option<f64>>); 4] = [
+        ("POSITION_LOWER", "Lowest positions, rad or m", -largest, limits().map(|of| Some(of.position?.0)).collect()),
+        ("POSITION_UPPER", "Highest positions, rad or m", largest, limits().map(|of| Some(of.position?.1)).collect()),
+        ("VELOCITY_LIMIT", "Largest speeds, rad/s or m/s", largest, limits().map(|of| of.velocity).collect()),
+        ("EFFORT_LIMIT", "Largest torques or forces, N m or N", largest, limits().map(|of| of.effort).collect()),
+    ];
+    let mut text = String::new();
+    for (name, about, none, values) in kinds {
+        if values.iter().all(Option::is_none) {
+            continue;
+        }
+        let number = |value: &Option<f64>| {
+            let value = value.unwrap_or(none).clamp(-largest, largest);
+            precision.literal(value).unwrap_or_default()
+        };
+        let unlimited =
+            if values.iter().any(Option::is_none) { "; the largest number where there is no limit" } else { "" };
+        text.push_str(&comment(
+            "///",
+            &format!("{about}{unlimited}: `const {0} x[] = {upper}_{name};`", precision.c_type()),
+        ));
+        let numbers: Vec<String> = values.iter().map(number).collect();
+        text.push_str(&initialiser(&format!("{upper}_{name}"), &numbers));
+    }
+    text
+}
+
+const fn about(record: Record) -> &'static str {
+    match record {
+        Record::Pose => {
+            "Rows of the rotation from the axes of a frame to those of the world, and the frame's origin there, m."
+        }
+        Record::Wrench => "Force, N, and moment, N m.",
+        Record::MomentumAndRate => "Momenta of the joints, M q̇, and their rates without external torques.",
+        Record::TorqueDerivatives => "Torques by positions and by velocities; row i is torque i, column j is joint j.",
+    }
+}
+
+/// Conventions and table, and why the code can be trusted.
+fn robot(file: &File) -> String {
+    let Heading { frames, table, .. } = Heading::of(file.robot);
+    let mut text = "//\n".to_owned();
+    for line in frames.lines().chain([""]).chain(table.lines()) {
+        let _ = writeln!(text, "{}", format!("//   {}", inert::c_comment(line)).trim_end());
+    }
+    let parameters = parameters::heading(file.robot);
+    if !parameters.is_empty() {
+        text.push_str("//\n");
+        for line in &parameters {
+            text.push_str(&comment("//", line));
+        }
+    }
+    let proved = file.programs.iter().find_map(|program| Some((program, program.proof.as_ref()?)));
+    let evidence = proved.map(|(program, proof)| evidence(program, proof));
+    let refusals = file.programs.iter().map(refusals).filter(|refusals| !refusals.is_empty());
+    for lines in evidence.into_iter().chain(refusals) {
+        text.push_str("//\n");
+        for line in lines {
+            // a number stays on its line
+            text.push_str(&comment("//", &line.replace(" - ", &format!("{TIED}-{TIED}"))));
+        }
+    }
+    text
+}
+
+/// What holds for all functions.
+fn contract(file: &File) -> String {
+    let real = file.precision.c_type();
+    let mut text = "//\n".to_owned();
+    let mut paragraph = |words: &str| text.push_str(&comment("//", words));
+    paragraph(
+        "Joint arrays run from base to tip. Revolute joints: rad, rad/s, rad/s², N m. Prismatic joints: m, m/s, \
+        m/s², N.",
+    );
+    paragraph("");
+    paragraph(
+        "A result may be written over an argument: all arguments are read before the first number is written. No \
+        loop, no \
+         branch, no memory but the stack, no library.",
+    );
+    if file.chooses_by_sign() {
+        paragraph("Friction chooses between numbers by a sign, which a compiler may make a branch.");
+    }
+    if file.turns() {
+        let own = format!("void name({real} angle, {real} *sine, {real} *cosine)").replace(' ', TIED);
+        paragraph("");
+        paragraph(&format!(
+            "Sines and cosines are computed in {real} alone, with errors below 1 ulp for angles up to 1e5 rad, the \
+             sums of those of parallel joints included; beyond that results mean nothing. To use others, from a \
+             CORDIC unit perhaps, compile with -DRNE_SIN_COS=name, the name of a function {own}."
+        ));
+    }
+    paragraph("");
+    paragraph(
+        "Sums and products are rounded in the order in which they are written: with -ffast-math, \
+         -funsafe-math-optimizations or -mfpmath=387 the source does not compile, unless its sine comes from outside. \
+         With -ffp-contract=off the results are those of the Rust code built without fused multiply-add, bit for bit.",
+    );
+    text
+}
+
+/// Operations of every function, in columns.
+fn counts(programs: &[Program]) -> String {
+    let titles = ["function", "products", "sums", "divisions", "angles"].map(str::to_owned);
+    let lines: Vec<[String; 5]> = std::iter::once(titles).chain(programs.iter().map(table::counts)).collect();
+    "//\n// Operations of one call, of the recursion -> of the code:\n//\n".to_owned() + &columns(&lines)
+}
+
+/// Cells below each other, as lines of a comment.
+pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> String {
+    let mut text = String::new();
+    for line in table::columns(lines) {
+        let _ = writeln!(text, "//   {line}");
+    }
+    text
+}

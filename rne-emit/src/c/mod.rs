@@ -1,0 +1,169 @@
+//! Programs as C99 without a library: a header that says what the functions do, and the source.
+
+mod header;
+mod observer;
+mod prefix;
+mod signature;
+mod source;
+
+use std::fmt;
+
+use rne_model::Robot;
+
+use super::inert::c_comment;
+use super::syntax::{Precision, Syntax};
+use super::wrap::{WIDTH, fill};
+use rne_codegen::Function;
+use rne_codegen::Name;
+use rne_codegen::Program;
+use rne_codegen::Quantity;
+
+pub use prefix::{BadPrefix, Prefix};
+pub(super) use signature::{inputs, record_name, result_elements};
+#[cfg(test)]
+pub(crate) use source::UNUSED;
+
+/// The code of one robot.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CCode {
+    title: String,
+    header: String,
+    body: String,
+}
+
+impl CCode {
+    /// The same with tests at the end of the source, as [`c_tests`](super::c_tests) writes them.
+    #[must_use]
+    pub fn with_tests(self, tests: &str) -> Self {
+        Self { body: self.body + tests, ..self }
+    }
+
+    /// The header.
+    #[must_use]
+    pub fn header(&self) -> &str {
+        &self.header
+    }
+
+    /// The source, which includes the header by the name of its file.
+    #[must_use]
+    pub fn source(&self, header: &str) -> String {
+        format!("{}\n#include \"{header}\"\n\n{}", self.title, self.body)
+    }
+
+    /// Both as one file that includes neither.
+    #[must_use]
+    pub fn one_file(&self) -> String {
+        format!("{}\n{}", self.header, self.body)
+    }
+}
+
+/// The given programs of one robot as functions of C.
+///
+/// # Errors
+/// When a constant is too large for the number type.
+pub fn c_code(
+    robot: &Robot,
+    programs: &[Program],
+    precision: Precision,
+    prefix: &Prefix,
+) -> Result<CCode, ConstantTooLarge> {
+    c_code_of_file(robot, programs, precision, prefix, None)
+}
+
+/// As [`c_code`], with the robot file named in the heading.
+///
+/// # Errors
+/// When a constant is too large for the number type.
+pub fn c_code_of_file(
+    robot: &Robot,
+    programs: &[Program],
+    precision: Precision,
+    prefix: &Prefix,
+    origin: Option<&Origin>,
+) -> Result<CCode, ConstantTooLarge> {
+    let file = File { robot, programs, precision, prefix: prefix.as_str(), origin };
+    Ok(CCode { title: header::title(&file), header: header::header(&file)?, body: source::body(&file)? })
+}
+
+/// What is written, and how.
+struct File<'a> {
+    robot: &'a Robot,
+    programs: &'a [Program],
+    precision: Precision,
+    prefix: &'a str,
+    origin: Option<&'a Origin>,
+}
+
+/// The robot file of which code is made: its name, without folders, and what tells its contents from others.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Origin {
+    file: String,
+    hash: u64,
+}
+
+impl Origin {
+    /// The origin of code that is made of these bytes.
+    #[must_use]
+    pub fn of(file: &str, bytes: &[u8]) -> Self {
+        // FNV-1a of 64 bits: no cryptography, enough to see that a file is another
+        let hash = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01B3);
+        Self { file: file.to_owned(), hash: bytes.iter().fold(0xCBF2_9CE4_8422_2325, hash) }
+    }
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}, FNV-1a {:016x}", self.file, self.hash)
+    }
+}
+
+impl<'a> File<'a> {
+    fn syntax(&self) -> Syntax<'a> {
+        Syntax::C { precision: self.precision, prefix: self.prefix }
+    }
+
+    /// Whether sines and cosines are needed.
+    fn turns(&self) -> bool {
+        self.programs.iter().any(|program| !program.sines_and_cosines.is_empty())
+    }
+
+    fn chooses_by_sign(&self) -> bool {
+        self.programs.iter().any(Program::chooses_by_sign)
+    }
+}
+
+/// A constant that the number type cannot hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstantTooLarge {
+    /// Its name in the code.
+    pub name: Name,
+    /// Its value.
+    pub value: f64,
+    /// The function that needs it.
+    pub function: Function,
+}
+
+impl fmt::Display for ConstantTooLarge {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, value, function } = self;
+        if name.quantity == Quantity::Parameter {
+            let number = name.joint;
+            write!(f, "`{function}` takes run-time parameter {number}, whose value in the file is {value:e}")?;
+            return write!(f, ": too large for `float`, whose largest number is {:e}", f32::MAX);
+        }
+        write!(f, "`{function}` needs the constant {name} ({}", name.quantity.meaning())?;
+        if name.joint > 0 {
+            write!(f, ", of link {}", name.joint)?;
+        }
+        write!(f, "), which is {value:e}: too large for `float`, whose largest number is {:e}", f32::MAX)
+    }
+}
+
+impl std::error::Error for ConstantTooLarge {}
+
+/// Words in a comment, each line behind `start`; without words an empty one.
+fn comment(start: &str, text: &str) -> String {
+    let blank = format!("{start} ");
+    let lines = if text.is_empty() { start.to_owned() } else { fill(&c_comment(text), WIDTH, &blank, &blank) };
+    lines + "\n"
+}

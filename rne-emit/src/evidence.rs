@@ -1,0 +1,54 @@
+//! Why a program that is not the seven steps can be trusted, in words.
+
+use rne_codegen::Form;
+use rne_codegen::{Program, Proof};
+
+/// What the form is, its proof and its choices, one sentence or choice per line.
+#[must_use]
+pub fn evidence(program: &Program, proof: &Proof) -> Vec<String> {
+    let meaning = if program.function.returns_torques() {
+        "only the torques keep a physical meaning."
+    } else {
+        "only what is returned keeps a meaning."
+    };
+    let form = match () {
+        () if program.is_rewritten => format!("Reduced form, rewritten by algebra: fewest operations; {meaning}"),
+        () if !program.choices.is_empty() => format!("Reduced form: fewest operations; {meaning}"),
+        () => "Reduced form: the plain formulas, every value computed once however it comes about.".to_owned(),
+    };
+    let (what, largest) =
+        if program.function.returns_torques() { ("all torques", "torque") } else { ("all results", "result") };
+    let mut lines = vec![
+        form,
+        format!(
+            "Proved identical to the seven steps: {what} agree at {} random points of the fields of 2^61 - 1 and \
+            2^61 - 31.",
+            proof.points
+        ),
+        format!(
+            "Rounding at {} random states, in parts of the largest {largest}: {:.1e} (f64), {:.1e} (f32; seven steps \
+            {:.1e}).",
+            proof.states, proof.rounding, proof.single, proof.single_of_seven_steps
+        ),
+    ];
+    if !program.choices.is_empty() {
+        lines.push("Choices:".to_owned());
+        lines.extend(program.choices.iter().map(|choice| format!("  {choice}")));
+    }
+    lines
+}
+
+/// Which reduced forms of a function were refused, and why; then what the function has instead. No line where nothing
+/// was refused.
+#[must_use]
+pub fn refusals(program: &Program) -> Vec<String> {
+    if program.refusals.is_empty() {
+        return Vec::new();
+    }
+    let form = match program.form {
+        Form::SevenSteps => "its code is that of the seven steps",
+        Form::Reduced => "its code is another one, which is proved",
+    };
+    let heading = format!("Not every reduced form of {} could be taken; {form}. Refused:", program.function);
+    std::iter::once(heading).chain(program.refusals.iter().map(|refusal| format!("  {refusal}"))).collect()
+}

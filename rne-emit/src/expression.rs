@@ -1,0 +1,228 @@
+//! How an expression is written: where parentheses stand, and how wide its parts are.
+
+use std::cell::Cell;
+
+use super::annotated::{Annotated, Part};
+use super::syntax::Syntax;
+use rne_codegen::{Expression, Operator};
+
+/// Where an operand stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Position {
+    /// Left of + or -.
+    Summand,
+    /// Right of + or -.
+    RightSummand,
+    /// Left of ·.
+    Factor,
+    /// Right of ·.
+    RightFactor,
+    /// Behind a unary minus.
+    Negated,
+}
+
+/// How an operator is written.
+pub(super) trait Infix {
+    /// As Rust and C write it.
+    fn sign(self) -> char;
+    /// With a blank on each side.
+    fn between_blanks(self) -> &'static str;
+    /// Where its operands stand.
+    fn positions(self) -> [Position; 2];
+}
+
+impl Infix for Operator {
+    fn sign(self) -> char {
+        match self {
+            Self::Sum => '+',
+            Self::Difference => '-',
+            Self::Product => '*',
+            Self::Quotient => '/',
+        }
+    }
+
+    fn between_blanks(self) -> &'static str {
+        match self {
+            Self::Sum => " + ",
+            Self::Difference => " - ",
+            Self::Product => " * ",
+            Self::Quotient => " / ",
+        }
+    }
+
+    fn positions(self) -> [Position; 2] {
+        match self {
+            Self::Sum | Self::Difference => [Position::Summand, Position::RightSummand],
+            Self::Product | Self::Quotient => [Position::Factor, Position::RightFactor],
+        }
+    }
+}
+
+/// Whether an operand needs parentheses. A right operand keeps them even where mathematics would not: floating-point
+/// sums and products are computed in the order in which they are written.
+pub(super) fn needs_parentheses(syntax: Syntax, operand: &Expression, position: Position) -> bool {
+    match operand {
+        Expression::Variable(_) | Expression::Zero | Expression::BySign(_) => false,
+        Expression::Binary(Operator::Product | Operator::Quotient, ..) => match position {
+            Position::Summand | Position::RightSummand => syntax.groups_products(),
+            Position::Factor => false,
+            Position::RightFactor | Position::Negated => true,
+        },
+        Expression::Negative(_) | Expression::Binary(..) => position != Position::Summand,
+    }
+}
+
+/// The expression on one line.
+pub(super) fn line(syntax: Syntax, expression: &Expression) -> Annotated {
+    let measured = Measured::new(syntax, expression);
+    let mut text = Annotated::default();
+    measured.write(measured.whole(), &mut text);
+    text
+}
+
+/// An expression in a language, of whose every part the width is known: nobody writes a part in order to measure it.
+#[derive(Default)]
+pub(super) struct Measured {
+    /// The parts. An operand stands before what it is an operand of, so the last one is the whole expression.
+    parts: Vec<Measure>,
+    /// How many parts have been looked at, to be measured, laid out or written.
+    pub(super) visits: Cell<usize>,
+}
+
+/// A part of an expression.
+pub(super) struct Measure {
+    /// The columns that it takes on one line. Code is ASCII.
+    pub(super) width: usize,
+    /// Whether it begins with a parenthesis.
+    pub(super) opens: bool,
+    pub(super) kind: Kind,
+}
+
+/// What a part of an expression is.
+pub(super) enum Kind {
+    /// A name, or zero.
+    Word(Annotated),
+    Negative(Operand),
+    /// Two or more operands of one operator, computed from the left to the right.
+    Chain(Operator, Vec<Operand>),
+    /// The name of a function, and its arguments.
+    Call(String, Vec<usize>),
+}
+
+/// An operand, by its place among the parts.
+#[derive(Clone, Copy)]
+pub(super) struct Operand {
+    pub(super) part: usize,
+    pub(super) in_parentheses: bool,
+}
+
+impl Measured {
+    pub(super) fn new(syntax: Syntax, expression: &Expression) -> Self {
+        let mut measured = Self::default();
+        measured.add(syntax, expression);
+        measured
+    }
+
+    /// The part that is the whole expression.
+    pub(super) fn whole(&self) -> usize {
+        self.parts.len() - 1
+    }
+
+    /// Looks at a part.
+    pub(super) fn visit(&self, part: usize) -> &Measure {
+        self.visits.set(self.visits.get() + 1);
+        &self.parts[part]
+    }
+
+    /// The columns of an operand on one line, with its parentheses.
+    pub(super) fn width(&self, operand: Operand) -> usize {
+        self.parts[operand.part].width + if operand.in_parentheses { 2 } else { 0 }
+    }
+
+    /// Whether an operand begins with a parenthesis.
+    pub(super) fn opens(&self, operand: Operand) -> bool {
+        operand.in_parentheses || self.parts[operand.part].opens
+    }
+
+    fn add(&mut self, syntax: Syntax, expression: &Expression) -> usize {
+        self.visits.set(self.visits.get() + 1);
+        let word = |word: Annotated| (word.as_str().len(), false, Kind::Word(word));
+        let (width, opens, kind) = match expression {
+            Expression::Variable(name) => word((*name).into()),
+            Expression::Zero => word(Annotated::part(Part::Number, syntax.zero())),
+            Expression::Negative(a) => {
+                let operand = self.operand(syntax, a, Position::Negated);
+                (1 + self.width(operand), false, Kind::Negative(operand))
+            }
+            Expression::Binary(operator, ..) => {
+                let operands = self.chain(syntax, expression, *operator);
+                let widths: usize = operands.iter().map(|operand| self.width(*operand)).sum();
+                let between = operator.between_blanks().len() * (operands.len() - 1);
+                let opens = operands.first().is_some_and(|first| self.opens(*first));
+                (widths + between, opens, Kind::Chain(*operator, operands))
+            }
+            Expression::BySign(operands) => {
+                let name = syntax.by_sign();
+                let arguments: Vec<usize> = operands.iter().map(|operand| self.add(syntax, operand)).collect();
+                let widths: usize = arguments.iter().map(|argument| self.parts[*argument].width).sum();
+                let width = name.len() + "()".len() + widths + ", ".len() * (arguments.len() - 1);
+                (width, false, Kind::Call(name, arguments))
+            }
+        };
+        self.parts.push(Measure { width, opens, kind });
+        self.parts.len() - 1
+    }
+
+    fn operand(&mut self, syntax: Syntax, expression: &Expression, position: Position) -> Operand {
+        let in_parentheses = needs_parentheses(syntax, expression, position);
+        Operand { part: self.add(syntax, expression), in_parentheses }
+    }
+
+    /// The operands of an operator and of the same operator in its left operand, and so on.
+    fn chain(&mut self, syntax: Syntax, expression: &Expression, operator: Operator) -> Vec<Operand> {
+        let [left, right] = operator.positions();
+        let mut others = Vec::new();
+        let mut first = expression;
+        while let Expression::Binary(same, a, b) = first
+            && *same == operator
+        {
+            others.push(&**b);
+            first = a;
+        }
+        let mut operands = vec![self.operand(syntax, first, left)];
+        operands.extend(others.into_iter().rev().map(|other| self.operand(syntax, other, right)));
+        operands
+    }
+
+    /// Writes a part on one line, behind what is there.
+    pub(super) fn write(&self, part: usize, text: &mut Annotated) {
+        match &self.visit(part).kind {
+            Kind::Word(word) => text.push(word),
+            Kind::Negative(operand) => {
+                text.push_str("-");
+                self.write_operand(*operand, text);
+            }
+            Kind::Chain(operator, operands) => {
+                for (index, operand) in operands.iter().enumerate() {
+                    text.push_str(if index > 0 { operator.between_blanks() } else { "" });
+                    self.write_operand(*operand, text);
+                }
+            }
+            Kind::Call(name, arguments) => {
+                text.push_str(name);
+                text.push_str("(");
+                for (index, argument) in arguments.iter().enumerate() {
+                    text.push_str(if index > 0 { ", " } else { "" });
+                    self.write(*argument, text);
+                }
+                text.push_str(")");
+            }
+        }
+    }
+
+    fn write_operand(&self, operand: Operand, text: &mut Annotated) {
+        text.push_str(if operand.in_parentheses { "(" } else { "" });
+        self.write(operand.part, text);
+        text.push_str(if operand.in_parentheses { ")" } else { "" });
+    }
+}

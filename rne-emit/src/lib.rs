@@ -1,0 +1,61 @@
+//! Renderers of programs: tokens for the macro, text in Rust and in C for people, listings.
+//!
+//! Data in, data out: a [`Program`](rne_codegen::Program) of `rne-codegen` in, text or tokens out. Nothing here changes
+//! what is computed.
+#![warn(missing_debug_implementations)]
+#![forbid(unsafe_code)]
+
+mod annotated;
+mod ascii;
+mod c;
+mod evidence;
+mod expression;
+mod formula;
+mod heading;
+mod inert;
+mod line_breaks;
+mod listing;
+mod own_tests;
+mod parameters;
+mod steps;
+mod syntax;
+mod table;
+mod text;
+mod tokens;
+mod wrap;
+
+pub use annotated::{Annotated, Part};
+pub use ascii::ascii;
+pub use c::{BadPrefix, CCode, ConstantTooLarge, Origin, Prefix, c_code, c_code_of_file};
+pub use evidence::{evidence, refusals};
+pub use formula::Formula;
+pub use heading::{GENERATED, Heading};
+pub use inert::{markdown, title, verbatim};
+pub use listing::{Folds, Line, Listing, Section, Selection, listing, reason};
+pub use own_tests::{Golden, c_tests, rust_tests};
+pub use steps::steps;
+pub use syntax::Precision;
+pub use table::{angle, operations_table};
+pub use text::{rust_file, rust_file_with_sin_cos};
+pub use tokens::Body;
+
+#[cfg(test)]
+mod tests {
+    use rne_codegen::{Compiler, Form, Function};
+
+    /// What renderers call a variable of their own is the name of no number.
+    #[test]
+    fn variables_of_the_renderers_are_reserved() {
+        let robot = rne_model::Robot::from_yaml(rne_robots::find("planar2").unwrap().yaml).unwrap();
+        let compiler = Compiler::new(&robot);
+        for function in Function::ALL {
+            let program = compiler.compile(function, Form::SevenSteps).unwrap();
+            let reserved: Vec<_> = program.reserved_names().collect();
+            let arrays = program.argument_arrays().into_iter().chain(crate::c::inputs(&program));
+            let own = arrays.map(|array| array.name).chain(["parameters", "zero", crate::c::UNUSED]);
+            for name in own.chain([function.entry().output]) {
+                assert!(reserved.contains(&name), "{function}: {name} is not among {reserved:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Tests of emitted C: a program for the end of its source, behind `#ifdef RNE_TEST`.
+
+use std::fmt::Write;
+
+use rne_model::Robot;
+
+use super::{Golden, Law, floor, program, results};
+use crate::Precision;
+use crate::c::{Prefix, inputs, result_elements};
+use crate::parameters::{self};
+use crate::wrap::{WIDTH, fill};
+use rne_codegen::Program;
+use rne_codegen::{Function, Layout};
+
+/// A function `main` for the end of a source of [`c_code`](crate::c_code), behind `#ifdef RNE_TEST`: it compares
+/// what the programs return at the given states, and tries laws of mechanics. It prints what is wrong, and returns 0
+/// where nothing is. The states are numbers of the number type.
+#[must_use]
+pub fn c_tests(
+    robot: &Robot,
+    programs: &[Program],
+    precision: Precision,
+    prefix: &Prefix,
+    golden: &[Golden],
+) -> String {
+    let tests = Tests { robot, programs, precision, prefix: prefix.as_str(), golden };
+    let mut functions: Vec<(String, String)> = (0..programs.len()).filter_map(|index| tests.values(index)).collect();
+    functions.extend(Law::of(programs).filter_map(|law| tests.law(law)));
+    let (mut bodies, mut calls) = (String::new(), String::new());
+    for (name, body) in &functions {
+        let _ = write!(bodies, "\n{body}");
+        let _ = writeln!(calls, "    {name}();");
+    }
+    let (upper, states) = (tests.prefix.to_ascii_uppercase(), tests.states(&bodies));
+    let tests_are = functions.len();
+    let (real, tolerance) = (precision.c_type(), tests.tolerance());
+    let zeros = if bodies.contains("test_zero") {
+        let zero = precision.literal(0.0).unwrap_or_default();
+        format!("static const {real} test_zero[{upper}_DOF] = {{{zero}}};\n")
+    } else {
+        String::new()
+    };
+    format!(
+        "\n#ifdef RNE_TEST\n\n\
+         // A program that tests this code: with -DRNE_TEST it compiles alone, and returns 0 where all is well.\n\
+         // Values are those of rne's runtime, which knows nothing of this code; laws are those of mechanics.\n\n\
+         #include <stdio.h>\n\n{states}{zeros}\nstatic unsigned test_failures = 0u;\n\n\
+         static double test_largest(const {real} *numbers, unsigned count, double largest)\n{{\n    \
+         unsigned i;\n    for (i = 0u; i < count; ++i) {{\n        \
+         const double x = (double)numbers[i];\n        \
+         largest = (x > largest) ? x : ((-x > largest) ? -x : largest);\n    }}\n    return largest;\n}}\n\n\
+         // Numbers that are to be the same, to so many parts of a scale; what is no number never is.\n\
+         static void test_compare(const char *what, unsigned state, unsigned number, double found, \
+         double expected,\n    \
+         double allowed)\n{{\n    \
+         const double error = found - expected;\n    \
+         if (!((error <= allowed) && (-error <= allowed))) {{\n        \
+         printf(\"%s, state %u, number %u: %.17g, not %.17g\\n\", what, state, number, found, expected);\n        \
+         ++test_failures;\n    }}\n}}\n\n\
+         static const double test_tolerance = {tolerance};\n{bodies}\n\
+         int main(void)\n{{\n{calls}    \
+         printf(\"{tests_are} tests, %u wrong numbers\\n\", test_failures);\n    \
+         return (test_failures == 0u) ? 0 : 1;\n}}\n\n#endif\n"
+    )
+}
+
+struct Tests<'a> {
+    robot: &'a Robot,
+    programs: &'a [Program],
+    precision: Precision,
+    prefix: &'a str,
+    golden: &'a [Golden],
+}
+
+impl Tests<'_> {
+    /// Rounding of the number type and of its constants, of sums of hundreds of terms.
+    const fn tolerance(&self) -> &'static str {
+        match self.precision {
+            Precision::Single => "1e-4",
+            Precision::Double => "1e-9",
+        }
+    }
+
+    fn numbers(&self, numbers: &[f64]) -> String {
+        // what is too large for the type is infinite, and found to be wrong
+        let numbers = numbers.iter().map(|&number| self.precision.literal(number).unwrap_or("(1.0f / 0.0f)".into()));
+        numbers.collect::<Vec<_>>().join(", ")
+    }
+
+    /// A table with a line per state.
+    fn table(&self, start: &str, rows: &[&[f64]]) -> String {
+        let mut text = format!("{start} = {{\n");
+        for row in rows {
+            let line = format!("{{{}}},", self.numbers(row));
+            let _ = writeln!(text, "{}", fill(&line, WIDTH, "    ", "     "));
+        }
+        text + "};\n"
+    }
+
+    /// The arguments at all states that the tests name.
+    fn states(&self, tests: &str) -> String {
+        let real = self.precision.c_type();
+        let Some(first) = self.golden.first() else { return String::new() };
+        let mut text = String::new();
+        for (name, numbers) in &first.arguments {
+            let (array, count) = (array(name), numbers.len());
+            if !tests.contains(&format!("{array}[")) {
+                continue;
+            }
+            let rows: Vec<&[f64]> = self.golden.iter().map(|state| state.argument(name)).collect();
+            let kind = match *name {
+                "parameters" => format!("static const {}_parameters {array}[{}]", self.prefix, rows.len()),
+                _ => format!("static const {real} {array}[{}][{count}]", rows.len()),
+            };
+            text.push_str(&self.table(&kind, &rows));
+        }
+        text
+    }
+
+    /// Statements that call a function at a state and name the numbers that it returns, one after the other: what they
+    /// are, then the statements. An argument may be another.
+    fn call(&self, program: &Program, others: &[(&str, &str)], name: &str) -> String {
+        let real = self.precision.c_type();
+        let mut given: Vec<String> = inputs(program)
+            .iter()
+            .map(|input| {
+                let other = others.iter().find(|(name, _)| *name == input.name);
+                other.map_or_else(|| format!("{}[state]", array(input.name)), |(_, other)| (*other).to_owned())
+            })
+            .collect();
+        if parameters::are_used(program) {
+            given.push(format!("&{}[state]", array("parameters")));
+        }
+        let (given, function, prefix) = (given.join(", "), program.function, self.prefix);
+        let layout = function.layout(program.dof);
+        let elements = result_elements(program, "result");
+        let count = elements.len();
+        if layout == Layout::Number {
+            return format!("        const {real} {name}[1] = {{{prefix}_{function}({given})}};\n");
+        }
+        let (declared, address) = self.declared(program, "result");
+        let mut copies = String::new();
+        for (index, element) in elements.iter().enumerate() {
+            let _ = writeln!(copies, "            {name}[{index}] = {element};");
+        }
+        format!(
+            "        {real} {name}[{count}];\n        {{\n            {declared};\n            \
+             {prefix}_{function}({given}, {address});\n{copies}        }}\n"
+        )
+    }
+
+    /// The same, of the program of a function.
+    fn call_of(&self, function: Function, others: &[(&str, &str)], name: &str) -> Option<String> {
+        Some(self.call(program(self.programs, function)?, others, name))
+    }
+
+    /// A variable for what a function writes, and how it is passed.
+    fn declared(&self, program: &Program, name: &str) -> (String, String) {
+        let (mut layout, mut lengths) = (program.function.layout(program.dof), String::new());
+        while let Layout::Array(length, of) = layout {
+            let _ = write!(lengths, "[{length}]");
+            layout = *of;
+        }
+        let kind = match layout {
+            Layout::Record(record, _) => crate::c::record_name(self.prefix, record),
+            _ => self.precision.c_type().to_owned(),
+        };
+        let address = if lengths.is_empty() { format!("&{name}") } else { name.to_owned() };
+        (format!("{kind} {name}{lengths}"), address)
+    }
+
+    /// The function that holds a program against values: its name and its text.
+    fn values(&self, index: usize) -> Option<(String, String)> {
+        let (program, expected) = (self.programs.get(index)?, results(self.golden, index)?);
+        let (real, function, count) = (self.precision.c_type(), program.function, expected.first()?.len());
+        // accelerations are as far off as the mass matrix is from a singular one
+        let parts = if function.divides().is_some() && self.precision == Precision::Single {
+            "100.0 * test_tolerance"
+        } else {
+            "test_tolerance"
+        };
+        let table = self.table(&format!("    static const {real} expected[{}][{count}]", expected.len()), &expected);
+        let name = format!("test_{function}");
+        let text = format!(
+            "static void {name}(void)\n{{\n{}    unsigned state;\n    \
+             const double scale = test_largest(&expected[0][0], {}u, {:?});\n    \
+             for (state = 0u; state < {}u; ++state) {{\n        unsigned i;\n{}        \
+             for (i = 0u; i < {count}u; ++i) {{\n            \
+             test_compare(\"{function}\", state, i, (double)found[i], (double)expected[state][i], \
+             {parts} * scale);\n        \
+             }}\n    }}\n}}\n",
+            table.replace("\n};", "\n    };"),
+            count * expected.len(),
+            floor(self.golden, index, if self.precision == Precision::Single { 1e-2 } else { 1e-4 }),
+            expected.len(),
+            self.call(program, &[], "found"),
+        );
+        Some((name, text))
+    }
+
+    fn law(&self, law: Law) -> Option<(String, String)> {
+        let (dof, states, real) = (self.robot.dof(), self.golden.len(), self.precision.c_type());
+        let words = law.name().replace('_', " ");
+        let body = match law {
+            // what it needs are differences of energies, of which single precision leaves nothing
+            Law::Power => return None,
+            Law::Symmetry => format!(
+                "{}        for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < i; ++j) {{\n                \
+                 test_compare(\"{words}\", state, {dof}u * i + j, (double)mass[{dof}u * i + j],\n                    \
+                 (double)mass[{dof}u * j + i], 0.0);\n            }}\n        }}\n",
+                self.call_of(Function::MassMatrix, &[], "mass")?
+            ),
+            Law::Linearity => {
+                let torques = |qdd: &str, name: &str| self.call_of(Function::InverseDynamics, &[("qdd", qdd)], name);
+                format!(
+                    "        {real} sum[{dof}];\n        double scale;\n{}{}{}        \
+                     for (i = 0u; i < {dof}u; ++i) {{ sum[i] = test_qdd[state][i] + test_tau[state][i]; }}\n        \
+                     {{\n{}        scale = test_largest(of_b, {dof}u, test_largest(of_a, {dof}u, 0.0));\n        \
+                     scale = test_largest(of_sum, {dof}u, test_largest(at_zero, {dof}u, scale));\n        \
+                     for (i = 0u; i < {dof}u; ++i) {{\n            \
+                     test_compare(\"{words}\", state, i, (double)of_sum[i] - (double)of_b[i],\n                \
+                     (double)of_a[i] - (double)at_zero[i], test_tolerance * scale);\n        }}\n        }}\n",
+                    torques("test_qdd[state]", "of_a")?,
+                    torques("test_tau[state]", "of_b")?,
+                    torques("test_zero", "at_zero")?,
+                    torques("sum", "of_sum")?,
+                )
+            }
+            Law::Gravity | Law::Bias => {
+                let (function, others) = match law {
+                    Law::Gravity => (Function::GravityTorques, &[("qd", "test_zero"), ("qdd", "test_zero")][..]),
+                    _ => (Function::BiasTorques, &[("qdd", "test_zero")][..]),
+                };
+                format!(
+                    "        double scale;\n{}{}{}        \
+                     scale = test_largest(moving, {dof}u, test_largest(expected, {dof}u, 0.0));\n        \
+                     for (i = 0u; i < {dof}u; ++i) {{\n            \
+                     test_compare(\"{words}\", state, i, (double)found[i], (double)expected[i], test_tolerance * \
+                     scale);\n        }}\n",
+                    self.call_of(function, &[], "found")?,
+                    self.call_of(Function::InverseDynamics, others, "expected")?,
+                    self.call_of(Function::InverseDynamics, &[], "moving")?
+                )
+            }
+            Law::KineticEnergy => format!(
+                "        double energy = 0.0, scale = 0.0;\n{}{}        \
+                 for (i = 0u; i < {dof}u; ++i) {{\n            for (j = 0u; j < {dof}u; ++j) {{\n                \
+                 const double term = 0.5 * (double)mass[{dof}u * i + j] * (double)test_qd[state][i] \
+                 *\n                    \
+                 (double)test_qd[state][j];\n                \
+                 energy += term;\n                scale += (term > 0.0) ? term : \
+                 -term;\n            }}\n        }}\n        \
+                 test_compare(\"{words}\", state, 0u, (double)found[0], energy, test_tolerance * scale);\n",
+                self.call_of(Function::MassMatrix, &[], "mass")?,
+                self.call_of(Function::KineticEnergy, &[], "found")?
+            ),
+        };
+        let name = format!("test_{}", law.name());
+        let indices = if body.contains("j = 0u") { "i, j" } else { "i" };
+        Some((
+            name.clone(),
+            format!(
+                "static void {name}(void)\n{{\n    unsigned state;\n    for (state = 0u; state < {states}u; ++state) \
+                 {{\n        unsigned {indices};\n{body}    }}\n}}\n"
+            ),
+        ))
+    }
+}
+
+/// The table of an argument at all states.
+fn array(name: &str) -> String {
+    let name = match name {
+        "sin" => "sine",
+        "cos" => "cosine",
+        name => name,
+    };
+    format!("test_{name}")
+}

@@ -1,0 +1,105 @@
+//! Tests that stand beside emitted code and hold it: values that somebody else has computed, and laws of mechanics.
+//!
+//! What is tested of which functions is written here; how, in each language beside.
+
+mod c;
+mod rust;
+
+use rne_codegen::Function;
+use rne_codegen::Program;
+
+pub use c::c_tests;
+pub use rust::rust_tests;
+
+/// A state at which emitted code is tested.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Golden {
+    /// The numbers of every argument array, by the name that it has in emitted Rust, and `parameters`, where the robot
+    /// has some at run time.
+    pub arguments: Vec<(&'static str, Vec<f64>)>,
+    /// What each program returns, in the order of its layout, as computed by who knows nothing of the compiler. Empty
+    /// where there is nothing to compare with: accelerations of a singular mass matrix are not finite.
+    pub results: Vec<Vec<f64>>,
+    /// How large the terms are of which each program makes its numbers, about: what vanishes for this arm is rounding
+    /// of them.
+    pub sizes: Vec<f64>,
+}
+
+impl Golden {
+    /// The numbers of an argument.
+    fn argument(&self, name: &str) -> &[f64] {
+        self.arguments.iter().find(|(known, _)| *known == name).map_or(&[], |(_, numbers)| numbers)
+    }
+}
+
+/// The arguments that all functions share, of which laws are made.
+const MOTION: [&str; 4] = ["q", "qd", "qdd", "tau"];
+
+/// A law that functions obey together.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Law {
+    /// M = Mᵀ, to the last bit.
+    Symmetry,
+    /// τ(q, q̇, a + b) - τ(q, q̇, b) = τ(q, q̇, a) - τ(q, q̇, 0).
+    Linearity,
+    /// g(q) = τ(q, 0, 0).
+    Gravity,
+    /// C(q, q̇) q̇ + g(q) = τ(q, q̇, 0).
+    Bias,
+    /// T = ½ q̇ᵀ M q̇.
+    KineticEnergy,
+    /// q̇ᵀ τ is the rate of kinetic and potential energy.
+    Power,
+}
+
+impl Law {
+    const ALL: [Self; 6] =
+        [Self::Symmetry, Self::Linearity, Self::Gravity, Self::Bias, Self::KineticEnergy, Self::Power];
+
+    /// The functions of which it speaks.
+    const fn functions(self) -> &'static [Function] {
+        match self {
+            Self::Symmetry => &[Function::MassMatrix],
+            Self::Linearity => &[Function::InverseDynamics],
+            Self::Gravity => &[Function::InverseDynamics, Function::GravityTorques],
+            Self::Bias => &[Function::InverseDynamics, Function::BiasTorques],
+            Self::KineticEnergy => &[Function::MassMatrix, Function::KineticEnergy],
+            Self::Power => &[Function::InverseDynamics, Function::KineticEnergy, Function::PotentialEnergy],
+        }
+    }
+
+    /// The name of its test.
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Symmetry => "mass_matrix_is_symmetric",
+            Self::Linearity => "torques_are_linear_in_accelerations",
+            Self::Gravity => "gravity_torques_are_torques_at_rest",
+            Self::Bias => "bias_torques_are_torques_without_accelerations",
+            Self::KineticEnergy => "kinetic_energy_is_that_of_the_mass_matrix",
+            Self::Power => "power_is_the_rate_of_energy",
+        }
+    }
+
+    /// Those whose functions are all there.
+    fn of(programs: &[Program]) -> impl Iterator<Item = Self> {
+        let is_there = |function: &Function| programs.iter().any(|program| program.function == *function);
+        Self::ALL.into_iter().filter(move |law| law.functions().iter().all(is_there))
+    }
+}
+
+/// What a program returns at each state; `None` where one of them has nothing to compare with.
+fn results(golden: &[Golden], program: usize) -> Option<Vec<&[f64]>> {
+    let results = golden.iter().map(|state| state.results.get(program).map_or(&[][..], Vec::as_slice));
+    results.map(|numbers| (!numbers.is_empty()).then_some(numbers)).collect()
+}
+
+/// What counts as nothing in the numbers of a program, in parts of their tolerance: rounding of terms that cancel.
+fn floor(golden: &[Golden], program: usize, part: f64) -> f64 {
+    let sizes = golden.iter().filter_map(|state| state.sizes.get(program));
+    part * sizes.fold(0.0, |largest: f64, size| largest.max(*size))
+}
+
+/// The program of a function.
+fn program(programs: &[Program], function: Function) -> Option<&Program> {
+    programs.iter().find(|program| program.function == function)
+}

@@ -1,0 +1,91 @@
+//! The Denavit-Hartenberg table for people.
+
+use rne_model::{Angle, JointKind, QuarterTurns, Robot, one_line};
+use unicode_width::UnicodeWidthStr;
+
+use rne_codegen::Program;
+
+/// The table of a robot as text: one line per joint, aligned, angles as multiples of π where they are right angles.
+pub(super) fn dh_table(robot: &Robot) -> String {
+    let titles = ["i", "joint", "type", "theta", "d", "a", "alpha", "mass"].map(str::to_owned);
+    let mut lines = vec![titles];
+    for (index, joint) in robot.joints.iter().enumerate() {
+        let (row, i) = (&joint.row, index + 1);
+        let (theta, d) = match row.kind {
+            JointKind::Revolute => (with_variable(i, &angle(&row.dh.theta)), number(row.dh.d)),
+            JointKind::Prismatic => (angle(&row.dh.theta), with_variable(i, &number(row.dh.d))),
+        };
+        let kind = match row.kind {
+            JointKind::Revolute => "revolute",
+            JointKind::Prismatic => "prismatic",
+        };
+        lines.push([
+            i.to_string(),
+            one_line(&joint.name),
+            kind.to_owned(),
+            theta,
+            d,
+            number(row.dh.a),
+            angle(&row.dh.alpha),
+            number(row.link.mass),
+        ]);
+    }
+    columns(&lines).join("\n") + "\n"
+}
+
+/// Lines of cells, each column as wide as its widest cell, three blanks between them.
+pub(super) fn columns<const N: usize>(lines: &[[String; N]]) -> Vec<String> {
+    let widths: [usize; N] =
+        std::array::from_fn(|column| lines.iter().map(|line| line[column].width()).max().unwrap_or(0));
+    let padded = |(cell, width): (&String, usize)| format!("{cell}{}", " ".repeat(width - cell.width()));
+    let row = |line: &[String; N]| line.iter().zip(widths).map(padded).collect::<Vec<_>>().join("   ");
+    lines.iter().map(|line| row(line).trim_end().to_owned()).collect()
+}
+
+/// What folding made of a program: its function, products, sums, divisions, angles.
+pub(super) fn counts(program: &Program) -> [String; 5] {
+    let ((products, sums), after) = (program.before(), program.operations());
+    let [products, sums] =
+        [(products, after.mul), (sums, after.add)].map(|(before, after)| format!("{before} -> {after}"));
+    [program.function.to_string(), products, sums, after.div.to_string(), after.sincos.to_string()]
+}
+
+/// What folding made of each program, as a table of Markdown.
+#[must_use]
+pub fn operations_table(programs: &[Program]) -> String {
+    let row = |[function, products, sums, _, angles]: [String; 5]| {
+        format!("| `{function}` | {products} | {sums} | {angles} |\n")
+    };
+    let rows = programs.iter().map(|program| row(counts(program)));
+    "| function | products | sums | angles |\n|---|---|---|---|\n".to_owned() + &rows.collect::<String>()
+}
+
+fn with_variable(joint: usize, constant: &str) -> String {
+    match constant.strip_prefix('-') {
+        _ if constant == "0" => format!("q{joint}"),
+        Some(magnitude) => format!("q{joint} - {magnitude}"),
+        None => format!("q{joint} + {constant}"),
+    }
+}
+
+fn number(value: f64) -> String {
+    // -0 is 0
+    if value == 0.0 { "0".to_owned() } else { format!("{value}") }
+}
+
+/// An angle as text; a right one, up to a full turn, as a multiple of π.
+#[must_use]
+pub fn angle(angle: &Angle) -> String {
+    let Some(right) = angle.right else { return number(angle.radians) };
+    // One full turn or less is written as a multiple of π; more keeps its digits.
+    let quarters = (angle.radians / std::f64::consts::FRAC_PI_2).round();
+    let text = match right {
+        _ if quarters.abs() > 4.0 => return number(angle.radians),
+        QuarterTurns::Zero if quarters == 0.0 => return "0".to_owned(),
+        QuarterTurns::Zero => "2π",
+        QuarterTurns::Two => "π",
+        QuarterTurns::One | QuarterTurns::Three if quarters.abs() == 3.0 => "3π/2",
+        QuarterTurns::One | QuarterTurns::Three => "π/2",
+    };
+    if quarters < 0.0 { format!("-{text}") } else { text.to_owned() }
+}

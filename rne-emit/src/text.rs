@@ -1,0 +1,361 @@
+//! Programs as a Rust file for people: it opens with the robot, its table, the operation counts and what each name is,
+//! and compiles by itself.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+
+use rne_model::Robot;
+
+use super::annotated::Annotated;
+use super::evidence::{evidence, refusals};
+use super::expression::line;
+use super::heading::Heading;
+use super::inert::{markdown, verbatim};
+use super::listing::{Line, Selection, listing};
+use super::parameters::{self, Parameter};
+use super::syntax::Syntax;
+use super::table::operations_table;
+use super::wrap::{WIDTH, fill};
+use rne_codegen::ArgumentArray;
+use rne_codegen::Layout;
+use rne_codegen::Name;
+use rne_codegen::Program;
+
+/// A file that holds the given programs of one robot as functions, with the one trait that they need.
+#[must_use]
+pub fn rust_file(robot: &Robot, programs: &[Program]) -> String {
+    file(robot, programs, SinCos::OfCaller)
+}
+
+/// As [`rust_file`], with the trait for `f64` and `f32`: sine and cosine have the bits that rne's runtime has without
+/// fused multiply-add, for angles up to 1e5 rad. The file needs nothing then, in `no_std` neither.
+#[must_use]
+pub fn rust_file_with_sin_cos(robot: &Robot, programs: &[Program]) -> String {
+    file(robot, programs, SinCos::InFile)
+}
+
+/// Whose sine and cosine a file takes.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum SinCos {
+    OfCaller,
+    InFile,
+}
+
+/// The trait for `f64` and `f32`, but for its choice by a sign.
+const WITH_SIN_COS: [&str; 2] = [include_str!("sin_cos_f64.rs"), include_str!("sin_cos_f32.rs")];
+
+fn file(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
+    let mut text = header(robot, programs, sin_cos);
+    text.push_str(&scalar(programs));
+    if sin_cos == SinCos::InFile {
+        let chooses = programs.iter().any(Program::chooses_by_sign);
+        let by_sign = if chooses { format!("\n{BY_SIGN_OF_FLOAT}") } else { String::new() };
+        for implementation in WITH_SIN_COS {
+            let methods = implementation.trim_end().trim_end_matches('}');
+            let _ = write!(text, "\n{methods}{by_sign}}}\n");
+        }
+    }
+    if programs.iter().any(parameters::are_used) {
+        text.push_str(&record_of_parameters(robot));
+    }
+    for program in programs {
+        text.push('\n');
+        text.push_str(&function(robot, program));
+    }
+    text
+}
+
+/// The type of the last argument of what depends on run-time parameters.
+fn record_of_parameters(robot: &Robot) -> String {
+    let parameters = Parameter::of(robot, parameters::OF_RUST);
+    let (mut fields, mut values) = (String::new(), String::new());
+    for parameter in &parameters {
+        let documentation = fill(&markdown(&parameter.about()), WIDTH, "    /// ", "    /// ");
+        let _ = writeln!(fields, "{documentation}\n    pub {}: T,", parameter.member);
+        let _ = writeln!(values, "            {}: Scalar::from_f64({:?}),", parameter.member, parameter.value);
+    }
+    format!(
+        "\n/// Parameters of the robot file that are given at run time.\n\
+         #[derive(Clone, Copy, Debug, PartialEq)]\n#[allow(non_snake_case)] // names of the file\n\
+         pub struct Parameters<T> {{\n{fields}}}\n\n\
+         #[allow(clippy::all, clippy::pedantic)]\nimpl<T: Scalar> Parameters<T> {{\n    /// Their \
+         values in the file.\n    \
+         #[must_use]\n    pub fn of_file() -> Self {{\n        Self {{\n{values}        }}\n    }}\n}}\n"
+    )
+}
+
+/// rustfmt breaks longer patterns of arrays.
+const PATTERN: usize = 62;
+
+/// What the generated functions ask of a number type; the body of a function refers to nothing else.
+fn scalar(programs: &[Program]) -> String {
+    let divides = programs.iter().any(|program| program.operations().div > 0);
+    let chooses = programs.iter().any(Program::chooses_by_sign);
+    let (imported, bounds) = if divides {
+        (
+            "Add, Div, Mul, Neg, Sub",
+            "    Copy\n    + Neg<Output = Self>\n    + Add<Output = Self>\n    + Sub<Output = Self>\n    \
+             + Mul<Output = Self>\n    + Div<Output = Self>",
+        )
+    } else {
+        (
+            "Add, Mul, Neg, Sub",
+            "    Copy + Neg<Output = Self> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>",
+        )
+    };
+    let by_sign = if chooses { BY_SIGN } else { "" };
+    format!(
+        "\nuse core::ops::{{{imported}}};\n\n/// A number: `f64`, `f32`, or any type with these operations.\n\
+         pub trait Scalar:\n{bounds}\n{{\n{METHODS}{by_sign}}}\n"
+    )
+}
+
+const BY_SIGN: &str = "    /// `positive` where it is above 0, `negative` where it is below, else 0.
+    fn by_sign(self, positive: Self, negative: Self) -> Self;
+";
+
+const METHODS: &str = "    /// A constant of the robot, rounded once.
+    fn from_f64(value: f64) -> Self;
+    /// Sine and cosine of an angle in rad.
+    fn sin_cos(self) -> (Self, Self);
+    /// The sines and the cosines of several angles in rad.
+    fn sin_cos_array<const N: usize>(angles: [Self; N]) -> ([Self; N], [Self; N]) {
+        let pairs = angles.map(Self::sin_cos);
+        (pairs.map(|pair| pair.0), pairs.map(|pair| pair.1))
+    }
+";
+
+fn header(robot: &Robot, programs: &[Program], sin_cos: SinCos) -> String {
+    let heading = Heading::of(robot);
+    let mut text = format!("{}\n\n{}\n\n", Heading::opening(&markdown(&heading.title)), Heading::mark(robot));
+    let _ = writeln!(text, "{}\n", verbatim(&format!("{}\n\n{}", heading.frames, heading.table)));
+    for line in parameters::heading(robot) {
+        let _ = writeln!(text, "{}\n", fill(&markdown(&line), WIDTH - 4, "", ""));
+    }
+    if let Some((program, proof)) = programs.iter().find_map(|program| Some((program, program.proof.as_ref()?))) {
+        let _ = writeln!(text, "{}\n", verbatim(&evidence(program, proof).join("\n")));
+    }
+    for refusals in programs.iter().map(refusals).filter(|refusals| !refusals.is_empty()) {
+        let _ = writeln!(text, "{}\n", verbatim(&refusals.join("\n")));
+    }
+    text.push_str("Operations of one call, of the recursion -> of the code below:\n\n");
+    text.push_str(&operations_table(programs));
+    text.push_str(
+        "\nNames, for link or joint `i` and axis `x`, in frame `i` at joint `i`, fixed to link `i`:\n\n\
+         | name | meaning |\n|---|---|\n",
+    );
+    for (pattern, meaning) in legend(programs) {
+        // a bar would end the cell, brackets would be a link
+        let meaning = meaning.replace('|', "\\|").replace('[', "\\[");
+        let _ = writeln!(text, "| `{pattern}` | {meaning} |");
+    }
+    text.push('\n');
+    text.push_str(&match sin_cos {
+        SinCos::OfCaller => scalar_of_caller(programs),
+        SinCos::InFile => IN_FILE.to_owned(),
+    });
+    text.lines().map(|line| format!("//! {line}").trim_end().to_owned() + "\n").collect()
+}
+
+/// How the trait is implemented, for who has a sine.
+fn scalar_of_caller(programs: &[Program]) -> String {
+    let by_sign = if programs.iter().any(Program::chooses_by_sign) { BY_SIGN_OF_STD } else { "" };
+    format!(
+        "The scalar, in `std`:\n\n```ignore\n{SCALAR_OF_STD}{by_sign}}}\n```\n\n\
+         `core` has no sine: in `no_std`, `sin_cos` is the one you have (the crate `libm`, a CORDIC unit); or take\n\
+         `inverse_dynamics_from_sin_cos`, whose sines and cosines are arguments, and which never calls it.\n"
+    )
+}
+
+const IN_FILE: &str =
+    "The file needs nothing but `core`: sine and cosine of `f64` and `f32` are in it, for angles up to 1e5 rad.
+";
+
+const SCALAR_OF_STD: &str = "impl Scalar for f64 {
+    fn from_f64(value: f64) -> Self { value }
+    fn sin_cos(self) -> (Self, Self) { f64::sin_cos(self) }
+";
+
+const BY_SIGN_OF_STD: &str = "    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 { positive } else if self < 0.0 { negative } else { 0.0 }
+    }
+";
+
+const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: Self) -> Self {
+        if self > 0.0 {
+            positive
+        } else if self < 0.0 {
+            negative
+        } else {
+            0.0
+        }
+    }
+";
+
+/// Every kind of name that occurs, with its meaning.
+pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
+    let mut names = BTreeSet::new();
+    for program in programs {
+        let constants = program.constants.iter().map(|constant| constant.name);
+        let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
+        let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
+        // functions that mean different things by a name have a line each
+        names.extend(constants.chain(statements).chain(turns).map(|Name { quantity, .. }| {
+            let own = program.function.own(quantity).and_then(|own| own.meaning);
+            (quantity, own.unwrap_or_else(|| quantity.meaning()))
+        }));
+    }
+    names.into_iter().map(|(quantity, meaning)| (quantity.pattern(), meaning)).collect()
+}
+
+fn function(robot: &Robot, program: &Program) -> String {
+    let arrays = program.arrays_without_parameters();
+    let mut text = format!("/// {}\n", program.function.summary());
+    text.push_str("#[allow(clippy::all, clippy::pedantic)]\n#[must_use]\n");
+    let mut parameters: Vec<String> =
+        arrays.iter().map(|ArgumentArray { name, elements }| format!("{name}: &[T; {}]", elements.len())).collect();
+    if parameters::are_used(program) {
+        parameters.push("parameters: &Parameters<T>".to_owned());
+    }
+    let start = format!("pub fn {}<T: Scalar>(", program.function);
+    let end = format!(") -> {} {{", returned_type(&program.function.layout(program.dof)));
+    let line = format!("{start}{}{end}\n", parameters.join(", "));
+    if line.len() <= WIDTH + 1 {
+        text.push_str(&line);
+    } else {
+        let _ = writeln!(text, "{start}\n    {},\n{end}", parameters.join(",\n    "));
+    }
+    for ArgumentArray { name, elements } in &arrays {
+        let _ = if elements.iter().all(Option::is_none) {
+            writeln!(text, "    let _ = {name};")
+        } else {
+            let names = names(elements.iter().copied());
+            if names.len() + 2 <= PATTERN {
+                writeln!(text, "    let [{names}] = *{name};")
+            } else {
+                writeln!(text, "    let [\n        {},\n    ] = *{name};", names.replace(", ", ",\n        "))
+            }
+        };
+    }
+    for (index, name) in parameters::used(program) {
+        let members = Parameter::of(robot, parameters::OF_RUST);
+        let _ = writeln!(text, "    let {name} = parameters.{};", members[index].member);
+    }
+    if program.returns_zero() || !program.constants.is_empty() {
+        text.push_str("\n    // constants\n");
+    }
+    if program.returns_zero() {
+        text.push_str("    let zero: T = Scalar::from_f64(0.0);\n");
+    }
+    for constant in &program.constants {
+        let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
+    }
+    if !program.sines_and_cosines.is_empty() {
+        text.push_str("\n    // sines and cosines of all angles\n");
+        for statement in &program.angles {
+            let _ = writeln!(text, "{}", Line::Statement(statement));
+        }
+        let _ = writeln!(text, "{}", turns(program));
+    }
+    let statements = listing(robot, program, Selection::default());
+    if !statements.is_empty() {
+        let _ = write!(text, "\n{statements}");
+    }
+    text.push('\n');
+    if let Some(returned) = returned(program) {
+        let _ = writeln!(text, "    {returned}\n}}");
+    }
+    text
+}
+
+/// Names in a pattern; what is not used is `_`.
+fn names(names: impl Iterator<Item = Option<Name>>) -> String {
+    names.map(|name| name.map_or_else(|| "_".to_owned(), |name| name.to_string())).collect::<Vec<_>>().join(", ")
+}
+
+/// What a function returns, for a line that is indented by four.
+pub(super) fn returned(program: &Program) -> Option<Annotated> {
+    let mut outputs = program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, &output.value)));
+    let array = |elements| Piece::List('[', ']', elements);
+    let record = |_, parts| Piece::List('(', ')', parts);
+    let layout = program.function.layout(program.dof);
+    Some(layout.fold(&mut outputs, &array, &record)?.broken(4))
+}
+
+/// A record is a tuple here.
+fn returned_type(layout: &Layout) -> String {
+    match layout {
+        Layout::Number => "T".to_owned(),
+        Layout::Array(length, of) => format!("[{}; {length}]", returned_type(of)),
+        Layout::Record(_, parts) => {
+            let parts: Vec<String> = parts.iter().map(returned_type).collect();
+            format!("({})", parts.join(", "))
+        }
+    }
+}
+
+/// A part of what is returned.
+enum Piece {
+    Number(Annotated),
+    List(char, char, Vec<Self>),
+}
+
+impl Piece {
+    fn line(&self) -> Annotated {
+        match self {
+            Self::Number(text) => text.clone(),
+            Self::List(open, close, elements) => {
+                Annotated::from(open.to_string())
+                    + Annotated::join(elements.iter().map(Self::line), ", ")
+                    + close.to_string()
+            }
+        }
+    }
+
+    /// Broken as rustfmt does: lists of more than 60 columns have a line per element, short numbers fill lines, and the
+    /// brackets of a list in a list of one stand together.
+    fn broken(&self, indent: usize) -> Annotated {
+        const LIST: usize = 60;
+        const SHORT: usize = 10;
+        let Self::List(open, close, elements) = self else { return self.line() };
+        let line = self.line();
+        let width = line.as_str().len();
+        let is_nested = elements.iter().any(|element| matches!(element, Self::List(..)));
+        let room = if *open == '(' { WIDTH - indent } else { (LIST + 2).min(WIDTH - indent) };
+        if width <= room && !(*open == '(' && is_nested && width > LIST + 2) {
+            return line;
+        }
+        let (start, end) = (Annotated::from(open.to_string()), close.to_string());
+        if let [only @ Self::List(..)] = elements.as_slice() {
+            return start + only.broken(indent) + end;
+        }
+        let texts: Vec<Annotated> = elements.iter().map(|element| element.broken(indent + 4) + ",").collect();
+        let fills = *open == '[' && texts.iter().all(|text| text.as_str().len() <= SHORT + 1);
+        let (mut text, mut column) = (start, WIDTH);
+        for element in texts {
+            let width = element.as_str().len();
+            if !fills || column + 1 + width > WIDTH {
+                text = text + "\n" + " ".repeat(indent + 4);
+                column = indent + 4 + width;
+            } else {
+                text = text + " ";
+                column += 1 + width;
+            }
+            text = text + element;
+        }
+        text + "\n" + " ".repeat(indent) + end
+    }
+}
+
+/// The one statement that evaluates all sines and cosines, broken as rustfmt does.
+fn turns(program: &Program) -> String {
+    let sines = names(program.sines_and_cosines.iter().map(|turn| turn.sine));
+    let cosines = names(program.sines_and_cosines.iter().map(|turn| turn.cosine));
+    let angles = Annotated::join(program.sines_and_cosines.iter().map(|turn| line(Syntax::Rust, &turn.angle)), ", ");
+    if program.sines_and_cosines.len() == 1 {
+        return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
+    }
+    let (left, right) = (format!("    let ([{sines}], [{cosines}]) ="), format!("Scalar::sin_cos_array([{angles}]);"));
+    let gap = if left.len() + 1 + right.len() <= WIDTH { " " } else { "\n        " };
+    left + gap + &right
+}

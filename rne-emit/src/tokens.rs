@@ -1,0 +1,290 @@
+//! A program as Rust tokens.
+
+use std::collections::BTreeSet;
+
+use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
+use quote::{ToTokens, quote};
+
+use super::expression::{Infix as _, Position, needs_parentheses};
+use super::syntax::Syntax;
+use rne_codegen::ArgumentArray;
+use rne_codegen::Name;
+use rne_codegen::Record;
+use rne_codegen::fma::{Contraction, Negated};
+use rne_codegen::latency::{self, Latency};
+use rne_codegen::{Expression, Program, Statement};
+
+/// The body of a program's function: everything between its braces.
+///
+/// The arguments `q`, `qd`, `qdd`, `force`, `moment` (those that the function has) are references to arrays of the type
+/// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
+#[derive(Debug)]
+pub struct Body<'a> {
+    program: &'a Program,
+    scalar: &'a TokenStream,
+    /// What has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
+    arithmetic: &'a TokenStream,
+    /// Where the types of records are; tuples stand for them without.
+    library: Option<&'a TokenStream>,
+    fusing: Fusing,
+}
+
+/// Which products are added by the scalar's `mul_add`.
+#[derive(Debug)]
+enum Fusing {
+    None,
+    /// Those that nothing waits for, and those that are sooner there for it.
+    Soonest(Box<Latency>),
+    All,
+}
+
+impl<'a> Body<'a> {
+    /// The body of a program, its products and sums rounded one by one.
+    #[must_use]
+    pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
+        Self { program, scalar, arithmetic: scalar, library: None, fusing: Fusing::None }
+    }
+
+    /// The same with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
+    #[must_use]
+    pub fn with_arithmetic(self, arithmetic: &'a TokenStream) -> Self {
+        Self { arithmetic, ..self }
+    }
+
+    /// The same with poses and other records as types of the crate at `library`, where they are tuples otherwise.
+    #[must_use]
+    pub fn with_records_of(self, library: &'a TokenStream) -> Self {
+        Self { library: Some(library), ..self }
+    }
+
+    /// The same with the scalar's `mul_add` where a product is added: one instruction on a target that has it, product
+    /// and sum on any other. Where the call waits for a sum that is sooner there without, the two stay apart.
+    ///
+    /// Results differ in the last digits from target to target, so the seven steps are not written so.
+    #[must_use]
+    pub fn fused(self) -> Self {
+        Self { fusing: Fusing::Soonest(Box::new(Latency::new(self.program))), ..self }
+    }
+
+    /// The same with `mul_add` wherever a product is added: the fewest instructions.
+    #[must_use]
+    pub fn all_fused(self) -> Self {
+        Self { fusing: Fusing::All, ..self }
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn whole(&self) -> TokenStream {
+        let arguments = self.arguments(|_| true, |_| true);
+        let constants = self.constants(|_| true);
+        let angles = self.statements(&self.program.angles);
+        let turns = self.turns();
+        let rest = self.beyond_turns();
+        quote!(#arguments #constants #angles #turns #rest)
+    }
+
+    /// Its first part, for a loop of its own: the angles of [`Program::sines_and_cosines`] as an array, from the
+    /// argument `q`.
+    #[must_use]
+    pub fn angles(&self) -> TokenStream {
+        let used: BTreeSet<Name> = self.program.angle_values().flat_map(Expression::names).collect();
+        let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
+        let constants = self.constants(|name| used.contains(&name));
+        let statements = self.statements(&self.program.angles);
+        let turns = self.program.sines_and_cosines.iter().map(|turn| self.expression(&turn.angle, None));
+        quote!(#arguments #constants #statements [#(#turns),*])
+    }
+
+    /// What follows the first part, when the arguments `sin` and `cos` are references to the sines and cosines of its
+    /// angles.
+    #[must_use]
+    pub fn beyond_angles(&self) -> TokenStream {
+        let used: BTreeSet<Name> = self.program.values().flat_map(Expression::names).collect();
+        let arguments = self.arguments(|_| true, |name| used.contains(&name));
+        let constants = self.constants(|name| used.contains(&name));
+        let turns = if self.program.sines_and_cosines.is_empty() {
+            quote!(let _ = (sin, cos);)
+        } else {
+            let [sines, cosines] = self.turn_names();
+            quote!(let #sines = *sin; let #cosines = *cos;)
+        };
+        let rest = self.beyond_turns();
+        quote!(#arguments #turns #constants #rest)
+    }
+
+    fn arguments(&self, is_asked: impl Fn(&str) -> bool, is_used: impl Fn(Name) -> bool) -> TokenStream {
+        let arrays = self.program.argument_arrays().into_iter();
+        arrays
+            .filter(|array| is_asked(array.name))
+            .map(|ArgumentArray { name, elements }| {
+                let array = ident(name);
+                let elements: Vec<_> = elements.into_iter().map(|name| name.filter(|name| is_used(*name))).collect();
+                if elements.iter().all(Option::is_none) {
+                    return quote!(let _ = #array;);
+                }
+                let elements = elements.into_iter().map(name_or_underscore);
+                quote!(let [#(#elements),*] = *#array;)
+            })
+            .collect()
+    }
+
+    fn constants(&self, is_used: impl Fn(Name) -> bool) -> TokenStream {
+        let scalar = self.scalar;
+        let zero = self.program.returns_zero().then(|| {
+            let zero = literal(0.0);
+            quote!(let zero: T = #scalar::from_f64(#zero);)
+        });
+        let constants = self.program.constants.iter().filter(|constant| is_used(constant.name)).map(|constant| {
+            let (name, value) = (variable(constant.name), literal(constant.value));
+            quote!(let #name: T = #scalar::from_f64(#value);)
+        });
+        quote!(#zero #(#constants)*)
+    }
+
+    fn statements(&self, statements: &[Statement]) -> TokenStream {
+        let lines = statements.iter().map(|Statement { name, value, .. }| {
+            let (value, name) = (self.expression(value, Some(*name)), variable(*name));
+            quote!(let #name = #value;)
+        });
+        lines.collect()
+    }
+
+    /// The names of the sines and of the cosines, as patterns of arrays.
+    fn turn_names(&self) -> [TokenStream; 2] {
+        let sines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.sine));
+        let cosines = self.program.sines_and_cosines.iter().map(|turn| name_or_underscore(turn.cosine));
+        [quote!([#(#sines),*]), quote!([#(#cosines),*])]
+    }
+
+    /// The sines and cosines, all at once.
+    fn turns(&self) -> TokenStream {
+        let arithmetic = self.arithmetic;
+        let [sines, cosines] = self.turn_names();
+        let angles = self.program.sines_and_cosines.iter().map(|turn| self.plain(&turn.angle));
+        match &self.program.sines_and_cosines[..] {
+            [] => TokenStream::new(),
+            [turn] => {
+                let (sine, cosine) = (name_or_underscore(turn.sine), name_or_underscore(turn.cosine));
+                quote!(let (#sine, #cosine) = #arithmetic::sin_cos(#(#angles)*);)
+            }
+            _ => quote!(let (#sines, #cosines) = #arithmetic::sin_cos_array([#(#angles),*]);),
+        }
+    }
+
+    /// The statements and what is returned.
+    fn beyond_turns(&self) -> TokenStream {
+        let statements = self.statements(&self.program.statements);
+        let outputs = self.returned();
+        quote!(#statements #outputs)
+    }
+
+    /// What is returned, in its layout; what was asked to be kept as well makes it a list.
+    fn returned(&self) -> TokenStream {
+        let outputs = || self.program.outputs.iter().map(|output| self.expression(&output.value, None));
+        let layout = self.program.function.layout(self.program.dof);
+        let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
+        let record = |record: Record, parts: Vec<TokenStream>| {
+            let Some(library) = self.library else { return quote!((#(#parts),*)) };
+            let (name, fields) = (ident(record.name()), record.fields().map(ident));
+            quote!(#library::#name { #(#fields: #parts),* })
+        };
+        let grouped = layout.fold(&mut outputs(), &array, &record);
+        match grouped {
+            Some(grouped) if layout.len() == self.program.outputs.len() => grouped,
+            _ => array(outputs().collect()),
+        }
+    }
+
+    fn plain(&self, expression: &Expression) -> TokenStream {
+        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &Fusing::None }.expression(expression, 0)
+    }
+
+    /// The value of a statement or, without a name, what is returned.
+    fn expression(&self, expression: &Expression, name: Option<Name>) -> TokenStream {
+        let rest = match (&self.fusing, name) {
+            (Fusing::Soonest(latency), Some(name)) => latency.rest(name),
+            _ => 0,
+        };
+        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &self.fusing }.expression(expression, rest)
+    }
+}
+
+fn name_or_underscore(name: Option<Name>) -> TokenStream {
+    name.map_or_else(|| quote!(_), |name| variable(name).to_token_stream())
+}
+
+/// Writes expressions.
+struct Writing<'a> {
+    scalar: &'a TokenStream,
+    arithmetic: &'a TokenStream,
+    fusing: &'a Fusing,
+}
+
+impl Writing<'_> {
+    /// An expression that `rest` follows.
+    fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
+        let fused = Contraction::of(expression).filter(|contraction| self.is_fused(contraction, rest));
+        let rest_of_operand = rest
+            + match expression {
+                Expression::Negative(_) => 0,
+                Expression::Binary(operator, ..) if fused.is_none() => latency::cycles(*operator),
+                _ => latency::PRODUCT,
+            };
+        let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
+        let operand = |operand: &Expression, position| {
+            let tokens = inner(operand);
+            let is_call = Contraction::of(operand).is_some_and(|operand| self.is_fused(&operand, rest_of_operand));
+            if !is_call && needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
+        };
+        let minus = |expression: &Expression| {
+            let tokens = operand(expression, Position::Negated);
+            quote!(-#tokens)
+        };
+        let (scalar, arithmetic) = (self.scalar, self.arithmetic);
+        if let Some(Contraction { factors: [x, y], addend, negated }) = fused {
+            let y = inner(y);
+            let x = if negated == Some(Negated::Factor) { minus(x) } else { inner(x) };
+            let addend = if negated == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
+            return quote!(#arithmetic::mul_add(#x, #y, #addend));
+        }
+        match expression {
+            Expression::Variable(name) => variable(*name).to_token_stream(),
+            Expression::Zero => quote!(zero),
+            Expression::Negative(a) => minus(a),
+            Expression::Binary(operator, a, b) => {
+                let [left, right] = operator.positions();
+                let (a, b, sign) = (operand(a, left), operand(b, right), Punct::new(operator.sign(), Spacing::Alone));
+                quote!(#a #sign #b)
+            }
+            Expression::BySign(operands) => {
+                let operands = operands.iter().map(inner);
+                quote!(#scalar::by_sign(#(#operands),*))
+            }
+        }
+    }
+
+    /// Whether `mul_add` computes a product and a sum that `rest` follows.
+    fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
+        match &self.fusing {
+            Fusing::None => false,
+            Fusing::All => true,
+            Fusing::Soonest(latency) => latency.is_fused(contraction, rest),
+        }
+    }
+}
+
+/// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source
+/// text.
+fn literal(value: f64) -> TokenStream {
+    let text = format!("{:?}", value.abs());
+    let magnitude = text.parse().unwrap_or_else(|_| Literal::f64_unsuffixed(value.abs()));
+    if value < 0.0 { quote!(-#magnitude) } else { quote!(#magnitude) }
+}
+
+fn ident(name: &str) -> Ident {
+    Ident::new(name, Span::call_site())
+}
+
+fn variable(name: Name) -> Ident {
+    ident(&name.to_string())
+}
