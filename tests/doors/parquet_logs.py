@@ -342,24 +342,26 @@ def names_of_the_right_arm(trial):
         trial.fault("rne log --topic right: the positions stand under the names of the left arm")
 
 
-def clock_of_the_right_arm(trial):
+def clock_of_the_right_arm(trial, kind):
     """The left arm is logged at 50 Hz, the right one at 100 Hz."""
-    for kind in ("lists", "columns"):
-        clocks = {"left.stamp": T * 2, "right.stamp": T}
-        if kind == "lists":
-            arms = two_arms(**clocks)
-        else:
-            joints = {f"{side}.q{k}": numpy.sin(T + k) for side in ("left", "right") for k in (1, 2)}
-            arms = pyarrow.table({**clocks, **joints})
-        log = trial.write("log.parquet", lambda path, arms=arms: pyarrow.parquet.write_table(arms, path))
-        columns = filtered(trial, log, "--topic", "right")
-        # 4 s of the right arm or 8 s of the left one, and the filter takes 0.8 s of both ends
-        if columns and not 2 < columns["t"][-1] - columns["t"][0] < 4.5:
-            trial.fault(f"rne log --topic right, {kind}: the times are those of the left arm")
+    clocks = {"left.stamp": T * 2, "right.stamp": T}
+    if kind == "lists":
+        arms = two_arms(**clocks)
+    else:
+        joints = {f"{side}.q{k}": numpy.sin(T + k) for side in ("left", "right") for k in (1, 2)}
+        arms = pyarrow.table({**clocks, **joints})
+    log = trial.write("log.parquet", lambda path: pyarrow.parquet.write_table(arms, path))
+    columns = filtered(trial, log, "--topic", "right")
+    # 4 s of the right arm or 8 s of the left one, and the filter takes 0.8 s of both ends
+    if columns and not 2 < columns["t"][-1] - columns["t"][0] < 4.5:
+        trial.fault(f"rne log --topic right, {kind}: the times are those of the left arm")
 
 
 CASES.add("two arms, names of the right one", names_of_the_right_arm)
-CASES.add("two arms, clock of the right one", clock_of_the_right_arm)
+for kind in ("lists", "columns"):
+    CASES.add(
+        f"two arms, clock of the right one, {kind}", lambda trial, kind=kind: clock_of_the_right_arm(trial, kind)
+    )
 parquet("two arms", two_arms, "refused")
 
 # Files with noise.
