@@ -58,7 +58,7 @@ fn robot_files() -> Vec<PathBuf> {
 fn block(name: &str) -> String {
     match name {
         "example" => format!("```rust\n{}```\n", read(&root().join("examples/puma560.rs"))),
-        "controller" => format!("```c\n{}```\n", read(&root().join("capi/examples/controller.c"))),
+        "controller" => format!("```c\n{}```\n", read(&root().join("doors/capi/examples/controller.c"))),
         "torque" => format!("```rust\n{}```\n", read(&root().join("rne-cli/src/commands/firmware/main.rs"))),
         "config" => {
             let config = read(&root().join("rne-cli/src/commands/firmware/config.toml"));
@@ -551,11 +551,13 @@ fn no_test_asks_the_clock_but_to_print() {
 #[test]
 fn unsafe_stands_in_two_modules() {
     let mut found = files_that_say(&[concat!("allow(", "unsafe_code)"), concat!("expect(", "unsafe_code)")]);
-    found.retain(|name| ["rne-", "src/", "playground/", "capi/src/"].iter().any(|folder| name.starts_with(folder)));
+    found.retain(|name| {
+        ["rne-", "src/", "doors/playground/", "doors/capi/src/"].iter().any(|folder| name.starts_with(folder))
+    });
     // one turns the pointers of C into slices, one is an attribute, the name of an export
     let expected = [
-        "capi/src/border.rs",
-        "playground/src/border.rs",
+        "doors/capi/src/border.rs",
+        "doors/playground/src/border.rs",
         "rne-machine/src/native.rs",
         "rne-runtime/src/registers/mod.rs",
     ];

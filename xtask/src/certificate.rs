@@ -1,4 +1,4 @@
-//! The certificate of the generated code on microcontrollers: `embedded/`, docs/embedded.md.
+//! The certificate of the generated code on microcontrollers: `firmware/`, docs/embedded.md.
 
 use anyhow::Result;
 use clap::Args;
@@ -63,7 +63,7 @@ impl Certificate {
             )));
         }
         let cargo = |arguments: &[&str]| {
-            let manifest = "--manifest-path=embedded/Cargo.toml";
+            let manifest = "--manifest-path=firmware/Cargo.toml";
             let (command, rest) = arguments.split_at(1);
             machine::without_flags(cmd!(shell, "/usr/bin/cargo {command...} --quiet --locked {manifest} {rest...}"))
                 .quiet()
@@ -72,10 +72,10 @@ impl Certificate {
         let said = String::from_utf8_lossy(&fetched.stderr);
         if said.contains("lock file") {
             // nothing that a network would mend
-            anyhow::bail!("embedded/Cargo.lock is not that of its manifests: {}", said.trim());
+            anyhow::bail!("firmware/Cargo.lock is not that of its manifests: {}", said.trim());
         }
         if !fetched.status.success() {
-            return Err(Missing::error("its crates cannot be downloaded (cargo fetch in embedded/ says why)"));
+            return Err(Missing::error("its crates cannot be downloaded (cargo fetch in firmware/ says why)"));
         }
         let tests = cargo(&["test", "--package", "certificate"]);
         let mut judges = cargo(&["run", "--package", "certificate", "--"]);

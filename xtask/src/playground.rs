@@ -1,4 +1,4 @@
-//! The playground: the page of `rne report` with the compiler inside, `playground/`.
+//! The playground: the page of `rne report` with the compiler inside, `doors/playground/`.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -114,16 +114,16 @@ fn target(install: bool) -> Result<()> {
 /// The compiler as a module of WebAssembly.
 fn module(folder: &Path) -> Result<Vec<u8>> {
     let shell = machine::shell()?;
-    let manifest = "playground/Cargo.toml";
+    let manifest = "doors/playground/Cargo.toml";
     let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest} --target {TARGET}");
     let fetched = machine::without_flags(fetched).quiet().ignore_status().output()?;
     let said = String::from_utf8_lossy(&fetched.stderr);
     if said.contains("lock file") {
         // nothing that a network would mend
-        anyhow::bail!("playground/Cargo.lock is not that of its manifest: {}", said.trim());
+        anyhow::bail!("doors/playground/Cargo.lock is not that of its manifest: {}", said.trim());
     }
     if !fetched.status.success() {
-        return Err(Missing::error("its crates cannot be downloaded (cargo fetch in playground/ says why)"));
+        return Err(Missing::error("its crates cannot be downloaded (cargo fetch in doors/playground/ says why)"));
     }
     let build =
         cmd!(shell, "cargo build --quiet --locked --release --lib --manifest-path {manifest} --target {TARGET}");
@@ -168,7 +168,7 @@ fn shipped() -> Result<Vec<Shipped>> {
 
 /// The page with everything that it needs inside.
 fn page(module: &[u8]) -> Result<String> {
-    let read = |name: &str| machine::read(&format!("playground/page/{name}"));
+    let read = |name: &str| machine::read(&format!("doors/playground/page/{name}"));
     let (packed, files) = (packed(module)?, packed(&serde_json::to_vec(&shipped()?)?)?);
     let mut script = String::new();
     for name in SCRIPTS {

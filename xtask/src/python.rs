@@ -55,7 +55,7 @@ pub(crate) struct Python {
     /// Compare with Pinocchio on the URDFs of packages
     #[arg(long)]
     pub(crate) peers: bool,
-    /// Run the notebooks of python/notebooks
+    /// Run the notebooks of doors/python/notebooks
     #[arg(long)]
     pub(crate) notebooks: bool,
     /// Install the source distribution, built by pip with the Rust that is here; CI_FULL does so too
@@ -72,9 +72,10 @@ impl Python {
         let wheel = place.wheel(self.install)?;
         let python = place.user(&wheel, &packages, self.install)?;
         let shell = &place.shell;
-        let mut holds = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests").quiet().run().is_ok();
+        let mut holds =
+            cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests").quiet().run().is_ok();
         if self.notebooks {
-            holds &= cmd!(shell, "{python} python/notebooks/run.py").quiet().run().is_ok();
+            holds &= cmd!(shell, "{python} doors/python/notebooks/run.py").quiet().run().is_ok();
         }
         if self.install {
             holds &= place.holds_without_compiler(&wheel)?;
@@ -148,7 +149,7 @@ impl Place {
         let _ = fs::remove_dir_all(&wheels);
         let build = cmd!(
             shell,
-            "{maturin} build --quiet --release --locked --manifest-path python/Cargo.toml
+            "{maturin} build --quiet --release --locked --manifest-path doors/python/Cargo.toml
                 --target-dir {target} --out {wheels}"
         );
         machine::without_flags(build).quiet().run()?;
@@ -186,7 +187,8 @@ impl Place {
         let first = cmd!(shell, "{python} -c {FIRST}").env("PATH", alone);
         // all of them have passed with one on PATH
         let tests = if std::env::var_os("CI_FULL").is_some() { "" } else { "test_functions.py" };
-        let tests = cmd!(shell, "{python} -m pytest -q -p no:cacheprovider python/tests/{tests}").env("PATH", alone);
+        let tests =
+            cmd!(shell, "{python} -m pytest -q -p no:cacheprovider doors/python/tests/{tests}").env("PATH", alone);
         Ok(first.quiet().run().is_ok() && tests.quiet().run().is_ok())
     }
 
@@ -197,7 +199,7 @@ impl Place {
         let (shell, maturin) = (&self.shell, self.maturin(true)?);
         let sources = self.folder.join("sources");
         let _ = fs::remove_dir_all(&sources);
-        cmd!(shell, "{maturin} sdist --manifest-path python/Cargo.toml --out {sources}")
+        cmd!(shell, "{maturin} sdist --manifest-path doors/python/Cargo.toml --out {sources}")
             .quiet()
             .ignore_stderr()
             .run()?;

@@ -1,6 +1,6 @@
 //! `rne firmware`: a folder with a firmware that computes a robot's torques.
 //!
-//! The folder `firmware/` has its files. They are those of `examples/firmware`, for the PUMA 560, and valid as they
+//! The folder `firmware/` has its files. They are those of `firmware/example`, for the PUMA 560, and valid as they
 //! stand; only the lines named in [`files`] change with the robot.
 
 use std::fmt::Write as _;

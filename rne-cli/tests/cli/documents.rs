@@ -58,7 +58,7 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask capi", ".ci/run", "cargo xtask capi"),
     // with the flags of pkg-config, below the prefix that it was given
     ("export PKG_CONFIG_PATH=", "xtask/src/capi.rs", ".env(\"PKG_CONFIG_PATH\", library.join(\"pkgconfig\"))"),
-    ("cc capi/examples/torque.c", "xtask/src/capi.rs", "(\"capi/examples/torque.c\", \"cc\""),
+    ("cc doors/capi/examples/torque.c", "xtask/src/capi.rs", "(\"doors/capi/examples/torque.c\", \"cc\""),
     ("cargo xtask playground", "xtask/src/verify.rs", "\"xtask\", \"playground\", \"--install\""),
     ("cargo xtask features", "xtask/src/verify.rs", "\"xtask\", \"features\""),
     ("cargo xtask certificate", ".ci/run", "step cargo xtask certificate --install\n"),
@@ -72,10 +72,10 @@ const RUN_ELSEWHERE: &[(&str, &str, &str)] = &[
     ("cargo xtask urdf", "xtask/src/main.rs", "Urdf(urdf::Urdf)"),
     (".ci/run", ".ci/run", "#!/usr/bin/env bash"),
     // in a firmware that rne has written
-    ("rustup target add thumbv7em-none-eabihf", "examples/firmware/run", "rustup target add $target"),
-    ("sudo apt-get install --yes qemu-system-arm", "examples/firmware/run", "packages=(qemu-system-arm)"),
-    ("cargo run --release", ".ci/run", "examples/firmware/run --install --written target/torque\n"),
-    ("examples/firmware/run", ".ci/run", "examples/firmware/run --install $board"),
+    ("rustup target add thumbv7em-none-eabihf", "firmware/example/run", "rustup target add $target"),
+    ("sudo apt-get install --yes qemu-system-arm", "firmware/example/run", "packages=(qemu-system-arm)"),
+    ("cargo run --release", ".ci/run", "firmware/example/run --install --written target/torque\n"),
+    ("firmware/example/run", ".ci/run", "firmware/example/run --install $board"),
     ("cargo install --path rne-cli", "rne-cli/Cargo.toml", "name = \"rne\""),
     // the search runs in rne-cli/tests/cli/search.rs
     ("cargo run --release -- search robots/NAME.yaml --seconds 600", "rne-cli/tests/cli/search.rs", "\"search\""),

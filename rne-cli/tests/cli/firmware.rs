@@ -122,13 +122,13 @@ fn wrong_requests_for_a_firmware() {
     assert!(!empty.join("torque").exists(), "nothing is left behind");
 }
 
-/// The template is typed once: `examples/firmware`, which CI runs in QEMU, has its files. `RNE_WRITE_DOCUMENTS` writes
+/// The template is typed once: `firmware/example`, which CI runs in QEMU, has its files. `RNE_WRITE_DOCUMENTS` writes
 /// them anew.
 #[test]
 fn the_example_is_what_is_written() {
     let empty = folder("firmware_example");
     assert_eq!(firmware(&empty, &["firmware", "--robot", "puma560", "--rne-path", ROOT]).status, 0);
-    let (written, example) = (empty.join("firmware"), Path::new(ROOT).join("examples/firmware"));
+    let (written, example) = (empty.join("firmware"), Path::new(ROOT).join("firmware/example"));
     for (file, there) in [
         (".cargo/config.toml", ".cargo/config.toml"),
         ("memory.x", "memory.x"),
@@ -150,12 +150,12 @@ fn the_example_is_what_is_written() {
     let ours = read(written.join("Cargo.toml")).replace(ROOT, "../..");
     let of_the_firmware = ours.lines().filter(|line| !line.starts_with('#') && !line.starts_with("version"));
     for line in of_the_firmware {
-        assert!(manifest.lines().any(|there| there == line), "examples/firmware/Cargo.toml has no line {line}");
+        assert!(manifest.lines().any(|there| there == line), "firmware/example/Cargo.toml has no line {line}");
     }
 }
 
 /// As `cargo run --release` builds it, where rustup's target and the crates are on this machine; elsewhere
-/// `examples/firmware/run --written`, in `.ci/run`, gets Debian's compiler.
+/// `firmware/example/run --written`, in `.ci/run`, gets Debian's compiler.
 #[test]
 fn what_is_written_builds() {
     let libraries = Command::new("rustc").args(["--print", "target-libdir", "--target", TARGET]).output();
@@ -167,7 +167,7 @@ fn what_is_written_builds() {
     let empty = folder("firmware_built");
     assert_eq!(firmware(&empty, &["torque", "--rne-path", ROOT]).status, 0);
     // the versions that the example has; what it has on top is dropped
-    fs::copy(format!("{ROOT}/examples/firmware/Cargo.lock"), empty.join("torque/Cargo.lock")).expect("a copy");
+    fs::copy(format!("{ROOT}/firmware/example/Cargo.lock"), empty.join("torque/Cargo.lock")).expect("a copy");
     let cargo = |arguments: &[&str]| {
         let mut cargo = Command::new("cargo");
         cargo.args(arguments).arg("--offline").current_dir(empty.join("torque"));
@@ -177,7 +177,7 @@ fn what_is_written_builds() {
     let fetched = cargo(&["fetch"]);
     if !fetched.status.success() {
         eprintln!(
-            "skipped: its crates are not on this machine (cargo fetch --manifest-path examples/firmware/Cargo.toml)"
+            "skipped: its crates are not on this machine (cargo fetch --manifest-path firmware/example/Cargo.toml)"
         );
         return;
     }

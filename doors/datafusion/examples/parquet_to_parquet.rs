@@ -2,7 +2,7 @@
 //! torques written into another, on one core.
 //!
 //! ```console
-//! cargo run --release --manifest-path fleet/Cargo.toml -p rne-datafusion --example parquet_to_parquet -- 5000000
+//! cargo run --release --manifest-path doors/datafusion/Cargo.toml --example parquet_to_parquet -- 5000000
 //! ```
 
 use std::hash::{Hash, Hasher};

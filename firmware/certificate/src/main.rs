@@ -87,7 +87,7 @@ fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// A scheduler of LLVM that counts registers; see examples/firmware/.cargo/config.toml.
+/// A scheduler of LLVM that counts registers; see firmware/example/.cargo/config.toml.
 const SCHEDULER: &str = "-Cllvm-args=-pre-RA-sched=list-ilp";
 
 fn examine(workspace: &Path, sample: bool) -> Result<Report> {
@@ -177,7 +177,7 @@ fn summary(report: &Report) -> Result<()> {
 const OBSERVER: u64 = 1000;
 
 const M4F: &str = "\
-The target `thumbv7em-none-eabihf`, as `examples/firmware` is built. Where a sum has a product among its terms, the
+The target `thumbv7em-none-eabihf`, as `firmware/example` is built. Where a sum has a product among its terms, the
 compiler takes `vmla.f32`, which rounds both.";
 
 const M7F: &str = "\

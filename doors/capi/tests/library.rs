@@ -83,7 +83,7 @@ fn numbers(value: &serde_json::Value) -> Vec<f64> {
 #[test]
 fn torques_of_the_puma_are_pinocchios() {
     let golden: serde_json::Value =
-        serde_json::from_str(include_str!("../../tests/reference/puma560.golden.json")).expect("JSON");
+        serde_json::from_str(include_str!("../../../tests/reference/puma560.golden.json")).expect("JSON");
     let (arm, id) = (puma(), id(c"inverse_dynamics"));
     let states = golden["states"].as_array().expect("states");
     assert_eq!(states.len(), 16);
