@@ -38,7 +38,7 @@ impl Program {
 }
 
 fn arguments(program: &Program) -> Vec<ArgumentArray> {
-    let used = |name: Name| program.arguments.contains(&name).then_some(name);
+    let used = |name: Name| program.arguments().any(|used| used == name).then_some(name);
     let joints = |name, quantity| ArgumentArray {
         name,
         elements: (1..=program.dof).map(|joint| used(Name::scalar(quantity, joint))).collect(),
@@ -78,6 +78,6 @@ fn arguments(program: &Program) -> Vec<ArgumentArray> {
 /// The array of the run-time parameters, where the robot has some.
 fn parameters(program: &Program) -> Option<ArgumentArray> {
     let names = (1..=program.parameters).map(|index| Name::scalar(Quantity::Parameter, index));
-    let elements = names.map(|name| program.arguments.contains(&name).then_some(name)).collect();
+    let elements = names.map(|name| program.arguments().any(|used| used == name).then_some(name)).collect();
     (program.parameters > 0).then_some(ArgumentArray { name: "parameters", elements })
 }

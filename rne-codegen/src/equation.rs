@@ -5,7 +5,7 @@
 
 use crate::ir::fold_report::{Causes, Fold, Place};
 use crate::ir::name::Name;
-use crate::program::{Operator, Sign};
+use crate::values::{Operator, Sign};
 
 /// A component of a quantity and the formula that gives it.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,7 +33,7 @@ pub enum Term {
     Cosine(Box<Term>),
     /// Two operands with an operator between them.
     Operation(Box<Operation>),
-    /// One of two values by the sign of the first, as in [`Expression::BySign`](crate::Expression::BySign).
+    /// One of two values by the sign of the first, as in [`Value::BySign`](crate::Value::BySign).
     BySign(Box<[Term; 3]>),
 }
 

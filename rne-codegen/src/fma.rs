@@ -1,4 +1,5 @@
-//! The order of the terms of sums: for the fewest instructions, or for the shortest wait.
+//! The order of the terms of sums, and which products are fused with them: for the fewest instructions, or for the
+//! shortest wait.
 //!
 //! A processor that has the instruction x y + z computes a sum and one product among its terms at once. How many
 //! products are left over depends on the order of the terms and on which products are computed at all:
@@ -13,11 +14,12 @@
 //! operations: there the term that comes last should be added last ([`ordered_for_latency`]).
 
 use std::cmp::Reverse;
-use std::collections::{BTreeMap, BinaryHeap};
+use std::collections::BinaryHeap;
 
 use crate::ir::name::Name;
-use crate::latency;
-use crate::program::{Expression, Operator, Output, Program, Sign, SineCosine, Statement};
+use crate::latency::{self, Latency};
+use crate::program::{Output, Program, Statement};
+use crate::values::{Contraction, Operator, Sign, Value, ValueId, Values};
 
 /// The program with its sums in the order in which most products are fused: wherever a product stands right of + or -.
 ///
@@ -33,244 +35,275 @@ use crate::program::{Expression, Operator, Output, Program, Sign, SineCosine, St
 /// ```
 #[must_use]
 pub fn contracted(program: &Program) -> Program {
-    let (mut graph, outputs) = Graph::new(program);
-    graph.flatten(Named::Too);
-    let _ = graph.choose_products();
-    graph.program(program, &outputs)
+    let mut sums = Sums::of(program);
+    sums.flatten(Named::Too);
+    let _ = sums.choose_products();
+    sums.program()
 }
 
 /// The program with the terms of every sum in the order in which they are known: what comes last is waited for least.
 #[must_use]
 pub fn ordered_for_latency(program: &Program) -> Program {
-    let (mut graph, outputs) = Graph::new(program);
-    graph.flatten(Named::Not);
-    graph.sort_terms(&program.sines_and_cosines);
-    graph.program(program, &outputs)
+    let mut sums = Sums::of(program);
+    sums.flatten(Named::Not);
+    sums.sort_terms();
+    sums.program()
 }
 
 /// Instructions of one evaluation, without sines and cosines, where every product that stands right of + or - is fused.
 #[must_use]
 pub fn instructions(program: &Program) -> usize {
-    let parts = program.values().flat_map(Expression::parts);
-    let instructions = parts.map(|part| match part {
+    let instructions = program.values.iter().skip(program.before_statements()).map(|(id, value)| match value {
+        // its product is counted by itself
+        Value::Binary(..) => usize::from(program.values.contraction(id).is_none()),
+        Value::Fused(_) => 1,
+        Value::BySign(_) => 2,
         // a minus goes into the instruction that uses it, but for an output
-        Expression::Variable(_) | Expression::Zero | Expression::Negative(_) => 0,
-        // its product is counted with it
-        Expression::Binary(..) => usize::from(Contraction::of(part).is_none()),
-        Expression::BySign(_) => 2,
+        _ => 0,
     });
     instructions.sum()
 }
 
-/// A sum or difference as x y + z, which may be one instruction.
-#[derive(Clone, Copy, Debug)]
-pub struct Contraction<'a> {
-    /// x and y.
-    pub factors: [&'a Expression; 2],
-    /// z.
-    pub addend: &'a Expression,
-    /// What a difference negates.
-    pub negated: Option<Negated>,
-}
-
-/// The part of a contraction that is negated.
+/// Which products are fused with what they are added to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Negated {
-    /// x.
-    Factor,
-    /// z.
-    Addend,
+pub enum Fusing {
+    /// All.
+    All,
+    /// All but those for which a call would wait longer than for a product and a sum.
+    Soonest,
 }
 
-impl<'a> Contraction<'a> {
-    /// Of a product and what it is added to; of two products the right one is fused.
-    #[must_use]
-    pub fn of(expression: &'a Expression) -> Option<Self> {
-        let Expression::Binary(operator @ (Operator::Sum | Operator::Difference), a, b) = expression else {
-            return None;
-        };
-        let (addend, product, negated) = match (&**a, &**b) {
-            (a, b @ Expression::Binary(Operator::Product, ..)) => (a, b, Negated::Factor),
-            (a, b) => (b, a, Negated::Addend),
-        };
-        let Expression::Binary(Operator::Product, x, y) = product else { return None };
-        let negated = (*operator == Operator::Difference).then_some(negated);
-        Some(Self { factors: [x, y], addend, negated })
+/// The program with every product that is added as one value with its sum. This is the only place where that is
+/// decided: derived code, machines and native code fuse the same products and so return the same bits.
+#[must_use]
+pub fn fused(program: &Program, fusing: Fusing) -> Program {
+    let first = program.before_statements();
+    let contractions = match fusing {
+        Fusing::All => program.values.iter().map(|(id, _)| program.values.contraction(id)).collect(),
+        Fusing::Soonest => soonest(program),
+    };
+    let mut fused = program.clone();
+    for (index, contraction) in contractions.into_iter().enumerate().skip(first) {
+        if let Some((contraction, _)) = contraction {
+            fused.values.replace(ValueId::at(index), Value::Fused(contraction));
+        }
     }
+    fused.in_written_order()
 }
 
-/// A node and the sign it enters with.
+/// Those contractions for which nothing waits longer, by value.
+fn soonest(program: &Program) -> Vec<Option<(Contraction, ValueId)>> {
+    let (values, latency) = (&program.values, Latency::of(program));
+    let mut contractions = vec![None; values.len()];
+    // what follows a value that is written where it is used; `None` where it is part of a contraction
+    let mut rests = vec![Some(0); values.len()];
+    for (id, value) in values.iter().skip(program.before_statements()).rev() {
+        let Some(rest) = rests[id.index()] else { continue };
+        let rest = if values.name(id).is_some() { latency.rest(id) } else { rest };
+        let contraction = values.contraction(id).filter(|(contraction, _)| latency.is_fused(contraction, rest));
+        let of_operands = rest
+            + match value {
+                Value::Negative(_) | Value::Same(_) => 0,
+                Value::Binary(operator, ..) if contraction.is_none() => latency::cycles(operator),
+                _ => latency::PRODUCT,
+            };
+        let written = contraction.map_or(value, |(contraction, product)| {
+            rests[product.index()] = None;
+            Value::Fused(contraction)
+        });
+        written.operands().for_each(|operand| rests[operand.index()] = Some(of_operands));
+        contractions[id.index()] = contraction;
+    }
+    contractions
+}
+
+/// A value by its place among the nodes of [`Sums`], and the sign it enters with.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Term {
     sign: Sign,
     node: usize,
 }
 
-enum Kind {
-    /// What the statements are made of: arguments, constants, sines and cosines.
-    Leaf(Expression),
-    /// A product or a quotient, whose signs are carried outwards.
-    Scaled(Operator, [usize; 2]),
-    BySign([Term; 3]),
-    Sum(Vec<Term>),
+impl Term {
+    const fn plus(node: usize) -> Self {
+        Self { sign: Sign::Plus, node }
+    }
+
+    fn opposite(self) -> Self {
+        let sign = if self.sign == Sign::Plus { Sign::Minus } else { Sign::Plus };
+        Self { sign, ..self }
+    }
+
+    fn with(self, sign: Sign) -> Self {
+        if sign == Sign::Minus { self.opposite() } else { self }
+    }
 }
 
-impl Kind {
-    fn product(&self) -> Option<&[usize; 2]> {
-        if let Self::Scaled(Operator::Product, factors) = self { Some(factors) } else { None }
+/// Whether sums that have a name of their own become terms of others.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Named {
+    Too,
+    Not,
+}
+
+/// The values of a program with their signs carried outwards, and its sums as lists of terms. Each value has two nodes:
+/// the value itself, and behind it a sum of one term for a statement that gives a value another name.
+struct Sums<'p> {
+    program: &'p Program,
+    /// Which node a value is.
+    terms: Vec<Term>,
+    /// By node: the terms of a sum.
+    terms_of: Vec<Option<Vec<Term>>>,
+    /// By node: the name under which a statement computes it, if one does.
+    names: Vec<Option<Name>>,
+    uses: Vec<usize>,
+    /// By node: computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
+    is_computed: Vec<bool>,
+}
+
+impl<'p> Sums<'p> {
+    fn of(program: &'p Program) -> Self {
+        let nodes = 2 * program.values.len();
+        let mut sums = Self {
+            program,
+            terms: Vec::with_capacity(program.values.len()),
+            terms_of: vec![None; nodes],
+            names: vec![None; nodes],
+            uses: vec![0; nodes],
+            is_computed: vec![true; nodes],
+        };
+        for (id, value) in program.values.iter() {
+            let mut term = sums.term(id, value);
+            if id.index() >= program.before_statements() && program.values.name(id).is_some() {
+                term = sums.named(id, term);
+            }
+            sums.terms.push(term);
+        }
+        for node in 0..nodes {
+            sums.operands(node).into_iter().for_each(|operand| sums.uses[operand] += 1);
+        }
+        for output in &program.outputs {
+            sums.uses[sums.terms[output.value.index()].node] += 1;
+        }
+        sums
     }
 
-    fn terms(&self) -> Option<&Vec<Term>> {
-        if let Self::Sum(terms) = self { Some(terms) } else { None }
-    }
-
-    /// The nodes that it uses.
-    fn operands(&self) -> Vec<usize> {
-        let nodes = |terms: &[Term]| terms.iter().map(|term| term.node).collect();
-        match self {
-            Self::Leaf(_) => Vec::new(),
-            Self::Scaled(_, operands) => operands.to_vec(),
-            Self::BySign(operands) => nodes(operands),
-            Self::Sum(terms) => nodes(terms),
+    fn term(&mut self, id: ValueId, value: Value) -> Term {
+        let of = |id: ValueId| self.terms[id.index()];
+        let node = 2 * id.index();
+        match value {
+            Value::Same(a) if !self.is_leaf(id) => of(a),
+            Value::Negative(a) if !self.is_leaf(id) => of(a).opposite(),
+            Value::Binary(Operator::Sum, a, b) if !self.is_leaf(id) => {
+                self.terms_of[node] = Some(vec![of(a), of(b)]);
+                Term::plus(node)
+            }
+            Value::Binary(Operator::Difference, a, b) if !self.is_leaf(id) => {
+                self.terms_of[node] = Some(vec![of(a), of(b).opposite()]);
+                Term::plus(node)
+            }
+            Value::Binary(_, a, b) if !self.is_leaf(id) => Term::plus(node).with(of(a).sign).with(of(b).sign),
+            _ => Term::plus(node),
         }
     }
-}
 
-struct Node {
-    kind: Kind,
-    /// The name under which a statement computes it, if one does.
-    name: Option<Name>,
-    uses: usize,
-    /// Computed by itself. What is not is a term of a longer sum or fused with all sums that it is in.
-    is_computed: bool,
-}
-
-#[derive(Default)]
-struct Graph {
-    nodes: Vec<Node>,
-    known: BTreeMap<Name, Term>,
-}
-
-impl Graph {
-    /// The graph of a program and its outputs.
-    fn new(program: &Program) -> (Self, Vec<Term>) {
-        let mut graph = Self::default();
-        for statement in &program.statements {
-            graph.define(statement);
-        }
-        let outputs: Vec<_> = program.outputs.iter().map(|output| graph.term(&output.value)).collect();
-        graph.count_uses(&outputs);
-        (graph, outputs)
-    }
-
-    fn define(&mut self, statement: &Statement) {
-        let mut term = self.term(&statement.value);
-        let node = &mut self.nodes[term.node];
-        match &mut node.kind {
-            // a name stands for a value with its sign
-            Kind::Sum(terms) if node.name.is_none() && term.sign == Sign::Minus => {
+    /// The term of a statement: a name stands for a value with its sign.
+    fn named(&mut self, id: ValueId, term: Term) -> Term {
+        let node = term.node;
+        let is_free = self.names[node].is_none();
+        let is_product = self.factors(node).is_some();
+        let named = match (&mut self.terms_of[node], term.sign) {
+            (Some(terms), Sign::Minus) if is_free => {
                 for term in terms {
                     *term = term.opposite();
                 }
-                term.sign = Sign::Plus;
+                node
             }
-            Kind::Sum(_) | Kind::Scaled(Operator::Product, _) if node.name.is_none() && term.sign == Sign::Plus => {}
+            (Some(_), Sign::Plus) if is_free => node,
+            (None, Sign::Plus) if is_free && is_product => node,
             // another name of what has one, or its negative
-            _ => term = Term { sign: Sign::Plus, node: self.push(Kind::Sum(vec![term])) },
-        }
-        self.nodes[term.node].name = Some(statement.name);
-        self.known.insert(statement.name, term);
-    }
-
-    fn push(&mut self, kind: Kind) -> usize {
-        self.nodes.push(Node { kind, name: None, uses: 0, is_computed: true });
-        self.nodes.len() - 1
-    }
-
-    fn term(&mut self, expression: &Expression) -> Term {
-        let (sign, kind) = match expression {
-            Expression::Variable(name) => {
-                if let Some(&term) = self.known.get(name) {
-                    return term;
-                }
-                (Sign::Plus, Kind::Leaf(expression.clone()))
-            }
-            Expression::Zero => (Sign::Plus, Kind::Leaf(Expression::Zero)),
-            Expression::Negative(a) => return self.term(a).opposite(),
-            Expression::Binary(operator, a, b) => {
-                let (a, b) = (self.term(a), self.term(b));
-                match operator {
-                    Operator::Sum => (Sign::Plus, Kind::Sum(vec![a, b])),
-                    Operator::Difference => (Sign::Plus, Kind::Sum(vec![a, b.opposite()])),
-                    Operator::Product | Operator::Quotient => {
-                        let sign = if a.sign == b.sign { Sign::Plus } else { Sign::Minus };
-                        (sign, Kind::Scaled(*operator, [a.node, b.node]))
-                    }
-                }
-            }
-            Expression::BySign(operands) => {
-                (Sign::Plus, Kind::BySign(operands.each_ref().map(|operand| self.term(operand))))
+            _ => {
+                let node = 2 * id.index() + 1;
+                self.terms_of[node] = Some(vec![term]);
+                node
             }
         };
-        let term = Term { sign, node: self.push(kind) };
-        if let Expression::Variable(name) = expression {
-            self.known.insert(*name, term);
-        }
-        term
+        self.names[named] = self.program.values.name(id);
+        Term::plus(named)
     }
 
-    fn count_uses(&mut self, outputs: &[Term]) {
-        for index in 0..self.nodes.len() {
-            for operand in self.nodes[index].kind.operands() {
-                self.nodes[operand].uses += 1;
+    /// What statements are made of: arguments, constants, angles, sines and cosines.
+    fn is_leaf(&self, id: ValueId) -> bool {
+        id.index() < self.program.before_statements()
+    }
+
+    /// The value that a node is, unless it is a sum.
+    fn value(&self, node: usize) -> Option<(ValueId, Value)> {
+        let is_value = node.is_multiple_of(2) && self.terms_of[node].is_none();
+        let id = ValueId::at(node / 2);
+        let value = self.program.values.get(id);
+        (is_value && !matches!(value, Value::Same(_) | Value::Negative(_))).then_some((id, value))
+    }
+
+    /// The factors of a product, without their signs.
+    fn factors(&self, node: usize) -> Option<[usize; 2]> {
+        match self.value(node)? {
+            (id, Value::Binary(Operator::Product, a, b)) if !self.is_leaf(id) => {
+                Some([a, b].map(|id| self.terms[id.index()].node))
             }
+            _ => None,
         }
-        for output in outputs {
-            self.nodes[output.node].uses += 1;
+    }
+
+    /// The nodes that a node uses.
+    fn operands(&self, node: usize) -> Vec<usize> {
+        if let Some(terms) = &self.terms_of[node] {
+            return terms.iter().map(|term| term.node).collect();
+        }
+        match self.value(node) {
+            Some((id, value)) if !self.is_leaf(id) => {
+                value.operands().map(|operand| self.terms[operand.index()].node).collect()
+            }
+            _ => Vec::new(),
         }
     }
 
     /// Sums that are used in one sum alone become terms of it. Nodes stand behind what they use.
     fn flatten(&mut self, which: Named) {
-        for index in 0..self.nodes.len() {
-            let Kind::Sum(terms) = &self.nodes[index].kind else { continue };
+        for index in 0..self.terms_of.len() {
+            let Some(terms) = self.terms_of[index].take() else { continue };
             let mut flat = Vec::new();
-            let mut inlined = Vec::new();
-            for &term in terms {
-                match &self.nodes[term.node] {
-                    Node { kind: Kind::Sum(inner), uses: 1, name, .. } if which == Named::Too || name.is_none() => {
-                        let signed = |inner: &Term| if term.sign == Sign::Minus { inner.opposite() } else { *inner };
-                        flat.extend(inner.iter().map(signed));
-                        inlined.push(term.node);
+            for term in terms {
+                let is_inlined = self.uses[term.node] == 1 && (which == Named::Too || self.names[term.node].is_none());
+                match &mut self.terms_of[term.node] {
+                    Some(inner) if is_inlined => {
+                        flat.extend(std::mem::take(inner).into_iter().map(|inner| inner.with(term.sign)));
+                        self.is_computed[term.node] = false;
                     }
                     _ => flat.push(term),
                 }
             }
-            for node in inlined {
-                (self.nodes[node].is_computed, self.nodes[node].kind) = (false, Kind::Sum(Vec::new()));
-            }
-            self.nodes[index].kind = Kind::Sum(flat);
+            self.terms_of[index] = Some(flat);
         }
     }
 
     /// Decides which products are computed by themselves; how many candidates it looked at.
     fn choose_products(&mut self) -> usize {
+        let nodes = self.terms_of.len();
         // uses as terms of sums; a product with other uses has to be computed
-        let mut in_sums = vec![0; self.nodes.len()];
-        let sums: Vec<_> = self.nodes.iter().filter_map(|node| node.kind.terms()).collect();
+        let mut in_sums = vec![0; nodes];
+        let sums: Vec<&Vec<Term>> = self.terms_of.iter().flatten().collect();
         for term in sums.iter().copied().flatten() {
             in_sums[term.node] += 1;
         }
         let mut steps = 0;
-        let mut is_computed: Vec<_> = (0..self.nodes.len())
-            .map(|node| {
-                self.nodes[node].is_computed && !(in_sums[node] == self.nodes[node].uses && self.may_be_fused(node))
-            })
+        let mut is_computed: Vec<_> = (0..nodes)
+            .map(|node| self.is_computed[node] && !(in_sums[node] == self.uses[node] && self.may_be_fused(node)))
             .collect();
         // sums that nothing begins yet, by their terms, and how many of them each term is in
         let mut is_started: Vec<_> = sums.iter().map(|terms| terms.iter().any(|term| is_computed[term.node])).collect();
-        let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); self.nodes.len()];
-        let mut counts = vec![0_usize; self.nodes.len()];
+        let mut sums_of: Vec<Vec<usize>> = vec![Vec::new(); nodes];
+        let mut counts = vec![0_usize; nodes];
         for (index, terms) in sums.iter().enumerate().filter(|(index, _)| !is_started[*index]) {
             for term in *terms {
                 counts[term.node] += 1;
@@ -295,110 +328,118 @@ impl Graph {
                 }
             }
         }
-        for (index, node) in self.nodes.iter_mut().enumerate() {
-            node.is_computed = is_computed[index];
-            if let Kind::Sum(terms) = &mut node.kind {
-                terms.sort_by_key(|term| !is_computed[term.node]);
-            }
+        for terms in self.terms_of.iter_mut().flatten() {
+            terms.sort_by_key(|term| !is_computed[term.node]);
         }
+        self.is_computed = is_computed;
         steps
     }
 
-    fn sort_terms(&mut self, turns: &[SineCosine]) {
-        let turns: Vec<_> = turns.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten().collect();
+    /// A product whose factors are not computed once more wherever it is fused.
+    fn may_be_fused(&self, node: usize) -> bool {
+        let is_nameless = |&node: &usize| self.names[node].is_none() && !self.operands(node).is_empty();
+        self.factors(node).is_some_and(|factors| self.uses[node] == 1 || !factors.iter().any(is_nameless))
+    }
+
+    fn sort_terms(&mut self) {
         // nodes stand behind what they use
-        let mut known: Vec<usize> = Vec::with_capacity(self.nodes.len());
-        for node in &mut self.nodes {
-            let last = |operands: Vec<usize>| operands.into_iter().map(|operand| known[operand]).max().unwrap_or(0);
-            let at = match &mut node.kind {
-                Kind::Leaf(Expression::Variable(name)) if turns.contains(name) => latency::TURN,
-                Kind::Leaf(_) => 0,
-                Kind::Scaled(operator, _) => latency::cycles(*operator) + last(node.kind.operands()),
-                Kind::BySign(_) => latency::SUM + last(node.kind.operands()),
-                Kind::Sum(terms) => {
-                    terms.sort_by_key(|term| known[term.node]);
-                    let times = terms.iter().map(|term| known[term.node]);
-                    times.reduce(|sum, term| sum.max(term) + latency::SUM).unwrap_or(0)
-                }
+        let mut known: Vec<usize> = Vec::with_capacity(self.terms_of.len());
+        for node in 0..self.terms_of.len() {
+            let at = if let Some(terms) = &mut self.terms_of[node] {
+                terms.sort_by_key(|term| known[term.node]);
+                let times = terms.iter().map(|term| known[term.node]);
+                times.reduce(|sum, term| sum.max(term) + latency::SUM).unwrap_or(0)
+            } else {
+                let last = self.operands(node).into_iter().map(|operand| known[operand]).max();
+                let (id, value) = self.value(node).unwrap_or((ValueId::at(node / 2), Value::Argument));
+                let is_angle = self.is_leaf(id) && !matches!(value, Value::Sine(_) | Value::Cosine(_));
+                last.unwrap_or(0) + if is_angle { 0 } else { latency::cycles_of(value) }
             };
             known.push(at);
         }
     }
 
-    /// The program that the graph has become.
-    fn program(&self, program: &Program, outputs: &[Term]) -> Program {
-        let computed = |Statement { place, name, .. }: &Statement| {
-            let node = self.known.get(name)?.node;
-            let is_computed = self.nodes[node].is_computed;
-            is_computed.then(|| Statement { place: *place, name: *name, value: self.value(node) })
+    /// The program that the sums have become.
+    fn program(&self) -> Program {
+        let program = self.program;
+        let mut writing = Writing {
+            sums: self,
+            values: program.values.first(program.before_statements()),
+            known: vec![None; self.terms_of.len()],
         };
-        let statements = program.statements.iter().filter_map(computed).collect();
-        let outputs = program.outputs.iter().zip(outputs);
-        let outputs = outputs.map(|(output, term)| Output { name: output.name, value: self.operand(*term) }).collect();
-        program.computed_by(statements, outputs)
-    }
-
-    /// A product whose factors are not computed once more wherever it is fused.
-    fn may_be_fused(&self, node: usize) -> bool {
-        let is_nameless = |&factor: &usize| {
-            let factor = &self.nodes[factor];
-            factor.name.is_none() && !matches!(factor.kind, Kind::Leaf(_))
-        };
-        let product = self.nodes[node].kind.product();
-        product.is_some_and(|factors| self.nodes[node].uses == 1 || !factors.iter().any(is_nameless))
-    }
-
-    /// A term where it is used: the name of what a statement computes, else its value.
-    fn operand(&self, term: Term) -> Expression {
-        let node = &self.nodes[term.node];
-        let value = match node.name {
-            Some(name) if node.is_computed => Expression::Variable(name),
-            _ => self.value(term.node),
-        };
-        if term.sign == Sign::Minus { Expression::Negative(Box::new(value)) } else { value }
-    }
-
-    fn value(&self, node: usize) -> Expression {
-        match &self.nodes[node].kind {
-            Kind::Leaf(expression) => expression.clone(),
-            Kind::Scaled(operator, operands) => {
-                let [a, b] = operands.map(|node| self.operand(Term { sign: Sign::Plus, node }));
-                Expression::binary(*operator, a, b)
+        let mut statements = Vec::new();
+        for Statement { place, name, value } in &program.statements {
+            let node = self.terms[value.index()].node;
+            if self.is_computed[node] {
+                let value = writing.statement(*name, node);
+                statements.push(Statement { place: *place, name: *name, value });
             }
-            Kind::BySign(operands) => Expression::BySign(Box::new(operands.map(|operand| self.operand(operand)))),
-            Kind::Sum(terms) => self.sum(terms),
         }
+        let mut output = |of: &Output| Output { name: of.name, value: writing.operand(self.terms[of.value.index()]) };
+        let outputs = program.outputs.iter().map(&mut output).collect();
+        Program { values: writing.values, statements, outputs, ..program.clone() }.in_written_order()
+    }
+}
+
+/// Writes sums as values.
+struct Writing<'s> {
+    sums: &'s Sums<'s>,
+    values: Values,
+    /// By node: where it has been written under its name.
+    known: Vec<Option<ValueId>>,
+}
+
+impl Writing<'_> {
+    fn statement(&mut self, name: Name, node: usize) -> ValueId {
+        let value = self.value(node);
+        let id = self.values.named(name, value);
+        self.known[node] = Some(id);
+        id
+    }
+
+    /// A term where it is used: what a statement computes, else its value.
+    fn operand(&mut self, term: Term) -> ValueId {
+        let known = self.known[term.node].filter(|_| self.sums.is_computed[term.node]);
+        let value = known.unwrap_or_else(|| self.value(term.node));
+        if term.sign == Sign::Minus { self.values.push(None, Value::Negative(value)) } else { value }
+    }
+
+    fn value(&mut self, node: usize) -> ValueId {
+        if let Some(terms) = &self.sums.terms_of[node] {
+            return self.sum(terms);
+        }
+        let Some((id, value)) = self.sums.value(node) else { return self.values.push(None, Value::Constant(0.0)) };
+        if self.sums.is_leaf(id) {
+            return id;
+        }
+        // the sign of a product is outside
+        let is_scaled = matches!(value, Value::Binary(..));
+        let value = value.map(|operand| {
+            let term = self.sums.terms[operand.index()];
+            self.operand(if is_scaled { Term::plus(term.node) } else { term })
+        });
+        self.values.push(None, value)
     }
 
     /// The terms in their order. A sum that begins with negative terms is written without sign up to the first that has
     /// none.
-    fn sum(&self, terms: &[Term]) -> Expression {
-        let plain = |term: Term| self.operand(Term { sign: Sign::Plus, ..term });
-        let parts = terms.iter().map(|&term| (term.sign, plain(term)));
-        let sum = parts.reduce(|(sign, sum), (sign_of_term, term)| match (sign, sign_of_term) {
-            (Sign::Plus, Sign::Minus) => (Sign::Plus, Expression::binary(Operator::Difference, sum, term)),
-            (Sign::Minus, Sign::Plus) => (Sign::Plus, Expression::binary(Operator::Difference, term, sum)),
-            (sign, _) => (sign, Expression::binary(Operator::Sum, sum, term)),
-        });
+    fn sum(&mut self, terms: &[Term]) -> ValueId {
+        let mut sum: Option<(Sign, ValueId)> = None;
+        for term in terms {
+            let value = self.operand(Term::plus(term.node));
+            let mut binary = |operator, a, b| self.values.push(None, Value::Binary(operator, a, b));
+            sum = Some(match (sum, term.sign) {
+                (None, sign) => (sign, value),
+                (Some((Sign::Plus, sum)), Sign::Minus) => (Sign::Plus, binary(Operator::Difference, sum, value)),
+                (Some((Sign::Minus, sum)), Sign::Plus) => (Sign::Plus, binary(Operator::Difference, value, sum)),
+                (Some((sign, sum)), _) => (sign, binary(Operator::Sum, sum, value)),
+            });
+        }
         match sum {
             Some((Sign::Plus, sum)) => sum,
-            Some((Sign::Minus, sum)) => Expression::Negative(Box::new(sum)),
-            None => Expression::Zero,
+            Some((Sign::Minus, sum)) => self.values.push(None, Value::Negative(sum)),
+            None => self.values.push(None, Value::Constant(0.0)),
         }
-    }
-}
-
-/// Whether sums that have a name of their own become terms of others.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Named {
-    Too,
-    Not,
-}
-
-impl Term {
-    fn opposite(self) -> Self {
-        let sign = if self.sign == Sign::Plus { Sign::Minus } else { Sign::Plus };
-        Self { sign, ..self }
     }
 }
 
@@ -412,9 +453,9 @@ mod tests {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../tests/dense/dense7.yaml");
         let robot = rne_model::Reader::new("dense7").read(&std::fs::read(path).unwrap()).unwrap().robot;
         let program = Compiler::new(&robot).compile(Function::Regressor, Form::SevenSteps).unwrap();
-        let (mut graph, _) = Graph::new(&program);
-        graph.flatten(Named::Too);
-        let (steps, nodes) = (graph.choose_products(), graph.nodes.len());
+        let mut sums = Sums::of(&program);
+        sums.flatten(Named::Too);
+        let (steps, nodes) = (sums.choose_products(), program.values.len());
         assert!(steps > 100 && steps < 2 * nodes, "{steps} of {nodes}");
     }
 }

@@ -1,11 +1,11 @@
 //! An interpreter of programs over any number type, so that thousands of robots can be tried without compiling each.
 
-use std::collections::HashMap;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 use crate::ir::name::Name;
 use crate::ir::quantity::{Component, Quantity};
-use crate::program::{Expression, Operator, Program, Statement};
+use crate::program::Program;
+use crate::values::{Contraction, Negated, Operator, Value, ValueId, Values};
 
 /// The arguments of a function. What a function does not use may be empty or zero.
 #[derive(Clone, Copy, Debug)]
@@ -50,22 +50,11 @@ impl<'a, T: Copy> Arguments<'a, T> {
     }
 }
 
-/// A program made ready to run: names are resolved to slots, by their text as in the code that is emitted.
+/// The values of a program and which of them it returns, ready to run.
 #[derive(Clone, Debug)]
 pub struct Interpreter {
-    code: Vec<Instruction>,
-    outputs: Vec<usize>,
-}
-
-/// Writes the next slot (sine and cosine: the next two).
-#[derive(Clone, Copy, Debug)]
-enum Instruction {
-    Argument(Name),
-    Constant(Option<Name>, f64),
-    SineCosine(usize),
-    Negative(usize),
-    Binary(Operator, usize, usize),
-    BySign([usize; 3]),
+    values: Values,
+    outputs: Vec<ValueId>,
 }
 
 /// What a number of the interpreter can do.
@@ -95,31 +84,10 @@ macro_rules! real {
 real!(f32, f64);
 
 impl Interpreter {
-    /// Resolves the names of a program.
+    /// Takes the values of a program.
     #[must_use]
     pub fn new(program: &Program) -> Self {
-        let mut builder = Builder::default();
-        for &name in &program.arguments {
-            builder.define(name, Instruction::Argument(name));
-        }
-        for constant in &program.constants {
-            builder.define(constant.name, Instruction::Constant(Some(constant.name), constant.value));
-        }
-        for statement in &program.angles {
-            builder.statement(statement);
-        }
-        for turn in &program.sines_and_cosines {
-            let angle = builder.expression(&turn.angle);
-            let slot = builder.push(Instruction::SineCosine(angle));
-            builder.slots += 1;
-            builder.known.extend(turn.sine.map(|name| (name.to_string(), slot)));
-            builder.known.extend(turn.cosine.map(|name| (name.to_string(), slot + 1)));
-        }
-        for statement in &program.statements {
-            builder.statement(statement);
-        }
-        let outputs = program.outputs.iter().map(|output| builder.expression(&output.value)).collect();
-        Self { code: builder.code, outputs }
+        Self { values: program.values.clone(), outputs: program.outputs.iter().map(|output| output.value).collect() }
     }
 
     /// Runs the program. `constant` turns a number of the program into a `T`, `sin_cos` gives (sine, cosine).
@@ -147,35 +115,49 @@ impl Interpreter {
     where
         T: Real,
     {
-        let mut slots: Vec<T> = Vec::with_capacity(self.code.len() + 64);
-        for &instruction in &self.code {
-            let value = match instruction {
-                Instruction::Argument(name) => match name.quantity {
-                    // sines and cosines that are arguments are those of the positions
-                    Quantity::Sine => sin_cos(arguments.position(name.joint)?).0,
-                    Quantity::Cosine => sin_cos(arguments.position(name.joint)?).1,
-                    _ => arguments.get(name)?,
-                },
-                Instruction::Constant(name, value) => constant(name, value)?,
-                Instruction::SineCosine(angle) => {
-                    let (sine, cosine) = sin_cos(slots[angle]);
-                    slots.push(sine);
-                    cosine
-                }
-                Instruction::Negative(a) => -slots[a],
-                Instruction::Binary(Operator::Sum, a, b) => slots[a] + slots[b],
-                Instruction::Binary(Operator::Difference, a, b) => slots[a] - slots[b],
-                Instruction::Binary(Operator::Product, a, b) => slots[a] * slots[b],
-                Instruction::Binary(Operator::Quotient, a, b) => slots[a] / slots[b],
-                Instruction::BySign([x, a, b]) => slots[x].by_sign(slots[a], slots[b]),
+        let mut slots: Vec<T> = Vec::with_capacity(self.values.len());
+        // the cosine of an angle comes after its sine
+        let mut turn: Option<(ValueId, (T, T))> = None;
+        for (id, value) in self.values.iter() {
+            let of = |id: ValueId| slots[id.index()];
+            let mut turned = |angle: ValueId| match turn {
+                Some((of, pair)) if of == angle => pair,
+                _ => turn.insert((angle, sin_cos(of(angle)))).1,
             };
-            slots.push(value);
+            let number = match value {
+                Value::Argument => arguments.input(self.values.name(id)?, &sin_cos)?,
+                Value::Constant(number) => constant(self.values.name(id), number)?,
+                Value::Sine(angle) => turned(angle).0,
+                Value::Cosine(angle) => turned(angle).1,
+                Value::Same(a) => of(a),
+                Value::Negative(a) => -of(a),
+                Value::Binary(Operator::Sum, a, b) => of(a) + of(b),
+                Value::Binary(Operator::Difference, a, b) => of(a) - of(b),
+                Value::Binary(Operator::Product, a, b) => of(a) * of(b),
+                Value::Binary(Operator::Quotient, a, b) => of(a) / of(b),
+                Value::Fused(Contraction { factors: [x, y], addend, negated }) => match negated {
+                    None => of(addend) + of(x) * of(y),
+                    Some(Negated::Factor) => of(addend) - of(x) * of(y),
+                    Some(Negated::Addend) => of(x) * of(y) - of(addend),
+                },
+                Value::BySign([x, a, b]) => of(x).by_sign(of(a), of(b)),
+            };
+            slots.push(number);
         }
-        Some(self.outputs.iter().map(|&slot| slots[slot]).collect())
+        Some(self.outputs.iter().map(|output| slots[output.index()]).collect())
     }
 }
 
 impl<T: Copy> Arguments<'_, T> {
+    /// The argument of a name. Sines and cosines that are arguments are those of the positions.
+    fn input(&self, name: Name, sin_cos: impl Fn(T) -> (T, T)) -> Option<T> {
+        match name.quantity {
+            Quantity::Sine => Some(sin_cos(self.position(name.joint)?).0),
+            Quantity::Cosine => Some(sin_cos(self.position(name.joint)?).1),
+            _ => self.get(name),
+        }
+    }
+
     fn position(&self, joint: usize) -> Option<T> {
         self.q.get(joint.checked_sub(1)?).copied()
     }
@@ -204,46 +186,5 @@ impl<T: Copy> Arguments<'_, T> {
             _ => self.base[3],
         };
         Some(vector[axis as usize])
-    }
-}
-
-#[derive(Default)]
-struct Builder {
-    code: Vec<Instruction>,
-    slots: usize,
-    known: HashMap<String, usize>,
-}
-
-impl Builder {
-    fn push(&mut self, instruction: Instruction) -> usize {
-        self.code.push(instruction);
-        self.slots += 1;
-        self.slots - 1
-    }
-
-    fn define(&mut self, name: Name, instruction: Instruction) {
-        let slot = self.push(instruction);
-        self.known.insert(name.to_string(), slot);
-    }
-
-    fn statement(&mut self, Statement { name, value, .. }: &Statement) {
-        let slot = self.expression(value);
-        self.known.insert(name.to_string(), slot);
-    }
-
-    fn expression(&mut self, expression: &Expression) -> usize {
-        let instruction = match expression {
-            // every name is defined before it is used: programs are in order of evaluation
-            Expression::Variable(name) => return self.known[&name.to_string()],
-            Expression::Zero => Instruction::Constant(None, 0.0),
-            Expression::Negative(a) => Instruction::Negative(self.expression(a)),
-            Expression::Binary(operator, a, b) => {
-                Instruction::Binary(*operator, self.expression(a), self.expression(b))
-            }
-            Expression::BySign(operands) => {
-                Instruction::BySign(operands.each_ref().map(|operand| self.expression(operand)))
-            }
-        };
-        self.push(instruction)
     }
 }

@@ -18,13 +18,14 @@
 mod argument_array;
 mod equation;
 mod error;
+mod expression;
 pub mod fma;
 mod formulate;
 mod function;
 mod identifiability;
 mod interpret;
 mod ir;
-pub mod latency;
+mod latency;
 mod lower;
 mod named;
 mod pipeline;
@@ -33,6 +34,7 @@ mod program;
 mod prove;
 mod reduced;
 mod refusal;
+mod values;
 
 use std::sync::OnceLock;
 
@@ -41,6 +43,7 @@ use rne_model::Robot;
 pub use argument_array::ArgumentArray;
 pub use equation::{Equation, Operation as TermOperation, Term};
 pub use error::{CompileError, Extreme, Suspect};
+pub use expression::{Expression, ExpressionKind};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit, Own, Record,
     Shape,
@@ -52,13 +55,11 @@ pub use ir::name::{Name, WithRespectTo};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
 pub use named::UnknownName;
 pub use pipeline::Target;
-pub use program::{
-    Constant, Expression, Operations, Operator, Output, Program, Proof, Resolution, ResolvedAs, Sign, SineCosine,
-    Statement,
-};
+pub use program::{Constant, Operations, Output, Program, Proof, Resolution, ResolvedAs, SineCosine, Statement};
 pub use reduced::algorithm::Algorithm;
 pub use reduced::inward::BodiesPer;
 pub use refusal::{Attempt, LeftOut, Reason, Refusal};
+pub use values::{Contraction, Negated, Operator, Sign, Value, ValueId, Values};
 
 use crate::pipeline::{Formulation, LARGEST, reference, seven_steps_within};
 use crate::plan::PlanSet;

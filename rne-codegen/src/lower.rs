@@ -1,6 +1,7 @@
 //! From the graph to named statements: what is live, what gets a name of its own, and with which sign it is written.
 
 mod equations;
+mod writing;
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -12,10 +13,11 @@ use crate::ir::fold_report::{Operation, Place};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Quantity, Step};
 use crate::ir::{ExactAngle, Number, Op, Ref, Traced};
-use crate::program::{
-    Constant, Exactly, Expression, Operator, Output, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement,
-};
+use crate::program::{Constant, Exactly, Program, Resolution, ResolvedAs};
 use crate::reduced::algorithm::Algorithm;
+use crate::values::{Sign, Value, Values};
+
+use writing::Writing;
 
 /// Where a statement stands: the index of its node, and an order among those that stand behind one node.
 type Position = (usize, usize);
@@ -40,21 +42,30 @@ pub(crate) fn lower(
     let lowering = Lowering::new(&written, uses);
     let constants = lowering.constants()?;
     let exactly = constants.iter().map(|(constant, at)| (constant.name, lowering.exactly(constant, *at))).collect();
-    let mut statements = lowering.statements();
-    let outputs = lowering.outputs(&outputs, &mut statements);
-    statements.sort_by_key(|&(position, _)| position);
-    let statements = statements.into_iter().map(|(_, statement)| statement);
-    let (angles, statements) = statements.partition(|statement| statement.name.quantity.is_of_an_angle());
+    let (mut definitions, returned) = lowering.definitions(&outputs);
+    definitions.sort_by_key(|definition| definition.position);
+    let is_angle = |definition: &Definition| definition.name.quantity.is_of_an_angle();
+    let (of_angles, definitions): (Vec<_>, Vec<_>) = definitions.into_iter().partition(is_angle);
+    let mut writing = Writing { lowering: &lowering, values: Values::default(), known: HashMap::new() };
+    for name in lowering.arguments() {
+        writing.leaf(name, Value::Argument);
+    }
+    for (constant, _) in &constants {
+        writing.leaf(constant.name, Value::Constant(constant.value));
+    }
+    let angles = of_angles.iter().map(|definition| writing.statement(definition)).collect();
+    let sines_and_cosines = writing.sines_and_cosines();
+    let statements = definitions.iter().map(|definition| writing.statement(definition)).collect();
+    let outputs = returned.iter().map(|(name, value)| writing.output(*name, value)).collect();
     let program = Program {
         robot: heading.robot.name.clone(),
         dof: heading.robot.dof(),
         parameters: heading.robot.run_time.names.len(),
         function: heading.function,
         form: heading.form,
-        arguments: lowering.arguments(),
-        constants: constants.into_iter().map(|(constant, _)| constant).collect(),
+        values: writing.values,
         angles,
-        sines_and_cosines: lowering.sines_and_cosines(),
+        sines_and_cosines,
         statements,
         outputs,
         resolutions: lowering.resolutions(),
@@ -66,6 +77,7 @@ pub(crate) fn lower(
         proof: None,
         refusals: Vec::new(),
     };
+    let program = program.in_written_order();
     program.check_names()?;
     Ok((program, exactly))
 }
@@ -206,8 +218,33 @@ impl<'w> Lowering<'w> {
                 }
             };
             // with the sign that needs no minus; operands have their names, for they are older
-            let negative = !is_constant && self.operation(id).0;
+            let negative = !is_constant && self.is_negative(id);
             self.names[index] = Some(Given { name, negative });
+        }
+    }
+
+    /// Whether what a node computes is written with a minus sign in front: signs are carried outwards.
+    fn is_negative(&self, id: Ref) -> bool {
+        let operand = |at: Ref| {
+            let is_negative = match self.name_where_used(id, at.magnitude()) {
+                _ if self.is_zero(at.magnitude()) => false,
+                Some(given) => given.negative,
+                None => self.is_negative(at.magnitude()),
+            };
+            is_negative != at.is_negative()
+        };
+        match self.written.graph.op(id) {
+            Op::Sum(a, b) => operand(a) && operand(b),
+            Op::Product(a, b) | Op::Quotient(a, b) => operand(a) != operand(b),
+            _ => false,
+        }
+    }
+
+    /// The name of a node where `user` uses it.
+    fn name_where_used(&self, user: Ref, id: Ref) -> Option<Given> {
+        match self.written.graph.op(id) {
+            Op::Constant(_) => self.constant_name(user, id),
+            _ => self.names[id.index()],
         }
     }
 
@@ -240,9 +277,9 @@ impl<'w> Lowering<'w> {
         self.written.graph.nodes().filter(|&(id, _)| self.is_live(id))
     }
 
-    fn arguments(&self) -> Vec<Name> {
+    fn arguments(&self) -> BTreeSet<Name> {
         let input = |(_, op)| if let Op::Input(input) = op { Some(input.name()) } else { None };
-        self.live_nodes().filter_map(input).collect::<BTreeSet<_>>().into_iter().collect()
+        self.live_nodes().filter_map(input).collect()
     }
 
     fn constants(&self) -> Result<Vec<(Constant, Ref)>, CompileError> {
@@ -295,74 +332,41 @@ impl<'w> Lowering<'w> {
         given.or(self.names[id.index()])
     }
 
-    /// Statements with their position.
-    fn statements(&self) -> Vec<(Position, Statement)> {
-        let mut statements = Vec::new();
-        for (id, node) in self.live_nodes() {
-            if let (true, Some(given)) = (node.is_operation(), self.names[id.index()]) {
-                let (negative, value) = self.operation(id);
-                let value = signed(negative != given.negative, value);
-                let place = self.place(id, given.name);
-                statements.push(((id.index(), 0), Statement { place, name: given.name, value }));
-            }
-        }
-        statements
-    }
-
-    /// The sines and cosines, in the order in which they were asked for.
-    fn sines_and_cosines(&self) -> Vec<SineCosine> {
-        let mut turns: Vec<(Ref, SineCosine)> = Vec::new();
-        for (id, node) in self.live_nodes() {
-            let (Op::Sine(angle) | Op::Cosine(angle)) = node else { continue };
-            let name = self.names[id.index()].map(|given| given.name);
-            let known = turns.iter().position(|(other, _)| *other == angle);
-            let index = known.unwrap_or_else(|| {
-                let joint = name.map_or(0, |name| name.joint);
-                let place = Place { joint, step: Step::AngularVelocity, quantity: Quantity::Sine, by: None };
-                turns.push((angle, SineCosine { place, sine: None, cosine: None, angle: self.expression(angle) }));
-                turns.len() - 1
-            });
-            let turn = &mut turns[index].1;
-            *(if matches!(node, Op::Sine(_)) { &mut turn.sine } else { &mut turn.cosine }) = name;
-        }
-        turns.into_iter().map(|(_, turn)| turn).collect()
-    }
-
     fn place(&self, id: Ref, name: Name) -> Place {
         let own = || place_of(name, Step::AngularVelocity);
         self.written.trace.births[id.index()].as_ref().map_or_else(own, |birth| birth.place)
     }
 
-    /// Outputs as variables; a torque, and whatever is computed for it alone, gets a statement of its own name.
-    fn outputs(&self, outputs: &[(Name, Ref)], statements: &mut Vec<(Position, Statement)>) -> Vec<Output> {
+    /// What gets statements of its own, in no order, and what is returned: a torque, and whatever is computed for a
+    /// returned value alone, has a statement.
+    fn definitions(&self, outputs: &[(Name, Ref)]) -> (Vec<Definition>, Vec<(Name, Returned)>) {
+        let mut found = Vec::new();
+        for (id, node) in self.live_nodes() {
+            if let (true, Some(Given { name, negative })) = (node.is_operation(), self.names[id.index()]) {
+                let (position, place) = ((id.index(), 0), self.place(id, name));
+                found.push(Definition { position, place, name, at: id.signed(negative), is_node: true });
+            }
+        }
         let mut returned = Vec::with_capacity(outputs.len());
         let definitions = self.written.trace.definitions.iter().enumerate();
         let first: HashMap<Name, usize> =
             definitions.rev().map(|(order, definition)| (definition.name, order)).collect();
         let mut stated = BTreeSet::new();
-        for &(name, term) in outputs {
-            let value = self.expression(term);
-            let is_stated = match &value {
-                Expression::Zero => false,
-                Expression::Variable(_) => name.quantity == Quantity::Torque,
-                Expression::Negative(a) if matches!(**a, Expression::Variable(_)) => name.quantity == Quantity::Torque,
-                _ => true,
-            };
+        for &(name, at) in outputs {
+            let is_named = self.names[at.index()].is_some();
+            let is_stated = !self.is_zero(at.magnitude()) && (!is_named || name.quantity == Quantity::Torque);
             let Some(&order) = first.get(&name).filter(|_| is_stated) else {
-                returned.push(Output { name, value });
+                returned.push((name, Returned::Value(at)));
                 continue;
             };
-            if !stated.insert(name) {
-                returned.push(Output { name, value: Expression::Variable(name) });
-                continue;
+            returned.push((name, Returned::Statement));
+            if stated.insert(name) {
+                // after the last node that was there when it was named, and after torques named before it
+                let position = (self.written.trace.definitions[order].after.saturating_sub(1), order);
+                found.push(Definition { position, place: place_of(name, Step::Torque), name, at, is_node: false });
             }
-            let definition = &self.written.trace.definitions[order];
-            let place = place_of(name, Step::Torque);
-            // after the last node that was there when it was named, and after torques named before it
-            statements.push(((definition.after.saturating_sub(1), order), Statement { place, name, value }));
-            returned.push(Output { name, value: Expression::Variable(name) });
         }
-        returned
+        (found, returned)
     }
 
     fn resolutions(&self) -> Vec<Resolution> {
@@ -387,54 +391,23 @@ impl<'w> Lowering<'w> {
             })
             .collect()
     }
+}
 
-    /// A term as an expression: the name of its node, or what the node computes.
-    fn expression(&self, term: Ref) -> Expression {
-        let (negative, expression) = self.operand(None, term.magnitude());
-        signed(negative != term.is_negative(), expression)
-    }
+/// A statement that is to be written.
+struct Definition {
+    position: Position,
+    place: Place,
+    name: Name,
+    /// What its name stands for.
+    at: Ref,
+    /// Whether it computes the node, which may have another name else.
+    is_node: bool,
+}
 
-    /// A node, as `user` uses it, as a sign and an expression. Signs are carried outwards, to where they cost nothing.
-    fn operand(&self, user: Option<Ref>, id: Ref) -> (bool, Expression) {
-        if self.is_zero(id) {
-            return (false, Expression::Zero);
-        }
-        let given = match (self.written.graph.op(id), user) {
-            (Op::Constant(_), Some(user)) => self.constant_name(user, id),
-            _ => self.names[id.index()],
-        };
-        match given {
-            Some(given) => (given.negative, Expression::Variable(given.name)),
-            None => self.operation(id),
-        }
-    }
-
-    fn operation(&self, id: Ref) -> (bool, Expression) {
-        let operand = |at: Ref| {
-            let (negative, value) = self.operand(Some(id), at.magnitude());
-            (negative != at.is_negative(), Box::new(value))
-        };
-        match self.written.graph.op(id) {
-            Op::Sum(a, b) => match (operand(a), operand(b)) {
-                ((false, a), (false, b)) => (false, Expression::Binary(Operator::Sum, a, b)),
-                ((false, a), (true, b)) | ((true, b), (false, a)) => {
-                    (false, Expression::Binary(Operator::Difference, a, b))
-                }
-                ((true, a), (true, b)) => (true, Expression::Binary(Operator::Sum, a, b)),
-            },
-            op @ (Op::Product(a, b) | Op::Quotient(a, b)) => {
-                let operator = if matches!(op, Op::Product(..)) { Operator::Product } else { Operator::Quotient };
-                let ((a_negative, a), (b_negative, b)) = (operand(a), operand(b));
-                (a_negative != b_negative, Expression::Binary(operator, a, b))
-            }
-            Op::BySign(operands) => {
-                let operands = operands.map(operand).map(|(negative, value)| signed(negative, *value));
-                (false, Expression::BySign(Box::new(operands)))
-            }
-            // leaves always have a name, but for the zero that no operation keeps
-            Op::Constant(_) | Op::Input(_) | Op::Sine(_) | Op::Cosine(_) => (false, Expression::Zero),
-        }
-    }
+/// What is returned: what a statement of that name computes, or a value.
+enum Returned {
+    Statement,
+    Value(Ref),
 }
 
 /// Where what bears a name belongs; `otherwise` is the step of what no step computes.
@@ -445,38 +418,4 @@ fn place_of(name: Name, otherwise: Step) -> Place {
 
 fn sign(negative: bool) -> Sign {
     if negative { Sign::Minus } else { Sign::Plus }
-}
-
-/// An expression with a sign, which is carried inwards where it costs nothing: -(a - b) is b - a.
-fn signed(negative: bool, expression: Expression) -> Expression {
-    if !negative {
-        return expression;
-    }
-    negated(&expression).unwrap_or_else(|| Expression::Negative(Box::new(expression)))
-}
-
-/// The negative of an expression without a minus sign in front, if there is one. Rounding is symmetric, so it is exact.
-fn negated(expression: &Expression) -> Option<Expression> {
-    let negative = |a: &Expression| negated(a).map(Box::new);
-    match expression {
-        Expression::Zero => Some(Expression::Zero),
-        Expression::Negative(a) => Some((**a).clone()),
-        Expression::Binary(Operator::Difference, a, b) => {
-            Some(Expression::Binary(Operator::Difference, b.clone(), a.clone()))
-        }
-        Expression::Binary(Operator::Sum, a, b) => match negative(a) {
-            Some(a) => Some(Expression::Binary(Operator::Difference, a, b.clone())),
-            None => negative(b).map(|b| Expression::Binary(Operator::Difference, b, a.clone())),
-        },
-        Expression::Binary(operator, a, b) => match negative(a) {
-            Some(a) => Some(Expression::Binary(*operator, a, b.clone())),
-            None if *operator == Operator::Product => negative(b).map(|b| Expression::Binary(*operator, a.clone(), b)),
-            None => None,
-        },
-        Expression::BySign(operands) => {
-            let [x, a, b] = &**operands;
-            Some(Expression::BySign(Box::new([x.clone(), *negative(a)?, *negative(b)?])))
-        }
-        Expression::Variable(_) => None,
-    }
 }

@@ -1,17 +1,19 @@
-//! The compiled function: constants and named statements, in order, and what became of every operation.
+//! The compiled function: its values in order, the statements that name them, and what became of every operation.
 //!
-//! One `Program`, many renderers: tokens, text, counts, an interpreter.
+//! One `Program`, many renderers: tokens, text, counts, an interpreter, a machine.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::CompileError;
 use crate::equation::Equation;
+use crate::expression::Expression;
 use crate::function::{Form, Function};
 use crate::ir::fold_report::{Causes, FoldReport, Place};
 use crate::ir::name::Name;
 use crate::ir::{ExactAngle, Number};
 use crate::reduced::algorithm::Algorithm;
 use crate::refusal::Refusal;
+use crate::values::{Operator, Sign, Value, ValueId, Values};
 
 /// A function of one robot as straight-line code.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,15 +28,14 @@ pub struct Program {
     pub function: Function,
     /// How it is computed.
     pub form: Form,
-    /// The arguments that are used.
-    pub arguments: Vec<Name>,
-    /// The constants that are used.
-    pub constants: Vec<Constant>,
-    /// Angles that are sums, each using only what stands before it.
+    /// All values, in the order in which they are computed: arguments, constants, angles, sines and cosines, statements,
+    /// what is returned without a statement.
+    pub values: Values,
+    /// Angles that are sums.
     pub angles: Vec<Statement>,
     /// The sines and cosines of all joint angles, evaluated at once.
     pub sines_and_cosines: Vec<SineCosine>,
-    /// The statements, each using only what stands before it.
+    /// The values that have statements, in order.
     pub statements: Vec<Statement>,
     /// The values returned, in the order of [`Function::layout`], then what was asked to be kept.
     pub outputs: Vec<Output>,
@@ -79,21 +80,12 @@ pub struct Proof {
 pub(crate) type Exactly = HashMap<Name, (Number, Option<ExactAngle>)>;
 
 /// A named constant. A number that is two entries of the table stands under each name that the statements use.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Constant {
     /// Its name.
     pub name: Name,
     /// Its value, finite.
     pub value: f64,
-}
-
-/// Whether a value enters as itself or negated.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sign {
-    /// As itself.
-    Plus,
-    /// Negated.
-    Minus,
 }
 
 /// One statement: a name and its value.
@@ -104,7 +96,7 @@ pub struct Statement {
     /// The name of its value.
     pub name: Name,
     /// The value.
-    pub value: Expression,
+    pub value: ValueId,
 }
 
 /// Sine and cosine of an angle; a name is `None` when it is not used.
@@ -117,35 +109,7 @@ pub struct SineCosine {
     /// Name of the cosine.
     pub cosine: Option<Name>,
     /// The angle, rad.
-    pub angle: Expression,
-}
-
-/// An expression over arguments, constants and earlier statements.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Expression {
-    /// An argument, a constant or an earlier statement.
-    Variable(Name),
-    /// The constant 0, where a function returns one.
-    Zero,
-    /// -a
-    Negative(Box<Expression>),
-    /// Two operands with an operator between them.
-    Binary(Operator, Box<Expression>, Box<Expression>),
-    /// One of two values by the sign of the first: positive, negative; 0 where that is 0.
-    BySign(Box<[Expression; 3]>),
-}
-
-/// An operator between two operands.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operator {
-    /// a + b
-    Sum,
-    /// a - b
-    Difference,
-    /// a · b
-    Product,
-    /// a / b
-    Quotient,
+    pub angle: ValueId,
 }
 
 /// A returned value.
@@ -153,8 +117,8 @@ pub enum Operator {
 pub struct Output {
     /// Its name.
     pub name: Name,
-    /// Its value.
-    pub value: Expression,
+    /// The value.
+    pub value: ValueId,
 }
 
 /// What a component of a quantity became.
@@ -213,18 +177,13 @@ impl Program {
     pub fn check_names(&self) -> Result<(), CompileError> {
         let mut taken: HashSet<String> = self.reserved_names().map(str::to_owned).collect();
         let turns = self.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
-        let constants = self.constants.iter().map(|constant| constant.name);
+        let constants = self.constants().map(|constant| constant.name);
         let statements = self.angles.iter().chain(&self.statements).map(|statement| statement.name);
-        let names = self.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
+        let names = self.arguments().chain(constants).chain(turns).chain(statements);
         match names.map(|name| name.to_string()).find(|text| !taken.insert(text.clone())) {
             Some(name) => Err(CompileError::TwoOfOneName { function: self.function, name }),
             None => Ok(()),
         }
-    }
-
-    /// The same program with other statements.
-    pub(crate) fn computed_by(&self, statements: Vec<Statement>, outputs: Vec<Output>) -> Self {
-        Self { statements, outputs, ..self.clone() }
     }
 
     /// (products, sums) of the seven steps before folding, step 3 included.
@@ -233,27 +192,74 @@ impl Program {
         self.proof.map_or_else(|| self.fold_report.before(), |proof| proof.before)
     }
 
-    /// The values of the statements, then those returned.
-    pub fn values(&self) -> impl Iterator<Item = &Expression> {
-        let statements = self.statements.iter().map(|statement| &statement.value);
-        statements.chain(self.outputs.iter().map(|output| &output.value))
+    /// The names of the arguments that are used, in order: they are the first values.
+    pub fn arguments(&self) -> impl Iterator<Item = Name> {
+        let arguments = self.values.iter().take_while(|(_, value)| *value == Value::Argument);
+        arguments.filter_map(|(id, _)| self.values.name(id))
     }
 
-    /// The values of sums of angles, then the angles whose sines and cosines are evaluated.
-    pub fn angle_values(&self) -> impl Iterator<Item = &Expression> {
-        let angles = self.angles.iter().map(|statement| &statement.value);
-        angles.chain(self.sines_and_cosines.iter().map(|turn| &turn.angle))
+    /// The constants that are used.
+    pub fn constants(&self) -> impl Iterator<Item = Constant> {
+        self.values.iter().filter_map(|(id, value)| match value {
+            Value::Constant(value) => Some(Constant { name: self.values.name(id)?, value }),
+            _ => None,
+        })
+    }
+
+    /// What the statements compute, then what is returned.
+    pub fn expressions(&self) -> impl Iterator<Item = Expression<'_>> {
+        let statements = self.statements.iter().map(|statement| self.values.defined(statement.value));
+        statements.chain(self.outputs.iter().map(|output| self.values.used(output.value)))
+    }
+
+    /// Sums of angles, then the angles whose sines and cosines are evaluated.
+    pub fn angle_expressions(&self) -> impl Iterator<Item = Expression<'_>> {
+        let angles = self.angles.iter().map(|statement| self.values.defined(statement.value));
+        angles.chain(self.sines_and_cosines.iter().map(|turn| self.values.used(turn.angle)))
+    }
+
+    /// The same program with its values in the order in which they are written, and without those that nothing needs.
+    pub(crate) fn in_written_order(self) -> Self {
+        let mut moving = Moving { old: &self.values, new: vec![None; self.values.len()], values: Values::default() };
+        let is_leaf = |(_, value): &(ValueId, Value)| matches!(value, Value::Argument | Value::Constant(_));
+        for (id, _) in self.values.iter().take_while(is_leaf) {
+            moving.value(id);
+        }
+        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
+        let angles = self.angles.iter().map(&mut statement).collect();
+        let mut turn = |of: &SineCosine| SineCosine { angle: moving.value(of.angle), ..of.clone() };
+        let sines_and_cosines = self.sines_and_cosines.iter().map(&mut turn).collect();
+        let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
+        for (id, _) in self.values.iter().filter(is_turn) {
+            moving.value(id);
+        }
+        let mut statement = |of: &Statement| Statement { value: moving.value(of.value), ..of.clone() };
+        let statements = self.statements.iter().map(&mut statement).collect();
+        let mut output = |of: &Output| Output { value: moving.value(of.value), ..of.clone() };
+        let outputs = self.outputs.iter().map(&mut output).collect();
+        let values = moving.values;
+        Self { values, angles, sines_and_cosines, statements, outputs, ..self }
+    }
+
+    /// How many values stand before the statements: arguments, constants, angles, sines and cosines.
+    #[must_use]
+    pub fn before_statements(&self) -> usize {
+        let is_turn = |(_, value): &(ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
+        match self.values.iter().rev().find(is_turn) {
+            Some((last, _)) => last.index() + 1,
+            None => self.arguments().count() + self.constants().count(),
+        }
     }
 
     /// Whether a value is chosen by a sign somewhere.
     #[must_use]
     pub fn chooses_by_sign(&self) -> bool {
-        self.values().any(|value| value.parts().any(|part| matches!(part, Expression::BySign(_))))
+        self.values.iter().any(|(_, value)| matches!(value, Value::BySign(_)))
     }
 
     /// Whether the constant 0 stands somewhere: where it is returned, or chosen by a sign.
     pub fn returns_zero(&self) -> bool {
-        self.values().any(|value| value.parts().any(|part| *part == Expression::Zero))
+        self.values.iter().any(|(id, value)| matches!(value, Value::Constant(_)) && self.values.name(id).is_none())
     }
 
     /// Whether it is written by composite or articulated bodies.
@@ -276,11 +282,12 @@ impl Program {
         // all sines and cosines are one statement
         let statements = self.angles.len() + usize::from(!self.sines_and_cosines.is_empty()) + self.statements.len();
         let mut count = Operations { statements, sincos: self.sines_and_cosines.len(), ..Operations::default() };
-        for part in self.angle_values().chain(self.values()).flat_map(Expression::parts) {
-            match part {
-                Expression::Binary(Operator::Sum | Operator::Difference, ..) => count.add += 1,
-                Expression::Binary(Operator::Product, ..) => count.mul += 1,
-                Expression::Binary(Operator::Quotient, ..) => count.div += 1,
+        for (_, value) in self.values.iter() {
+            match value {
+                Value::Binary(Operator::Sum | Operator::Difference, ..) => count.add += 1,
+                Value::Binary(Operator::Product, ..) => count.mul += 1,
+                Value::Binary(Operator::Quotient, ..) => count.div += 1,
+                Value::Fused(_) => (count.mul, count.add) = (count.mul + 1, count.add + 1),
                 _ => {}
             }
         }
@@ -288,30 +295,22 @@ impl Program {
     }
 }
 
-impl Expression {
-    /// Two operands with an operator between them.
-    #[must_use]
-    pub fn binary(operator: Operator, left: Self, right: Self) -> Self {
-        Self::Binary(operator, Box::new(left), Box::new(right))
-    }
+/// Values on their way from one list into another.
+struct Moving<'v> {
+    old: &'v Values,
+    new: Vec<Option<ValueId>>,
+    values: Values,
+}
 
-    /// The expression and all that stand inside it.
-    pub fn parts(&self) -> impl Iterator<Item = &Self> {
-        let mut open = vec![self];
-        std::iter::from_fn(move || {
-            let next = open.pop()?;
-            match next {
-                Self::Variable(_) | Self::Zero => {}
-                Self::Negative(a) => open.push(a),
-                Self::Binary(_, a, b) => open.extend([&**b, &**a]),
-                Self::BySign(operands) => open.extend(operands.iter().rev()),
-            }
-            Some(next)
-        })
-    }
-
-    /// The names that it uses.
-    pub fn names(&self) -> impl Iterator<Item = Name> {
-        self.parts().filter_map(|part| if let Self::Variable(name) = part { Some(*name) } else { None })
+impl Moving<'_> {
+    /// Where a value stands in the new list, behind what it is computed from.
+    fn value(&mut self, id: ValueId) -> ValueId {
+        if let Some(new) = self.new[id.index()] {
+            return new;
+        }
+        let value = self.old.get(id).map(|operand| self.value(operand));
+        let new = self.values.push(self.old.name(id), value);
+        self.new[id.index()] = Some(new);
+        new
     }
 }

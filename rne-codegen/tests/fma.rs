@@ -3,24 +3,36 @@
 mod common;
 
 use common::{compiled, plans, shipped};
-use rne_codegen::{Compiler, Form, Function, Name, Program, Target, fma};
+use rne_codegen::{Compiler, Form, Function, Name, Program, Target, ValueId, fma};
 use std::collections::BTreeSet;
 
 /// What is defined, in order, is what is used, later.
 fn check_definitions(program: &Program) {
-    let mut known: BTreeSet<Name> = program.arguments.iter().copied().collect();
-    known.extend(program.constants.iter().map(|constant| constant.name));
+    let mut known: BTreeSet<Name> = program.arguments().collect();
+    known.extend(program.constants().map(|constant| constant.name));
     known.extend(program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten());
     let mut used = BTreeSet::new();
     for statement in &program.statements {
-        let operands: BTreeSet<Name> = statement.value.names().collect();
+        let operands: BTreeSet<Name> = program.values.defined(statement.value).names().collect();
         assert!(operands.is_subset(&known), "{} of {}", statement.name, program.robot);
         used.extend(operands);
         assert!(known.insert(statement.name), "{} of {} twice", statement.name, program.robot);
     }
-    used.extend(program.outputs.iter().flat_map(|output| output.value.names()));
+    used.extend(program.outputs.iter().flat_map(|output| program.values.used(output.value).names()));
     let idle = program.statements.iter().find(|statement| !used.contains(&statement.name));
     assert_eq!(idle.map(|statement| statement.name), None, "of {}", program.robot);
+    // text nests what has no name, so it must not be used twice; counts of the list are then those of the text
+    let mut uses = vec![0; program.values.len()];
+    for (id, value) in program.values.iter() {
+        assert!(value.operands().all(|operand| operand < id), "{id:?} of {}", program.robot);
+        value.operands().for_each(|operand| uses[operand.index()] += 1);
+    }
+    program.outputs.iter().for_each(|output| uses[output.value.index()] += 1);
+    let nameless = program.values.iter().filter(|(id, _)| program.values.name(*id).is_none());
+    let turned = |id: ValueId| program.sines_and_cosines.iter().any(|turn| turn.angle == id);
+    for (id, value) in nameless.filter(|(id, _)| !turned(*id)) {
+        assert_eq!(uses[id.index()], 1, "{value:?} of {}", program.robot);
+    }
 }
 
 #[test]

@@ -4,7 +4,7 @@ use std::cell::Cell;
 
 use super::annotated::{Annotated, Part};
 use super::syntax::Syntax;
-use rne_codegen::{Expression, Operator};
+use rne_codegen::{Expression, ExpressionKind, Negated, Operator};
 
 /// Where an operand stands.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,20 +60,22 @@ impl Infix for Operator {
 
 /// Whether an operand needs parentheses. A right operand keeps them even where mathematics would not: floating-point
 /// sums and products are computed in the order in which they are written.
-pub(super) fn needs_parentheses(syntax: Syntax, operand: &Expression, position: Position) -> bool {
-    match operand {
-        Expression::Variable(_) | Expression::Zero | Expression::BySign(_) => false,
-        Expression::Binary(Operator::Product | Operator::Quotient, ..) => match position {
+pub(super) fn needs_parentheses(syntax: Syntax, operand: Expression<'_>, position: Position) -> bool {
+    match operand.kind() {
+        ExpressionKind::Variable(_) | ExpressionKind::Zero | ExpressionKind::Fused(..) | ExpressionKind::BySign(_) => {
+            false
+        }
+        ExpressionKind::Binary(Operator::Product | Operator::Quotient, ..) => match position {
             Position::Summand | Position::RightSummand => syntax.groups_products(),
             Position::Factor => false,
             Position::RightFactor | Position::Negated => true,
         },
-        Expression::Negative(_) | Expression::Binary(..) => position != Position::Summand,
+        ExpressionKind::Negative(_) | ExpressionKind::Binary(..) => position != Position::Summand,
     }
 }
 
 /// The expression on one line.
-pub(super) fn line(syntax: Syntax, expression: &Expression) -> Annotated {
+pub(super) fn line(syntax: Syntax, expression: Expression<'_>) -> Annotated {
     let measured = Measured::new(syntax, expression);
     let mut text = Annotated::default();
     measured.write(measured.whole(), &mut text);
@@ -117,7 +119,7 @@ pub(super) struct Operand {
 }
 
 impl Measured {
-    pub(super) fn new(syntax: Syntax, expression: &Expression) -> Self {
+    pub(super) fn new(syntax: Syntax, expression: Expression<'_>) -> Self {
         let mut measured = Self::default();
         measured.add(syntax, expression);
         measured
@@ -144,49 +146,64 @@ impl Measured {
         operand.in_parentheses || self.parts[operand.part].opens
     }
 
-    fn add(&mut self, syntax: Syntax, expression: &Expression) -> usize {
+    fn add(&mut self, syntax: Syntax, expression: Expression<'_>) -> usize {
         self.visits.set(self.visits.get() + 1);
         let word = |word: Annotated| (word.as_str().len(), false, Kind::Word(word));
-        let (width, opens, kind) = match expression {
-            Expression::Variable(name) => word((*name).into()),
-            Expression::Zero => word(Annotated::part(Part::Number, syntax.zero())),
-            Expression::Negative(a) => {
-                let operand = self.operand(syntax, a, Position::Negated);
-                (1 + self.width(operand), false, Kind::Negative(operand))
-            }
-            Expression::Binary(operator, ..) => {
-                let operands = self.chain(syntax, expression, *operator);
+        let (width, opens, kind) = match expression.kind() {
+            ExpressionKind::Variable(name) => word(name.into()),
+            ExpressionKind::Zero => word(Annotated::part(Part::Number, syntax.zero())),
+            ExpressionKind::Negative(a) => return self.negative(syntax, a),
+            ExpressionKind::Binary(operator, ..) => {
+                let operands = self.chain(syntax, expression, operator);
                 let widths: usize = operands.iter().map(|operand| self.width(*operand)).sum();
                 let between = operator.between_blanks().len() * (operands.len() - 1);
                 let opens = operands.first().is_some_and(|first| self.opens(*first));
-                (widths + between, opens, Kind::Chain(*operator, operands))
+                (widths + between, opens, Kind::Chain(operator, operands))
             }
-            Expression::BySign(operands) => {
-                let name = syntax.by_sign();
-                let arguments: Vec<usize> = operands.iter().map(|operand| self.add(syntax, operand)).collect();
-                let widths: usize = arguments.iter().map(|argument| self.parts[*argument].width).sum();
-                let width = name.len() + "()".len() + widths + ", ".len() * (arguments.len() - 1);
-                (width, false, Kind::Call(name, arguments))
+            ExpressionKind::Fused([x, y], z, negated) => {
+                let x = if negated == Some(Negated::Factor) { self.negative(syntax, x) } else { self.add(syntax, x) };
+                let y = self.add(syntax, y);
+                let z = if negated == Some(Negated::Addend) { self.negative(syntax, z) } else { self.add(syntax, z) };
+                return self.call(syntax.mul_add(), vec![x, y, z]);
+            }
+            ExpressionKind::BySign(operands) => {
+                let arguments = operands.map(|operand| self.add(syntax, operand)).to_vec();
+                return self.call(syntax.by_sign(), arguments);
             }
         };
+        self.push(width, opens, kind)
+    }
+
+    fn push(&mut self, width: usize, opens: bool, kind: Kind) -> usize {
         self.parts.push(Measure { width, opens, kind });
         self.parts.len() - 1
     }
 
-    fn operand(&mut self, syntax: Syntax, expression: &Expression, position: Position) -> Operand {
+    fn negative(&mut self, syntax: Syntax, of: Expression<'_>) -> usize {
+        let operand = self.operand(syntax, of, Position::Negated);
+        self.push(1 + self.width(operand), false, Kind::Negative(operand))
+    }
+
+    fn call(&mut self, name: String, arguments: Vec<usize>) -> usize {
+        let widths: usize = arguments.iter().map(|argument| self.parts[*argument].width).sum();
+        let width = name.len() + "()".len() + widths + ", ".len() * (arguments.len() - 1);
+        self.push(width, false, Kind::Call(name, arguments))
+    }
+
+    fn operand(&mut self, syntax: Syntax, expression: Expression<'_>, position: Position) -> Operand {
         let in_parentheses = needs_parentheses(syntax, expression, position);
         Operand { part: self.add(syntax, expression), in_parentheses }
     }
 
     /// The operands of an operator and of the same operator in its left operand, and so on.
-    fn chain(&mut self, syntax: Syntax, expression: &Expression, operator: Operator) -> Vec<Operand> {
+    fn chain(&mut self, syntax: Syntax, expression: Expression<'_>, operator: Operator) -> Vec<Operand> {
         let [left, right] = operator.positions();
         let mut others = Vec::new();
         let mut first = expression;
-        while let Expression::Binary(same, a, b) = first
-            && *same == operator
+        while let ExpressionKind::Binary(same, a, b) = first.kind()
+            && same == operator
         {
-            others.push(&**b);
+            others.push(b);
             first = a;
         }
         let mut operands = vec![self.operand(syntax, first, left)];

@@ -13,7 +13,7 @@ use super::wrap::WIDTH;
 use rne_codegen::{Expression, Operator};
 
 /// `START EXPRESSION;`, where the start is `let NAME =` or the like, broken where it is too long.
-pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: &Expression) -> Annotated {
+pub(super) fn statement(syntax: Syntax, indent: &str, start: Annotated, expression: Expression<'_>) -> Annotated {
     LineBreaks::new(syntax, expression).statement(indent, start)
 }
 
@@ -131,7 +131,7 @@ struct LineBreaks {
 }
 
 impl LineBreaks {
-    fn new(syntax: Syntax, expression: &Expression) -> Self {
+    fn new(syntax: Syntax, expression: Expression<'_>) -> Self {
         Self { measured: Measured::new(syntax, expression), layouts: HashMap::new() }
     }
 

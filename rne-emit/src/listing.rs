@@ -16,7 +16,7 @@ use super::text::returned;
 use super::wrap::{TIED, WIDTH, fill};
 use rne_codegen::{Argument, Form, Function};
 use rne_codegen::{Cause, Causes, Fold, FoldReport, Place};
-use rne_codegen::{Constant, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement};
+use rne_codegen::{Constant, Expression, Program, Resolution, ResolvedAs, Sign, SineCosine, Statement};
 use rne_codegen::{Name, WithRespectTo};
 use rne_codegen::{Quantity, Step};
 
@@ -68,11 +68,11 @@ pub enum Line<'a> {
     /// A formula of its step.
     Formula(Formula),
     /// A number that stands in no table.
-    Constant(&'a Constant),
+    Constant(Constant),
     /// Which sine and cosine stand at the head of the function.
-    SineCosine(&'a SineCosine),
-    /// A statement.
-    Statement(&'a Statement),
+    SineCosine(&'a SineCosine, Expression<'a>),
+    /// A statement and what it computes.
+    Statement(&'a Statement, Expression<'a>),
     /// What components became that are no statement.
     Resolution {
         /// The components.
@@ -114,7 +114,16 @@ impl Listing<'_> {
     }
 }
 
-impl Line<'_> {
+impl<'a> Line<'a> {
+    /// A statement of a program.
+    pub(super) fn statement(program: &'a Program, statement: &'a Statement) -> Self {
+        Self::Statement(statement, program.values.defined(statement.value))
+    }
+
+    fn turn(program: &'a Program, turn: &'a SineCosine) -> Self {
+        Self::SineCosine(turn, program.values.used(turn.angle))
+    }
+
     /// The line as words and code of Rust, neither indented nor marked as a comment.
     #[must_use]
     pub fn annotated(&self) -> Annotated {
@@ -124,7 +133,7 @@ impl Line<'_> {
     /// Whether it is a comment of the code.
     #[must_use]
     pub const fn is_comment(&self) -> bool {
-        !matches!(self, Self::Constant(_) | Self::Statement(_) | Self::Returned(_))
+        !matches!(self, Self::Constant(_) | Self::Statement(..) | Self::Returned(_))
     }
 
     fn annotated_in(&self, syntax: Syntax, indent: &str) -> Annotated {
@@ -136,17 +145,17 @@ impl Line<'_> {
                 let value = Annotated::part(Part::Number, format!("{value:?}"));
                 Annotated::default() + indent + declaration(syntax, *name) + " " + value + ";"
             }
-            Self::SineCosine(SineCosine { sine, cosine, angle, .. }) => {
+            Self::SineCosine(SineCosine { sine, cosine, .. }, angle) => {
                 let what = match (sine, cosine) {
                     (Some(_), Some(_)) => "sine and cosine",
                     (Some(_), None) => "sine",
                     _ => "cosine",
                 };
                 let turned: Vec<Name> = sine.iter().chain(cosine).copied().collect();
-                names(&turned) + ": " + what + " of " + expression::line(syntax, angle)
+                names(&turned) + ": " + what + " of " + expression::line(syntax, *angle)
             }
-            Self::Statement(Statement { name, value, .. }) => {
-                written(syntax, indent, declaration(syntax, *name), value)
+            Self::Statement(Statement { name, .. }, value) => {
+                written(syntax, indent, declaration(syntax, *name), *value)
             }
             Self::Resolution { names: found, became } => names(found) + became.clone(),
             Self::Folds(folds) => folds.to_string().into(),
@@ -215,7 +224,8 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     if what.joint.is_none() && what.step.is_none() && !of_parameters.is_empty() {
         let heading = Line::Heading("numbers of the table, from the parameters".to_owned());
         let statements = program.statements.iter().filter(|statement| of_parameters.contains(&statement.name));
-        let lines = std::iter::once(heading).chain(statements.map(Line::Statement)).collect();
+        let lines =
+            std::iter::once(heading).chain(statements.map(|statement| Line::statement(program, statement))).collect();
         sections.push(Section { of: None, lines });
     }
     // its joint does not move
@@ -223,9 +233,10 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
     let places = outward.chain(inward).filter(|&(joint, step)| what.includes(joint, step) && is_of_links(joint, step));
     for (joint, step) in places {
         let here = |place: &Place| place.joint == joint && place.step == step;
-        let turns = program.sines_and_cosines.iter().filter(|turn| here(&turn.place)).map(Line::SineCosine);
+        let turns =
+            program.sines_and_cosines.iter().filter(|turn| here(&turn.place)).map(|turn| Line::turn(program, turn));
         let is_here = |statement: &&Statement| here(&statement.place) && !of_parameters.contains(&statement.name);
-        let statements = program.statements.iter().filter(is_here).map(Line::Statement);
+        let statements = program.statements.iter().filter(is_here).map(|statement| Line::statement(program, statement));
         let code: Vec<Line> = turns.chain(statements).collect();
         if code.is_empty() && !what.explain {
             continue;
@@ -243,12 +254,13 @@ fn by_steps<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
 
 /// The statements that depend on run-time parameters alone.
 fn of_parameters(program: &Program) -> HashSet<Name> {
-    let constants: HashSet<Name> = program.constants.iter().map(|constant| constant.name).collect();
+    let constants: HashSet<Name> = program.constants().map(|constant| constant.name).collect();
     let mut found: HashSet<Name> = HashSet::new();
     let is_known = |name: &Name, found: &HashSet<Name>| name.quantity == Quantity::Parameter || found.contains(name);
     for Statement { name, value, .. } in &program.statements {
-        let depends = value.names().any(|name| is_known(&name, &found));
-        if depends && value.names().all(|name| is_known(&name, &found) || constants.contains(&name)) {
+        let names = || program.values.defined(*value).names();
+        let depends = names().any(|name| is_known(&name, &found));
+        if depends && names().all(|name| is_known(&name, &found) || constants.contains(&name)) {
             found.insert(*name);
         }
     }
@@ -259,9 +271,9 @@ fn of_parameters(program: &Program) -> HashSet<Name> {
 fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Section<'a>> {
     let mut sections = Vec::new();
     if what.is_everything() {
-        let constants = program.constants.iter().map(Line::Constant);
-        let angles = program.angles.iter().map(Line::Statement);
-        let turns = program.sines_and_cosines.iter().map(Line::SineCosine);
+        let constants = program.constants().map(Line::Constant);
+        let angles = program.angles.iter().map(|statement| Line::statement(program, statement));
+        let turns = program.sines_and_cosines.iter().map(|turn| Line::turn(program, turn));
         sections.push(Section { of: None, lines: constants.chain(angles).chain(turns).collect() });
     }
     let mut last_opening = None;
@@ -282,7 +294,7 @@ fn in_order<'a>(robot: &Robot, program: &'a Program, what: Selection) -> Vec<Sec
             last_opening = Some(opening);
         }
         if let Some(section) = sections.last_mut() {
-            section.lines.push(Line::Statement(statement));
+            section.lines.push(Line::statement(program, statement));
         }
     }
     let has_shape = !program.function.returns_torques() && program.outputs.len() > 1;

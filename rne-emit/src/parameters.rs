@@ -85,7 +85,7 @@ pub(super) fn heading(robot: &Robot) -> Vec<String> {
 /// The run-time parameters that a program uses: the index and its name in the code.
 pub(super) fn used(program: &Program) -> impl Iterator<Item = (usize, Name)> {
     let names = (0..program.parameters).map(|index| (index, Name::scalar(Quantity::Parameter, index + 1)));
-    names.filter(|(_, name)| program.arguments.contains(name))
+    names.filter(|(_, name)| program.arguments().any(|used| used == *name))
 }
 
 /// Whether a program depends on run-time parameters: then they are its last argument.

@@ -72,6 +72,15 @@ impl Syntax<'_> {
         }
     }
 
+    /// The function that adds a product and rounds once.
+    pub(super) fn mul_add(self) -> String {
+        match self {
+            Self::Rust => "Scalar::mul_add".to_owned(),
+            Self::C { precision: Precision::Single, .. } => "fmaf".to_owned(),
+            Self::C { precision: Precision::Double, .. } => "fma".to_owned(),
+        }
+    }
+
     /// Whether a product in a sum has parentheses: rule 12.1 of MISRA C does not trust readers to know what binds
     /// tighter.
     pub(super) const fn groups_products(self) -> bool {

@@ -196,7 +196,7 @@ const BY_SIGN_OF_FLOAT: &str = "    fn by_sign(self, positive: Self, negative: S
 pub(super) fn legend(programs: &[Program]) -> Vec<(String, &'static str)> {
     let mut names = BTreeSet::new();
     for program in programs {
-        let constants = program.constants.iter().map(|constant| constant.name);
+        let constants = program.constants().map(|constant| constant.name);
         let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
         let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
         // functions that mean different things by a name have a line each
@@ -241,19 +241,19 @@ fn function(robot: &Robot, program: &Program) -> String {
         let members = Parameter::of(robot, parameters::OF_RUST);
         let _ = writeln!(text, "    let {name} = parameters.{};", members[index].member);
     }
-    if program.returns_zero() || !program.constants.is_empty() {
+    if program.returns_zero() || program.constants().next().is_some() {
         text.push_str("\n    // constants\n");
     }
     if program.returns_zero() {
         text.push_str("    let zero: T = Scalar::from_f64(0.0);\n");
     }
-    for constant in &program.constants {
+    for constant in program.constants() {
         let _ = writeln!(text, "    let {}: T = Scalar::from_f64({:?});", constant.name, constant.value);
     }
     if !program.sines_and_cosines.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
-            let _ = writeln!(text, "{}", Line::Statement(statement));
+            let _ = writeln!(text, "{}", Line::statement(program, statement));
         }
         let _ = writeln!(text, "{}", turns(program));
     }
@@ -275,7 +275,8 @@ fn names(names: impl Iterator<Item = Option<Name>>) -> String {
 
 /// What a function returns, for a line that is indented by four.
 pub(super) fn returned(program: &Program) -> Option<Annotated> {
-    let mut outputs = program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, &output.value)));
+    let mut outputs =
+        program.outputs.iter().map(|output| Piece::Number(line(Syntax::Rust, program.values.used(output.value))));
     let array = |elements| Piece::List('[', ']', elements);
     let record = |_, parts| Piece::List('(', ')', parts);
     let layout = program.function.layout(program.dof);
@@ -351,7 +352,10 @@ impl Piece {
 fn turns(program: &Program) -> String {
     let sines = names(program.sines_and_cosines.iter().map(|turn| turn.sine));
     let cosines = names(program.sines_and_cosines.iter().map(|turn| turn.cosine));
-    let angles = Annotated::join(program.sines_and_cosines.iter().map(|turn| line(Syntax::Rust, &turn.angle)), ", ");
+    let angles = Annotated::join(
+        program.sines_and_cosines.iter().map(|turn| line(Syntax::Rust, program.values.used(turn.angle))),
+        ", ",
+    );
     if program.sines_and_cosines.len() == 1 {
         return format!("    let ({sines}, {cosines}) = Scalar::sin_cos({angles});");
     }

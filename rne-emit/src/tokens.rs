@@ -1,5 +1,6 @@
 //! A program as Rust tokens.
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 
 use proc_macro2::{Ident, Literal, Punct, Spacing, Span, TokenStream};
@@ -10,9 +11,8 @@ use super::syntax::Syntax;
 use rne_codegen::ArgumentArray;
 use rne_codegen::Name;
 use rne_codegen::Record;
-use rne_codegen::fma::{Contraction, Negated};
-use rne_codegen::latency::{self, Latency};
-use rne_codegen::{Expression, Program, Statement};
+use rne_codegen::fma::{self, Fusing};
+use rne_codegen::{Expression, ExpressionKind, Negated, Program, Statement, ValueId};
 
 /// The body of a program's function: everything between its braces.
 ///
@@ -20,29 +20,19 @@ use rne_codegen::{Expression, Program, Statement};
 /// `T`; `scalar` is the path of the trait that gives `T` its `from_f64`, `sin_cos` and `sin_cos_array`.
 #[derive(Debug)]
 pub struct Body<'a> {
-    program: &'a Program,
+    program: Cow<'a, Program>,
     scalar: &'a TokenStream,
     /// What has `mul_add`, `sin_cos` and `sin_cos_array`: the scalar, unless there is another.
     arithmetic: &'a TokenStream,
     /// Where the types of records are; tuples stand for them without.
     library: Option<&'a TokenStream>,
-    fusing: Fusing,
-}
-
-/// Which products are added by the scalar's `mul_add`.
-#[derive(Debug)]
-enum Fusing {
-    None,
-    /// Those that nothing waits for, and those that are sooner there for it.
-    Soonest(Box<Latency>),
-    All,
 }
 
 impl<'a> Body<'a> {
     /// The body of a program, its products and sums rounded one by one.
     #[must_use]
     pub fn new(program: &'a Program, scalar: &'a TokenStream) -> Self {
-        Self { program, scalar, arithmetic: scalar, library: None, fusing: Fusing::None }
+        Self { program: Cow::Borrowed(program), scalar, arithmetic: scalar, library: None }
     }
 
     /// The same with `mul_add`, `sin_cos` and `sin_cos_array` of the type or the trait at `arithmetic`.
@@ -63,13 +53,13 @@ impl<'a> Body<'a> {
     /// Results differ in the last digits from target to target, so the seven steps are not written so.
     #[must_use]
     pub fn fused(self) -> Self {
-        Self { fusing: Fusing::Soonest(Box::new(Latency::new(self.program))), ..self }
+        Self { program: Cow::Owned(fma::fused(&self.program, Fusing::Soonest)), ..self }
     }
 
     /// The same with `mul_add` wherever a product is added: the fewest instructions.
     #[must_use]
     pub fn all_fused(self) -> Self {
-        Self { fusing: Fusing::All, ..self }
+        Self { program: Cow::Owned(fma::fused(&self.program, Fusing::All)), ..self }
     }
 
     /// All of it.
@@ -87,11 +77,11 @@ impl<'a> Body<'a> {
     /// argument `q`.
     #[must_use]
     pub fn angles(&self) -> TokenStream {
-        let used: BTreeSet<Name> = self.program.angle_values().flat_map(Expression::names).collect();
+        let used: BTreeSet<Name> = self.program.angle_expressions().flat_map(Expression::names).collect();
         let arguments = self.arguments(|name| name == "q", |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let statements = self.statements(&self.program.angles);
-        let turns = self.program.sines_and_cosines.iter().map(|turn| self.expression(&turn.angle, None));
+        let turns = self.program.sines_and_cosines.iter().map(|turn| self.used(turn.angle));
         quote!(#arguments #constants #statements [#(#turns),*])
     }
 
@@ -99,7 +89,7 @@ impl<'a> Body<'a> {
     /// angles.
     #[must_use]
     pub fn beyond_angles(&self) -> TokenStream {
-        let used: BTreeSet<Name> = self.program.values().flat_map(Expression::names).collect();
+        let used: BTreeSet<Name> = self.program.expressions().flat_map(Expression::names).collect();
         let arguments = self.arguments(|_| true, |name| used.contains(&name));
         let constants = self.constants(|name| used.contains(&name));
         let turns = if self.program.sines_and_cosines.is_empty() {
@@ -134,7 +124,7 @@ impl<'a> Body<'a> {
             let zero = literal(0.0);
             quote!(let zero: T = #scalar::from_f64(#zero);)
         });
-        let constants = self.program.constants.iter().filter(|constant| is_used(constant.name)).map(|constant| {
+        let constants = self.program.constants().filter(|constant| is_used(constant.name)).map(|constant| {
             let (name, value) = (variable(constant.name), literal(constant.value));
             quote!(let #name: T = #scalar::from_f64(#value);)
         });
@@ -143,7 +133,7 @@ impl<'a> Body<'a> {
 
     fn statements(&self, statements: &[Statement]) -> TokenStream {
         let lines = statements.iter().map(|Statement { name, value, .. }| {
-            let (value, name) = (self.expression(value, Some(*name)), variable(*name));
+            let (value, name) = (self.expression(self.program.values.defined(*value)), variable(*name));
             quote!(let #name = #value;)
         });
         lines.collect()
@@ -160,7 +150,7 @@ impl<'a> Body<'a> {
     fn turns(&self) -> TokenStream {
         let arithmetic = self.arithmetic;
         let [sines, cosines] = self.turn_names();
-        let angles = self.program.sines_and_cosines.iter().map(|turn| self.plain(&turn.angle));
+        let angles = self.program.sines_and_cosines.iter().map(|turn| self.used(turn.angle));
         match &self.program.sines_and_cosines[..] {
             [] => TokenStream::new(),
             [turn] => {
@@ -180,7 +170,7 @@ impl<'a> Body<'a> {
 
     /// What is returned, in its layout; what was asked to be kept as well makes it a list.
     fn returned(&self) -> TokenStream {
-        let outputs = || self.program.outputs.iter().map(|output| self.expression(&output.value, None));
+        let outputs = || self.program.outputs.iter().map(|output| self.used(output.value));
         let layout = self.program.function.layout(self.program.dof);
         let array = |elements: Vec<TokenStream>| quote!([#(#elements),*]);
         let record = |record: Record, parts: Vec<TokenStream>| {
@@ -195,82 +185,44 @@ impl<'a> Body<'a> {
         }
     }
 
-    fn plain(&self, expression: &Expression) -> TokenStream {
-        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &Fusing::None }.expression(expression, 0)
+    fn used(&self, value: ValueId) -> TokenStream {
+        self.expression(self.program.values.used(value))
     }
 
-    /// The value of a statement or, without a name, what is returned.
-    fn expression(&self, expression: &Expression, name: Option<Name>) -> TokenStream {
-        let rest = match (&self.fusing, name) {
-            (Fusing::Soonest(latency), Some(name)) => latency.rest(name),
-            _ => 0,
+    fn expression(&self, expression: Expression<'_>) -> TokenStream {
+        let operand = |operand: Expression<'_>, position| {
+            let tokens = self.expression(operand);
+            if needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
         };
-        Writing { scalar: self.scalar, arithmetic: self.arithmetic, fusing: &self.fusing }.expression(expression, rest)
+        let minus = |of: Expression<'_>| {
+            let tokens = operand(of, Position::Negated);
+            quote!(-#tokens)
+        };
+        let (scalar, arithmetic) = (self.scalar, self.arithmetic);
+        match expression.kind() {
+            ExpressionKind::Variable(name) => variable(name).to_token_stream(),
+            ExpressionKind::Zero => quote!(zero),
+            ExpressionKind::Negative(a) => minus(a),
+            ExpressionKind::Binary(operator, a, b) => {
+                let [left, right] = operator.positions();
+                let (a, b, sign) = (operand(a, left), operand(b, right), Punct::new(operator.sign(), Spacing::Alone));
+                quote!(#a #sign #b)
+            }
+            ExpressionKind::Fused([x, y], addend, negated) => {
+                let signed = |of, part| if negated == Some(part) { minus(of) } else { self.expression(of) };
+                let (x, y, addend) = (signed(x, Negated::Factor), self.expression(y), signed(addend, Negated::Addend));
+                quote!(#arithmetic::mul_add(#x, #y, #addend))
+            }
+            ExpressionKind::BySign(operands) => {
+                let operands = operands.map(|operand| self.expression(operand));
+                quote!(#scalar::by_sign(#(#operands),*))
+            }
+        }
     }
 }
 
 fn name_or_underscore(name: Option<Name>) -> TokenStream {
     name.map_or_else(|| quote!(_), |name| variable(name).to_token_stream())
-}
-
-/// Writes expressions.
-struct Writing<'a> {
-    scalar: &'a TokenStream,
-    arithmetic: &'a TokenStream,
-    fusing: &'a Fusing,
-}
-
-impl Writing<'_> {
-    /// An expression that `rest` follows.
-    fn expression(&self, expression: &Expression, rest: usize) -> TokenStream {
-        let fused = Contraction::of(expression).filter(|contraction| self.is_fused(contraction, rest));
-        let rest_of_operand = rest
-            + match expression {
-                Expression::Negative(_) => 0,
-                Expression::Binary(operator, ..) if fused.is_none() => latency::cycles(*operator),
-                _ => latency::PRODUCT,
-            };
-        let inner = |expression: &Expression| self.expression(expression, rest_of_operand);
-        let operand = |operand: &Expression, position| {
-            let tokens = inner(operand);
-            let is_call = Contraction::of(operand).is_some_and(|operand| self.is_fused(&operand, rest_of_operand));
-            if !is_call && needs_parentheses(Syntax::Rust, operand, position) { quote!((#tokens)) } else { tokens }
-        };
-        let minus = |expression: &Expression| {
-            let tokens = operand(expression, Position::Negated);
-            quote!(-#tokens)
-        };
-        let (scalar, arithmetic) = (self.scalar, self.arithmetic);
-        if let Some(Contraction { factors: [x, y], addend, negated }) = fused {
-            let y = inner(y);
-            let x = if negated == Some(Negated::Factor) { minus(x) } else { inner(x) };
-            let addend = if negated == Some(Negated::Addend) { minus(addend) } else { inner(addend) };
-            return quote!(#arithmetic::mul_add(#x, #y, #addend));
-        }
-        match expression {
-            Expression::Variable(name) => variable(*name).to_token_stream(),
-            Expression::Zero => quote!(zero),
-            Expression::Negative(a) => minus(a),
-            Expression::Binary(operator, a, b) => {
-                let [left, right] = operator.positions();
-                let (a, b, sign) = (operand(a, left), operand(b, right), Punct::new(operator.sign(), Spacing::Alone));
-                quote!(#a #sign #b)
-            }
-            Expression::BySign(operands) => {
-                let operands = operands.iter().map(inner);
-                quote!(#scalar::by_sign(#(#operands),*))
-            }
-        }
-    }
-
-    /// Whether `mul_add` computes a product and a sum that `rest` follows.
-    fn is_fused(&self, contraction: &Contraction<'_>, rest: usize) -> bool {
-        match &self.fusing {
-            Fusing::None => false,
-            Fusing::All => true,
-            Fusing::Soonest(latency) => latency.is_fused(contraction, rest),
-        }
-    }
 }
 
 /// A number as a literal that reads back as the same number; negative numbers as a minus and a literal, as in source

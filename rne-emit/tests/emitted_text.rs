@@ -139,8 +139,8 @@ fn no_name_of_a_function_is_given_twice() {
         for program in programs {
             let turns = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
             let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
-            let constants = program.constants.iter().map(|constant| constant.name);
-            let names = program.arguments.iter().copied().chain(constants).chain(turns).chain(statements);
+            let constants = program.constants().map(|constant| constant.name);
+            let names = program.arguments().chain(constants).chain(turns).chain(statements);
             let mut known = BTreeSet::new();
             for name in names {
                 assert!(known.insert(name.to_string()), "{name} in {} of {}", program.function, robot.name);

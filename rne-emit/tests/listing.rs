@@ -15,7 +15,7 @@ fn everything() -> Selection {
 
 fn statements<'a>(listing: &Listing<'a>) -> Vec<&'a Statement> {
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
-    lines.filter_map(|line| if let Line::Statement(statement) = line { Some(*statement) } else { None }).collect()
+    lines.filter_map(|line| if let Line::Statement(statement, _) = line { Some(*statement) } else { None }).collect()
 }
 
 #[test]
@@ -29,7 +29,8 @@ fn every_statement_is_listed_once_and_marks_its_names() {
             all.sort_unstable();
             assert_eq!(listed, all, "{} of {}", program.function, robot.name);
             for statement in statements(&listing) {
-                let line = Line::Statement(statement).annotated();
+                let value = program.values.defined(statement.value);
+                let line = Line::Statement(statement, value).annotated();
                 let pieces: Vec<_> = line.pieces().collect();
                 assert_eq!(pieces.iter().map(|(_, text)| *text).collect::<String>(), line.as_str());
                 assert_eq!(pieces[0], (Some(Part::Keyword), "let"));
@@ -38,7 +39,7 @@ fn every_statement_is_listed_once_and_marks_its_names() {
                     _ => None,
                 });
                 let names: BTreeSet<Name> = named.clone().map(|(name, _)| name).collect();
-                let used: BTreeSet<Name> = statement.value.names().chain([statement.name]).collect();
+                let used: BTreeSet<Name> = value.names().chain([statement.name]).collect();
                 assert_eq!(names, used, "{line}");
                 assert!(named.into_iter().all(|(name, text)| name.to_string() == text), "{line}");
             }

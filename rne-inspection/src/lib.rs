@@ -80,19 +80,23 @@ impl Inspection {
                 .collect(),
             names: names.iter().map(|name| (name.to_string(), name::record(*name))).collect(),
             reasons: equations.into_reasons(),
-            arguments: program.arguments.iter().map(ToString::to_string).collect(),
-            constants: program.constants.iter().map(|constant| (constant.name.to_string(), constant.value)).collect(),
-            angles: program.angles.iter().map(|statement| of_statement(&components, statement, &statements)).collect(),
-            sines_and_cosines: program.sines_and_cosines.iter().map(sine_and_cosine).collect(),
+            arguments: program.arguments().map(|name| name.to_string()).collect(),
+            constants: program.constants().map(|constant| (constant.name.to_string(), constant.value)).collect(),
+            angles: program
+                .angles
+                .iter()
+                .map(|statement| of_statement(program, &components, statement, &statements))
+                .collect(),
+            sines_and_cosines: program.sines_and_cosines.iter().map(|turn| sine_and_cosine(program, turn)).collect(),
             statements: program
                 .statements
                 .iter()
-                .map(|statement| of_statement(&components, statement, &statements))
+                .map(|statement| of_statement(program, &components, statement, &statements))
                 .collect(),
             outputs: program
                 .outputs
                 .iter()
-                .map(|output| (output.name.to_string(), Tree::of_expression(&output.value)))
+                .map(|output| (output.name.to_string(), Tree::of_expression(program.values.used(output.value))))
                 .collect(),
             table,
             cells,
@@ -193,19 +197,20 @@ fn rust(robot: &rne_model::Robot, program: &Program) -> BTreeMap<String, String>
     let listing = rne_emit::listing(robot, program, Selection::default());
     let lines = listing.sections.iter().flat_map(|section| &section.lines);
     let statement = |line: &Line<'_>| match line {
-        Line::Statement(statement) => Some((statement.name.to_string(), line.annotated().to_string())),
+        Line::Statement(statement, _) => Some((statement.name.to_string(), line.annotated().to_string())),
         _ => None,
     };
     lines.filter_map(statement).collect()
 }
 
 fn of_statement(
+    program: &Program,
     components: &HashSet<codegen::Name>,
     statement: &codegen::Statement,
     rust: &BTreeMap<String, String>,
 ) -> Statement {
     let (name, owner) = (statement.name.to_string(), owner(statement));
-    let value = Tree::of_expression(&statement.value);
+    let value = Tree::of_expression(program.values.defined(statement.value));
     Statement {
         component: components.contains(&owner).then(|| owner.to_string()),
         rust: rust.get(&name).cloned().unwrap_or_else(|| format!("let {name} = {value};")),
@@ -214,10 +219,11 @@ fn of_statement(
     }
 }
 
-fn sine_and_cosine(turn: &codegen::SineCosine) -> SineCosine {
+fn sine_and_cosine(program: &Program, turn: &codegen::SineCosine) -> SineCosine {
     let text = |name: &Option<codegen::Name>| name.map(|name| name.to_string());
     let joint = turn.sine.or(turn.cosine).map_or(turn.place.joint, |name| name.joint);
-    SineCosine { joint, sine: text(&turn.sine), cosine: text(&turn.cosine), angle: Tree::of_expression(&turn.angle) }
+    let angle = Tree::of_expression(program.values.used(turn.angle));
+    SineCosine { joint, sine: text(&turn.sine), cosine: text(&turn.cosine), angle }
 }
 
 /// What every name of the program means.
@@ -225,9 +231,9 @@ fn names(program: &Program) -> BTreeSet<codegen::Name> {
     let turned = program.sines_and_cosines.iter().flat_map(|turn| turn.sine.into_iter().chain(turn.cosine));
     let written = program.equations.iter().flat_map(|of| std::iter::once(of.name).chain(of.term.names()));
     let stated = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
-    let constants = program.constants.iter().map(|constant| constant.name);
+    let constants = program.constants().map(|constant| constant.name);
     let outputs = program.outputs.iter().map(|output| output.name);
-    let all = program.arguments.iter().copied().chain(constants).chain(turned).chain(written).chain(stated);
+    let all = program.arguments().chain(constants).chain(turned).chain(written).chain(stated);
     all.chain(outputs).collect()
 }
 

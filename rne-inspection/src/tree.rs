@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use rne_codegen::{Expression, Fold, Operator, Sign, Term};
+use rne_codegen::{Expression, ExpressionKind, Fold, Negated, Operator, Sign, Term};
 use serde::ser::{Serialize, SerializeSeq, Serializer};
 
 /// A formula. In JSON a name is a string, a number a number, and everything else an array with the operator first:
@@ -98,17 +98,23 @@ impl Tree {
     }
 
     /// The code of a statement.
-    pub(crate) fn of_expression(expression: &Expression) -> Self {
-        match expression {
-            Expression::Variable(name) => Self::Name(name.to_string()),
-            Expression::Zero => Self::Number(0.0),
-            Expression::Negative(a) => Self::Node("neg", vec![Self::of_expression(a)], None),
-            Expression::Binary(operator, a, b) => {
-                Self::Node(sign(*operator), vec![Self::of_expression(a), Self::of_expression(b)], None)
+    pub(crate) fn of_expression(expression: Expression<'_>) -> Self {
+        let node = |operator, operands| Self::Node(operator, operands, None);
+        match expression.kind() {
+            ExpressionKind::Variable(name) => Self::Name(name.to_string()),
+            ExpressionKind::Zero => Self::Number(0.0),
+            ExpressionKind::Negative(a) => node("neg", vec![Self::of_expression(a)]),
+            ExpressionKind::Binary(operator, a, b) => node(sign(operator), [a, b].map(Self::of_expression).to_vec()),
+            ExpressionKind::Fused(factors, addend, negated) => {
+                let (product, addend) =
+                    (node("*", factors.map(Self::of_expression).to_vec()), Self::of_expression(addend));
+                match negated {
+                    None => node("+", vec![addend, product]),
+                    Some(Negated::Factor) => node("-", vec![addend, product]),
+                    Some(Negated::Addend) => node("-", vec![product, addend]),
+                }
             }
-            Expression::BySign(operands) => {
-                Self::Node("sign", operands.iter().map(Self::of_expression).collect(), None)
-            }
+            ExpressionKind::BySign(operands) => node("sign", operands.map(Self::of_expression).to_vec()),
         }
     }
 

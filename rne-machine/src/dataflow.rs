@@ -1,173 +1,106 @@
-//! A program as values that are computed from earlier ones: what the machine's instructions are made of.
+//! A program as the machine and native code take it: its own values, with products fused where that is allowed.
 
-use std::collections::HashMap;
+use rne_codegen::fma::{self, Fusing};
+use rne_codegen::{Contraction, Form, Name, Negated, Program, Value, ValueId, Values};
 
-use rne_codegen::{Expression, Form, Name, Operator, Program};
-
-/// A value, by its place among all.
-pub(crate) type Value = usize;
-
-/// How a product enters a sum.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Fused {
-    /// z + x y
-    Plus,
-    /// z - x y
-    Minus,
-    /// x y - z
-    Less,
-}
-
-/// What a value is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Definition {
-    Input(usize),
-    Constant(f64),
-    /// The sine or the cosine of a turn of the program.
-    Sine(usize),
-    Cosine(usize),
-    Negative(Value),
-    Binary(Operator, Value, Value),
-    /// An addend and two factors.
-    Fused(Fused, [Value; 3]),
-    BySign([Value; 3]),
-}
-
-impl Definition {
-    /// The values that it is computed from.
-    pub(crate) fn operands(&self) -> Vec<Value> {
-        match *self {
-            Self::Input(_) | Self::Constant(_) | Self::Sine(_) | Self::Cosine(_) => Vec::new(),
-            Self::Negative(a) => vec![a],
-            Self::Binary(_, a, b) => vec![a, b],
-            Self::Fused(_, operands) | Self::BySign(operands) => operands.to_vec(),
-        }
-    }
-
-    /// Whether something is computed for it.
-    pub(crate) fn is_computed(&self) -> bool {
-        !self.operands().is_empty()
-    }
-}
-
-/// All values of a program.
+/// The values of a program.
 #[derive(Debug)]
 pub(crate) struct Dataflow {
-    pub(crate) values: Vec<Definition>,
-    /// The angle of each turn, and how many values were defined when the last of them was.
-    pub(crate) angles: Vec<Value>,
+    pub(crate) values: Values,
+    /// The angles whose sines and cosines are evaluated, all at once.
+    pub(crate) angles: Vec<ValueId>,
+    /// How many values stand before the first sine or cosine.
     pub(crate) before_turns: usize,
-    pub(crate) outputs: Vec<Value>,
-    /// The arguments, in the order of the inputs.
+    pub(crate) outputs: Vec<ValueId>,
+    /// The arguments, which are the first values.
     pub(crate) inputs: Vec<Name>,
 }
 
 impl Dataflow {
-    /// Of a program. In the reduced form, where the order of terms is free, a product that is added is one operation
+    /// Takes a program. In the reduced form, where the order of terms is free, a product that is added is one operation
     /// with its sum; in the seven steps each is rounded by itself, as the runtime rounds it.
     pub(crate) fn of(program: &Program) -> Self {
-        let mut reading = Reading { fuses: program.form == Form::Reduced, ..Reading::default() };
-        let inputs = program.arguments.clone();
-        for (index, name) in inputs.iter().enumerate() {
-            let value = reading.value(Definition::Input(index));
-            reading.known.insert(*name, value);
+        let fused = (program.form == Form::Reduced).then(|| fma::fused(program, Fusing::All));
+        let program = fused.as_ref().unwrap_or(program);
+        let mut values = program.values.clone();
+        for (id, value) in program.values.iter() {
+            let value = value.map(|operand| unaliased(&values, operand));
+            values.replace(id, without_signs(&values, value));
         }
-        for constant in &program.constants {
-            let value = reading.value(Definition::Constant(constant.value));
-            reading.known.insert(constant.name, value);
+        let is_turn = |(_, value): (ValueId, Value)| matches!(value, Value::Sine(_) | Value::Cosine(_));
+        let before_turns = values.iter().position(is_turn).unwrap_or_else(|| program.before_statements());
+        Self {
+            angles: program.sines_and_cosines.iter().map(|turn| unaliased(&values, turn.angle)).collect(),
+            before_turns,
+            outputs: program.outputs.iter().map(|output| unaliased(&values, output.value)).collect(),
+            inputs: program.arguments().collect(),
+            values,
         }
-        // angles are sums that sines see: they are not fused, as in derived code
-        let fuses = std::mem::replace(&mut reading.fuses, false);
-        for statement in &program.angles {
-            let value = reading.expression(&statement.value);
-            reading.known.insert(statement.name, value);
+    }
+
+    /// The values from which one is computed. Sines and cosines are not: all are evaluated at once.
+    pub(crate) fn operands(&self, id: ValueId) -> Vec<ValueId> {
+        match self.values.get(id) {
+            Value::Sine(_) | Value::Cosine(_) => Vec::new(),
+            value => value.operands().collect(),
         }
-        let angles: Vec<Value> = program.sines_and_cosines.iter().map(|turn| reading.expression(&turn.angle)).collect();
-        reading.fuses = fuses;
-        let before_turns = reading.values.len();
-        for (index, turn) in program.sines_and_cosines.iter().enumerate() {
-            let (sine, cosine) = (reading.value(Definition::Sine(index)), reading.value(Definition::Cosine(index)));
-            reading.known.extend(turn.sine.map(|name| (name, sine)));
-            reading.known.extend(turn.cosine.map(|name| (name, cosine)));
+    }
+
+    /// Whether something is computed for a value by itself.
+    pub(crate) fn is_computed(&self, id: ValueId) -> bool {
+        !self.operands(id).is_empty()
+    }
+
+    /// Whether a value is an input or a constant.
+    pub(crate) fn is_fetched(&self, id: ValueId) -> bool {
+        matches!(self.values.get(id), Value::Argument | Value::Constant(_))
+    }
+
+    pub(crate) fn is_turn(&self, id: ValueId) -> bool {
+        matches!(self.values.get(id), Value::Sine(_) | Value::Cosine(_))
+    }
+
+    /// The number that a constant is.
+    pub(crate) fn constant(&self, id: ValueId) -> Option<f64> {
+        if let Value::Constant(number) = self.values.get(id) { Some(number) } else { None }
+    }
+
+    /// The values that the outputs depend on, and the angles.
+    pub(crate) fn live(&self) -> Vec<bool> {
+        let mut is_live = vec![false; self.values.len()];
+        let mut open: Vec<ValueId> = self.outputs.iter().chain(&self.angles).copied().collect();
+        while let Some(value) = open.pop() {
+            if !std::mem::replace(&mut is_live[value.index()], true) {
+                open.extend(self.values.get(value).operands());
+            }
         }
-        for statement in &program.statements {
-            let value = reading.expression(&statement.value);
-            reading.known.insert(statement.name, value);
-        }
-        let outputs = program.outputs.iter().map(|output| reading.expression(&output.value)).collect();
-        Self { values: reading.values, angles, before_turns, outputs, inputs }
+        is_live
     }
 }
 
-#[derive(Default)]
-struct Reading {
-    fuses: bool,
-    values: Vec<Definition>,
-    known: HashMap<Name, Value>,
+/// The value that another name stands for.
+fn unaliased(values: &Values, id: ValueId) -> ValueId {
+    if let Value::Same(of) = values.get(id) { of } else { id }
 }
 
-impl Reading {
-    fn value(&mut self, definition: Definition) -> Value {
-        self.values.push(definition);
-        self.values.len() - 1
-    }
-
-    fn expression(&mut self, expression: &Expression) -> Value {
-        let definition = match expression {
-            // every name is defined before it is used: programs are in order of evaluation
-            Expression::Variable(name) => return self.known[name],
-            Expression::Zero => Definition::Constant(0.0),
-            Expression::Negative(a) => {
-                let a = self.expression(a);
-                if let Definition::Constant(k) = self.values[a] {
-                    Definition::Constant(-k)
-                } else {
-                    Definition::Negative(a)
+/// The same value without minus signs that cost something: z + (-x) y is z - x y, to the bit; only (-x) y - z has no
+/// operation of its own.
+fn without_signs(values: &Values, value: Value) -> Value {
+    match value {
+        Value::Negative(a) => match values.get(a) {
+            Value::Constant(number) => Value::Constant(-number),
+            _ => value,
+        },
+        Value::Fused(Contraction { factors: [x, y], addend, negated: negated @ (None | Some(Negated::Factor)) }) => {
+            match values.get(x) {
+                // what has a name is computed all the same
+                Value::Negative(of) if values.name(x).is_none() => {
+                    let negated = if negated.is_none() { Some(Negated::Factor) } else { None };
+                    Value::Fused(Contraction { factors: [of, y], addend, negated })
                 }
+                _ => value,
             }
-            Expression::Binary(operator, a, b) => match self.contraction(*operator, a, b) {
-                Some(fused) => fused,
-                None => Definition::Binary(*operator, self.expression(a), self.expression(b)),
-            },
-            Expression::BySign(operands) => {
-                Definition::BySign(operands.each_ref().map(|operand| self.expression(operand)))
-            }
-        };
-        self.value(definition)
-    }
-
-    /// A sum or difference with a product in it; of two products the right one is fused, as in derived batches.
-    fn contraction(&mut self, operator: Operator, a: &Expression, b: &Expression) -> Option<Definition> {
-        if !self.fuses {
-            return None;
         }
-        let is_difference = match operator {
-            Operator::Sum => false,
-            Operator::Difference => true,
-            Operator::Product | Operator::Quotient => return None,
-        };
-        let is_product = |expression: &Expression| matches!(expression, Expression::Binary(Operator::Product, ..));
-        let (addend, product, kind) = match (is_product(a), is_product(b)) {
-            (_, true) => (a, b, if is_difference { Fused::Minus } else { Fused::Plus }),
-            (true, false) => (b, a, if is_difference { Fused::Less } else { Fused::Plus }),
-            (false, false) => return None,
-        };
-        let Expression::Binary(_, x, y) = product else { return None };
-        let (x, is_negative) = match &**x {
-            Expression::Negative(x) => (&**x, true),
-            x => (x, false),
-        };
-        let mut operands = [addend, x, y].map(|operand| self.expression(operand));
-        // z + (-x) y is z - x y, to the bit; only (-x) y - z is none of the three
-        let kind = match (kind, is_negative) {
-            (kind, false) => kind,
-            (Fused::Plus, true) => Fused::Minus,
-            (Fused::Minus, true) => Fused::Plus,
-            (Fused::Less, true) => {
-                operands[1] = self.value(Definition::Negative(operands[1]));
-                Fused::Less
-            }
-        };
-        Some(Definition::Fused(kind, operands))
+        _ => value,
     }
 }

@@ -2,16 +2,17 @@
 
 use std::collections::HashMap;
 
+use rne_codegen::{Value, ValueId};
 use rne_runtime::machine::{Code, Instruction, NOWHERE, Operation, Slot, Turn};
 
-use crate::dataflow::{Dataflow, Definition, Value};
+use crate::dataflow::Dataflow;
 use crate::selection::{Place, constants, operation};
 
 /// What happens, one after the other.
 #[derive(Clone, Copy, Debug)]
 enum Event {
     /// A value is computed, or an input or a constant is fetched, in the accumulator.
-    Compute(Value),
+    Compute(ValueId),
     /// It is written while it is there.
     Output(usize),
     /// All sines and cosines.
@@ -20,40 +21,37 @@ enum Event {
 
 /// The code of a program.
 pub(crate) fn code(dataflow: &Dataflow) -> Option<Code> {
-    let constant = |value: Value| match dataflow.values[value] {
-        Definition::Constant(k) => Some(k),
-        _ => None,
-    };
     // constants that an instruction carries need no place
-    let carried: Vec<Vec<Value>> = dataflow.values.iter().map(|definition| constants(definition, constant)).collect();
+    let carried: Vec<Vec<ValueId>> = dataflow.values.iter().map(|(id, _)| constants(dataflow, id)).collect();
     let events = events(dataflow, &carried);
     allocated(dataflow, &carried, &events)
 }
 
 /// Values in the order of the program; what is fetched comes just before its first use, but not between a value and
 /// the one that takes it from the accumulator.
-fn events(dataflow: &Dataflow, carried: &[Vec<Value>]) -> Vec<Event> {
-    let is_live = live(dataflow);
-    let mut outputs: HashMap<Value, Vec<usize>> = HashMap::new();
+fn events(dataflow: &Dataflow, carried: &[Vec<ValueId>]) -> Vec<Event> {
+    let is_live = dataflow.live();
+    let mut outputs: HashMap<ValueId, Vec<usize>> = HashMap::new();
     for (index, output) in dataflow.outputs.iter().enumerate() {
         outputs.entry(*output).or_default().push(index);
     }
-    let is_fetched = |value: Value| matches!(dataflow.values[value], Definition::Input(_) | Definition::Constant(_));
-    let mut fetched = vec![false; dataflow.values.len()];
+    let is_computed = |id: &ValueId| is_live[id.index()] && dataflow.is_computed(*id);
+    let ids: Vec<ValueId> = dataflow.values.iter().map(|(id, _)| id).collect();
+    let (before_turns, beyond_turns) = ids.split_at(dataflow.before_turns);
+    let mut fetched = vec![false; ids.len()];
     let mut events = Vec::new();
-    let part = |range: std::ops::Range<Value>, last: &[Value], fetched: &mut Vec<bool>, events: &mut Vec<Event>| {
-        let computed: Vec<Value> =
-            range.filter(|value| is_live[*value] && dataflow.values[*value].is_computed()).collect();
+    let mut part = |values: &[ValueId], last: &[ValueId], events: &mut Vec<Event>| {
         let mut chain = events.len();
         let mut before = None;
-        for value in computed {
-            let operands = dataflow.values[value].operands();
+        for value in values.iter().copied().filter(is_computed) {
+            let operands = dataflow.operands(value);
             if before.is_none_or(|before| !operands.contains(&before)) {
                 chain = events.len();
             }
             for operand in operands {
-                if is_fetched(operand) && !carried[value].contains(&operand) && !fetched[operand] {
-                    fetched[operand] = true;
+                let is_carried = carried[value.index()].contains(&operand);
+                if dataflow.is_fetched(operand) && !is_carried && !fetched[operand.index()] {
+                    fetched[operand.index()] = true;
                     events.insert(chain, Event::Compute(operand));
                     chain += 1;
                 }
@@ -64,17 +62,17 @@ fn events(dataflow: &Dataflow, carried: &[Vec<Value>]) -> Vec<Event> {
             before = Some(value);
         }
         for &value in last {
-            if is_fetched(value) && !std::mem::replace(&mut fetched[value], true) {
+            if dataflow.is_fetched(value) && !std::mem::replace(&mut fetched[value.index()], true) {
                 events.push(Event::Compute(value));
             }
         }
     };
-    part(0..dataflow.before_turns, &dataflow.angles, &mut fetched, &mut events);
+    part(before_turns, &dataflow.angles, &mut events);
     events.push(Event::Turns);
-    part(dataflow.before_turns..dataflow.values.len(), &[], &mut fetched, &mut events);
+    part(beyond_turns, &[], &mut events);
     // what is returned without being computed
     for (index, &output) in dataflow.outputs.iter().enumerate() {
-        if !dataflow.values[output].is_computed() {
+        if !dataflow.is_computed(output) {
             events.push(Event::Compute(output));
             events.push(Event::Output(index));
         }
@@ -82,50 +80,27 @@ fn events(dataflow: &Dataflow, carried: &[Vec<Value>]) -> Vec<Event> {
     events
 }
 
-/// Which values the outputs depend on.
-pub(crate) fn live(dataflow: &Dataflow) -> Vec<bool> {
-    let mut is_live = vec![false; dataflow.values.len()];
-    let mut open: Vec<Value> = dataflow.outputs.clone();
-    while let Some(value) = open.pop() {
-        if !std::mem::replace(&mut is_live[value], true) {
-            open.extend(dataflow.values[value].operands());
-            if let Definition::Sine(turn) | Definition::Cosine(turn) = dataflow.values[value] {
-                open.push(dataflow.angles[turn]);
-            }
-        }
-    }
-    // all angles are turned
-    open.extend(&dataflow.angles);
-    while let Some(value) = open.pop() {
-        if !std::mem::replace(&mut is_live[value], true) {
-            open.extend(dataflow.values[value].operands());
-        }
-    }
-    is_live
-}
-
 /// Gives every value that is not used at once a slot, for as long as it is used.
-fn allocated(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event]) -> Option<Code> {
+fn allocated(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event]) -> Option<Code> {
     let count = dataflow.values.len();
     let (mut uses, mut last) = (vec![0_usize; count], vec![0_usize; count]);
     for (at, event) in events.iter().enumerate() {
         let used = match *event {
-            Event::Compute(value) => match dataflow.values[value] {
-                // returned as it is
-                Definition::Sine(_) | Definition::Cosine(_) => vec![value],
-                definition => {
-                    definition.operands().into_iter().filter(|operand| !carried[value].contains(operand)).collect()
-                }
-            },
+            // returned as it is
+            Event::Compute(value) if dataflow.is_turn(value) => vec![value],
+            Event::Compute(value) => {
+                let mut operands = dataflow.operands(value);
+                operands.retain(|operand| !carried[value.index()].contains(operand));
+                operands
+            }
             Event::Output(..) => Vec::new(),
             Event::Turns => dataflow.angles.clone(),
         };
         for value in used {
-            uses[value] += 1;
-            last[value] = at;
+            uses[value.index()] += 1;
+            last[value.index()] = at;
         }
     }
-    let is_sine = |value: Value| matches!(dataflow.values[value], Definition::Sine(_) | Definition::Cosine(_));
     let mut memory = Memory { slots: vec![None; count], free: Vec::new(), count: 0 };
     let (mut angles, mut rest, mut turns) = (Vec::new(), Vec::new(), Vec::new());
     let (mut accumulator, mut is_turned) = (None, false);
@@ -136,49 +111,45 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event]) -> O
                 into.push(Instruction { operation: Operation::Output(u32::try_from(index).ok()?), store: NOWHERE });
             }
             Event::Turns => {
-                let mut sines = HashMap::new();
-                for value in (0..count).filter(|value| is_sine(*value) && uses[*value] > 0) {
-                    sines.insert(value, memory.take(value)?);
-                }
-                let of = |wanted: Definition| {
-                    sines
-                        .iter()
-                        .find(|(value, _)| dataflow.values[**value] == wanted)
-                        .map_or(NOWHERE, |(_, slot)| *slot)
+                let turned = dataflow.values.iter().filter(|(id, _)| dataflow.is_turn(*id) && uses[id.index()] > 0);
+                let turned = turned.map(|(id, value)| Some((value, memory.take(id)?)));
+                let mut turned = turned.collect::<Option<Vec<_>>>()?;
+                // each once: two turns may have one angle
+                let mut of = |wanted: Value| {
+                    let place = turned.iter().position(|(value, _)| *value == wanted);
+                    place.map_or(NOWHERE, |place| turned.remove(place).1)
                 };
-                for (index, angle) in dataflow.angles.iter().enumerate() {
-                    let (sine, cosine) = (of(Definition::Sine(index)), of(Definition::Cosine(index)));
-                    turns.push(Turn { angle: memory.slots[*angle]?, sine, cosine });
+                for &angle in &dataflow.angles {
+                    let (sine, cosine) = (of(Value::Sine(angle)), of(Value::Cosine(angle)));
+                    turns.push(Turn { angle: memory.slots[angle.index()]?, sine, cosine });
                 }
-                memory.release(dataflow.angles.iter().copied().filter(|angle| last[*angle] == at));
+                memory.release(dataflow.angles.iter().copied().filter(|angle| last[angle.index()] == at));
                 accumulator = None;
                 is_turned = true;
             }
             Event::Compute(value) => {
-                let definition = &dataflow.values[value];
-                let place = |accumulator: Option<Value>, operand: Value| {
-                    if let (Definition::Constant(k), true) =
-                        (dataflow.values[operand], carried[value].contains(&operand))
-                    {
+                let place = |accumulator: Option<ValueId>, operand: ValueId| {
+                    if let (Some(k), true) = (dataflow.constant(operand), carried[value.index()].contains(&operand)) {
                         return Place::Constant(k);
                     }
-                    match memory.slots[operand] {
+                    match memory.slots[operand.index()] {
                         _ if accumulator == Some(operand) => Place::Accumulator,
                         Some(slot) => Place::Slot(slot),
                         None => Place::Slot(NOWHERE),
                     }
                 };
-                let operation = if is_sine(value) {
-                    Operation::CopyS(memory.slots[value]?)
+                let operation = if dataflow.is_turn(value) {
+                    Operation::CopyS(memory.slots[value.index()]?)
                 } else {
-                    operation(definition, |operand| place(accumulator, operand))
-                        .or_else(|| operation(definition, |operand| place(None, operand)))?
+                    operation(dataflow, value, |operand| place(accumulator, operand))
+                        .or_else(|| operation(dataflow, value, |operand| place(None, operand)))?
                 };
-                let ended = definition.operands().into_iter().filter(|operand| last[*operand] == at);
+                let ended = dataflow.operands(value).into_iter().filter(|operand| last[operand.index()] == at);
                 memory.release(ended);
-                let is_taken = uses[value] == 1 && takes_from_accumulator(dataflow, carried, &events[at + 1..], value);
+                let uses = uses[value.index()];
+                let is_taken = uses == 1 && takes_from_accumulator(dataflow, carried, &events[at + 1..], value);
                 let store =
-                    if is_taken || uses[value] == 0 || is_sine(value) { NOWHERE } else { memory.take(value)? };
+                    if is_taken || uses == 0 || dataflow.is_turn(value) { NOWHERE } else { memory.take(value)? };
                 into.push(Instruction { operation, store });
                 accumulator = Some(value);
             }
@@ -189,17 +160,15 @@ fn allocated(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event]) -> O
 }
 
 /// Whether the next value is computed from this one where it is, in the accumulator.
-fn takes_from_accumulator(dataflow: &Dataflow, carried: &[Vec<Value>], events: &[Event], value: Value) -> bool {
+fn takes_from_accumulator(dataflow: &Dataflow, carried: &[Vec<ValueId>], events: &[Event], value: ValueId) -> bool {
     let next = events.iter().find(|event| !matches!(event, Event::Output(..)));
-    let Some(Event::Compute(next)) = next else { return false };
-    let definition = &dataflow.values[*next];
-    definition.operands().contains(&value)
-        && operation(definition, |operand| match dataflow.values[operand] {
-            _ if operand == value => Place::Accumulator,
-            Definition::Constant(k) if carried[*next].contains(&operand) => Place::Constant(k),
-            _ => Place::Slot(0),
-        })
-        .is_some()
+    let Some(&Event::Compute(next)) = next else { return false };
+    let place = |operand: ValueId| match dataflow.constant(operand) {
+        _ if operand == value => Place::Accumulator,
+        Some(k) if carried[next.index()].contains(&operand) => Place::Constant(k),
+        _ => Place::Slot(0),
+    };
+    dataflow.operands(next).contains(&value) && operation(dataflow, next, place).is_some()
 }
 
 struct Memory {
@@ -210,20 +179,20 @@ struct Memory {
 
 impl Memory {
     /// A slot for a value: the one that was freed last, for it is in the cache.
-    fn take(&mut self, value: Value) -> Option<Slot> {
+    fn take(&mut self, value: ValueId) -> Option<Slot> {
         let slot = if let Some(slot) = self.free.pop() {
             slot
         } else {
             self.count = self.count.checked_add(1).filter(|count| *count < NOWHERE)?;
             self.count - 1
         };
-        self.slots[value] = Some(slot);
+        self.slots[value.index()] = Some(slot);
         Some(slot)
     }
 
-    fn release(&mut self, values: impl Iterator<Item = Value>) {
+    fn release(&mut self, values: impl Iterator<Item = ValueId>) {
         for value in values {
-            self.free.extend(self.slots[value].take());
+            self.free.extend(self.slots[value.index()].take());
         }
     }
 }

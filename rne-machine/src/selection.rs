@@ -1,9 +1,9 @@
 //! Which operation of the machine computes a value, by where its operands are.
 
-use rne_codegen::Operator;
+use rne_codegen::{Contraction, Negated, Operator, Value, ValueId};
 use rne_runtime::machine::{Operation, Slot};
 
-use crate::dataflow::{Definition, Fused, Value};
+use crate::dataflow::Dataflow;
 
 /// Where an operand is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,25 +13,26 @@ pub(crate) enum Place {
     Constant(f64),
 }
 
-/// The operation that computes a definition from operands at these places; `None` when the machine has none: then an
-/// operand must be in a slot.
-pub(crate) fn operation(definition: &Definition, place: impl Fn(Value) -> Place) -> Option<Operation> {
+/// The operation that computes a value from operands at these places; `None` when the machine has none: then an operand
+/// must be in a slot.
+pub(crate) fn operation(dataflow: &Dataflow, id: ValueId, place: impl Fn(ValueId) -> Place) -> Option<Operation> {
     use Operation as O;
     use Place::{Accumulator as A, Constant as K, Slot as S};
-    Some(match *definition {
-        Definition::Input(index) => O::Input(u32::try_from(index).ok()?),
-        Definition::Constant(k) => O::Constant(k),
-        Definition::Sine(_) | Definition::Cosine(_) => return None,
-        Definition::Negative(x) => match place(x) {
+    Some(match dataflow.values.get(id) {
+        // arguments are the first values
+        Value::Argument => O::Input(u32::try_from(id.index()).ok()?),
+        Value::Constant(k) => O::Constant(k),
+        Value::Sine(_) | Value::Cosine(_) | Value::Same(_) => return None,
+        Value::Negative(x) => match place(x) {
             A => O::NegativeA(),
             S(x) => O::NegativeS(x),
             K(k) => O::Constant(-k),
         },
-        Definition::BySign(operands) => match operands.map(place) {
+        Value::BySign(operands) => match operands.map(place) {
             [S(x), S(a), S(b)] => O::BySign(x, a, b),
             _ => return None,
         },
-        Definition::Binary(operator, x, y) => match (operator, place(x), place(y)) {
+        Value::Binary(operator, x, y) => match (operator, place(x), place(y)) {
             (Operator::Sum, S(x), S(y)) => O::SumSS(x, y),
             (Operator::Sum, A, S(x)) | (Operator::Sum, S(x), A) => O::SumAS(x),
             (Operator::Sum, S(x), K(k)) | (Operator::Sum, K(k), S(x)) => O::SumSK(x, k),
@@ -55,60 +56,60 @@ pub(crate) fn operation(definition: &Definition, place: impl Fn(Value) -> Place)
             (Operator::Quotient, K(k), A) => O::QuotientKA(k),
             _ => return None,
         },
-        Definition::Fused(fused, [z, x, y]) => {
+        Value::Fused(Contraction { factors: [x, y], addend: z, negated }) => {
             let (z, x, y) = (place(z), place(x), place(y));
             // of two factors one that is in a slot stands last, one that is constant very last
             let (x, y) = match (x, y) {
                 (K(_), _) | (S(_), A) => (y, x),
                 _ => (x, y),
             };
-            match (fused, z, x, y) {
-                (Fused::Plus, A, S(x), S(y)) => O::PlusASS(x, y),
-                (Fused::Plus, A, S(x), K(k)) => O::PlusASK(x, k),
-                (Fused::Plus, S(z), S(x), S(y)) => O::PlusSSS(z, x, y),
-                (Fused::Plus, S(z), A, S(y)) => O::PlusSAS(z, y),
-                (Fused::Plus, S(z), S(x), K(k)) => O::PlusSSK(z, x, k),
-                (Fused::Plus, S(z), A, K(k)) => O::PlusSAK(z, k),
-                (Fused::Plus, K(k), S(x), S(y)) => O::PlusKSS(x, y, k),
-                (Fused::Plus, K(k), A, S(y)) => O::PlusKAS(y, k),
-                (Fused::Minus, A, S(x), S(y)) => O::MinusASS(x, y),
-                (Fused::Minus, S(z), S(x), S(y)) => O::MinusSSS(z, x, y),
-                (Fused::Minus, S(z), A, S(y)) => O::MinusSAS(z, y),
-                (Fused::Minus, K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
-                (Fused::Minus, K(k), A, S(y)) => O::MinusKAS(y, k),
+            match (negated, z, x, y) {
+                (None, A, S(x), S(y)) => O::PlusASS(x, y),
+                (None, A, S(x), K(k)) => O::PlusASK(x, k),
+                (None, S(z), S(x), S(y)) => O::PlusSSS(z, x, y),
+                (None, S(z), A, S(y)) => O::PlusSAS(z, y),
+                (None, S(z), S(x), K(k)) => O::PlusSSK(z, x, k),
+                (None, S(z), A, K(k)) => O::PlusSAK(z, k),
+                (None, K(k), S(x), S(y)) => O::PlusKSS(x, y, k),
+                (None, K(k), A, S(y)) => O::PlusKAS(y, k),
+                (Some(Negated::Factor), A, S(x), S(y)) => O::MinusASS(x, y),
+                (Some(Negated::Factor), S(z), S(x), S(y)) => O::MinusSSS(z, x, y),
+                (Some(Negated::Factor), S(z), A, S(y)) => O::MinusSAS(z, y),
+                (Some(Negated::Factor), K(k), S(x), S(y)) => O::MinusKSS(x, y, k),
+                (Some(Negated::Factor), K(k), A, S(y)) => O::MinusKAS(y, k),
                 // z - x k is z + x (-k), to the bit
-                (Fused::Minus, A, S(x), K(k)) => O::PlusASK(x, -k),
-                (Fused::Minus, S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
-                (Fused::Minus, S(z), A, K(k)) => O::PlusSAK(z, -k),
-                (Fused::Less, A, S(x), S(y)) => O::LessASS(x, y),
-                (Fused::Less, A, S(x), K(k)) => O::LessASK(x, k),
-                (Fused::Less, S(z), S(x), S(y)) => O::LessSSS(z, x, y),
-                (Fused::Less, S(z), A, S(y)) => O::LessSAS(z, y),
-                (Fused::Less, S(z), S(x), K(k)) => O::LessSSK(z, x, k),
-                (Fused::Less, S(z), A, K(k)) => O::LessSAK(z, k),
+                (Some(Negated::Factor), A, S(x), K(k)) => O::PlusASK(x, -k),
+                (Some(Negated::Factor), S(z), S(x), K(k)) => O::PlusSSK(z, x, -k),
+                (Some(Negated::Factor), S(z), A, K(k)) => O::PlusSAK(z, -k),
+                (Some(Negated::Addend), A, S(x), S(y)) => O::LessASS(x, y),
+                (Some(Negated::Addend), A, S(x), K(k)) => O::LessASK(x, k),
+                (Some(Negated::Addend), S(z), S(x), S(y)) => O::LessSSS(z, x, y),
+                (Some(Negated::Addend), S(z), A, S(y)) => O::LessSAS(z, y),
+                (Some(Negated::Addend), S(z), S(x), K(k)) => O::LessSSK(z, x, k),
+                (Some(Negated::Addend), S(z), A, K(k)) => O::LessSAK(z, k),
                 // x y - k is x y + (-k), to the bit
-                (Fused::Less, K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
-                (Fused::Less, K(k), A, S(y)) => O::PlusKAS(y, -k),
+                (Some(Negated::Addend), K(k), S(x), S(y)) => O::PlusKSS(x, y, -k),
+                (Some(Negated::Addend), K(k), A, S(y)) => O::PlusKAS(y, -k),
                 _ => return None,
             }
         }
     })
 }
 
-/// Which operands of a definition can stay constants, wherever the others are.
-pub(crate) fn constants(definition: &Definition, constant: impl Fn(Value) -> Option<f64>) -> Vec<Value> {
-    let place = |left_out: &[Value], value: Value| match constant(value) {
-        Some(k) if !left_out.contains(&value) => Place::Constant(k),
+/// Which operands of a value can stay constants, wherever the others are.
+pub(crate) fn constants(dataflow: &Dataflow, id: ValueId) -> Vec<ValueId> {
+    let place = |left_out: &[ValueId], operand: ValueId| match dataflow.constant(operand) {
+        Some(k) if !left_out.contains(&operand) => Place::Constant(k),
         _ => Place::Slot(0),
     };
-    let candidates: Vec<Value> =
-        definition.operands().into_iter().filter(|operand| constant(*operand).is_some()).collect();
+    let operands = dataflow.operands(id).into_iter();
+    let candidates: Vec<ValueId> = operands.filter(|operand| dataflow.constant(*operand).is_some()).collect();
     // all, all but one, none
     let mut tries = std::iter::once(Vec::new())
         .chain(candidates.iter().map(|candidate| vec![*candidate]))
         .chain(std::iter::once(candidates.clone()));
     let left_out = tries
-        .find(|left_out| operation(definition, |value| place(left_out, value)).is_some())
+        .find(|left_out| operation(dataflow, id, |operand| place(left_out, operand)).is_some())
         .unwrap_or_else(|| candidates.clone());
     candidates.into_iter().filter(|candidate| !left_out.contains(candidate)).collect()
 }

@@ -9,12 +9,11 @@ use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::{self, AbiParam, InstBuilder, MemFlags, Type};
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
-use rne_codegen::Operator;
+use rne_codegen::{Contraction, Negated, Operator, Value, ValueId};
 use rne_runtime::machine::{Kernel, Step};
 
 use crate::Number;
-use crate::dataflow::{Dataflow, Definition, Fused, Value};
-use crate::schedule;
+use crate::dataflow::Dataflow;
 
 pub(crate) mod sealed {
     use cranelift_codegen::ir::{Type, types};
@@ -75,10 +74,10 @@ pub(crate) fn write<T: Number>(
     builder.switch_to_block(entry);
     let [inputs, outputs, constants] = [0, 1, 2].map(|index| builder.block_params(entry)[index]);
 
-    let is_live = schedule::live(dataflow);
-    let mut last = vec![0; dataflow.values.len()];
-    for (value, definition) in dataflow.values.iter().enumerate().filter(|(value, _)| is_live[*value]) {
-        definition.operands().into_iter().for_each(|operand| last[operand] = value);
+    let is_live = dataflow.live();
+    let mut last = vec![None; dataflow.values.len()];
+    for (id, _) in dataflow.values.iter().filter(|(id, _)| is_live[id.index()]) {
+        dataflow.operands(id).into_iter().for_each(|operand| last[operand.index()] = Some(id));
     }
     let mut translation = Translation {
         builder,
@@ -107,7 +106,7 @@ struct Translation<'a, T> {
     kernel: &'a Kernel,
     is_live: Vec<bool>,
     /// Which value uses each one last.
-    last: Vec<Value>,
+    last: Vec<Option<ValueId>>,
     inputs: ir::Value,
     outputs: ir::Value,
     table: ir::Value,
@@ -120,22 +119,23 @@ struct Translation<'a, T> {
 
 impl<T: Number> Translation<'_, T> {
     fn program(&mut self) {
-        let (before, all) = (self.dataflow.before_turns, self.dataflow.values.len());
-        let mut outputs = vec![Vec::new(); all];
-        for (index, output) in self.dataflow.outputs.iter().enumerate() {
-            outputs[*output].push(index);
+        let dataflow = self.dataflow;
+        let before = dataflow.before_turns;
+        let mut outputs = vec![Vec::new(); dataflow.values.len()];
+        for (index, output) in dataflow.outputs.iter().enumerate() {
+            outputs[output.index()].push(index);
         }
-        for value in 0..before {
-            self.compute(value);
+        for (id, _) in dataflow.values.iter().take(before) {
+            self.compute(id);
         }
         self.turns();
         // nothing is written before the range of the angles is known
-        for (value, indices) in outputs.iter().enumerate() {
-            if value >= before {
-                self.compute(value);
+        for ((id, _), indices) in dataflow.values.iter().zip(&outputs) {
+            if id.index() >= before {
+                self.compute(id);
             }
             for index in indices {
-                let result = self.operand(value);
+                let result = self.operand(id);
                 self.builder.ins().store(MemFlags::trusted(), result, self.outputs, place::<T>(*index));
             }
         }
@@ -148,20 +148,20 @@ impl<T: Number> Translation<'_, T> {
     }
 
     /// A value that is computed, if something needs it.
-    fn compute(&mut self, value: Value) {
-        if !self.is_live[value] {
+    fn compute(&mut self, id: ValueId) {
+        if !self.is_live[id.index()] {
             return;
         }
-        let result = match self.dataflow.values[value] {
-            Definition::Input(_) | Definition::Constant(_) | Definition::Sine(_) | Definition::Cosine(_) => return,
-            Definition::Negative(x) => {
+        let result = match self.dataflow.values.get(id) {
+            Value::Argument | Value::Constant(_) | Value::Sine(_) | Value::Cosine(_) | Value::Same(_) => return,
+            Value::Negative(x) => {
                 let x = self.operand(x);
                 self.builder.ins().fneg(x)
             }
-            Definition::Binary(operator, x, y) => {
+            Value::Binary(operator, x, y) => {
                 // the second operand is the one that may be in memory
                 let commutes = matches!(operator, Operator::Sum | Operator::Product);
-                let (x, y) = if commutes && self.is_fetched(x) { (y, x) } else { (x, y) };
+                let (x, y) = if commutes && self.dataflow.is_fetched(x) { (y, x) } else { (x, y) };
                 let (x, y) = (self.operand(x), self.operand(y));
                 match operator {
                     Operator::Sum => self.builder.ins().fadd(x, y),
@@ -170,21 +170,22 @@ impl<T: Number> Translation<'_, T> {
                     Operator::Quotient => self.builder.ins().fdiv(x, y),
                 }
             }
-            Definition::Fused(fused, [z, x, y]) => {
+            Value::Fused(Contraction { factors: [x, y], addend: z, negated }) => {
                 // the result takes the register of the first factor
-                let is_free = |operand: Value| !self.is_fetched(operand) && self.last[operand] == value;
+                let is_free =
+                    |operand: ValueId| !self.dataflow.is_fetched(operand) && self.last[operand.index()] == Some(id);
                 let (x, y) = if !is_free(x) && is_free(y) { (y, x) } else { (x, y) };
                 let (z, x, y) = (self.operand(z), self.operand(x), self.operand(y));
-                match fused {
-                    Fused::Plus => self.plus_product(z, x, y),
-                    Fused::Minus => self.minus_product(z, x, y),
-                    Fused::Less => {
+                match negated {
+                    None => self.plus_product(z, x, y),
+                    Some(Negated::Factor) => self.minus_product(z, x, y),
+                    Some(Negated::Addend) => {
                         let z = self.builder.ins().fneg(z);
                         self.plus_product(z, x, y)
                     }
                 }
             }
-            Definition::BySign(operands) => {
+            Value::BySign(operands) => {
                 let [x, a, b] = operands.map(|operand| self.operand(operand));
                 let zero = self.constant(T::nearest(0.0), 1);
                 let is_below = self.builder.ins().fcmp(FloatCC::LessThan, x, zero);
@@ -193,22 +194,18 @@ impl<T: Number> Translation<'_, T> {
                 self.builder.ins().select(is_above, a, otherwise)
             }
         };
-        self.computed[value] = Some(result);
+        self.computed[id.index()] = Some(result);
     }
 
-    fn is_fetched(&self, value: Value) -> bool {
-        matches!(self.dataflow.values[value], Definition::Input(_) | Definition::Constant(_))
-    }
-
-    fn operand(&mut self, value: Value) -> ir::Value {
-        match (self.dataflow.values[value], self.computed[value]) {
+    fn operand(&mut self, id: ValueId) -> ir::Value {
+        match (self.dataflow.values.get(id), self.computed[id.index()]) {
             (_, Some(result)) => result,
-            (Definition::Input(index), None) => {
-                self.builder.ins().load(T::TYPE, unchanging(), self.inputs, place::<T>(index))
+            (Value::Argument, None) => {
+                self.builder.ins().load(T::TYPE, unchanging(), self.inputs, place::<T>(id.index()))
             }
-            (Definition::Constant(k), None) => self.constant(T::nearest(k), 1),
+            (Value::Constant(k), None) => self.constant(T::nearest(k), 1),
             // values are in order of evaluation, and all that are live are computed
-            (definition, None) => unreachable!("{definition:?} is used before it is computed"),
+            (value, None) => unreachable!("{value:?} is used before it is computed"),
         }
     }
 
@@ -248,16 +245,18 @@ impl<T: Number> Translation<'_, T> {
         self.leave_beyond_range(&registers, lanes);
         let results: Vec<[ir::Value; 2]> =
             registers.into_iter().map(|angles| self.sines_and_cosines(angles, lanes)).collect();
-        for value in self.dataflow.before_turns..self.dataflow.values.len() {
-            let (turn, which) = match self.dataflow.values[value] {
-                Definition::Sine(turn) if self.is_live[value] => (turn, 0),
-                Definition::Cosine(turn) if self.is_live[value] => (turn, 1),
+        let dataflow = self.dataflow;
+        for (id, value) in dataflow.values.iter() {
+            let (angle, which) = match value {
+                Value::Sine(angle) if self.is_live[id.index()] => (angle, 0),
+                Value::Cosine(angle) if self.is_live[id.index()] => (angle, 1),
                 _ => continue,
             };
+            let Some(turn) = dataflow.angles.iter().position(|of| *of == angle) else { continue };
             let (register, lane) = (turn / usize::from(lanes), turn % usize::from(lanes));
             #[allow(clippy::cast_possible_truncation)] // of a register
             let result = self.lane(results[register][which], lane as u8, lanes);
-            self.computed[value] = Some(result);
+            self.computed[id.index()] = Some(result);
         }
     }
 

@@ -96,7 +96,7 @@ fn programs_of_nearly_nothing() {
     for function in Function::ALL {
         for form in Form::ALL {
             let Ok(mut program) = compiler.compile(function, form) else { continue };
-            without_inputs += usize::from(program.arguments.is_empty());
+            without_inputs += usize::from(program.arguments().next().is_none());
             without_turns += usize::from(program.sines_and_cosines.is_empty());
             compare::<f64>("slide", &program, &mut random, |number| number);
             program.outputs.clear();
@@ -110,24 +110,15 @@ fn programs_of_nearly_nothing() {
 fn what_an_output_may_be() {
     with_compiler(rne_robots::find("puma560").expect("it is shipped"), |compiler| {
         let mut program = compiler.compile(Function::InverseDynamics, Form::Reduced).expect("it compiles");
-        let mut values: Vec<rne_codegen::Expression> = Vec::new();
-        values.extend(program.arguments.iter().map(|name| rne_codegen::Expression::Variable(*name)));
-        values.extend(program.constants.iter().map(|constant| rne_codegen::Expression::Variable(constant.name)));
-        values.extend(
-            program
-                .sines_and_cosines
-                .iter()
-                .flat_map(|turn| [turn.sine, turn.cosine])
-                .flatten()
-                .map(rne_codegen::Expression::Variable),
-        );
-        values.extend(program.angles.iter().map(|angle| rne_codegen::Expression::Variable(angle.name)));
-        values.push(rne_codegen::Expression::Zero);
+        let zero = program.values.push(None, rne_codegen::Value::Constant(0.0));
+        let values: Vec<rne_codegen::ValueId> = program.values.iter().map(|(id, _)| id).collect();
+        let is_named = |id: &&rne_codegen::ValueId| program.values.name(**id).is_some() || **id == zero;
         let mut outputs = program.outputs.iter().cycle().cloned();
         program.outputs = values
             .iter()
             .chain(&values)
-            .filter_map(|value| Some(rne_codegen::Output { value: value.clone(), ..outputs.next()? }))
+            .filter(is_named)
+            .filter_map(|value| Some(rne_codegen::Output { value: *value, ..outputs.next()? }))
             .collect();
         compare::<f64>("outputs", &program, &mut fastrand::Rng::with_seed(8), |number| number);
     });

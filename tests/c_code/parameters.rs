@@ -101,7 +101,7 @@ fn calls(prefix: &str, precision: Precision, dof: usize, members: &[&str], progr
             Function::BiasTorques | Function::KineticEnergy => &["q", "qd"],
             _ => &["q"],
         };
-        let takes = program.arguments.iter().any(|name| name.quantity == Quantity::Parameter);
+        let takes = program.arguments().any(|name| name.quantity == Quantity::Parameter);
         let parameters = if takes { ", &parameters" } else { "" };
         let given = joints.join(", ") + parameters;
         let _ = match name {

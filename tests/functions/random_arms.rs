@@ -62,10 +62,10 @@ fn arm(seed: u64, form: Form) -> Arm {
 
 /// The texts of all variables, in their order, as any language reads them.
 fn texts(program: &Program) -> Vec<String> {
-    let constants = program.constants.iter().map(|constant| constant.name);
+    let constants = program.constants().map(|constant| constant.name);
     let statements = program.angles.iter().chain(&program.statements).map(|statement| statement.name);
     let turns = program.sines_and_cosines.iter().flat_map(|turn| [turn.sine, turn.cosine]).flatten();
-    let names = program.arguments.iter().copied().chain(constants).chain(statements).chain(turns);
+    let names = program.arguments().chain(constants).chain(statements).chain(turns);
     names.map(|name| name.to_string()).collect()
 }
 

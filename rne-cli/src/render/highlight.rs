@@ -22,9 +22,9 @@ pub(crate) fn listing(listing: &Listing, letters: Letters) -> String {
             let style = match line {
                 Line::Heading(_) => TITLE,
                 Line::Formula(_) => FORMULA,
-                Line::SineCosine(_) | Line::Resolution { .. } => FOUND,
+                Line::SineCosine(..) | Line::Resolution { .. } => FOUND,
                 Line::Folds(_) => QUIET,
-                Line::Constant(_) | Line::Statement(_) | Line::Returned(_) => {
+                Line::Constant(_) | Line::Statement(..) | Line::Returned(_) => {
                     let _ = writeln!(text, "{line}");
                     continue;
                 }

@@ -13,8 +13,8 @@ use crate::function::Function;
 use crate::ir::fold_report::{Cause, Operation, Place};
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
-use crate::program::Operator;
 use crate::reduced::arguments::Moving;
+use crate::values::Operator;
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
 pub(crate) struct Builder {

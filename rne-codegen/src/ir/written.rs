@@ -3,7 +3,7 @@
 
 use super::{CausesId, Outcome, Ref};
 use crate::ir::name::Name;
-use crate::program::Operator;
+use crate::values::Operator;
 
 /// A term that was written down; [`TermId::NONE`] is a leaf, of which the graph knows all.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use super::{Lowering, sign};
 use crate::equation::{Equation, Operation, Term};
 use crate::ir::fold_report::{Causes, Fold};
 use crate::ir::{CausesId, Number, Op, Outcome, Ref, TermId, Written};
-use crate::program::Operator;
+use crate::values::Operator;
 
 impl Lowering<'_> {
     /// The formula of every component, in the order in which they are computed; none where formulas are not kept.

@@ -58,10 +58,10 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
     let syntax = file.syntax();
     let mut text = format!("{}\n{{\n", head(file, program));
     text.push_str(&arguments(file, program));
-    if !program.constants.is_empty() {
+    if program.constants().next().is_some() {
         text.push_str("\n    // constants\n");
     }
-    for constant in &program.constants {
+    for constant in program.constants() {
         let literal = file.precision.literal(constant.value).ok_or(ConstantTooLarge {
             name: constant.name,
             value: constant.value,
@@ -72,7 +72,7 @@ fn function(file: &File, program: &Program) -> Result<String, ConstantTooLarge> 
     if !program.sines_and_cosines.is_empty() {
         text.push_str("\n    // sines and cosines of all angles\n");
         for statement in &program.angles {
-            let _ = writeln!(text, "{}", Line::Statement(statement).indented(syntax));
+            let _ = writeln!(text, "{}", Line::statement(program, statement).indented(syntax));
         }
         text.push_str(&turns(file, program));
     }
@@ -123,14 +123,18 @@ fn turns(file: &File, program: &Program) -> String {
         }
         let [sine, cosine] =
             [turn.sine, turn.cosine].map(|name| name.map_or(UNUSED.to_owned(), |name| name.to_string()));
-        let _ = writeln!(calls, "    {prefix}_sin_cos({}, &{sine}, &{cosine});", line(file.syntax(), &turn.angle));
+        let _ = writeln!(
+            calls,
+            "    {prefix}_sin_cos({}, &{sine}, &{cosine});",
+            line(file.syntax(), program.values.used(turn.angle))
+        );
     }
     places + &calls
 }
 
 fn result(file: &File, program: &Program) -> String {
     let syntax = file.syntax();
-    let values = program.outputs.iter().map(|output| &output.value);
+    let values = program.outputs.iter().map(|output| program.values.used(output.value));
     let starts = match program.function.layout(program.dof) {
         Layout::Number => vec!["return".to_owned()],
         _ => places(program).into_iter().map(|place| place + " =").collect(),

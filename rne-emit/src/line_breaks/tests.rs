@@ -10,7 +10,7 @@ use crate::wrap::WIDTH;
 use rne_codegen::Name;
 use rne_codegen::Quantity;
 use rne_codegen::{Compiler, Form, Function};
-use rne_codegen::{Expression, Operator, Program};
+use rne_codegen::{Contraction, Expression, ExpressionKind, Negated, Operator, Value, ValueId, Values};
 
 const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precision::Double, prefix: "arm" }];
 
@@ -19,7 +19,7 @@ const LANGUAGES: [Syntax<'_>; 2] = [Syntax::Rust, Syntax::C { precision: Precisi
 const VISITS: usize = 6;
 
 /// Writes a statement, and holds it against its one line. How many parts it looked at.
-fn visits(syntax: Syntax, expression: &Expression) -> usize {
+fn visits(syntax: Syntax, expression: Expression<'_>) -> usize {
     let mut breaks = LineBreaks::new(syntax, expression);
     let text = breaks.statement("    ", Annotated::from("let x ="));
     let words = text.as_str().lines().map(str::trim_start).collect::<Vec<_>>().join(" ");
@@ -41,7 +41,7 @@ fn deeply_nested_code_of_arms_is_written_in_linear_time() {
         let compiler = Compiler::new(&robot);
         for function in [Function::InverseDynamicsDerivatives, Function::ForwardDynamics] {
             let program = compiler.compile(function, Form::Reduced).unwrap();
-            for expression in Program::values(&program) {
+            for expression in program.expressions() {
                 let nodes = expression.parts().count();
                 for syntax in LANGUAGES {
                     let visits = visits(syntax, expression);
@@ -57,35 +57,43 @@ fn deeply_nested_code_of_arms_is_written_in_linear_time() {
     println!("{deepest} levels, {most} visits of a node");
 }
 
-fn depth(expression: &Expression) -> usize {
-    1 + match expression {
-        Expression::Variable(_) | Expression::Zero => 0,
-        Expression::Negative(a) => depth(a),
-        Expression::Binary(_, a, b) => depth(a).max(depth(b)),
-        Expression::BySign(operands) => operands.iter().map(depth).max().unwrap_or(0),
+fn depth(expression: Expression<'_>) -> usize {
+    1 + match expression.kind() {
+        ExpressionKind::Variable(_) | ExpressionKind::Zero => 0,
+        ExpressionKind::Negative(a) => depth(a),
+        ExpressionKind::Binary(_, a, b) => depth(a).max(depth(b)),
+        ExpressionKind::Fused([x, y], z, _) => depth(x).max(depth(y)).max(depth(z)),
+        ExpressionKind::BySign(operands) => operands.into_iter().map(depth).max().unwrap_or(0),
     }
 }
 
 /// A random expression of so many levels, of which one operand of each goes deeper and the others are small.
-fn random(rng: &mut Rng, levels: usize) -> Expression {
-    let name = |rng: &mut Rng| {
+fn random(rng: &mut Rng, levels: usize, values: &mut Values) -> ValueId {
+    let name = |rng: &mut Rng, values: &mut Values| {
         let quantity = [Quantity::Mass, Quantity::Position, Quantity::Omega, Quantity::JointMoment][rng.usize(..4)];
-        Expression::Variable(Name::scalar(quantity, [1, 7, 10, 1_000_000][rng.usize(..4)]))
+        values.push(Some(Name::scalar(quantity, [1, 7, 10, 1_000_000][rng.usize(..4)])), Value::Argument)
     };
     if levels == 0 {
-        return if rng.usize(..20) == 0 { Expression::Zero } else { name(rng) };
+        return if rng.usize(..20) == 0 { values.push(None, Value::Constant(0.0)) } else { name(rng, values) };
     }
-    let deep = random(rng, levels - 1);
+    let deep = random(rng, levels - 1, values);
     if rng.usize(..8) == 0 {
-        return Expression::Negative(Box::new(deep));
+        return values.push(None, Value::Negative(deep));
     }
     if rng.usize(..40) == 0 {
-        return Expression::BySign(Box::new([name(rng), deep, name(rng)]));
+        let operands = [name(rng, values), deep, name(rng, values)];
+        return values.push(None, Value::BySign(operands));
     }
     let operator = [Operator::Sum, Operator::Difference, Operator::Product, Operator::Quotient][rng.usize(..4)];
     let size = rng.usize(..3);
-    let small = random(rng, size.min(levels - 1));
-    if rng.bool() { Expression::binary(operator, deep, small) } else { Expression::binary(operator, small, deep) }
+    let small = random(rng, size.min(levels - 1), values);
+    let (a, b) = if rng.bool() { (deep, small) } else { (small, deep) };
+    if rng.usize(..20) == 0 {
+        let negated = [None, Some(Negated::Factor), Some(Negated::Addend)][rng.usize(..3)];
+        let addend = name(rng, values);
+        return values.push(None, Value::Fused(Contraction { factors: [a, b], addend, negated }));
+    }
+    values.push(None, Value::Binary(operator, a, b))
 }
 
 #[test]
@@ -93,11 +101,13 @@ fn random_expressions_of_any_depth_are_written_in_linear_time() {
     let mut rng = Rng::with_seed(12);
     for _ in 0..500 {
         let levels = rng.usize(1..200);
-        let expression = random(&mut rng, levels);
+        let mut values = Values::default();
+        let root = random(&mut rng, levels, &mut values);
+        let expression = values.used(root);
         let nodes = expression.parts().count();
         for syntax in LANGUAGES {
-            let visits = visits(syntax, &expression);
-            assert!(visits <= VISITS * nodes, "{visits} visits of {nodes} nodes: {}", line(syntax, &expression));
+            let visits = visits(syntax, expression);
+            assert!(visits <= VISITS * nodes, "{visits} visits of {nodes} nodes: {}", line(syntax, expression));
         }
     }
 }
@@ -108,12 +118,19 @@ fn the_lines_of_a_statement_are_as_wide_as_code_may_be() {
     let mut broken = 0;
     for _ in 0..500 {
         let levels = rng.usize(1..12);
-        let expression = random(&mut rng, levels);
+        let mut values = Values::default();
+        let root = random(&mut rng, levels, &mut values);
+        let expression = values.used(root);
         for syntax in LANGUAGES {
-            let text = LineBreaks::new(syntax, &expression).statement("    ", Annotated::from("let x ="));
+            let text = LineBreaks::new(syntax, expression).statement("    ", Annotated::from("let x ="));
             broken += usize::from(text.as_str().contains('\n'));
-            // a choice by a sign stays on its line
-            let widest = text.as_str().lines().filter(|line| !line.contains("by_sign")).map(str::len).max();
+            // a call stays on its line
+            let widest = text
+                .as_str()
+                .lines()
+                .filter(|line| !line.contains("by_sign") && !line.contains("fma") && !line.contains("mul_add"))
+                .map(str::len)
+                .max();
             assert!(widest.is_none_or(|widest| widest <= WIDTH), "{text}");
         }
     }

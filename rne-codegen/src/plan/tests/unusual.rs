@@ -123,7 +123,7 @@ fn angles_that_are_close_have_their_own_constants() {
         for (plans, is_plain) in [(PlanSet::none(&robot), true), (PlanSet::default_of(&robot), false)] {
             for function in Function::TORQUES {
                 let program = Compiler::new(&robot).with_plans(&plans).compile(function, Form::Reduced).unwrap();
-                let has = |value: f64| program.constants.iter().any(|constant| constant.value.abs() == value);
+                let has = |value: f64| program.constants().any(|constant| constant.value.abs() == value);
                 for angle in angles.iter().filter(|_| is_plain) {
                     assert!(has(angle.sin()), "{function} needs the sine of {angle}");
                 }
