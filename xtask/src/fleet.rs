@@ -17,7 +17,7 @@ Examples:
 pub(crate) struct Fleet;
 
 impl Fleet {
-    pub(crate) fn run(&self) -> Result<Verdict> {
+    pub(crate) fn run() -> Result<Verdict> {
         let shell = machine::shell()?;
         let manifest = "doors/datafusion/Cargo.toml";
         let fetched = cmd!(shell, "cargo fetch --quiet --locked --manifest-path {manifest}").quiet().ignore_status();

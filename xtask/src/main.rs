@@ -111,7 +111,7 @@ impl Task {
             Self::Lines(task) => ("lines", false, task.run()),
             Self::Package(task) => ("package", false, task.run()),
             Self::Tool(task) => ("tool", task.install, task.run()),
-            Self::Fleet(task) => ("fleet", false, task.run()),
+            Self::Fleet(_) => ("fleet", false, fleet::Fleet::run()),
             Self::Frozen(task) => ("frozen", false, task.run()),
             Self::Doors(task) => ("doors", task.install, task.run()),
             Self::Fuzz(task) => ("fuzz", false, task.run()),

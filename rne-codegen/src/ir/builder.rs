@@ -13,8 +13,19 @@ use crate::function::Function;
 use crate::ir::fold_report::{Cause, Operation, Place};
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
-use crate::reduced::arguments::Moving;
 use crate::values::Operator;
+
+/// What moves in the formulas that are being written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Moving {
+    /// What the function takes.
+    #[default]
+    AsGiven,
+    /// This joint, counted from 0, accelerates with 1, and nothing moves: a column of the mass matrix.
+    OneAccelerates(usize),
+    /// The joints are at rest and accelerate by their rates: torques are momenta then.
+    RatesForAccelerations,
+}
 
 /// A graph being written. [`Symbol`]s refer to it, so that formulas are written with operators.
 pub(crate) struct Builder {

@@ -23,7 +23,7 @@ mod trace;
 mod value_numbering;
 mod written;
 
-pub(crate) use builder::{Builder, JointLines};
+pub(crate) use builder::{Builder, JointLines, Moving};
 pub(crate) use causes::CausesId;
 pub use cost::Cost;
 pub(crate) use graph::{Graph, Outcome, Policy, Side};

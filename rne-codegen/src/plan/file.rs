@@ -9,7 +9,6 @@ use std::str::FromStr;
 use rne_model::document::{self, Content, Node, Style};
 use rne_model::{Convention, JointKind, Report, Robot, robot_of};
 
-use super::choices::Plan;
 use super::plan_set::PlanSet;
 use super::schema;
 use super::shapes::Mistake;
@@ -17,6 +16,7 @@ use crate::ir::Cost;
 use crate::program::{Program, Proof};
 use crate::prove;
 use crate::reduced::algorithm::Algorithm;
+use crate::reduced::choices::Plan;
 use crate::{CompileError, Function};
 
 /// A plan file, as it stands on disk.

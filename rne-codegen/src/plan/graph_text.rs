@@ -15,7 +15,7 @@ use crate::function::Function;
 use crate::ir::{
     Builder, Graph, Number, Numbers, Op, Policy, Ref, Residue, Source, Symbol, Traced, mark_live_outside_angles,
 };
-use crate::plan::choices::count;
+use crate::reduced::choices::count;
 
 /// A graph as text, when the numbers in the places `given` are those of its plan.
 pub(crate) fn written(graph: &Graph, given: &[u32]) -> String {

@@ -1,7 +1,6 @@
 //! Plans: which choices the reduced form makes for a robot, what they cost, where they are kept, and the search for
 //! better ones.
 
-mod choices;
 mod cost;
 mod exploration;
 mod file;
@@ -18,7 +17,7 @@ mod trick;
 mod yaml;
 
 pub use crate::ir::Cost;
-pub use choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
+pub use crate::reduced::choices::{JointPlan, Moment, OriginShift, Plan, RegroupingTarget, Scale, Side, Switches};
 pub use exploration::{Clock, Progress};
 pub use file::{Accuracy, Fingerprint, PlanFile, Reduced, Rewritten, fingerprint};
 pub(crate) use plan_set::formulation;

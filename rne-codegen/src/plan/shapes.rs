@@ -8,7 +8,7 @@ use std::str::FromStr;
 use rne_model::did_you_mean;
 use rne_model::document::{Content, Node, Style};
 
-use super::choices::count;
+use crate::reduced::choices::count;
 
 /// What is wrong, and where.
 #[derive(Debug)]

@@ -3,23 +3,11 @@
 use crate::function::Argument;
 use crate::ir::name::{Name, WithRespectTo};
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, ExactAngle, Number, Symbol, Vector, by_quarters};
+use crate::ir::{Builder, ExactAngle, Moving, Number, Symbol, Vector, by_quarters};
 use crate::reduced::joint_frames::JointFrame;
 use rne_model::QuarterTurns;
 
 use crate::reduced::link_parameters::Triple;
-
-/// What moves in the formulas that are being written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Moving {
-    /// What the function takes.
-    #[default]
-    AsGiven,
-    /// This joint, counted from 0, accelerates with 1, and nothing moves: a column of the mass matrix.
-    OneAccelerates(usize),
-    /// The joints are at rest and accelerate by their rates: torques are momenta then.
-    RatesForAccelerations,
-}
 
 /// The name of what belongs to a group of joints, or to a single one.
 fn group_name(group: Quantity, single: Quantity, first: usize, last: usize) -> Name {

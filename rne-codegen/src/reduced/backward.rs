@@ -8,8 +8,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::plan::{JointPlan, Moment, Side};
 use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::choices::{JointPlan, Moment, Side};
 use crate::reduced::forward::{Arm, Gradient, Motion, Moved, ScaledTwist, along_axis, plus};
 use crate::reduced::inward::full;
 use crate::reduced::joint_frames::JointFrame;

@@ -10,8 +10,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::plan::{JointPlan, Plan, Side};
 use crate::reduced::arguments::SymbolicTurn;
+use crate::reduced::choices::{JointPlan, Plan, Side};
 use crate::reduced::joint_frames::{JointFrame, JointFrames};
 use crate::reduced::regrouping::{Parameters, group_start, is_parallel};
 

@@ -11,6 +11,7 @@ pub(crate) mod aba;
 pub(crate) mod algorithm;
 pub(crate) mod arguments;
 pub(crate) mod backward;
+pub(crate) mod choices;
 pub(crate) mod crba;
 pub(crate) mod forward;
 pub(crate) mod inward;

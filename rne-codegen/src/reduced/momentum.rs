@@ -12,7 +12,6 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::arguments::Moving;
 use crate::reduced::backward::{Carried, inward};
 use crate::reduced::crba;
 use crate::reduced::forward::{Arm, Motion, Moved, motions};
@@ -21,7 +20,7 @@ use crate::reduced::joint_frames::JointFrames;
 
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Number, Symbol, Vector};
+use crate::ir::{Builder, Moving, Number, Symbol, Vector};
 
 /// p and its rate without external torques, base to tip.
 pub(crate) fn momentum_and_rate<'s>(

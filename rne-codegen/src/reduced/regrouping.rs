@@ -4,7 +4,7 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::Number;
-use crate::plan::{OriginShift, Plan, RegroupingTarget, Scale};
+use crate::reduced::choices::{OriginShift, Plan, RegroupingTarget, Scale};
 use crate::reduced::joint_frames::{JointFrame, JointFrames};
 use crate::reduced::link_parameters::{Entry, IDENTITY, PseudoInertia, Square, Triple};
 

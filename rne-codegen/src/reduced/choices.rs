@@ -247,7 +247,7 @@ impl fmt::Display for Scale {
 }
 
 /// A number of digits alone: no sign, which the standard library would take.
-pub(super) fn count(digits: &str) -> Option<usize> {
+pub(crate) fn count(digits: &str) -> Option<usize> {
     let is_plain = digits.chars().all(|c| c.is_ascii_digit()) && (digits == "0" || !digits.starts_with('0'));
     if is_plain { digits.parse().ok() } else { None }
 }
