@@ -18,11 +18,11 @@
 mod argument_array;
 mod equation;
 mod error;
+mod exact;
 mod expression;
 pub mod fma;
 mod formulate;
 mod function;
-mod identifiability;
 mod interpret;
 mod ir;
 mod latency;
@@ -43,13 +43,14 @@ use rne_model::Robot;
 pub use argument_array::ArgumentArray;
 pub use equation::{Equation, Operation as TermOperation, Term};
 pub use error::{CompileError, Extreme, Suspect};
+pub use exact::ExactFunction;
 pub use expression::{Expression, ExpressionKind};
 pub use function::{
     Answer, AnswerTable, Argument, Capability, Entry, Form, Function, Labels, Layout, Length, MatrixUnit, Own, Record,
     Shape,
 };
-pub use identifiability::{Identifiability, Parameter, Visibility};
 pub use interpret::{Arguments, Interpreter, Real};
+pub use ir::Residue;
 pub use ir::fold_report::{Cause, Causes, Fold, FoldReport, Line, Operation, Place};
 pub use ir::name::{Name, WithRespectTo};
 pub use ir::quantity::{Axis, Component, Quantity, Step};
@@ -180,13 +181,6 @@ impl<'r> Compiler<'r> {
             }
             Err(error) => Err(error.suspecting(robot, true)),
         }
-    }
-
-    /// Which parameters of the links the torques can see, and of the rotors where `rotors` asks for them: found without
-    /// rounding and without a tolerance. The numbers of the links do not matter.
-    #[must_use]
-    pub fn identifiability(&self, rotors: bool) -> Identifiability {
-        Identifiability::of(self.robot, rotors)
     }
 
     /// By the plan, with the algorithm that takes the fewest operations.

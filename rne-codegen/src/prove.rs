@@ -6,34 +6,23 @@
 
 use rne_model::{JointKind, Robot};
 
-use crate::formulate;
+use crate::exact::ExactFunction;
 use crate::function::Function;
 use crate::interpret::{Arguments, Interpreter, Real};
 use crate::ir::name::Name;
 use crate::ir::quantity::{Axis, Quantity};
-use crate::ir::{Builder, Embedding, Graph, Input, Op, Policy, Ref, Residue, SamplePoint, operators};
+use crate::ir::{Embedding, Input, Residue, SamplePoint, operators};
 use crate::program::{Exactly, Program, Proof};
+use crate::refusal::largest_rounding;
 use crate::{CompileError, Suspect};
 
 /// Points of the fields at which torques are compared.
 const POINTS: u64 = 4;
 /// States at which rounding is measured when code is generated.
 const STATES: usize = 24;
-/// No program is emitted whose torques differ more, relative to the largest.
-const LARGEST_ROUNDING: f64 = 1e-11;
-
-/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of
-/// its rotors has 10⁵.
-const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
-
 /// Accelerations that single precision changes by as much of the largest are those of a mass matrix that is singular
 /// but for rounding.
 const SINGULAR: f64 = 0.1;
-
-/// The largest rounding error of a program that is emitted.
-pub(crate) const fn largest_rounding(function: Function) -> f64 {
-    if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
-}
 
 /// Parts of the torques of motion, and their derivatives, may vanish but for rounding: they count as this part of those
 /// torques at least.
@@ -108,11 +97,11 @@ pub(crate) fn identical(
     constants: &Exactly,
     embedding: Embedding,
 ) -> Result<(), CompileError> {
-    let plain = Plain::new(robot, program.function, embedding);
+    let plain = ExactFunction::with(robot, program.function, embedding);
     let interpreter = Interpreter::new(program);
     for index in 1..=POINTS {
         let point = SamplePoint::new(embedding, index);
-        let expected = plain.outputs(&point);
+        let expected = plain.at_point(&point);
         let found = values(robot, &interpreter, constants, &point);
         let differs = |index: &usize| found.as_ref().and_then(|found| found.get(*index)) != expected.get(*index);
         if let Some(index) = (0..expected.len()).find(differs) {
@@ -127,38 +116,7 @@ pub(crate) fn identical(
 /// always singular is the same function as another.
 pub(crate) fn divides_by_zero(robot: &Robot, function: Function) -> bool {
     let embedding = Embedding::default();
-    let plain = Plain::new(robot, function, embedding);
-    let residues = plain.residues(&SamplePoint::new(embedding, 1));
-    plain.0.nodes().any(|(_, op)| matches!(op, Op::Quotient(_, b) if residues[b.index()].is_zero()))
-}
-
-/// The plain formulas, as they are written.
-struct Plain(Graph);
-
-impl Plain {
-    fn new(robot: &Robot, function: Function, embedding: Embedding) -> Self {
-        let builder = Builder::untraced(Policy::Structure, embedding, function);
-        let outputs = formulate::outputs(&builder, robot, function).into_iter().map(|(_, at)| at).collect();
-        Self(builder.finish(outputs).graph)
-    }
-
-    /// By node.
-    fn residues(&self, point: &SamplePoint) -> Vec<Residue> {
-        let mut residues: Vec<Residue> = Vec::with_capacity(self.0.len());
-        for (_, op) in self.0.nodes() {
-            residues.push(self.0.image_at(op, &residues, point));
-        }
-        residues
-    }
-
-    fn outputs(&self, point: &SamplePoint) -> Vec<Residue> {
-        let residues = self.residues(point);
-        let residue = |at: &Ref| {
-            let residue = residues[at.index()];
-            if at.is_negative() { -residue } else { residue }
-        };
-        self.0.outputs.iter().map(residue).collect()
-    }
+    ExactFunction::with(robot, function, embedding).divides_by_zero(&SamplePoint::new(embedding, 1))
 }
 
 fn signed((sine, cosine): (Residue, Residue), negative: bool) -> (Residue, Residue) {

@@ -4,7 +4,18 @@ use std::fmt;
 
 use crate::error::CompileError;
 use crate::function::Function;
-use crate::prove::largest_rounding;
+
+/// No program is emitted whose torques differ more, relative to the largest.
+const LARGEST_ROUNDING: f64 = 1e-11;
+
+/// Accelerations are as much less precise as the mass matrix is badly conditioned: the PUMA 560 without the inertia of
+/// its rotors has 10⁵.
+const LARGEST_ROUNDING_OF_ACCELERATIONS: f64 = 1e-7;
+
+/// The largest rounding error of a program that is emitted.
+pub(crate) const fn largest_rounding(function: Function) -> f64 {
+    if function.returns_accelerations() { LARGEST_ROUNDING_OF_ACCELERATIONS } else { LARGEST_ROUNDING }
+}
 
 /// A reduced form of a function that was refused, so that the function has another one, or the seven steps.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
+use crate::identifiability::{Identifiability, Parameter, Visibility};
 use nalgebra::{DMatrix, DVector};
-use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
 use rne_model::{JointKind, Link, Robot};
 use rne_runtime::{DynArm, LinkParameter};
 
@@ -55,7 +55,7 @@ impl Parameters {
     /// Of the geometry of a robot; what its links weigh does not matter. With rotors where they are asked for.
     #[must_use]
     pub fn of(robot: &Robot, rotors: bool) -> Self {
-        let Identifiability { parameters, .. } = Compiler::new(robot).identifiability(rotors);
+        let Identifiability { parameters, .. } = Identifiability::of(robot, rotors);
         let dof = robot.dof();
         let kept: Vec<Parameter> = parameters
             .iter()

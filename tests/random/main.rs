@@ -2,7 +2,6 @@
 
 mod cad;
 mod compiled;
-mod identifiability;
 mod interpreted;
 mod reduced;
 mod robots;

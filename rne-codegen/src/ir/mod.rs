@@ -33,7 +33,7 @@ pub(crate) use node::{Node, Op, Ref};
 pub(crate) use number::{Embedding, ExactAngle, Number, square};
 pub(crate) use numbers::{Numbers, Source};
 pub(crate) use operators::operators;
-pub(crate) use residue::Residue;
+pub use residue::Residue;
 pub(crate) use sample_point::SamplePoint;
 pub(crate) use symbol::{Matrix, Symbol, Vector, by_quarters};
 pub(crate) use trace::{Birth, Definition, Trace, Traced};

@@ -12,16 +12,19 @@ const BELOW: [u64; 2] = [1, 31];
 /// Sums, products and quotients of numbers have the sums, products and quotients of their images, without rounding. Two
 /// different rational functions agree at a random point of a field with a probability below 10⁻¹⁵, in both below 10⁻³⁰.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
-pub(crate) struct Residue([u64; 2]);
+pub struct Residue([u64; 2]);
 
 impl Residue {
-    pub(crate) const ZERO: Self = Self([0, 0]);
+    /// 0
+    pub const ZERO: Self = Self([0, 0]);
+    /// 1
     pub(crate) const ONE: Self = Self([1, 1]);
     /// 1/10
     pub(crate) const TENTH: Self = Self([2_075_258_708_292_324_556, 2_075_258_708_292_324_529]);
 
     /// The image of an integer.
-    pub(crate) const fn integer(value: u64) -> Self {
+    #[must_use]
+    pub const fn integer(value: u64) -> Self {
         let (p, q) = (MASK + 1 - BELOW[0], MASK + 1 - BELOW[1]);
         Self([value % p, value % q])
     }
@@ -32,7 +35,9 @@ impl Residue {
         Self([first % p, second % q])
     }
 
-    pub(crate) fn is_zero(self) -> bool {
+    /// Whether it is the image of zero.
+    #[must_use]
+    pub fn is_zero(self) -> bool {
         self == Self::ZERO
     }
 
@@ -67,7 +72,8 @@ impl Residue {
     }
 
     /// The inverse; `None` when an image is zero.
-    pub(crate) fn inverse(self) -> Option<Self> {
+    #[must_use]
+    pub fn inverse(self) -> Option<Self> {
         let [first, second] = self.0;
         (first != 0 && second != 0).then(|| {
             // Fermat: x^(p - 2) = 1/x

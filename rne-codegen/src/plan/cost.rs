@@ -77,7 +77,7 @@ impl FramedRobot {
         let parameters = self.parameters(plan)?;
         let builder = Builder::traced(Policy::Value, self.joint_frames.embedding, function);
         let arm = Arm { joint_frames: &self.joint_frames, plan, parameters: &parameters };
-        let (names, outputs) = algorithm::write(&builder, &arm, function, algorithm)
+        let (names, outputs) = algorithm::write(&builder, &arm, function, algorithm)?
             .into_iter()
             .map(|(name, symbol)| (name, builder.name(name, symbol).at))
             .unzip();
@@ -117,7 +117,7 @@ impl Evaluator {
         let parameters = frame.parameters(plan)?;
         builder.restart(frame.joint_frames.embedding);
         let arm = Arm { joint_frames: &frame.joint_frames, plan, parameters: &parameters };
-        let outputs: Vec<Ref> = algorithm::write(builder, &arm, builder.function, algorithm)
+        let outputs: Vec<Ref> = algorithm::write(builder, &arm, builder.function, algorithm)?
             .into_iter()
             .map(|(_, symbol)| symbol.at)
             .collect();

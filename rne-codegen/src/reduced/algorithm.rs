@@ -73,7 +73,18 @@ impl Algorithm {
                 Algorithm::Aba(BodiesPer::Group),
                 Algorithm::Aba(BodiesPer::Joint),
             ],
-            _ => &[],
+            Function::ForwardKinematics
+            | Function::LinkPoses
+            | Function::Jacobian
+            | Function::JacobianRateTimesVelocity
+            | Function::KineticEnergy
+            | Function::PotentialEnergy
+            | Function::CentreOfMass
+            | Function::CentreOfMassJacobian
+            | Function::Regressor
+            | Function::JointWrenches
+            | Function::InverseDynamicsOnMovingBase
+            | Function::ActuatorTorques => &[],
         }
     }
 
@@ -103,17 +114,18 @@ impl Algorithm {
     }
 }
 
-/// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout.
+/// Writes a function on the builder's sheet: what it returns, by name, in the order of its layout; `None` for
+/// what has no reduced recursion.
 pub(crate) fn write<'s>(
     builder: &'s Builder,
     arm: &Arm<'_>,
     function: Function,
     algorithm: Algorithm,
-) -> Vec<(Name, Symbol<'s>)> {
+) -> Option<Vec<(Name, Symbol<'s>)>> {
     let by_joint = |quantity: Quantity, values: Vec<Symbol<'s>>| -> Vec<(Name, Symbol<'s>)> {
         values.into_iter().enumerate().map(|(index, value)| (Name::scalar(quantity, index + 1), value)).collect()
     };
-    match (function, algorithm) {
+    Some(match (function, algorithm) {
         (Function::GravityTorques, Algorithm::Crba(bodies_per)) => {
             by_joint(Quantity::Torque, crba::gravity_torques(builder, arm, bodies_per))
         }
@@ -188,13 +200,23 @@ pub(crate) fn write<'s>(
                 (name, element)
             })
         }
-        (_, algorithm) => {
+        (
+            Function::InverseDynamics
+            | Function::InverseDynamicsWithWrench
+            | Function::InverseDynamicsWithPayload
+            | Function::InverseDynamicsFromSinCos
+            | Function::GravityTorques
+            | Function::BiasTorques,
+            algorithm,
+        ) => {
             let moved = motions(builder, arm);
             let unturned = algorithm == Algorithm::UnturnedPayload;
             let payload = Payload::argument(builder, arm.rows().len()).map(|payload| Load { payload, unturned });
             by_joint(Quantity::Torque, torques_with(builder, arm, &moved, payload))
         }
-    }
+        // `Algorithm::of` matches them all
+        _ => return None,
+    })
 }
 
 fn recursion<'s>(builder: &'s Builder, arm: &Arm<'_>) -> Vec<Symbol<'s>> {

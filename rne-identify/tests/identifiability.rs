@@ -2,18 +2,18 @@
 
 use std::fs;
 
-use rne::DynArm;
-use rne_codegen::{Compiler, Identifiability, Parameter, Visibility};
+use rne_identify::{Identifiability, Parameter, Visibility};
 use rne_model::Robot;
+use rne_runtime::DynArm;
 
-#[path = "arms.rs"]
+#[path = "../../tests/random/arms.rs"]
 mod arms;
 
 /// Of random arms, besides the shipped ones.
 const ARMS: u64 = 60;
 
 fn compare(robot: &Robot, name: &str) {
-    let exact = Compiler::new(robot).identifiability(false);
+    let exact = Identifiability::of(robot, false);
     let numerical = DynArm::from_robot(robot).base_parameters();
     let kept: Vec<Parameter> =
         numerical.parameters.iter().map(|base| Parameter::Link(base.kept.link, base.kept.index)).collect();
@@ -46,14 +46,14 @@ fn compare(robot: &Robot, name: &str) {
 }
 
 fn shipped(name: &str) -> Robot {
-    let path = format!("{}/robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
+    let path = format!("{}/../robots/{name}.yaml", env!("CARGO_MANIFEST_DIR"));
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     Robot::from_yaml(&text).unwrap_or_else(|report| panic!("{report}"))
 }
 
 #[test]
 fn base_parameters_of_the_shipped_robots_are_the_exact_ones() {
-    let folder = fs::read_dir(format!("{}/robots", env!("CARGO_MANIFEST_DIR"))).expect("it is there");
+    let folder = fs::read_dir(format!("{}/../robots", env!("CARGO_MANIFEST_DIR"))).expect("it is there");
     let names = folder.filter_map(|entry| Some(entry.ok()?.file_name().to_str()?.strip_suffix(".yaml")?.to_owned()));
     let mut count = 0;
     for name in names.filter(|name| !name.contains(".plan")) {
@@ -76,7 +76,7 @@ fn base_parameters_of_random_arms_are_the_exact_ones() {
 fn rotors_of_the_first_joints_are_seen_with_their_links() {
     let ranks = |name: &str| {
         let robot = shipped(name);
-        let of = |rotors| -> Identifiability { Compiler::new(&robot).identifiability(rotors) };
+        let of = |rotors| -> Identifiability { Identifiability::of(&robot, rotors) };
         (of(false).kept().len(), of(true))
     };
     for (name, links, with_rotors) in [("puma560", 36, 40), ("ur10", 36, 40), ("panda", 43, 48)] {

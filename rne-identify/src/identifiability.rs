@@ -9,13 +9,8 @@
 //! J. ACM 27, 1980). Angles of the table that are no right angles stand for any angle: an arm whose parameters a twist
 //! of just 60° couples would be found to have more base parameters than it has.
 
+use rne_codegen::{ExactFunction, Function, Name, Quantity, Residue};
 use rne_model::Robot;
-
-use crate::formulate;
-use crate::function::Function;
-use crate::ir::name::Name;
-use crate::ir::quantity::Quantity;
-use crate::ir::{Builder, Embedding, Graph, Input, Policy, Residue, SamplePoint};
 
 /// Inertial parameters of a link.
 const PARAMETERS: usize = 10;
@@ -68,7 +63,10 @@ impl Identifiability {
         kept.map(|(parameter, _)| *parameter).collect()
     }
 
-    pub(crate) fn of(robot: &Robot, rotors: bool) -> Self {
+    /// Finds what the torques can see of the parameters of the links, and of the rotors where `rotors` asks for them,
+    /// without rounding and without a tolerance. The numbers of the links do not matter.
+    #[must_use]
+    pub fn of(robot: &Robot, rotors: bool) -> Self {
         let dof = robot.dof();
         let links = (0..dof).flat_map(|link| ORDER.map(|index| Parameter::Link(link, index)));
         let of_rotors = (0..if rotors { dof } else { 0 }).map(Parameter::Rotor);
@@ -89,10 +87,9 @@ impl Identifiability {
     }
 }
 
-/// The graph of the regressor, ready to be evaluated.
+/// The regressor of a robot, ready to be evaluated.
 struct Regressor {
-    graph: Graph,
-    embedding: Embedding,
+    function: ExactFunction,
     dof: usize,
 }
 
@@ -100,26 +97,14 @@ impl Regressor {
     fn new(robot: &Robot) -> Self {
         // what a link has does not enter, but rotors would
         let robot = Robot { rotors: false, ..robot.clone() };
-        let embedding = Embedding::default();
-        let builder = Builder::untraced(Policy::Structure, embedding, Function::Regressor);
-        let outputs = formulate::outputs(&builder, &robot, Function::Regressor);
-        let graph = builder.finish(outputs.into_iter().map(|(_, at)| at).collect()).graph;
-        Self { graph, embedding, dof: robot.dof() }
+        Self { function: ExactFunction::new(&robot, Function::Regressor), dof: robot.dof() }
     }
 
     /// A row per joint, in the order of the parameters.
-    fn rows(&self, index: u64, order: &[Parameter]) -> Vec<Vec<Residue>> {
-        let point = SamplePoint::new(self.embedding, index);
-        let mut residues: Vec<Residue> = Vec::with_capacity(self.graph.len());
-        for (_, op) in self.graph.nodes() {
-            residues.push(self.graph.image_at(op, &residues, &point));
-        }
-        let output = |at: usize| {
-            let at = &self.graph.outputs[at];
-            let residue = residues[at.index()];
-            if at.is_negative() { -residue } else { residue }
-        };
-        let acceleration = |joint: usize| point.argument(Input::new(Name::scalar(Quantity::RateDot, joint + 1)));
+    fn rows(&self, point: u64, order: &[Parameter]) -> Vec<Vec<Residue>> {
+        let outputs = self.function.at(point);
+        let output = |at: usize| outputs[at];
+        let acceleration = |joint: usize| self.function.argument(point, Name::scalar(Quantity::RateDot, joint + 1));
         let element = |joint: usize, parameter: &Parameter| match *parameter {
             Parameter::Link(link, place) => output((joint * self.dof + link) * PARAMETERS + place),
             Parameter::Rotor(of) if of == joint => acceleration(joint),
