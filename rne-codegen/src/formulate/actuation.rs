@@ -10,14 +10,6 @@ use crate::ir::fold_report::Cause;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 
-/// G² Jm at a joint, of a robot that is taken with its rotors.
-pub(crate) fn rotor<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Symbol<'s>> {
-    let motor = robot.joints.get(index)?.motor.filter(|_| robot.rotors)?;
-    let ratio = number(builder, robot, Entry::GearRatio(index), motor.gear_ratio);
-    let inertia = (ratio * ratio) * number(builder, robot, Entry::MotorInertia(index), motor.inertia);
-    Some(builder.name(Name::scalar(Quantity::RotorInertia, index + 1), inertia))
-}
-
 /// The torques of the motors, base to tip; zero where a joint has none. Rotors that belong to the arm are in its own.
 pub(crate) fn torques<'s>(builder: &'s Builder, robot: &Robot, states: &[JointState<'s>]) -> Vec<Symbol<'s>> {
     let torque = |(index, state): (usize, &JointState<'s>)| {

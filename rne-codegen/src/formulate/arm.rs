@@ -14,7 +14,6 @@
 
 use rne_model::{Angle, Convention, Entry, Formula, InertiaElement, JointKind, Robot, Transform};
 
-use crate::formulate::actuation;
 use crate::function::Argument;
 use crate::ir::Builder;
 use crate::ir::fold_report::Cause;
@@ -102,7 +101,7 @@ impl<'s> Arm<'s> {
                 com: table_axes.map_or(com, |axes| axes * com),
                 table_axes: table_axes.unwrap_or_else(|| identity(builder)),
                 mass: mass(builder, robot, index),
-                rotor: actuation::rotor(builder, robot, index),
+                rotor: rotor(builder, robot, index),
                 inertia: builder.name_matrix(
                     Quantity::Inertia,
                     joint,
@@ -171,6 +170,14 @@ impl<'s> Placement<'s> {
         let rotation = (turn(Axis::Z, yaw) * turn(Axis::Y, pitch)) * turn(Axis::X, roll);
         Self { rotation, translation: Vector(translation) }
     }
+}
+
+/// G² Jm at a joint, of a robot that is taken with its rotors.
+fn rotor<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Option<Symbol<'s>> {
+    let motor = robot.joints.get(index)?.motor.filter(|_| robot.rotors)?;
+    let ratio = number(builder, robot, Entry::GearRatio(index), motor.gear_ratio);
+    let inertia = (ratio * ratio) * number(builder, robot, Entry::MotorInertia(index), motor.inertia);
+    Some(builder.name(Name::scalar(Quantity::RotorInertia, index + 1), inertia))
 }
 
 /// A number of the table: a constant, or a formula over what is known at run time only.

@@ -1,8 +1,8 @@
 //! M(q) by columns: the torques of the seven steps for q̈ = e_j, of an arm at rest and without gravity.
 
 use crate::formulate::arm::Arm;
-use crate::formulate::joint::JointState;
-use crate::formulate::seven_steps::{self, Motion, Wrench};
+use crate::formulate::joint::{JointState, Wrench};
+use crate::formulate::seven_steps::{self, Motion};
 use crate::ir::Symbol;
 use crate::ir::fold_report::Cause;
 use crate::ir::name::WithRespectTo;

@@ -16,10 +16,10 @@ pub(crate) mod seven_steps;
 use rne_model::Robot;
 
 use crate::formulate::arm::Arm;
-use crate::formulate::joint::JointState;
+use crate::formulate::joint::{JointState, Wrench};
 use crate::formulate::kinematics::{Frame, Frames};
 use crate::formulate::payload::Payload;
-use crate::formulate::seven_steps::{Load, Motion, Wrench};
+use crate::formulate::seven_steps::{Load, Motion};
 use crate::function::{Argument, Function};
 use crate::ir::fold_report::Cause;
 use crate::ir::name::{Name, WithRespectTo};

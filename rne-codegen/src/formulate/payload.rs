@@ -9,7 +9,8 @@
 //! ```
 
 use crate::formulate::arm::Arm;
-use crate::formulate::seven_steps::{Motion, Wrench};
+use crate::formulate::joint::Wrench;
+use crate::formulate::seven_steps::Motion;
 use crate::function::Argument;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;

@@ -10,17 +10,10 @@
 //! as in a set of base parameters: its terms stand apart, for no body has them.
 
 use crate::formulate::arm::{Arm, Mount, identity};
-use crate::formulate::joint::{Joint, JointState};
+use crate::formulate::joint::{Joint, JointState, Wrench};
 use crate::ir::fold_report::Cause;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
-
-/// A force and a moment.
-#[derive(Clone, Copy)]
-pub(crate) struct Wrench<'s> {
-    pub(crate) force: Vector<'s>,
-    pub(crate) moment: Vector<'s>,
-}
 
 /// How a link turns, in its frame: what steps 1 and 2 find.
 #[derive(Clone, Copy)]

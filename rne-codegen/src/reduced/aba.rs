@@ -13,7 +13,8 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::backward::{Wrench, antisymmetric_of};
+use crate::reduced::backward::antisymmetric_of;
+use crate::reduced::wrench::Wrench;
 
 use crate::reduced::forward::{Arm, Gradient};
 use crate::reduced::inward::{BodiesPer, Inward, Symmetric, Turned, full};

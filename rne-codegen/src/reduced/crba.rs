@@ -13,11 +13,11 @@
 
 use rne_model::JointKind::{Prismatic, Revolute};
 
-use crate::reduced::backward::Wrench;
 use crate::reduced::forward::Arm;
 use crate::reduced::inward::{Carried, Inward, Symmetric, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
 use crate::reduced::regrouping::group_start;
+use crate::reduced::wrench::Wrench;
 
 pub(crate) use crate::reduced::inward::BodiesPer;
 

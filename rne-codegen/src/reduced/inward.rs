@@ -4,9 +4,9 @@ use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::ir::{Builder, Number, Symbol, Vector};
 use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::backward::Wrench;
 use crate::reduced::forward::Arm;
 use crate::reduced::regrouping::{group_start, is_parallel};
+use crate::reduced::wrench::Wrench;
 
 /// Whether bodies behind parallel axes are gathered in the frame N of the first of these axes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -21,3 +21,4 @@ pub(crate) mod momentum;
 pub(crate) mod payload;
 pub(crate) mod regrouping;
 pub(crate) mod rnea_derivatives;
+pub(crate) mod wrench;

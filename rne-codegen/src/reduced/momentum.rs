@@ -17,6 +17,7 @@ use crate::reduced::crba;
 use crate::reduced::forward::{Arm, Motion, Moved, motions};
 use crate::reduced::inward::BodiesPer;
 use crate::reduced::joint_frames::JointFrames;
+use crate::reduced::wrench::Wrench;
 
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
@@ -65,7 +66,7 @@ fn of_motion<'s>(
         // both frames have the axis in common, and a point of it
         Revolute => {
             let about_z = |v: Vector<'s>, of: Vector<'s>| v.0[1] * of.0[0] - v.0[0] * of.0[1];
-            let of_frame = |motion: &Motion<'s>, wrench: &crate::reduced::backward::Wrench<'s>| {
+            let of_frame = |motion: &Motion<'s>, wrench: &Wrench<'s>| {
                 about_z(motion.omega_dot, wrench.moment) + about_z(motion.acceleration, wrench.force).times(per_both)
             };
             of_frame(&link.own, &carried.own) + of_frame(&link.unturned, &carried.unturned)

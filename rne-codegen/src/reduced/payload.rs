@@ -8,9 +8,9 @@
 
 use crate::formulate::payload::Payload;
 use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::backward::Wrench;
 use crate::reduced::forward::{Arm, Motion, Moved};
 use crate::reduced::link_parameters::PseudoInertia;
+use crate::reduced::wrench::Wrench;
 
 use crate::ir::{Builder, Matrix, Number, Vector};
 

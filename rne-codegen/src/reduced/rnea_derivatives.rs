@@ -27,11 +27,12 @@
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::reduced::arguments::SymbolicTurn;
-use crate::reduced::backward::{Wrench, antisymmetric_of};
+use crate::reduced::backward::antisymmetric_of;
 use crate::reduced::crba::Composite;
 use crate::reduced::forward::{Arm, Gradient};
 use crate::reduced::inward::{BodiesPer, Carried, Inward, Turned};
 use crate::reduced::link_parameters::PseudoInertia;
+use crate::reduced::wrench::Wrench;
 
 use crate::ir::quantity::Quantity;
 use crate::ir::{Builder, Number, Symbol, Vector, square};

@@ -9,10 +9,16 @@ mod revolute;
 use rne_model::JointKind::{Prismatic, Revolute};
 
 use crate::formulate::arm::{Arm, Link, turned};
-use crate::formulate::seven_steps::Wrench;
 use crate::ir::fold_report::Cause;
 use crate::ir::quantity::{Axis, Quantity};
 use crate::ir::{Builder, JointLines, Matrix, Symbol, Vector};
+
+/// A force and a moment.
+#[derive(Clone, Copy)]
+pub(crate) struct Wrench<'s> {
+    pub(crate) force: Vector<'s>,
+    pub(crate) moment: Vector<'s>,
+}
 
 /// Position, rate and acceleration of one joint.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! A prismatic joint: the link slides along e by q and turns as its parent does.
 
 use super::Joint;
-use crate::formulate::seven_steps::Wrench;
+use crate::formulate::joint::Wrench;
 use crate::ir::name::Name;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Symbol, Vector};

@@ -3,7 +3,7 @@
 use rne_model::QuarterTurns;
 
 use super::Joint;
-use crate::formulate::seven_steps::Wrench;
+use crate::formulate::joint::Wrench;
 use crate::ir::quantity::Quantity;
 use crate::ir::{Symbol, Vector, by_quarters};
 
