@@ -27,7 +27,7 @@ pub(super) struct Parameter {
 
 impl Parameter {
     /// Those of a robot in their order, as members of a struct in a language with these keywords.
-    pub(super) fn of(robot: &Robot, keywords: &[&str]) -> Vec<Self> {
+    pub(super) fn of(robot: &Robot, keywords: &str) -> Vec<Self> {
         let run_time = &robot.run_time;
         let parameter = |(index, (name, value)): (usize, (&String, f64))| {
             let depends = || run_time.entries.iter().filter(move |(_, formula)| formula.depends_on(index));
@@ -94,9 +94,9 @@ pub(super) fn are_used(program: &Program) -> bool {
 }
 
 /// A name that is no word of the language, and none of the others.
-fn member(name: &str, others: &[String], keywords: &[&str]) -> String {
+fn member(name: &str, others: &[String], keywords: &str) -> String {
     let mut member = name.to_owned();
-    while keywords.contains(&member.as_str()) || member != name && others.contains(&member) {
+    while keywords.split(' ').any(|keyword| keyword == member) || member != name && others.contains(&member) {
         member.push('_');
     }
     member
@@ -148,124 +148,22 @@ fn words(entry: Entry) -> String {
 }
 
 /// Words of Rust that are no names.
-pub(super) const OF_RUST: &[&str] = &[
-    "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do", "dyn", "else",
-    "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro", "match", "mod",
-    "move", "mut", "override", "priv", "pub", "ref", "return", "self", "Self", "static", "struct", "super", "trait",
-    "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield", "_",
-];
+pub(super) const OF_RUST: &str = "\
+    abstract as async await become box break const continue crate do dyn else enum extern false final fn for gen \
+    if impl in let loop macro match mod move mut override priv pub ref return self Self static struct super trait \
+    true try type typeof unsafe unsized use virtual where while yield _";
 
-/// Words of C and C++ that are no names: a header is read by both.
-pub(super) const OF_C: &[&str] = &[
-    "alignas",
-    "alignof",
-    "and",
-    "and_eq",
-    "asm",
-    "auto",
-    "bitand",
-    "bitor",
-    "bool",
-    "break",
-    "case",
-    "catch",
-    "char",
-    "char16_t",
-    "char32_t",
-    "char8_t",
-    "class",
-    "co_await",
-    "co_return",
-    "co_yield",
-    "compl",
-    "concept",
-    "const",
-    "const_cast",
-    "consteval",
-    "constexpr",
-    "constinit",
-    "continue",
-    "decltype",
-    "default",
-    "delete",
-    "do",
-    "double",
-    "dynamic_cast",
-    "else",
-    "enum",
-    "explicit",
-    "export",
-    "extern",
-    "false",
-    "float",
-    "for",
-    "friend",
-    "goto",
-    "if",
-    "inline",
-    "int",
-    "long",
-    "mutable",
-    "namespace",
-    "new",
-    "noexcept",
-    "not",
-    "not_eq",
-    "nullptr",
-    "operator",
-    "or",
-    "or_eq",
-    "private",
-    "protected",
-    "public",
-    "register",
-    "reinterpret_cast",
-    "requires",
-    "restrict",
-    "return",
-    "short",
-    "signed",
-    "sizeof",
-    "static",
-    "static_assert",
-    "static_cast",
-    "struct",
-    "switch",
-    "template",
-    "this",
-    "thread_local",
-    "throw",
-    "true",
-    "try",
-    "typedef",
-    "typeid",
-    "typename",
-    "typeof",
-    "typeof_unqual",
-    "union",
-    "unsigned",
-    "using",
-    "virtual",
-    "void",
-    "volatile",
-    "wchar_t",
-    "while",
-    "xor",
-    "xor_eq",
-    "_Alignas",
-    "_Alignof",
-    "_Atomic",
-    "_Bool",
-    "_Complex",
-    "_Generic",
-    "_Imaginary",
-    "_Noreturn",
-    "_Static_assert",
-    "_Thread_local",
-    // of a compiler that does not keep to the standard
-    "linux",
-    "unix",
-];
+/// Words of C and C++ that are no names, for a header is read by both; the last two are those of a compiler that does
+/// not keep to the standard.
+pub(super) const OF_C: &str = "\
+    alignas alignof and and_eq asm auto bitand bitor bool break case catch char char16_t char32_t char8_t class \
+    co_await co_return co_yield compl concept const const_cast consteval constexpr constinit continue decltype \
+    default delete do double dynamic_cast else enum explicit export extern false float for friend goto if inline \
+    int long mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public register \
+    reinterpret_cast requires restrict return short signed sizeof static static_assert static_cast struct switch \
+    template this thread_local throw true try typedef typeid typename typeof typeof_unqual union unsigned using \
+    virtual void volatile wchar_t while xor xor_eq _Alignas _Alignof _Atomic _Bool _Complex _Generic _Imaginary \
+    _Noreturn _Static_assert _Thread_local linux unix";
 
 #[cfg(test)]
 mod tests {
