@@ -12,7 +12,7 @@ pub struct RunTime {
     /// [`Robot::parameters`] too, with its value in the file.
     pub names: Vec<String>,
     /// The numbers of the table that depend on them, each once: gravity, base, tool, then joint by joint. None of them
-    /// is zero in the table, and no angle and no limit is among them.
+    /// is zero in the table. Of a file no angle and no limit is among them; a program may put sines and cosines there.
     pub entries: Vec<(Entry, Formula)>,
     /// The elements of [`Joint::written_inertia`](crate::Joint::written_inertia) that depend on them, with the joint
     /// from 0, where a file gives the tensor about the origin. About the centre of mass it is [`Entry::Inertia`].
@@ -56,6 +56,14 @@ pub enum Entry {
     D(usize),
     /// The length a of the common normal: the joint.
     A(usize),
+    /// The sine of the constant part of θ: the joint. This and the next three are in no file.
+    ThetaSine(usize),
+    /// The cosine of the constant part of θ: the joint.
+    ThetaCosine(usize),
+    /// The sine of the twist α: the joint.
+    AlphaSine(usize),
+    /// The cosine of the twist α: the joint.
+    AlphaCosine(usize),
     /// The mass of a link: the joint that moves it.
     Mass(usize),
     /// A component of a link's centre of mass: the joint and the axis.
@@ -179,7 +187,7 @@ impl Robot {
             *element.of_mut(&mut robot.joints.get_mut(*joint)?.written_inertia.0) = value(formula);
         }
         for (entry, formula) in entries {
-            *robot.place(*entry)? = value(formula);
+            *robot.number_mut(*entry)? = value(formula);
             if let Entry::Inertia(joint, element) = *entry {
                 let written = &mut robot.joints.get_mut(joint)?.written_inertia;
                 if written.1 == InertiaReference::Com {
@@ -190,14 +198,18 @@ impl Robot {
         Some(robot)
     }
 
-    /// Where a number of the table stands.
-    fn place(&mut self, entry: Entry) -> Option<&mut f64> {
+    /// The place of a number of the table; `None` where the robot has no such joint, motor or axis.
+    pub fn number_mut(&mut self, entry: Entry) -> Option<&mut f64> {
         match entry {
             Entry::Gravity(axis) => self.gravity.get_mut(axis),
             Entry::BaseXyz(axis) => self.base.xyz.get_mut(axis),
             Entry::ToolXyz(axis) => self.tool.xyz.get_mut(axis),
             Entry::D(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.d),
             Entry::A(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.a),
+            Entry::ThetaSine(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.theta.sin),
+            Entry::ThetaCosine(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.theta.cos),
+            Entry::AlphaSine(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.alpha.sin),
+            Entry::AlphaCosine(joint) => Some(&mut self.joints.get_mut(joint)?.row.dh.alpha.cos),
             Entry::Mass(joint) => Some(&mut self.joints.get_mut(joint)?.row.link.mass),
             Entry::Com(joint, axis) => self.joints.get_mut(joint)?.row.link.com.get_mut(axis),
             Entry::FirstMoment(joint, axis) => self.joints.get_mut(joint)?.row.link.first_moment.get_mut(axis),

@@ -11,10 +11,10 @@
 
 use rne_model::{Convention, JointKind};
 
+use crate::derivation::TooLong;
 use crate::equations::Equations;
 use crate::polynomial::Polynomial;
 use crate::rational::fraction;
-use crate::seven_steps::TooLong;
 use crate::table::{Row, Table};
 use crate::vector::{Matrix, Vector};
 

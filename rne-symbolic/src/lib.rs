@@ -1,6 +1,6 @@
 //! The dynamics of an arm in closed form, as a lecture writes them: τ = M(θ)θ̈ + h(θ,θ̇) + γ(θ).
 //!
-//! The seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the
+//! The compiler's seven steps of recursive Newton-Euler run over polynomials with exact fractions, whose letters are the
 //! parameters of the robot file and the other numbers of its table. The torques are sorted into the mass matrix,
 //! Christoffel's symbols and gravity, held against Lagrange's equations, and collected for reading. What is printed is
 //! multiplied out again and must be what was derived. Data in, data out: nothing here opens a file or prints.
@@ -28,8 +28,8 @@
 //! ```
 #![forbid(unsafe_code)]
 
-mod arm;
 mod collected;
+mod derivation;
 mod document;
 mod equations;
 mod factor;
@@ -41,7 +41,6 @@ mod parameters;
 mod polynomial;
 mod rational;
 mod recursion;
-mod seven_steps;
 mod symbol;
 mod table;
 #[cfg(test)]
@@ -56,8 +55,8 @@ pub use crate::parameters::read;
 use rne_model::Robot;
 
 use crate::collected::Sum;
+use crate::derivation::{Derivation, TooLong};
 use crate::equations::Equations;
-use crate::seven_steps::TooLong;
 use crate::table::Table;
 use crate::written::Written;
 
@@ -81,8 +80,7 @@ const MOST_JOINTS: usize = 4;
 
 /// The equations of an arm, if they are short enough.
 fn equations(table: &Table) -> Result<(Equations, Written), TooLong> {
-    let torques = seven_steps::inverse_dynamics(&arm::links(table), &table.gravity)?;
-    let equations = Equations::sorted(&torques);
+    let equations = Equations::sorted(&Derivation::new(table, &[])?.torques());
     let written = Written::of(table, &equations)?;
     Ok((equations, written))
 }

@@ -1,16 +1,17 @@
 //! The recursion in letters, for an arm whose closed form no page holds: the formulas of the seven steps, and what
 //! they take of each link.
 
+use rne_codegen::Quantity;
 use rne_model::{Convention, JointKind};
 
-use crate::arm;
 use crate::collected::Collector;
+use crate::derivation::Derivation;
 use crate::document::{Composer, Item, Section, letters, used, words};
 use crate::lines::Pieces;
 use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
 use crate::table::Row;
-use crate::vector::Vector;
+use crate::vector::{Matrix, Vector};
 use crate::written::MOST_TERMS;
 use crate::{ClosedForm, MOST_LINES, written};
 
@@ -94,8 +95,10 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         composer.formula(left, Pieces::components(&sums, &composer.notation))
     };
     items.push(vector("g", 0, &form.table.gravity, &mut seen));
-    let links = arm::links(&form.table);
-    for (i, (link, row)) in links.iter().zip(&form.table.rows).enumerate() {
+    let constants = [Quantity::D, Quantity::R, Quantity::Inertia, Quantity::MasslessMoment];
+    let constants = Derivation::at_rest(&form.table, &constants);
+    let links = constants.iter().flat_map(|constants| form.table.rows.iter().map(move |row| (constants, row)));
+    for (i, (link, row)) in links.enumerate() {
         let index = i + 1;
         let before = match form.table.convention {
             Convention::Standard => i.checked_sub(1).and_then(|p| form.table.rows.get(p)).map(|row| (row, i)),
@@ -103,18 +106,18 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         };
         let turns = composer.both(|notation| turns(notation, before, row, i));
         items.push(composer.formula(|notation| notation.indexed("R", &index.to_string()), Pieces::of_terms(&[turns])));
-        items.push(vector("d", index, &link.d, &mut seen));
-        if index < links.len() {
-            items.push(vector("r", index, &link.r, &mut seen));
+        items.push(vector("d", index, &link.vector(Quantity::D, index), &mut seen));
+        if index < form.joints() {
+            items.push(vector("r", index, &link.vector(Quantity::R, index), &mut seen));
         }
         let own = |notation: &Notation<'_>| notation.indexed("m", &index.to_string());
-        let mass = written::polynomial(&form.table, &link.mass);
+        let mass = written::polynomial(&form.table, &row.mass);
         if mass != own(&composer.plain) {
-            let sums = Collector::new(composer.notation.constants).collected(&link.mass);
+            let sums = Collector::new(composer.notation.constants).collected(&row.mass);
             items.extend(sums.map(|sum| composer.formula(own, Pieces::of(&sum, &composer.notation))));
         }
-        seen.extend([link.mass.clone(), link.rotor.clone()]);
-        let rows = &link.inertia.0;
+        seen.extend([row.mass.clone(), row.rotor.clone()]);
+        let Matrix(rows) = link.matrix(Quantity::Inertia, index);
         let diagonal = Vector([0, 1, 2].map(|axis| rows[axis].0[axis].clone()));
         let products = Vector([rows[0].0[1].clone(), rows[0].0[2].clone(), rows[1].0[2].clone()]);
         if !diagonal.is_zero() || !products.is_zero() {
@@ -123,8 +126,9 @@ pub(crate) fn sections(composer: &Composer<'_>, form: &ClosedForm) -> Vec<Sectio
         if !products.is_zero() {
             items.push(vector("(Ixy, Ixz, Iyz)", index, &products, &mut seen));
         }
-        if !link.first_moment.is_zero() {
-            items.push(vector("h", index, &link.first_moment, &mut seen));
+        let first_moment = link.vector(Quantity::MasslessMoment, index);
+        if !first_moment.is_zero() {
+            items.push(vector("h", index, &first_moment, &mut seen));
         }
     }
     let is_revolute = |row: &&Row| row.kind == JointKind::Revolute;

@@ -40,6 +40,8 @@ pub(crate) struct Row {
 /// The arm in letters.
 #[derive(Clone, Debug)]
 pub(crate) struct Table {
+    /// The robot with the joints of the rows alone.
+    pub(crate) robot: Robot,
     pub(crate) convention: Convention,
     pub(crate) rows: Vec<Row>,
     /// The acceleration of gravity in frame 0.
@@ -234,7 +236,9 @@ impl Table {
         }
         let Letters { mut constants, angles, .. } = letters;
         constants.distinguish(structure(&robot_rows.iter().map(|row| row.kind).collect::<Vec<_>>()));
-        Self { convention: robot.convention, rows, gravity, constants, angles, offsets }
+        let mut robot = robot.clone();
+        robot.joints.truncate(rows.len());
+        Self { convention: robot.convention, robot, rows, gravity, constants, angles, offsets }
     }
 
     /// The values of all letters in a state of the arm: positions, rates and accelerations of the joint variables q.

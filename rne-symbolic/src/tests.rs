@@ -8,11 +8,11 @@ use rne_model::{InertiaReference, Robot};
 use rne_runtime::DynArm;
 
 use crate::collected::Collector;
+use crate::derivation::{Derivation, TooLong};
 use crate::equations::Equations;
 use crate::polynomial::Polynomial;
-use crate::seven_steps::TooLong;
 use crate::table::Table;
-use crate::{arm, lagrange, read, seven_steps};
+use crate::{lagrange, read};
 
 /// Uniform rods, the slide on a turning joint and the turning joint on a slide of the specification, in letters.
 const TEXTBOOK: [&str; 5] = [
@@ -133,7 +133,7 @@ fn robots() -> Vec<Robot> {
 }
 
 fn derived(table: &Table) -> Result<Equations, TooLong> {
-    seven_steps::inverse_dynamics(&arm::links(table), &table.gravity).map(|torques| Equations::sorted(&torques))
+    Derivation::new(table, &[]).map(|derivation| Equations::sorted(&derivation.torques()))
 }
 
 /// Two derivations that share the letters of the table alone. A sign of a recursion, of a Jacobian or of a Christoffel
@@ -166,7 +166,7 @@ fn the_seven_steps_are_lagranges_equations() {
 fn the_parts_are_the_torque() {
     for robot in robots() {
         let table = Table::new(&robot, robot.dof());
-        let Ok(torques) = seven_steps::inverse_dynamics(&arm::links(&table), &table.gravity) else { continue };
+        let Ok(torques) = Derivation::new(&table, &[]).map(|derivation| derivation.torques()) else { continue };
         let equations = Equations::sorted(&torques);
         for (joint, torque) in torques.iter().enumerate() {
             assert_eq!(equations.torque(joint), *torque);

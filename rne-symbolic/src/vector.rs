@@ -31,10 +31,6 @@ impl Vector {
         Self([b * z - c * y, c * x - a * z, a * y - b * x])
     }
 
-    pub(crate) fn is_too_long(&self) -> bool {
-        self.0.iter().any(Polynomial::is_too_long)
-    }
-
     pub(crate) fn is_zero(&self) -> bool {
         self.0.iter().all(Polynomial::is_zero)
     }

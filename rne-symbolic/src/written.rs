@@ -4,12 +4,12 @@ use rne_model::JointKind;
 
 use crate::MOST_LINES;
 use crate::collected::{Collector, Sum};
+use crate::derivation::TooLong;
 use crate::equations::Equations;
 use crate::factor::Factor;
 use crate::lines::Pieces;
 use crate::notation::{Notation, Script};
 use crate::polynomial::Polynomial;
-use crate::seven_steps::TooLong;
 use crate::table::Table;
 
 /// Columns of a line.

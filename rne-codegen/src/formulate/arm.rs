@@ -39,6 +39,8 @@ pub(crate) struct Link<'s> {
     pub(crate) kind: JointKind,
     /// The constant part of the joint angle.
     pub(crate) theta: Angle,
+    /// Its sine and cosine, where they are known at run time only.
+    pub(crate) varying_turn: Option<[Symbol<'s>; 2]>,
     /// (a_i, 0, b_i) of a standard, (0, 0, b_i) of a modified row; b_i without the joint variable.
     pub(crate) offset: Vector<'s>,
     /// Centre of mass from the end of the offset.
@@ -73,7 +75,7 @@ impl<'s> Arm<'s> {
         let number = |entry: Entry, value: f64| number(builder, robot, entry, value);
         let tool = Placement::new(builder, robot, &robot.tool, Entry::ToolXyz);
         let twists: Vec<_> =
-            robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, index + 1, &row.dh.alpha)).collect();
+            robot.rows().enumerate().map(|(index, row)| turn_about_x(builder, robot, index, &row.dh.alpha)).collect();
         let mut links: Vec<Link<'s>> = Vec::with_capacity(dof);
         for (index, row) in robot.rows().enumerate() {
             let (joint, parent) = (index + 1, robot.parent(index));
@@ -97,6 +99,7 @@ impl<'s> Arm<'s> {
                 mount,
                 kind: row.kind,
                 theta: row.dh.theta,
+                varying_turn: varying(builder, robot, [Entry::ThetaSine(index), Entry::ThetaCosine(index)]),
                 offset: Vector([length, zero(), number(Entry::D(index), row.dh.d)]),
                 com: table_axes.map_or(com, |axes| axes * com),
                 table_axes: table_axes.unwrap_or_else(|| identity(builder)),
@@ -217,11 +220,18 @@ fn inertia<'s>(builder: &'s Builder, robot: &Robot, index: usize) -> Matrix<'s> 
     Matrix::from_rows([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
 }
 
+/// Two numbers that are known at run time only.
+fn varying<'s>(builder: &'s Builder, robot: &Robot, entries: [Entry; 2]) -> Option<[Symbol<'s>; 2]> {
+    let [a, b] = entries.map(|entry| robot.run_time.formula(entry));
+    Some([formula(builder, a?), formula(builder, b?)])
+}
+
 /// Rx(α) of a row of the table.
-fn turn_about_x<'s>(builder: &'s Builder, row: usize, alpha: &Angle) -> Matrix<'s> {
-    let (s, c) = builder.constant_turn(alpha, Cause::Arithmetic);
-    let s = builder.name(Name::scalar(Quantity::TwistSine, row), s);
-    let c = builder.name(Name::scalar(Quantity::TwistCosine, row), c);
+fn turn_about_x<'s>(builder: &'s Builder, robot: &Robot, index: usize, alpha: &Angle) -> Matrix<'s> {
+    let [s, c] = varying(builder, robot, [Entry::AlphaSine(index), Entry::AlphaCosine(index)])
+        .unwrap_or_else(|| builder.constant_turn(alpha, Cause::Arithmetic).into());
+    let s = builder.name(Name::scalar(Quantity::TwistSine, index + 1), s);
+    let c = builder.name(Name::scalar(Quantity::TwistCosine, index + 1), c);
     turned(builder, Axis::X, (s, c), Cause::TurnAboutX)
 }
 

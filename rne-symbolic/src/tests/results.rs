@@ -4,15 +4,16 @@
 //! Each is the polynomial that the seven steps find, turned into the lecture's frame, the number that the runtime
 //! finds, and what the page shows of both.
 
+use rne_codegen::Quantity;
 use rne_model::Robot;
 use rne_runtime::DynArm;
 
+use crate::derivation::Derivation;
 use crate::polynomial::Polynomial;
 use crate::rational::{exact, fraction};
 use crate::symbol::{Angle, Symbol};
 use crate::table::Table;
-use crate::vector::Vector;
-use crate::{ClosedForm, arm, read, seven_steps};
+use crate::{ClosedForm, read};
 
 /// θ, θ̇, θ̈ of the commands on the page.
 const STATE: [f64; 3] = [0.6, 1.3, -0.7];
@@ -126,33 +127,38 @@ fn components(formula: &str, table: &Table) -> Vec<Polynomial> {
 
 /// What the seven steps and the runtime find for results 1 to 10.
 fn found(robot: &Robot, table: &Table) -> Vec<(Vec<Polynomial>, Vec<f64>)> {
-    let links = arm::links(table);
-    let motions = seven_steps::forward(&links, &table.gravity).expect("it is short");
-    let loads = seven_steps::backward(&links, &motions).expect("it is short");
-    let ([link], [motion], [load]) = (links.as_slice(), motions.as_slice(), loads.as_slice()) else {
-        panic!("one link")
-    };
-    // no torque needs these two, so the derivation leaves them out; the base stands still
-    let velocity = motion.omega.cross(&link.d);
-    let inertia_force = &motion.c_ddot * &link.mass;
+    let vectors = [
+        Quantity::Omega,
+        Quantity::OmegaDot,
+        Quantity::Velocity,
+        Quantity::Acceleration,
+        Quantity::Gravity,
+        Quantity::InertiaForce,
+        Quantity::InertiaMoment,
+        Quantity::JointForce,
+        Quantity::JointMoment,
+    ];
+    let derivation = Derivation::new(table, &[&vectors[..], &[Quantity::Rotation]].concat()).expect("it is short");
     // the lecture's frame 1 is the base frame
-    let turned = |vector: &Vector| (&link.rotation * vector).0.to_vec();
+    let rotation = derivation.matrix(Quantity::Rotation, 1);
+    let turned = vectors.map(|quantity| (&rotation * &derivation.vector(quantity, 1)).0.to_vec());
     let [q, qd, qdd] = STATE.map(|value| [value]);
     let base = rne_runtime::BaseMotion::fixed(robot.gravity);
     let trace = DynArm::from_robot(robot).trace(&q, &qd, &qdd, &base, None).expect("one joint").to_lecture();
     let [of] = trace.as_slice() else { panic!("one link") };
-    vec![
-        (turned(&motion.omega), of.omega.to_vec()),
-        (turned(&motion.omega_dot), of.omega_dot.to_vec()),
-        (turned(&velocity), of.velocity.to_vec()),
-        (turned(&motion.c_ddot), of.acceleration.to_vec()),
-        (turned(&motion.gravity), of.gravity.to_vec()),
-        (turned(&inertia_force), of.inertia_force.to_vec()),
-        (turned(&load.inertia_moment), of.inertia_moment.to_vec()),
-        (turned(&load.force), of.joint_force.to_vec()),
-        (turned(&load.moment), of.joint_moment.to_vec()),
-        (vec![load.torque.clone()], vec![of.tau]),
-    ]
+    let numbers = [
+        of.omega,
+        of.omega_dot,
+        of.velocity,
+        of.acceleration,
+        of.gravity,
+        of.inertia_force,
+        of.inertia_moment,
+        of.joint_force,
+        of.joint_moment,
+    ];
+    let vectors = turned.into_iter().zip(numbers.map(|numbers| numbers.to_vec()));
+    vectors.chain([(derivation.torques(), vec![of.tau])]).collect()
 }
 
 /// The cells of the table's rows.

@@ -68,7 +68,8 @@ impl<'s> Joint<'_, 's> {
 
     /// Sine and cosine of the constant θ.
     fn constant_turn(&self) -> (Symbol<'s>, Symbol<'s>) {
-        let (s, c) = self.lines.builder.constant_turn(&self.link.theta, Cause::Arithmetic);
+        let fixed = || self.lines.builder.constant_turn(&self.link.theta, Cause::Arithmetic).into();
+        let [s, c] = self.link.varying_turn.unwrap_or_else(fixed);
         (self.lines.name(Quantity::ThetaSine, s), self.lines.name(Quantity::ThetaCosine, c))
     }
 }
