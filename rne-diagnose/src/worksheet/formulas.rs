@@ -22,16 +22,6 @@ pub(super) struct Formulas<'a> {
 
 type V = Vector3<f64>;
 
-/// What a link hands on to the next in the outward steps.
-struct Before {
-    omega: V,
-    omega_dot: V,
-    velocity: V,
-    acceleration: V,
-    gravity: V,
-    r: V,
-}
-
 /// A joint whose lines are written.
 struct Here<'a> {
     i: usize,
@@ -44,7 +34,47 @@ struct Here<'a> {
     turn: Matrix3<f64>,
     e: V,
     q: [f64; 3],
-    before: Before,
+    /// How the link before moves, and r_{i-1}.
+    before: (BaseMotion<f64>, V),
+}
+
+/// A vector in a formula: how it is written, its components, and what goes into it.
+#[derive(Clone)]
+struct Part {
+    term: Term,
+    value: V,
+    inputs: Vec<Input>,
+}
+
+impl Part {
+    fn new(text: &str, value: impl Into<V>, unit: &'static str) -> Self {
+        let value = value.into();
+        let inputs = vec![input(text.to_owned(), &list(&value), unit)];
+        Self { term: term(text, &value), value, inputs }
+    }
+
+    fn made(text: &str, value: V, inputs: &[Input]) -> Self {
+        Self { term: term(text, &value), value, inputs: inputs.to_vec() }
+    }
+
+    fn cross(&self, other: &Self) -> Self {
+        let (left, right) = (&self.term.text, &other.term.text);
+        let text = if right.contains('×') { format!("{left} × ({right})") } else { format!("{left} × {right}") };
+        Self::made(&text, self.value.cross(&other.value), &[&self.inputs[..], &other.inputs].concat())
+    }
+
+    /// Multiplied by a number, or by a matrix, that is written before it.
+    fn times<F>(&self, (factor, input): &(F, Input)) -> Self
+    where
+        F: Copy + std::ops::Mul<V, Output = V>,
+    {
+        let text = format!("{} {}", input.symbol, self.term.text);
+        Self::made(&text, *factor * self.value, &[std::slice::from_ref(input), &self.inputs].concat())
+    }
+
+    fn negative(&self) -> Self {
+        Self::made(&format!("-{}", self.term.text), -self.value, &self.inputs)
+    }
 }
 
 impl Formulas<'_> {
@@ -64,26 +94,11 @@ impl Formulas<'_> {
             Axes::Joint => about_z(self.fixed[index].sin, self.fixed[index].cos),
             Axes::Base => orientations[index],
         };
-        let before = match index.checked_sub(1) {
-            Some(before) => {
-                let link = &self.links[before];
-                Before {
-                    omega: link.omega.into(),
-                    omega_dot: link.omega_dot.into(),
-                    velocity: link.velocity.into(),
-                    acceleration: link.acceleration.into(),
-                    gravity: link.gravity.into(),
-                    r: link.r.into(),
-                }
+        let before = match index.checked_sub(1).map(|before| &self.links[before]) {
+            Some(&LinkTrace { omega, omega_dot, velocity, acceleration, gravity, r, .. }) => {
+                (BaseMotion { omega, omega_dot, velocity, acceleration, gravity }, r.into())
             }
-            None => Before {
-                omega: self.base.omega.into(),
-                omega_dot: self.base.omega_dot.into(),
-                velocity: self.base.velocity.into(),
-                acceleration: self.base.acceleration.into(),
-                gravity: self.base.gravity.into(),
-                r: first_lever(self.robot).into(),
-            },
+            None => (self.base, first_lever(self.robot).into()),
         };
         let q = [self.at.q[index], self.at.qd[index], self.at.qdd[index]];
         let (kind, row) = (joint.row.kind, &joint.row);
@@ -189,196 +204,137 @@ impl Formulas<'_> {
         }
     }
 
-    /// Rᵀ of a vector of the link before: text and term.
-    fn carried(&self, here: &Here<'_>, text: &str, value: &V) -> Term {
-        let i = here.i;
+    /// Rᵀ of a vector of the link before.
+    fn carried(&self, here: &Here<'_>, part: &Part) -> Part {
         if self.axes == Axes::Base {
-            return term(text, value);
+            return part.clone();
         }
-        let text = if text.contains(' ') { format!("R{i}ᵀ ({text})") } else { format!("R{i}ᵀ {text}") };
-        Term {
-            slips: vec![
-                (format!("R{i} stands where R{i}ᵀ belongs"), list(&(here.rotation * value))),
-                (format!("it is not turned by R{i}ᵀ"), list(value)),
-            ],
-            ..term(&text, &here.rotation.tr_mul(value))
+        let (i, value) = (here.i, &part.value);
+        let input = input(format!("R{i}"), &rows(&here.rotation), "1");
+        let mut carried = Part::made(
+            &turned_back(i, &part.term.text),
+            here.rotation.tr_mul(value),
+            &[&[input], &part.inputs[..]].concat(),
+        );
+        carried.term.slips = vec![
+            (format!("R{i} stands where R{i}ᵀ belongs"), list(&(here.rotation * value))),
+            (format!("it is not turned by R{i}ᵀ"), list(value)),
+        ];
+        carried
+    }
+
+    /// A line that is the sum of vectors of the link before, which are turned into these axes, and of others.
+    fn sum(&self, here: &Here<'_>, quantity: Quantity, before: &[Part], own: &[Part]) -> Line {
+        let joined = |parts: &[Part]| {
+            let texts: Vec<&str> = parts.iter().map(|part| part.term.text.as_str()).collect();
+            texts.join(" + ").replace("+ -", "- ")
+        };
+        let mut formula = joined(before);
+        if self.axes != Axes::Base && !before.is_empty() {
+            formula = turned_back(here.i, &formula);
         }
+        let formula =
+            [formula, joined(own)].into_iter().filter(|text| !text.is_empty()).collect::<Vec<_>>().join(" + ");
+        let parts: Vec<Part> = before.iter().map(|part| self.carried(here, part)).chain(own.iter().cloned()).collect();
+        let mut inputs: Vec<Input> = Vec::new();
+        for input in parts.iter().flat_map(|part| &part.inputs) {
+            if !inputs.iter().any(|known| known.symbol == input.symbol) {
+                inputs.push(input.clone());
+            }
+        }
+        let terms = parts.into_iter().map(|part| part.term).collect();
+        Line { terms, inputs, ..here.line(quantity, here.vector(quantity).to_vec(), &formula) }
+    }
+
+    /// e, which is an input only where it has other components than (0, 0, 1).
+    fn axis(&self, here: &Here<'_>) -> Part {
+        if self.axes == Axes::Base {
+            return Part::new(&format!("e{}", here.i), here.e, "1");
+        }
+        Part::made("e", here.e, &[])
     }
 
     /// Steps 1 to 5.
-    #[allow(clippy::too_many_lines)] // five formulas, one beside the other
     fn outward(&self, here: &Here<'_>) -> Vec<Line> {
-        let Here { i, kind, link, e, before, .. } = here;
-        let (i, p, [_, qd, qdd]) = (*i, *i - 1, here.q);
-        let slides = *kind == JointKind::Prismatic;
-        let in_base = self.axes == Axes::Base;
-        let axis = if in_base { format!("e{i}") } else { "e".to_owned() };
-        let [omega, omega_dot, d] = [link.omega, link.omega_dot, link.d].map(V::from);
-        let r = &before.r;
-        let carried = |text: &str, value: &V| self.carried(here, text, value);
-        // what goes in; R is not needed where all axes are those of the base
-        let rotation = || if in_base { None } else { Some(input(format!("R{i}"), &rows(&here.rotation), "1")) };
-        let of = |quantity: Quantity, joint: usize, value: &V| {
-            Some(input(quantity.symbol(joint), &list(value), quantity.unit(*kind)))
-        };
-        let rate = || Some(input(format!("q̇{i}"), &[qd], Quantity::Qd.unit(*kind)));
-        let rate_dot = || Some(input(format!("q̈{i}"), &[qdd], Quantity::Qdd.unit(*kind)));
-        let along = || if in_base { Some(input(format!("e{i}"), &list(e), "1")) } else { None };
-        let group = |text: &str| if in_base { text.to_owned() } else { format!("R{i}ᵀ ({text})") };
-        let lone = |text: &str| if in_base { text.to_owned() } else { format!("R{i}ᵀ {text}") };
+        let own = |quantity| here.part(quantity);
+        let (p, (motion, r)) = (here.i - 1, &here.before);
+        let of = |quantity: Quantity, value: [f64; 3]| Part::new(&quantity.symbol(p), value, quantity.unit(here.kind));
+        let omega_p = of(Quantity::Omega, motion.omega);
+        let omega_dot_p = of(Quantity::OmegaDot, motion.omega_dot);
+        let r_p = of(Quantity::R, (*r).into());
+        let (omega, omega_dot, d, e) =
+            (own(Quantity::Omega), own(Quantity::OmegaDot), own(Quantity::D), self.axis(here));
+        let [rate, rate_dot] = [(Quantity::Qd, here.q[1]), (Quantity::Qdd, here.q[2])]
+            .map(|(quantity, value)| (value, input(quantity.symbol(here.i), &[value], quantity.unit(here.kind))));
+        let is_revolute = here.kind == JointKind::Revolute;
+        let of_revolute = |parts: &[Part]| if is_revolute { parts.to_vec() } else { Vec::new() };
+        let with_prismatic = |parts: &[Part], more: &[Part]| [parts, if is_revolute { &[] } else { more }].concat();
 
-        let mut terms = vec![carried(&format!("ω{p}"), &before.omega)];
-        let mut formula = lone(&format!("ω{p}"));
-        let mut inputs = vec![rotation(), of(Quantity::Omega, p, &before.omega)];
-        if !slides {
-            terms.push(term(&format!("q̇{i} {axis}"), &(e * qd)));
-            let _ = write!(formula, " + q̇{i} {axis}");
-            inputs.extend([rate(), along()]);
-        }
-        let step_1 = here.sum(Quantity::Omega, &link.omega, formula, terms, inputs);
+        let spin = of_revolute(&[e.times(&rate)]);
+        let step_1 = self.sum(here, Quantity::Omega, std::slice::from_ref(&omega_p), &spin);
 
-        let mut terms = vec![carried(&format!("ω̇{p}"), &before.omega_dot)];
-        let mut formula = lone(&format!("ω̇{p}"));
-        let mut inputs = vec![rotation(), of(Quantity::OmegaDot, p, &before.omega_dot)];
-        if !slides {
-            terms.push(term(&format!("q̈{i} {axis}"), &(e * qdd)));
-            terms.push(term(&format!("q̇{i} ω{i} × {axis}"), &(omega.cross(e) * qd)));
-            let _ = write!(formula, " + q̈{i} {axis} + q̇{i} ω{i} × {axis}");
-            inputs.extend([rate_dot(), rate(), of(Quantity::Omega, i, &omega), along()]);
-        }
-        let step_2 = here.sum(Quantity::OmegaDot, &link.omega_dot, formula, terms, inputs);
+        let spin = of_revolute(&[e.times(&rate_dot), omega.cross(&e).times(&rate)]);
+        let step_2 = self.sum(here, Quantity::OmegaDot, std::slice::from_ref(&omega_dot_p), &spin);
 
-        let mut terms = vec![
-            carried(&format!("ċ{p}"), &before.velocity),
-            carried(&format!("ω{p} × r{p}"), &before.omega.cross(r)),
-            term(&format!("ω{i} × d{i}"), &omega.cross(&d)),
+        let before = [of(Quantity::Velocity, motion.velocity), omega_p.cross(&r_p)];
+        let step_3 =
+            self.sum(here, Quantity::Velocity, &before, &with_prismatic(&[omega.cross(&d)], &[e.times(&rate)]));
+
+        let before = [
+            of(Quantity::Acceleration, motion.acceleration),
+            omega_dot_p.cross(&r_p),
+            omega_p.cross(&omega_p.cross(&r_p)),
         ];
-        let mut formula = format!("{} + ω{i} × d{i}", group(&format!("ċ{p} + ω{p} × r{p}")));
-        let mut inputs = vec![
-            rotation(),
-            of(Quantity::Velocity, p, &before.velocity),
-            of(Quantity::Omega, p, &before.omega),
-            of(Quantity::R, p, r),
-            of(Quantity::Omega, i, &omega),
-            of(Quantity::D, i, &d),
-        ];
-        if slides {
-            terms.push(term(&format!("q̇{i} {axis}"), &(e * qd)));
-            let _ = write!(formula, " + q̇{i} {axis}");
-            inputs.extend([rate(), along()]);
-        }
-        let step_3 = here.sum(Quantity::Velocity, &link.velocity, formula, terms, inputs);
+        let about_joint = [omega_dot.cross(&d), omega.cross(&omega.cross(&d))];
+        let once = omega.cross(&e).times(&rate);
+        let mut coriolis = omega.cross(&e).times(&(2.0 * rate.0, rate.1.clone()));
+        coriolis.term.text = format!("2 {}", once.term.text);
+        let slip = format!("ḃ ω × e without its factor 2: {}", once.term.text);
+        coriolis.term.slips = vec![(slip, list(&(coriolis.value / 2.0)))];
+        let slide = [e.times(&rate_dot), coriolis];
+        let step_4 = self.sum(here, Quantity::Acceleration, &before, &with_prismatic(&about_joint, &slide));
 
-        let mut terms = vec![
-            carried(&format!("c̈{p}"), &before.acceleration),
-            carried(&format!("ω̇{p} × r{p}"), &before.omega_dot.cross(r)),
-            carried(&format!("ω{p} × (ω{p} × r{p})"), &before.omega.cross(&before.omega.cross(r))),
-            term(&format!("ω̇{i} × d{i}"), &omega_dot.cross(&d)),
-            term(&format!("ω{i} × (ω{i} × d{i})"), &omega.cross(&omega.cross(&d))),
-        ];
-        let mut formula = format!(
-            "{} + ω̇{i} × d{i} + ω{i} × (ω{i} × d{i})",
-            group(&format!("c̈{p} + ω̇{p} × r{p} + ω{p} × (ω{p} × r{p})"))
-        );
-        let mut inputs = vec![
-            rotation(),
-            of(Quantity::Acceleration, p, &before.acceleration),
-            of(Quantity::OmegaDot, p, &before.omega_dot),
-            of(Quantity::Omega, p, &before.omega),
-            of(Quantity::R, p, r),
-            of(Quantity::OmegaDot, i, &omega_dot),
-            of(Quantity::Omega, i, &omega),
-            of(Quantity::D, i, &d),
-        ];
-        if slides {
-            terms.push(term(&format!("q̈{i} {axis}"), &(e * qdd)));
-            let coriolis = omega.cross(e) * (2.0 * qd);
-            let once = (format!("ḃ ω × e without its factor 2: q̇{i} ω{i} × {axis}"), list(&(coriolis / 2.0)));
-            terms.push(Term { slips: vec![once], ..term(&format!("2 q̇{i} ω{i} × {axis}"), &coriolis) });
-            let _ = write!(formula, " + q̈{i} {axis} + 2 q̇{i} ω{i} × {axis}");
-            inputs.extend([rate_dot(), rate(), along()]);
-        }
-        let step_4 = here.sum(Quantity::Acceleration, &link.acceleration, formula, terms, inputs);
-
-        let gravity = vec![carried(&format!("g{p}"), &before.gravity)];
-        let inputs = vec![rotation(), of(Quantity::Gravity, p, &before.gravity)];
-        let step_5 = here.sum(Quantity::Gravity, &link.gravity, lone(&format!("g{p}")), gravity, inputs);
+        let step_5 = self.sum(here, Quantity::Gravity, &[of(Quantity::Gravity, motion.gravity)], &[]);
         vec![step_1, step_2, step_3, step_4, step_5]
     }
 
     /// Steps 6 and 7.
     fn inward(&self, here: &Here<'_>) -> Vec<Line> {
         let Here { i, kind, link, e, .. } = here;
-        let (i, p, n) = (*i, *i - 1, *i + 1);
-        let inertia = Matrix3::from(link.inertia).transpose();
-        let [omega, omega_dot, c_dd, g] = [link.omega, link.omega_dot, link.acceleration, link.gravity].map(V::from);
-        let [d, r, f, m] = [link.d, link.r, link.inertia_force, link.inertia_moment].map(V::from);
-        let [next_f, next_m, joint_f] = [link.next_force, link.next_moment, link.joint_force].map(V::from);
-        let of = |quantity: Quantity, value: &V| Some(input(quantity.symbol(i), &list(value), quantity.unit(*kind)));
-        let mass = || Some(input(format!("m{i}"), &[link.mass], "kg"));
-        let tensor = || Some(input(format!("I{i}"), &rows(&inertia), "kg m²"));
-
+        let (i, p) = (*i, *i - 1);
+        let own = |quantity| here.part(quantity);
+        let (omega, omega_dot, acceleration) =
+            (own(Quantity::Omega), own(Quantity::OmegaDot), own(Quantity::Acceleration));
+        let gravity = own(Quantity::Gravity);
+        let mass = (link.mass, input(format!("m{i}"), &[link.mass], "kg"));
+        let tensor = Matrix3::from(link.inertia).transpose();
+        let tensor = (tensor, input(format!("I{i}"), &rows(&tensor), "kg m²"));
         // of a link without mass that has a first moment
-        let h = V::from(link.first_moment);
-        let has_h = h != V::zeros();
-        let of_h = || has_h.then(|| input(format!("h{i}"), &list(&h), "kg m"));
-        let more = |text: &str| if has_h { format!(" {text}") } else { String::new() };
+        let h = Some(V::from(link.first_moment)).filter(|h| *h != V::zeros());
+        let h = h.map(|h| Part::new(&format!("h{i}"), h, "kg m"));
+        let with = |parts: &[Part], more: &dyn Fn(&Part) -> Vec<Part>| {
+            parts.iter().cloned().chain(h.iter().flat_map(more)).collect::<Vec<_>>()
+        };
 
-        let mut force = vec![term(&format!("m{i} c̈{i}"), &(c_dd * link.mass))];
-        let mut inputs = vec![mass(), of(Quantity::Acceleration, &c_dd)];
-        if has_h {
-            force.push(term(&format!("ω̇{i} × h{i}"), &omega_dot.cross(&h)));
-            force.push(term(&format!("ω{i} × (ω{i} × h{i})"), &omega.cross(&omega.cross(&h))));
-            inputs.extend([of(Quantity::OmegaDot, &omega_dot), of(Quantity::Omega, &omega), of_h()]);
-        }
-        let formula = format!("m{i} c̈{i}{}", more(&format!("+ ω̇{i} × h{i} + ω{i} × (ω{i} × h{i})")));
-        let force = here.sum(Quantity::InertiaForce, &link.inertia_force, formula, force, inputs);
+        let parts = with(&[acceleration.times(&mass)], &|h| vec![omega_dot.cross(h), omega.cross(&omega.cross(h))]);
+        let force = self.sum(here, Quantity::InertiaForce, &[], &parts);
+        let parts = [omega_dot.times(&tensor), omega.cross(&omega.times(&tensor))];
+        let parts = with(&parts, &|h| vec![h.cross(&acceleration)]);
+        let moment = self.sum(here, Quantity::InertiaMoment, &[], &parts);
 
-        let mut moment = vec![
-            term(&format!("I{i} ω̇{i}"), &(inertia * omega_dot)),
-            term(&format!("ω{i} × I{i} ω{i}"), &omega.cross(&(inertia * omega))),
+        let (next_force, next_moment) = (own(Quantity::NextForce), own(Quantity::NextMoment));
+        let handed_on = self.handed_on(here);
+
+        let parts = [own(Quantity::InertiaForce), next_force.clone(), gravity.times(&mass).negative()];
+        let joint_force = self.sum(here, Quantity::JointForce, &[], &parts);
+        let parts = [
+            own(Quantity::InertiaMoment),
+            next_moment,
+            own(Quantity::D).cross(&own(Quantity::JointForce)),
+            own(Quantity::R).cross(&next_force),
         ];
-        let mut inputs = vec![tensor(), of(Quantity::OmegaDot, &omega_dot), of(Quantity::Omega, &omega)];
-        if has_h {
-            moment.push(term(&format!("h{i} × c̈{i}"), &h.cross(&c_dd)));
-            inputs.extend([of_h(), of(Quantity::Acceleration, &c_dd)]);
-        }
-        let formula = format!("I{i} ω̇{i} + ω{i} × I{i} ω{i}{}", more(&format!("+ h{i} × c̈{i}")));
-        let moment = here.sum(Quantity::InertiaMoment, &link.inertia_moment, formula, moment, inputs);
-
-        let handed_on = self.handed_on(here, &next_f, &next_m);
-
-        let terms = vec![
-            term(&format!("f{i}"), &f),
-            term(&format!("f{i},{n}"), &next_f),
-            term(&format!("-m{i} g{i}"), &(g * -link.mass)),
-        ];
-        let inputs =
-            vec![of(Quantity::InertiaForce, &f), of(Quantity::NextForce, &next_f), mass(), of(Quantity::Gravity, &g)];
-        let formula = format!("f{i} + f{i},{n} - m{i} g{i}");
-        let joint_force = here.sum(Quantity::JointForce, &link.joint_force, formula, terms, inputs);
-
-        let mut terms = vec![
-            term(&format!("n{i}"), &m),
-            term(&format!("n{i},{n}"), &next_m),
-            term(&format!("d{i} × f{p},{i}"), &d.cross(&joint_f)),
-            term(&format!("r{i} × f{i},{n}"), &r.cross(&next_f)),
-        ];
-        let mut inputs = vec![
-            of(Quantity::InertiaMoment, &m),
-            of(Quantity::NextMoment, &next_m),
-            of(Quantity::D, &d),
-            of(Quantity::JointForce, &joint_f),
-            of(Quantity::R, &r),
-            of(Quantity::NextForce, &next_f),
-        ];
-        if has_h {
-            terms.push(term(&format!("-h{i} × g{i}"), &-h.cross(&g)));
-            inputs.extend([of_h(), of(Quantity::Gravity, &g)]);
-        }
-        let weight = more(&format!("- h{i} × g{i}"));
-        let formula = format!("n{i} + n{i},{n} + d{i} × f{p},{i} + r{i} × f{i},{n}{weight}");
-        let joint_moment = here.sum(Quantity::JointMoment, &link.joint_moment, formula, terms, inputs);
+        let joint_moment =
+            self.sum(here, Quantity::JointMoment, &[], &with(&parts, &|h| vec![h.cross(&gravity).negative()]));
 
         let (wrench, letter) = match kind {
             JointKind::Revolute => (Quantity::JointMoment, link.joint_moment),
@@ -407,10 +363,11 @@ impl Formulas<'_> {
     }
 
     /// What the next link takes, turned into these axes.
-    fn handed_on(&self, here: &Here<'_>, force: &V, moment: &V) -> Vec<Line> {
+    fn handed_on(&self, here: &Here<'_>) -> Vec<Line> {
         let (i, n) = (here.i, here.i + 1);
-        [(Quantity::NextForce, force), (Quantity::NextMoment, moment)]
-            .map(|(quantity, value)| {
+        [Quantity::NextForce, Quantity::NextMoment]
+            .map(|quantity| {
+                let value = &V::from(here.vector(quantity));
                 let symbol = quantity.symbol(i);
                 let Some(next) = self.links.get(i) else {
                     let what = match (&self.at.wrench, &self.at.payload) {
@@ -433,10 +390,10 @@ impl Formulas<'_> {
                 let terms = vec![Term { slips, ..term(&format!("R{n} {symbol}"), value) }];
                 let unit = quantity.unit(here.kind);
                 let inputs = vec![
-                    Some(input(format!("R{n}"), &rows(&turn), "1")),
-                    Some(input(format!("{symbol} of joint {n}"), &list(&own), unit)),
+                    input(format!("R{n}"), &rows(&turn), "1"),
+                    input(format!("{symbol} of joint {n}"), &list(&own), unit),
                 ];
-                here.sum(quantity, &(*value).into(), formula, terms, inputs)
+                Line { terms, inputs, ..here.line(quantity, list(value), &formula) }
             })
             .to_vec()
     }
@@ -448,17 +405,36 @@ impl Here<'_> {
         Line { joint, kind, quantity, values, formula, terms: Vec::new(), inputs: Vec::new() }
     }
 
-    fn sum(
-        &self,
-        quantity: Quantity,
-        values: &[f64; 3],
-        formula: String,
-        terms: Vec<Term>,
-        inputs: Vec<Option<Input>>,
-    ) -> Line {
-        let inputs = inputs.into_iter().flatten().collect();
-        Line { formula, terms, inputs, ..self.line(quantity, values.to_vec(), "") }
+    /// A vector of the link.
+    fn vector(&self, quantity: Quantity) -> [f64; 3] {
+        let link = self.link;
+        match quantity {
+            Quantity::D => link.d,
+            Quantity::R => link.r,
+            Quantity::Omega => link.omega,
+            Quantity::OmegaDot => link.omega_dot,
+            Quantity::Velocity => link.velocity,
+            Quantity::Acceleration => link.acceleration,
+            Quantity::Gravity => link.gravity,
+            Quantity::InertiaForce => link.inertia_force,
+            Quantity::InertiaMoment => link.inertia_moment,
+            Quantity::NextForce => link.next_force,
+            Quantity::NextMoment => link.next_moment,
+            Quantity::JointForce => link.joint_force,
+            Quantity::JointMoment => link.joint_moment,
+            _ => unreachable!("{quantity} is no vector of the steps"),
+        }
     }
+
+    /// The same as it stands in a formula.
+    fn part(&self, quantity: Quantity) -> Part {
+        Part::new(&quantity.symbol(self.i), self.vector(quantity), quantity.unit(self.kind))
+    }
+}
+
+/// Rᵀ of a term, or of a sum.
+fn turned_back(i: usize, text: &str) -> String {
+    if text.contains(' ') { format!("R{i}ᵀ ({text})") } else { format!("R{i}ᵀ {text}") }
 }
 
 /// A number in six digits.
